@@ -1,0 +1,113 @@
+//! Inverse position: the pivots that hold the platform in a pose.
+
+use core::fmt;
+
+use crate::guide::Guide;
+use crate::pose::Pose;
+use crate::scalar::Scalar;
+
+/// The pivots of a pose, and the guides on the way to them.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Inverse<T: Scalar> {
+    /// phi_1 to phi_3 on the track, multi-turn: phi_i - theta_i lies within +-90 deg.
+    pub pivots: [T::Angle; 3],
+    /// Guides 1 to 3.
+    pub guides: [Guide<T>; 3],
+}
+
+/// Why a pose has no pivots.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum InverseError {
+    /// A coordinate is NaN or infinite.
+    NotFinite,
+    /// The centre lies on or outside the track, where a guide may miss it.
+    OutsideTrack,
+}
+
+impl fmt::Display for InverseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "the pose is not finite",
+            Self::OutsideTrack => "the centre lies on or outside the track",
+        })
+    }
+}
+
+impl core::error::Error for InverseError {}
+
+/// The pivots and guides of `pose`, with `phi_i = theta_i + asin(d_i)`.
+///
+/// The other root, `180 deg + theta_i - asin(d_i)`, has `rho_i < 0` and is never feasible.
+///
+/// # Errors
+/// [`InverseError`] for a pose that is not finite or whose centre is not inside the track.
+pub fn inverse<T: Scalar>(pose: &Pose<T>) -> Result<Inverse<T>, InverseError> {
+    let [at_1, at_2, at_3] = meet_track(pose)?;
+    // The small angles are summed first: theta may be many turns, and a float rounds by its size.
+    let to_guide_2 = T::ANGLE_120 - T::ANGLE_30;
+    let to_guide_3 = to_guide_2 + T::ANGLE_120;
+    Ok(Inverse {
+        pivots: [
+            pose.theta + (at_1.swing - T::ANGLE_30),
+            pose.theta + (at_2.swing + to_guide_2),
+            pose.theta + (at_3.swing + to_guide_3),
+        ],
+        guides: [at_1.guide, at_2.guide, at_3.guide],
+    })
+}
+
+/// Where a guide meets the track.
+pub(crate) struct Meeting<T: Scalar> {
+    /// phi_i - theta_i: the pivot's angle from the guide's direction.
+    pub(crate) swing: T::Angle,
+    pub(crate) guide: Guide<T>,
+}
+
+/// Where the guides of a pose meet the track.
+pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], InverseError> {
+    if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
+        return Err(InverseError::NotFinite);
+    }
+    if !inside_track(pose.x, pose.y) {
+        return Err(InverseError::OutsideTrack);
+    }
+    let [direction_1, direction_2, direction_3] = guide_directions(pose.theta);
+    Ok([
+        meet_one(pose, direction_1)?,
+        meet_one(pose, direction_2)?,
+        meet_one(pose, direction_3)?,
+    ])
+}
+
+/// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay small.
+fn inside_track<T: Scalar>(x: T, y: T) -> bool {
+    let within = |coordinate: T| -T::ONE < coordinate && coordinate < T::ONE;
+    within(x) && within(y) && x * x + y * y < T::ONE
+}
+
+/// (cos, sin) of `theta - 30 deg`, `theta + 90 deg` and `theta + 210 deg`, from one sine and cosine.
+fn guide_directions<T: Scalar>(theta: T::Angle) -> [(T, T); 3] {
+    let (sin, cos) = T::sin_cos(theta);
+    let (sin_half, cos_half) = (sin * T::HALF, cos * T::HALF);
+    let (sin_wide, cos_wide) = (sin * T::SIN_60, cos * T::SIN_60);
+    [
+        (cos_wide + sin_half, sin_wide - cos_half),
+        (-sin, cos),
+        (sin_half - cos_wide, -(sin_wide + cos_half)),
+    ]
+}
+
+/// Where the guide of this direction (cos, sin) meets the track.
+fn meet_one<T: Scalar>(pose: &Pose<T>, (cos, sin): (T, T)) -> Result<Meeting<T>, InverseError> {
+    let offset = pose.y * cos - pose.x * sin;
+    // A centre inside the track by less than a rounding can still give an offset of one.
+    let (swing, cosine) = offset.asin_cos().ok_or(InverseError::OutsideTrack)?;
+    let guide = Guide {
+        cos,
+        sin,
+        offset,
+        cosine,
+        projection: pose.x * cos + pose.y * sin,
+    };
+    Ok(Meeting { swing, guide })
+}

@@ -1,0 +1,127 @@
+//! What a fixed-point number type relies on: no position equation leaves +-4, and integer angles keep every digit over
+//! many turns. A stand-in for such a type, `f64` inside, checks each operation.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+use std::ops::{Add, Mul, Neg, Sub};
+
+use common::*;
+use kinematics::{Angle, Pose, Scalar, direct, inverse};
+use proptest::prelude::*;
+
+#[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
+struct Ranged(f64);
+
+fn ranged(value: f64) -> Ranged {
+    assert!((-4.0..4.0).contains(&value), "{value} leaves the range");
+    Ranged(value)
+}
+
+impl Add for Ranged {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        ranged(self.0 + other.0)
+    }
+}
+
+impl Sub for Ranged {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        ranged(self.0 - other.0)
+    }
+}
+
+impl Mul for Ranged {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        ranged(self.0 * other.0)
+    }
+}
+
+impl Neg for Ranged {
+    type Output = Self;
+    fn neg(self) -> Self {
+        ranged(-self.0)
+    }
+}
+
+fn angle(radians: f64) -> Angle {
+    Angle::from_radians(radians).expect("within range")
+}
+
+impl Scalar for Ranged {
+    type Angle = Angle;
+
+    const ZERO: Self = Self(0.0);
+    const ONE: Self = Self(1.0);
+    const HALF: Self = Self(0.5);
+    const THIRD: Self = Self(1.0 / 3.0);
+    const SIN_60: Self = Self(f64::SIN_60);
+    const ANGLE_ZERO: Angle = Angle::ZERO;
+    const ANGLE_30: Angle = Angle::DEG_30;
+    const ANGLE_120: Angle = Angle::DEG_120;
+
+    fn sin_cos(angle: Angle) -> (Self, Self) {
+        let (sin, cos) = angle.near(Angle::ZERO).radians().sin_cos();
+        (ranged(sin), ranged(cos))
+    }
+
+    fn asin_cos(self) -> Option<(Angle, Self)> {
+        let (swing, cosine) = self.0.asin_cos()?;
+        Some((angle(swing), ranged(cosine)))
+    }
+
+    fn polar(re: Self, im: Self) -> Option<(Angle, Self, Self)> {
+        let (direction, cos, sin) = f64::polar(re.0, im.0)?;
+        Some((angle(direction), ranged(cos), ranged(sin)))
+    }
+
+    fn near(angle: Angle, reference: Angle) -> Angle {
+        angle.near(reference)
+    }
+
+    fn is_finite(self) -> bool {
+        true
+    }
+
+    fn angle_is_finite(_: Angle) -> bool {
+        true
+    }
+}
+
+/// A quarter of a 26-bit encoder's LSB.
+const QUARTER_LSB_RAD: f64 = TAU / (1 << 28) as f64;
+
+proptest! {
+    #![proptest_config(settings())]
+
+    #[test]
+    fn positions_keep_their_digits_over_10_000_turns(pose in poses(0.8, 0.5), turns in -10_000_i64..10_000) {
+        let far = Angle::from_units(turns << 32);
+        let theta = angle(pose.theta);
+        let there = Pose { x: ranged(pose.x), y: ranged(pose.y), theta: theta + far };
+        let got = inverse(&there).expect("inside the track").pivots;
+        let exact = solve(&Pose { theta: theta.radians(), ..pose }).pivots;
+        for i in 0..3 {
+            let error_rad = (got[i] - far).radians() - exact[i];
+            prop_assert!(error_rad.abs() < QUARTER_LSB_RAD, "{error_rad}");
+        }
+        let back = direct::<Ranged>(&got).expect("a feasible triangle");
+        prop_assert!((back.x.0 - pose.x).abs() < 1e-8 && (back.y.0 - pose.y).abs() < 1e-8);
+        prop_assert!((back.theta - there.theta).radians().abs() < 1e-8);
+    }
+
+    /// Poses anywhere in the number's range, also outside the track.
+    #[test]
+    fn inverse_stays_in_range(x in -4.0..4.0, y in -4.0..4.0, theta in -PI..PI) {
+        let _ = inverse(&Pose { x: ranged(x), y: ranged(y), theta: angle(theta) });
+        let _ = inverse(&Pose { x: ranged(x / 4.0), y: ranged(y / 4.0), theta: angle(theta) });
+    }
+
+    /// Pivots anywhere, also where no platform could hold them.
+    #[test]
+    fn direct_stays_in_range(pivots in prop::array::uniform3(-PI..PI)) {
+        let _ = direct::<Ranged>(&pivots.map(angle));
+    }
+}
