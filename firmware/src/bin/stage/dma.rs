@@ -1,0 +1,149 @@
+//! DMA streams: which request runs on which, and the few operations the image needs of one.
+
+use stm32f4xx_hal::{
+    pac,
+    rcc::{Enable, Rcc},
+};
+
+/// Which way a stream moves bytes, and how.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// From the peripheral, once.
+    Receive,
+    /// From the peripheral, round and round.
+    ReceiveCircular,
+    /// To the peripheral, once.
+    Transmit,
+}
+
+/// One stream of one controller, its request selected by `channel`.
+pub struct Stream {
+    controller: &'static pac::dma2::RegisterBlock,
+    number: usize,
+    channel: u8,
+}
+
+// SAFETY: a stream's registers have one owner, wherever that is.
+unsafe impl Send for Stream {}
+
+/// The streams in use (RM0090, tables 43 and 44).
+#[allow(missing_docs)]
+pub struct Streams {
+    pub spi1_receive: Stream,
+    pub spi1_transmit: Stream,
+    pub spi2_receive: Stream,
+    pub spi2_transmit: Stream,
+    pub spi3_receive: Stream,
+    pub spi3_transmit: Stream,
+    pub usart1_receive: Stream,
+    pub usart1_transmit: Stream,
+}
+
+/// Clocks the controllers and hands their streams out.
+pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
+    pac::DMA1::enable(rcc);
+    pac::DMA2::enable(rcc);
+    // SAFETY: the controllers were handed over, and each stream's registers go to one owner. The flag registers, which
+    // streams share, are only read, and written with ones that clear the stream's own flags.
+    let (one, two) = unsafe { (&*pac::DMA1::ptr(), &*pac::DMA2::ptr()) };
+    let stream = |controller, number, channel| Stream {
+        controller,
+        number,
+        channel,
+    };
+    Streams {
+        spi1_receive: stream(two, 0, 3),
+        spi1_transmit: stream(two, 3, 3),
+        spi2_receive: stream(one, 3, 0),
+        spi2_transmit: stream(one, 4, 0),
+        spi3_receive: stream(one, 0, 0),
+        spi3_transmit: stream(one, 5, 0),
+        usart1_receive: stream(two, 5, 4),
+        usart1_transmit: stream(two, 7, 4),
+    }
+}
+
+impl Stream {
+    /// Sets the stream up, stopped: bytes between the data register at `peripheral` and memory.
+    pub fn configure(&mut self, mode: Mode, peripheral: *mut u32) {
+        let registers = self.controller.st(self.number);
+        // SAFETY: `peripheral` is the address of a data register; every channel number is defined.
+        unsafe {
+            registers.par().write(|w| w.pa().bits(peripheral as u32));
+            registers.cr().write(|w| {
+                w.chsel().bits(self.channel).minc().incremented();
+                match mode {
+                    Mode::Receive => w.dir().peripheral_to_memory(),
+                    Mode::ReceiveCircular => w.dir().peripheral_to_memory().circ().enabled(),
+                    Mode::Transmit => w.dir().memory_to_peripheral(),
+                }
+            });
+        }
+    }
+
+    /// Starts a transfer.
+    ///
+    /// # Safety
+    /// `memory` is valid for `bytes` bytes, and nothing but the stream uses them, until the transfer is over or
+    /// stopped. It is not in the core-coupled memory, which DMA does not reach.
+    #[inline(always)]
+    pub unsafe fn start(&mut self, memory: *mut u8, bytes: u16) {
+        let registers = self.controller.st(self.number);
+        self.clear_flags();
+        registers.m0ar().write(|w| unsafe { w.m0a().bits(memory as u32) });
+        registers.ndtr().write(|w| w.ndt().set(bytes));
+        // What the processor wrote to the buffer is there before the stream fetches it.
+        cortex_m::asm::dmb();
+        registers.cr().modify(|_, w| w.en().enabled());
+    }
+
+    /// Asks the stream to stop; it does after the byte under way.
+    pub fn stop(&mut self) {
+        self.controller.st(self.number).cr().modify(|_, w| w.en().disabled());
+    }
+
+    /// Whether a transfer is under way.
+    #[inline(always)]
+    pub fn is_running(&self) -> bool {
+        self.controller.st(self.number).cr().read().en().is_enabled()
+    }
+
+    /// Bytes the transfer under way has still to move.
+    #[inline(always)]
+    pub fn remaining(&self) -> u16 {
+        self.controller.st(self.number).ndtr().read().ndt().bits()
+    }
+
+    /// Whether the stream has come to the end of its buffer since the flag was cleared.
+    pub fn is_complete(&self) -> bool {
+        let flags = if self.number < 4 {
+            self.controller.lisr().read().bits()
+        } else {
+            self.controller.hisr().read().bits()
+        };
+        flags & (COMPLETE << self.flag_shift()) != 0
+    }
+
+    /// Clears the stream's flags.
+    #[inline(always)]
+    pub fn clear_flags(&mut self) {
+        let bits = ALL_FLAGS << self.flag_shift();
+        // SAFETY: ones clear the flags of this stream, zeros leave the others alone.
+        unsafe {
+            if self.number < 4 {
+                self.controller.lifcr().write(|w| w.bits(bits));
+            } else {
+                self.controller.hifcr().write(|w| w.bits(bits));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn flag_shift(&self) -> u32 {
+        const SHIFTS: [u32; 4] = [0, 6, 16, 22];
+        SHIFTS[self.number % 4]
+    }
+}
+
+const COMPLETE: u32 = 1 << 5;
+const ALL_FLAGS: u32 = 0b11_1101;

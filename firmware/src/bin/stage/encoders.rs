@@ -1,0 +1,154 @@
+//! The three encoders: BiSS-C on SPI1, SPI2 and SPI3, read in parallel by DMA.
+//!
+//! A frame is eight bytes at 5.25 MHz (the fastest rate below BiSS-C's 10 MHz that both buses divide to), 12.2 us. The
+//! clock idles high, and its first falling edge latches the position. The encoder shifts on rising edges; SPI mode 3
+//! samples a bit at the rising edge that ends it, which leaves the whole 190 ns of a bit for the line and the
+//! transceivers. Where the frame begins in the 64 bits is the decoder's to find.
+
+use crate::{
+    clocks,
+    dma::{Mode, Stream},
+};
+use core::cell::UnsafeCell;
+use stm32f4xx_hal::{
+    pac::{self, spi1},
+    rcc::{Enable, Rcc},
+};
+
+/// Bytes of one frame.
+pub const FRAME_BYTES: usize = 8;
+
+/// What stands in for a frame that did not arrive: a line that never leaves idle.
+const MISSING: [u8; FRAME_BYTES] = [0xFF; FRAME_BYTES];
+
+const BIT_HZ: u32 = 5_250_000;
+/// Codes of the SPI's baud rate: the bus clock over 2 to the power of one more.
+const APB2_BAUD: u8 = 3;
+const APB1_BAUD: u8 = 2;
+const _: () = assert!(clocks::APB2_HZ >> (APB2_BAUD + 1) == BIT_HZ);
+const _: () = assert!(clocks::APB1_HZ >> (APB1_BAUD + 1) == BIT_HZ);
+
+/// One SPI and its streams.
+struct Port {
+    spi: &'static spi1::RegisterBlock,
+    receive: Stream,
+    transmit: Stream,
+    buffer: &'static Buffer,
+}
+
+// SAFETY: a port's registers have one owner, wherever that is.
+unsafe impl Send for Port {}
+
+/// The three encoders' ports.
+pub struct Encoders([Port; 3]);
+
+/// Where DMA leaves a frame.
+#[repr(align(4))]
+struct Buffer(UnsafeCell<[u8; FRAME_BYTES]>);
+
+// SAFETY: only its port touches it, and only while no transfer is under way.
+unsafe impl Sync for Buffer {}
+
+static BUFFERS: [Buffer; 3] = [const { Buffer(UnsafeCell::new(MISSING)) }; 3];
+
+/// What is clocked out, to nobody. Mutable in name only, so that it lies in RAM beside the rest.
+static IDLE: Buffer = Buffer(UnsafeCell::new(MISSING));
+
+impl Encoders {
+    /// Configures the three ports, idle. Streams: receive and transmit, in the order of the ports.
+    pub fn new(
+        _ports: (pac::SPI1, pac::SPI2, pac::SPI3),
+        streams: [(Stream, Stream); 3],
+        rcc: &mut Rcc,
+    ) -> Self {
+        pac::SPI1::enable(rcc);
+        pac::SPI2::enable(rcc);
+        pac::SPI3::enable(rcc);
+        // SAFETY: the ports were handed over.
+        let spis = unsafe { [&*pac::SPI1::ptr(), &*pac::SPI2::ptr(), &*pac::SPI3::ptr()] };
+        let [first, second, third] = streams;
+        Self([
+            Port::new(spis[0], APB2_BAUD, first, &BUFFERS[0]),
+            Port::new(spis[1], APB1_BAUD, second, &BUFFERS[1]),
+            Port::new(spis[2], APB1_BAUD, third, &BUFFERS[2]),
+        ])
+    }
+
+    /// Starts reading all three: this is where they latch.
+    #[inline(always)]
+    pub fn latch(&mut self) {
+        for port in &mut self.0 {
+            port.start();
+        }
+    }
+
+    /// The frames of the last latch, every bit of a missing one set.
+    #[inline(always)]
+    pub fn frames(&mut self) -> [[u8; FRAME_BYTES]; 3] {
+        self.0.each_mut().map(Port::frame)
+    }
+}
+
+impl Port {
+    fn new(
+        spi: &'static spi1::RegisterBlock,
+        baud: u8,
+        (mut receive, mut transmit): (Stream, Stream),
+        buffer: &'static Buffer,
+    ) -> Self {
+        let data = spi.dr().as_ptr().cast();
+        receive.configure(Mode::Receive, data);
+        transmit.configure(Mode::Transmit, data);
+        spi.cr2().write(|w| w.rxdmaen().enabled().txdmaen().enabled());
+        spi.cr1().write(|w| {
+            w.mstr().master().ssm().enabled().ssi().slave_not_selected();
+            w.cpol().idle_high().cpha().second_edge();
+            w.br().set(baud).spe().enabled()
+        });
+        Self {
+            spi,
+            receive,
+            transmit,
+            buffer,
+        }
+    }
+
+    #[inline(always)]
+    fn start(&mut self) {
+        // A stream that was told to stop 35 us ago has stopped; if one has not, the port is broken and stays quiet.
+        if self.receive.is_running() || self.transmit.is_running() {
+            return;
+        }
+        // SAFETY: the buffers are statics in RAM that only this port uses, and it reads its own once the stream is done.
+        unsafe {
+            self.receive.start(self.buffer.0.get().cast(), FRAME_BYTES as u16);
+            self.transmit.start(IDLE.0.get().cast(), FRAME_BYTES as u16);
+        }
+    }
+
+    #[inline(always)]
+    fn frame(&mut self) -> [u8; FRAME_BYTES] {
+        if self.receive.is_running() || self.receive.remaining() != 0 {
+            self.abandon();
+            return MISSING;
+        }
+        // SAFETY: the stream is done. Volatile, since the compiler does not know who wrote there; if the stream was
+        // not started, this would be an old frame, so it is wiped below.
+        let frame = unsafe { self.buffer.0.get().read_volatile() };
+        // SAFETY: as above.
+        unsafe { self.buffer.0.get().write_volatile(MISSING) };
+        frame
+    }
+
+    /// Gives a transfer up, and leaves the port such that the next one begins with its own first byte.
+    #[cold]
+    fn abandon(&mut self) {
+        self.transmit.stop();
+        self.receive.stop();
+        self.spi.cr1().modify(|_, w| w.spe().disabled());
+        // Empties the receive register and clears an overrun.
+        self.spi.dr().read();
+        self.spi.sr().read();
+        self.spi.cr1().modify(|_, w| w.spe().enabled());
+    }
+}

@@ -1,0 +1,176 @@
+//! `stage`: the controller on its board, an STM32F427 at 168 MHz. Pins, clocks and interrupts, nothing else: what the
+//! controller does is the library's.
+//!
+//! # Pins
+//!
+//! | pin | function | connected to |
+//! |---|---|---|
+//! | PE9, PE11, PE13 | TIM1 channels 1 to 3, 40 kHz | enable of the bridges of pivots 1 to 3 |
+//! | PD0, PD1, PD2 | output | phase (direction) of the bridges |
+//! | PD4, PD5, PD6 | output | sleep of the bridges, low: the motor coasts |
+//! | PD8, PD9, PD10 | input, pulled up | fault of the bridges, open drain, low: fault |
+//! | PE15 | TIM1 break input, pulled down | emergency stop, normally closed to 3.3 V; low: stop |
+//! | PA5, PA6 | SPI1 clock, data in | encoder 1: MA, SLO (through RS-422) |
+//! | PB13, PB14 | SPI2 clock, data in | encoder 2 |
+//! | PC10, PC11 | SPI3 clock, data in | encoder 3 |
+//! | PC0, PC1, PC2 | ADC1 channels 10 to 12 | current mirrors of the bridges (0.45 V/A) |
+//! | PC3 | ADC1 channel 13 | supply through 19 k over 1 k |
+//! | PA9, PA10 | USART1 transmit, receive | command interface, 921,600 baud, 8N1 |
+//! | PH0, PH1 | crystal, 8 MHz | |
+//! | PA13, PA14 | SWD | debugger, log (defmt over RTT) |
+//!
+//! # Timeline
+//!
+//! ```text
+//!  latch            tick T                     T + 25 us        latch            tick T + 50 us
+//!  |----- 15 us ----|------------ 25 us -----------|--- 10 us ---|----- 15 us -----|
+//!  | 12.2 us SPI    | control task                 | duty of T acts from here
+//!  | 7.6 us ADC     | <= 12.5 us
+//! ```
+//!
+//! From the encoders' latch to the PWM period in which the answer acts: 40 us. A duty takes over with a whole PWM
+//! period. Phase and sleep pins change inside the tick: the enable pulse stands at the beginning of the period, so with
+//! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase does
+//! not matter until the new duty comes.
+//!
+//! # Priorities
+//!
+//! Latch and tick share the highest priority, 0 in the hardware, which no BASEPRI mask holds back; they never meet. All
+//! the rest, command interface, watchdog and log, is the idle task. There is no third. Between the two sides are
+//! lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a full
+//! buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
+#![no_std]
+#![no_main]
+
+mod analog;
+mod board;
+mod clocks;
+mod dma;
+mod encoders;
+mod latch;
+mod panic;
+mod pwm;
+mod serial;
+mod trace;
+mod watchdog;
+
+use defmt_rtt as _;
+
+/// The tasks.
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
+mod app {
+    use crate::{
+        board::{Board, Loop},
+        serial::{Receiver, Transmitter},
+        trace::{self, TRACE, Tracer},
+        watchdog,
+    };
+    use firmware::{
+        config::Config,
+        controller::{Inputs, State, tick},
+        drivers::biss::RawFrame,
+        link::{Link, PanelLink, TickLink},
+        panel::{Identity, Panel, Session},
+        parameters::Parameters,
+    };
+
+    const IDENTITY: Identity = Identity {
+        serial: "0",
+        version: env!("CARGO_PKG_VERSION"),
+    };
+    const PARAMETERS: Parameters = Parameters::REFERENCE;
+
+    #[shared]
+    struct Shared {
+        #[lock_free]
+        control: Loop,
+    }
+
+    #[local]
+    struct Local {
+        config: Config,
+        state: State,
+        tracer: Tracer,
+        tick_link: TickLink<'static>,
+        panel: Panel,
+        session: Session,
+        panel_link: PanelLink<'static>,
+        receiver: Receiver,
+        transmitter: Transmitter,
+    }
+
+    #[init(local = [link: Link = Link::new()])]
+    fn init(context: init::Context) -> (Shared, Local) {
+        let Board {
+            mut control,
+            receiver,
+            transmitter,
+            reset_cause,
+        } = Board::new(context.device);
+        TRACE.set_reset_cause(reset_cause);
+        defmt::info!("start after {}", reset_cause);
+        let (tick_link, panel_link) = context.local.link.split();
+        control.latch_timer.start_with(&mut control.pwm);
+        let local = Local {
+            config: Config::new(&PARAMETERS),
+            state: State::new(),
+            tracer: Tracer::default(),
+            tick_link,
+            panel: Panel::new(&PARAMETERS, IDENTITY),
+            session: Session::new(),
+            panel_link,
+            receiver,
+            transmitter,
+        };
+        (Shared { control }, local)
+    }
+
+    /// Latches the encoders, starts the conversions, arms the tick.
+    #[task(binds = TIM3, priority = 16, shared = [control])]
+    fn latch(context: latch::Context) {
+        let control = context.shared.control;
+        control.latch_timer.acknowledge();
+        control.encoders.latch();
+        control.analog.start();
+        control.pwm.arm_tick();
+    }
+
+    /// The control task, every 50 us. If it takes longer than 35 us, the next latch and with it the next frames are
+    /// late, and the library takes them for missing; if it never ends, the watchdog resets the chip.
+    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_link, tracer])]
+    fn control(context: control::Context) {
+        let control = context.shared.control;
+        control.pwm.disarm_tick();
+        let counts = control.analog.counts();
+        let inputs = Inputs {
+            frames: control.encoders.frames().map(RawFrame),
+            bridge_fault: control.bridges.faults(),
+            emergency_stop: control.pwm.take_break(),
+            current_counts: counts.current,
+            supply_counts: counts.supply,
+        };
+        let outputs = tick(
+            context.local.config,
+            context.local.state,
+            &inputs,
+            context.local.tick_link,
+            context.local.tracer,
+        );
+        control.bridges.set(outputs.duty, outputs.awake);
+        control.pwm.connect(outputs.awake);
+        trace::mark_end_of_tick();
+    }
+
+    /// The command interface and the watchdog.
+    #[idle(local = [panel, session, panel_link, receiver, transmitter])]
+    fn idle(context: idle::Context) -> ! {
+        let local = context.local;
+        loop {
+            local.receiver.pass_to(|bytes| local.session.receive(bytes));
+            let Ok(()) = local.panel.service(local.session, local.panel_link, local.transmitter);
+            local.transmitter.send();
+            watchdog::feed();
+            cortex_m::asm::wfi();
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Following a plan, tick by tick.
+
+use super::axis::Axis;
+use super::plan::{Piece, Plan, Position, Start};
+use kinematics::{Acceleration, Twist};
+
+/// Where the stage should be at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Setpoint {
+    /// Pose.
+    pub position: Position,
+    /// Velocity, track radii and rad per second.
+    pub twist: Twist<f32>,
+    /// Acceleration, track radii and rad per second squared.
+    pub acceleration: Acceleration<f32>,
+}
+
+/// Factors from the integers of [`Axis`] to physical rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    velocity: f32,
+    turn_velocity: f32,
+    acceleration: f32,
+    turn_acceleration: f32,
+}
+
+/// Bits cut from a velocity and from an acceleration to make them 32 bits wide: full range 39 and 190 turns per second
+/// (squared) at 20 kHz, resolution 1e-7 and 6e-7 rad/s (squared).
+const VELOCITY_CUT: u32 = 32;
+const ACCELERATION_CUT: u32 = 20;
+
+impl Scale {
+    /// For `rate_hz` ticks a second.
+    pub fn new(rate_hz: f64) -> Self {
+        let unit = |cut: u32| libm::exp2(f64::from(cut) - 72.0);
+        let velocity = unit(VELOCITY_CUT) * rate_hz;
+        let acceleration = unit(ACCELERATION_CUT) * rate_hz * rate_hz;
+        Self {
+            velocity: velocity as f32,
+            turn_velocity: (velocity * core::f64::consts::TAU) as f32,
+            acceleration: acceleration as f32,
+            turn_acceleration: (acceleration * core::f64::consts::TAU) as f32,
+        }
+    }
+}
+
+/// The motion of the setpoint: at rest, or following a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    axes: [Axis; 3],
+    plan: Option<Plan>,
+    next: Option<Plan>,
+    piece: usize,
+    left: u64,
+    done: u64,
+    last: u32,
+}
+
+/// A plan does not start where the motion is (any more); nothing has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stale;
+
+impl Motion {
+    /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
+    pub fn rest_at(&mut self, position: Position) {
+        self.axes = position.map(Axis::at_rest);
+        self.plan = None;
+        self.next = None;
+        self.done = 0;
+    }
+
+    /// Whether a plan is under way.
+    #[inline]
+    pub fn moving(&self) -> bool {
+        self.plan.is_some()
+    }
+
+    /// Identity of the plan under way or last ended, and its ticks done.
+    pub fn progress(&self) -> (u32, u64) {
+        (self.last, self.done)
+    }
+
+    /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
+    pub fn accept(&mut self, plan: Plan) -> Result<(), Stale> {
+        match (&self.plan, plan.start) {
+            (None, Start::Rest(from)) if from == self.position() => self.begin(plan),
+            (Some(current), Start::Splice { plan: id, tick })
+                if current.id == id && tick >= self.done =>
+            {
+                self.next = Some(plan);
+            }
+            _ => return Err(Stale),
+        }
+        Ok(())
+    }
+
+    /// One tick on. Bounded: at most one change of piece or plan.
+    #[inline]
+    pub fn advance(&mut self) {
+        if let Some(Start::Splice { tick, .. }) = self.next.as_ref().map(|next| next.start)
+            && tick == self.done
+            && let Some(next) = self.next.take()
+        {
+            self.begin(next);
+        }
+        let Some(plan) = &self.plan else { return };
+        if let Some(Piece { jerk, .. }) = plan.pieces.get(self.piece) {
+            for (axis, (jerk, nudge)) in self.axes.iter_mut().zip(jerk.iter().zip(&plan.nudge)) {
+                axis.advance(*jerk, *nudge);
+            }
+            self.done += 1;
+            self.left -= 1;
+        }
+        if self.left == 0 {
+            self.piece += 1;
+            match plan.pieces.get(self.piece) {
+                Some(piece) => self.left = piece.ticks,
+                None => self.finish(),
+            }
+        }
+    }
+
+    /// The setpoint now.
+    #[inline]
+    pub fn setpoint(&self, scale: &Scale) -> Setpoint {
+        let velocity = self
+            .axes
+            .map(|axis| (axis.velocity >> VELOCITY_CUT) as i32 as f32);
+        let acceleration = self
+            .axes
+            .map(|axis| (axis.acceleration >> ACCELERATION_CUT) as i32 as f32);
+        Setpoint {
+            position: self.position(),
+            twist: Twist {
+                x: velocity[0] * scale.velocity,
+                y: velocity[1] * scale.velocity,
+                theta: velocity[2] * scale.turn_velocity,
+            },
+            acceleration: Acceleration {
+                x: acceleration[0] * scale.acceleration,
+                y: acceleration[1] * scale.acceleration,
+                theta: acceleration[2] * scale.turn_acceleration,
+            },
+        }
+    }
+
+    /// The pose now.
+    #[inline]
+    pub fn position(&self) -> Position {
+        [
+            self.axes[0].rounded(),
+            self.axes[1].rounded(),
+            self.axes[2].rounded(),
+        ]
+    }
+
+    fn begin(&mut self, plan: Plan) {
+        self.piece = 0;
+        self.left = plan.pieces.first().map_or(0, |piece| piece.ticks);
+        self.done = 0;
+        self.last = plan.id;
+        self.plan = Some(plan);
+    }
+
+    /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
+    fn finish(&mut self) {
+        if let Some(plan) = self.plan.take() {
+            self.axes = plan.end.map(Axis::at_rest);
+        }
+        self.next = None;
+    }
+}

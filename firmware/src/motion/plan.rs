@@ -1,0 +1,74 @@
+//! A plan: the pieces of constant jerk that carry the three axes from a known state to rest.
+
+use super::axis::Axis;
+use heapless::Vec;
+
+/// Pieces a plan can hold: a seven-segment profile.
+pub const MAX_PIECES: usize = 7;
+
+/// x and y in 2^-32 track radii, theta in 2^-32 turns (multi-turn).
+pub type Position = [i64; 3];
+
+/// A stretch of constant jerk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Piece {
+    /// Length in ticks.
+    pub ticks: u64,
+    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of [`JERK_STEP`](super::JERK_STEP).
+    pub jerk: [i64; 3],
+}
+
+/// The state a plan starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// At rest at this position.
+    Rest(Position),
+    /// In motion: where plan `plan` is `tick` ticks after its first.
+    Splice {
+        /// Identity of the plan that is left.
+        plan: u32,
+        /// Tick of that plan at which it is left.
+        tick: u64,
+    },
+}
+
+/// A motion ready to be executed tick by tick.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Identity, given by who plans; the tick reports progress under it.
+    pub id: u32,
+    /// What the plan starts from.
+    pub start: Start,
+    /// The pieces, in order.
+    pub pieces: Vec<Piece, MAX_PIECES>,
+    /// Added to each position at every tick. It spreads what the rounding of the jerks leaves over the whole plan: far below
+    /// anything that can be seen (2^-34 turns a tick in the most extreme case), and what remains of it at the end is less
+    /// than 2^-32 of a [`Position`]'s unit a tick.
+    pub nudge: [i64; 3],
+    /// Where it ends, at rest, exactly.
+    pub end: Position,
+}
+
+impl Plan {
+    /// Duration in ticks.
+    pub fn ticks(&self) -> u64 {
+        self.pieces.iter().map(|piece| piece.ticks).sum()
+    }
+
+    /// The three axes `ticks` after the start from `axes`, as the tick will hold them; at rest at the end from the last
+    /// tick on.
+    pub fn state_after(&self, axes: &[Axis; 3], mut ticks: u64) -> [Axis; 3] {
+        let mut state = *axes;
+        for piece in &self.pieces {
+            let now = ticks.min(piece.ticks);
+            for (i, axis) in state.iter_mut().enumerate() {
+                *axis = axis.after(now, piece.jerk[i], self.nudge[i]);
+            }
+            ticks -= now;
+            if now < piece.ticks {
+                return state;
+            }
+        }
+        self.end.map(Axis::at_rest)
+    }
+}

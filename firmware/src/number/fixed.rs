@@ -1,0 +1,141 @@
+//! A fixed-point number with 29 fraction bits, for lengths in track radii, sines and cosines.
+
+use super::{arcsine, polar, trigonometric};
+use core::ops::{Add, Mul, Neg, Sub};
+use kinematics::{Angle, Scalar};
+
+/// A number in [-4, 4) with a resolution of 2^-29 = 1.9e-9 (0.19 nm on a track of 100 mm).
+///
+/// The range holds what position kinematics makes of poses inside the track: coordinates within 1, guides within 2, the
+/// symmetrical components of the pivots within 3. Arithmetic wraps beyond it, so callers check ranges first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Fixed(i32);
+
+impl Fixed {
+    /// Bits after the point.
+    pub const FRACTION_BITS: u32 = 29;
+    const LSB: f32 = 1.0 / (1u32 << Self::FRACTION_BITS) as f32;
+
+    /// From the number times 2^29.
+    #[inline]
+    pub const fn from_bits(bits: i32) -> Self {
+        Self(bits)
+    }
+
+    /// The number times 2^29.
+    #[inline]
+    pub const fn bits(self) -> i32 {
+        self.0
+    }
+
+    /// The nearest to `value`, for constants; saturates.
+    pub const fn from_f64(value: f64) -> Self {
+        let scaled = value * (1u32 << Self::FRACTION_BITS) as f64;
+        Self(if scaled < 0.0 {
+            (scaled - 0.5) as i32
+        } else {
+            (scaled + 0.5) as i32
+        })
+    }
+
+    /// From a length in 2^-32 track radii, as motion holds it, rounded to nearest; `None` out of range.
+    #[inline]
+    pub fn from_position(position: i64) -> Option<Self> {
+        let rounded = position.wrapping_add(4) >> (32 - Self::FRACTION_BITS);
+        i32::try_from(rounded).ok().map(Self)
+    }
+
+    /// As a length in 2^-32 track radii, exactly.
+    #[inline]
+    pub const fn to_position(self) -> i64 {
+        (self.0 as i64) << (32 - Self::FRACTION_BITS)
+    }
+
+    /// As a float, rounded to its 24 bits.
+    #[inline]
+    pub fn to_f32(self) -> f32 {
+        self.0 as f32 * Self::LSB
+    }
+
+    /// As a double, exactly.
+    pub fn to_f64(self) -> f64 {
+        f64::from(self.0) / f64::from(1u32 << Self::FRACTION_BITS)
+    }
+}
+
+impl Add for Fixed {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Fixed {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Fixed {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self(self.0.wrapping_neg())
+    }
+}
+
+impl Mul for Fixed {
+    type Output = Self;
+    /// Rounded to nearest.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        const HALF: i64 = 1 << (Fixed::FRACTION_BITS - 1);
+        let product = i64::from(self.0) * i64::from(other.0);
+        Self((product.wrapping_add(HALF) >> Self::FRACTION_BITS) as i32)
+    }
+}
+
+impl Scalar for Fixed {
+    type Angle = Angle;
+    const ZERO: Self = Self(0);
+    const ONE: Self = Self(1 << Self::FRACTION_BITS);
+    const HALF: Self = Self(1 << (Self::FRACTION_BITS - 1));
+    const THIRD: Self = Self::from_f64(1.0 / 3.0);
+    const SIN_60: Self = Self::from_f64(0.866_025_403_784_438_6);
+    const ANGLE_ZERO: Angle = Angle::ZERO;
+    const ANGLE_30: Angle = Angle::DEG_30;
+    const ANGLE_120: Angle = Angle::DEG_120;
+
+    #[inline]
+    fn sin_cos(angle: Angle) -> (Self, Self) {
+        trigonometric::sin_cos(angle.fraction())
+    }
+
+    #[inline]
+    fn asin_cos(self) -> Option<(Angle, Self)> {
+        arcsine::asin_cos(self)
+    }
+
+    #[inline]
+    fn polar(re: Self, im: Self) -> Option<(Angle, Self, Self)> {
+        polar::polar(re, im)
+    }
+
+    #[inline]
+    fn near(angle: Angle, reference: Angle) -> Angle {
+        angle.near(reference)
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn angle_is_finite(_: Angle) -> bool {
+        true
+    }
+}

@@ -1,0 +1,125 @@
+//! Answering queries.
+
+use super::Panel;
+use super::axis::{Axis, AxisSet};
+use super::reply::{Reply, one_line};
+use super::request::{Quantity, Query};
+use super::session::Session;
+use super::table::COMMANDS;
+use embedded_io::Write;
+
+/// Bit 16 of `#4`: referenced.
+const STATUS_REFERENCED: u32 = 1 << 16;
+
+impl Panel {
+    /// Answers a query about the controller as a whole.
+    pub(super) fn answer<W: Write>(
+        &self,
+        query: Query,
+        session: &mut Session,
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        match query {
+            Query::Identity => one_line(
+                out,
+                format_args!(
+                    "(c)2026 Tripivot, XYT-1 (C-887 compatible), {}, {}",
+                    self.identity.serial, self.identity.version
+                ),
+            ),
+            Query::Syntax => one_line(out, format_args!("2.0")),
+            Query::Version => one_line(out, format_args!("FW: {}", self.identity.version)),
+            Query::Serial => one_line(out, format_args!("{}", self.identity.serial)),
+            Query::Help => help(out),
+            Query::Axes => axes(out),
+            Query::Error => {
+                let error = core::mem::take(&mut session.error);
+                one_line(out, format_args!("{}", error.number()))
+            }
+            Query::Velocity => one_line(out, format_args!("{}", self.stage.velocity_mm_s())),
+            Query::Fault => self.fault(out),
+            Query::Status => one_line(out, format_args!("{}", self.status())),
+            Query::Moving => one_line(out, format_args!("{:x}", self.stage.moving().mask())),
+            Query::Ready => {
+                let ready = session.wait.is_none() && !self.stage.is_referencing();
+                out.write_all(&[if ready { 0xB1 } else { 0xB0 }, b'\n'])
+            }
+        }
+    }
+
+    /// Answers a query about axes, a line each.
+    pub(super) fn read<W: Write>(
+        &self,
+        quantity: Quantity,
+        axes: AxisSet,
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        let mut reply = Reply::new(out);
+        if quantity == Quantity::Position {
+            // The direct kinematics once for all axes.
+            let measured = self.stage.measured();
+            for axis in axes.iter() {
+                let value = without_minus_zero(measured[axis.index()]);
+                reply.line(format_args!("{}={value:.9}", axis.letter()))?;
+            }
+        } else {
+            for axis in axes.iter() {
+                // As many digits as tell the number from its neighbours: what was commanded comes back the same.
+                let value = self.stage.value(quantity, axis);
+                reply.line(format_args!("{}={value}", axis.letter()))?;
+            }
+        }
+        reply.end()
+    }
+
+    fn status(&self) -> u32 {
+        if self.stage.value(Quantity::Referenced, Axis::X) == 1.0 {
+            STATUS_REFERENCED
+        } else {
+            0
+        }
+    }
+
+    /// The latched fault; without one the encoders that cannot be used, which will be the next question.
+    fn fault<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+        let Some(snapshot) = self.stage.snapshot() else {
+            return one_line(out, format_args!("0 no fault"));
+        };
+        if let Some(fault) = snapshot.fault {
+            return one_line(out, format_args!("{fault}"));
+        }
+        let mut reply = Reply::new(out);
+        if snapshot.encoder_faults == [None; 3] {
+            reply.line(format_args!("0 no fault"))?;
+        }
+        for (pivot, kind) in (1..).zip(snapshot.encoder_faults) {
+            if let Some(kind) = kind {
+                reply.line(format_args!("{}, pivot {pivot}", kind.text()))?;
+            }
+        }
+        reply.end()
+    }
+}
+
+fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {
+    let mut reply = Reply::new(out);
+    reply.line(format_args!("The following commands are available:"))?;
+    for entry in COMMANDS {
+        reply.line(format_args!("{} {}", entry.name, entry.help))?;
+    }
+    reply.line(format_args!("end of help"))?;
+    reply.end()
+}
+
+fn axes<W: Write>(out: &mut W) -> Result<(), W::Error> {
+    let mut reply = Reply::new(out);
+    for axis in Axis::ALL {
+        reply.line(format_args!("{}", axis.letter()))?;
+    }
+    reply.end()
+}
+
+/// What rounds to zero at nine decimals is not to be printed with a sign.
+fn without_minus_zero(value: f64) -> f64 {
+    if value.abs() < 0.5e-9 { 0.0 } else { value }
+}

@@ -1,0 +1,164 @@
+//! From a line to a [`Request`], or to what is wrong with it and where.
+
+use super::axis::{Axis, AxisSet, AxisValues};
+use super::error::ErrorCode;
+use super::request::{Condition, Operator, Quantity, Request};
+use super::scan::{Scanner, Word};
+use super::table::{Syntax, find};
+use core::fmt;
+
+/// What is wrong with a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ParseError {
+    /// The number that `ERR?` will answer.
+    pub code: ErrorCode,
+    /// Where, in bytes from the start of the line, counted from 1.
+    pub column: usize,
+    /// What should stand there.
+    pub expected: &'static str,
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "column {}: expected {} (error {})",
+            self.column,
+            self.expected,
+            self.code.number()
+        )
+    }
+}
+
+impl core::error::Error for ParseError {}
+
+/// Understands a line (without its LF). Pure: no state of the controller is looked at, so whether the command can be carried
+/// out is another question.
+///
+/// # Errors
+/// [`ParseError`] for the first word from the left that does not fit.
+pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
+    let mut scanner = Scanner::new(line);
+    let name = scanner.word();
+    if name.text.is_empty() {
+        return Ok(Request::Nothing);
+    }
+    let entry = find(name.text)
+        .ok_or_else(|| name.unfit(ErrorCode::UnknownCommand, "a command of those HLP? lists"))?;
+    let request = match entry.syntax {
+        // `find` finds no such entry.
+        Syntax::Byte(_, request) | Syntax::Plain(request) => request,
+        Syntax::All(request) => {
+            all(&mut scanner)?;
+            request
+        }
+        Syntax::Read(quantity) => Request::Read(quantity, axes(&mut scanner)?),
+        Syntax::Axes(action) => Request::Act(action(axes(&mut scanner)?)),
+        Syntax::Values(action) => Request::Act(action(values(&mut scanner)?)),
+        Syntax::Number(action) => Request::Act(action(number(scanner.next())?)),
+        Syntax::Condition(action) => Request::Act(action(condition(&mut scanner)?)),
+    };
+    end(&mut scanner)?;
+    Ok(request)
+}
+
+impl Word<'_> {
+    const fn unfit(&self, code: ErrorCode, expected: &'static str) -> ParseError {
+        ParseError {
+            code,
+            column: self.column,
+            expected,
+        }
+    }
+}
+
+fn end(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
+    let extra = scanner.next();
+    if extra.text.is_empty() {
+        return Ok(());
+    }
+    Err(extra.unfit(ErrorCode::ParameterCount, "the end of the line"))
+}
+
+fn all(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
+    let word = scanner.next();
+    if word.text.is_empty() || word.text.eq_ignore_ascii_case(b"ALL") {
+        return Ok(());
+    }
+    Err(word.unfit(ErrorCode::ParameterCount, "ALL or the end of the line"))
+}
+
+/// The axes named up to the end of the line; all when none is.
+fn axes(scanner: &mut Scanner<'_>) -> Result<AxisSet, ParseError> {
+    let mut set = AxisSet::EMPTY;
+    while !scanner.is_at_end() {
+        axis(scanner.next(), &mut set)?;
+    }
+    Ok(if set.is_empty() { AxisSet::ALL } else { set })
+}
+
+/// Pairs of axis and number up to the end of the line, at least one.
+fn values(scanner: &mut Scanner<'_>) -> Result<AxisValues, ParseError> {
+    let mut named = AxisSet::EMPTY;
+    let mut values = AxisValues::default();
+    loop {
+        let axis = axis(scanner.next(), &mut named)?;
+        values[axis.index()] = Some(number(scanner.next())?);
+        if scanner.is_at_end() {
+            return Ok(values);
+        }
+    }
+}
+
+/// One axis, which `named` must not hold yet.
+fn axis(word: Word<'_>, named: &mut AxisSet) -> Result<Axis, ParseError> {
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, "an axis"));
+    }
+    let axis = Axis::named(word.text)
+        .ok_or_else(|| word.unfit(ErrorCode::InvalidAxis, "an axis: X, Y, Z, U, V or W"))?;
+    if !named.insert(axis) {
+        return Err(word.unfit(ErrorCode::AxisTwice, "an axis that has not been named yet"));
+    }
+    Ok(axis)
+}
+
+fn number(word: Word<'_>) -> Result<f64, ParseError> {
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, "a number"));
+    }
+    // `parse` knows "inf" and "nan" too, and makes an infinity of what is too large: neither is a position.
+    core::str::from_utf8(word.text)
+        .ok()
+        .and_then(|text| text.parse::<f64>().ok())
+        .filter(|value| value.is_finite())
+        // Adding 0 turns -0 into 0.
+        .map(|value| value + 0.0)
+        .ok_or_else(|| word.unfit(ErrorCode::InvalidNumber, "a number"))
+}
+
+fn condition(scanner: &mut Scanner<'_>) -> Result<Condition, ParseError> {
+    let quantity = quantity(scanner.next())?;
+    let axis = axis(scanner.next(), &mut AxisSet::default())?;
+    let operator = scanner.next();
+    if operator.text.is_empty() {
+        return Err(operator.unfit(ErrorCode::ParameterCount, "an operator"));
+    }
+    Ok(Condition {
+        quantity,
+        axis,
+        operator: Operator::named(operator.text)
+            .ok_or_else(|| operator.unfit(ErrorCode::Syntax, "an operator: = != < <= > >="))?,
+        value: number(scanner.next())?,
+    })
+}
+
+fn quantity(word: Word<'_>) -> Result<Quantity, ParseError> {
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, "a query"));
+    }
+    match find(word.text).map(|entry| &entry.syntax) {
+        Some(Syntax::Read(quantity)) => Ok(*quantity),
+        _ => Err(word.unfit(ErrorCode::OutOfRange, "a query of an axis, such as ONT?")),
+    }
+}

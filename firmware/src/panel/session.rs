@@ -1,0 +1,196 @@
+//! One connection: the bytes it has received, its error, and what it waits for.
+
+use super::error::ErrorCode;
+use super::request::Condition;
+use heapless::{Deque, Vec};
+
+/// Longest line, without its LF.
+pub const LINE_BYTES: usize = 256;
+/// Bytes that may wait to be handled.
+const INPUT_BYTES: usize = 512;
+
+/// `#24`.
+const STOP: u8 = 24;
+
+/// One connection. What it sends goes into [`receive`](Self::receive); [`Panel::service`](super::Panel::service) does the rest.
+#[derive(Default)]
+pub struct Session {
+    input: Deque<u8, INPUT_BYTES>,
+    line: Vec<u8, LINE_BYTES>,
+    state: LineState,
+    pub(super) error: ErrorCode,
+    pub(super) wait: Option<Wait>,
+    /// The tick of the last fault this connection was told of.
+    pub(super) fault_tick: Option<u64>,
+    /// How much bad news this connection has been told; `None` before its first service.
+    pub(super) news: Option<u32>,
+}
+
+/// State of the line being gathered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum LineState {
+    #[default]
+    Gathering,
+    /// Its LF has come.
+    Complete,
+    /// Its rest is thrown away, up to the LF; the flag says whether it is an error (too long).
+    Skipping(bool),
+}
+
+/// Why the lines of a connection wait. Single bytes act all the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wait {
+    pub what: Awaited,
+    /// Stops so far when it began: one more ends it.
+    pub stops: u32,
+}
+
+/// What is waited for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Awaited {
+    /// `DEL`: this tick.
+    Tick(u64),
+    /// `WAC`.
+    Condition(Condition),
+    /// `FRF`: its end.
+    Reference,
+}
+
+/// What comes next in the input.
+pub(super) enum Event {
+    /// A single-byte command.
+    Byte(u8),
+    /// A line is complete: [`Session::line`].
+    Line,
+    /// A line was too long and has been thrown away.
+    TooLong,
+}
+
+/// Whether a byte is a command by itself, wherever it stands.
+pub(super) const fn is_single(byte: u8) -> bool {
+    matches!(byte, 3..=9 | 24)
+}
+
+impl Session {
+    /// A new connection.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes bytes as far as there is room and says how many; the rest is to be offered again after a
+    /// [`service`](super::Panel::service). A line has to be handled before the bytes far behind it can be taken, so while
+    /// a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only by another
+    /// connection.
+    pub fn receive(&mut self, bytes: &[u8]) -> usize {
+        for (taken, &byte) in bytes.iter().enumerate() {
+            if self.input.push_back(byte).is_err() {
+                return taken;
+            }
+        }
+        bytes.len()
+    }
+
+    /// Whether everything received has been carried out: no line, whole or begun, and no wait is left.
+    pub fn is_idle(&self) -> bool {
+        self.input.is_empty() && self.line.is_empty() && self.wait.is_none()
+    }
+
+    /// The error that `ERR?` would answer.
+    pub const fn error(&self) -> ErrorCode {
+        self.error
+    }
+
+    /// The next event; a complete line comes again until [`finish_line`](Self::finish_line).
+    pub(super) fn next_event(&mut self) -> Option<Event> {
+        if self.state == LineState::Complete {
+            return Some(Event::Line);
+        }
+        while let Some(byte) = self.input.pop_front() {
+            if is_single(byte) {
+                return Some(Event::Byte(byte));
+            }
+            if byte == b'\n' {
+                if let Some(event) = self.end_line() {
+                    return Some(event);
+                }
+            } else if byte != b'\r' && self.state == LineState::Gathering {
+                self.gather(byte);
+            }
+        }
+        None
+    }
+
+    /// The complete line.
+    pub(super) fn line(&self) -> &[u8] {
+        &self.line
+    }
+
+    /// The complete line has been handled.
+    pub(super) fn finish_line(&mut self) {
+        self.line.clear();
+        self.state = LineState::Gathering;
+    }
+
+    fn gather(&mut self, byte: u8) {
+        if self.line.push(byte).is_err() {
+            self.line.clear();
+            self.state = LineState::Skipping(true);
+        }
+    }
+
+    fn end_line(&mut self) -> Option<Event> {
+        match self.state {
+            LineState::Skipping(error) => {
+                self.state = LineState::Gathering;
+                error.then_some(Event::TooLong)
+            }
+            _ if self.line.is_empty() => None,
+            _ => {
+                self.state = LineState::Complete;
+                Some(Event::Line)
+            }
+        }
+    }
+
+    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and ends
+    /// the wait.
+    pub(super) fn take_single(&mut self) -> Option<u8> {
+        let before = self.input.iter().position(|&byte| is_single(byte))?;
+        self.rotate(before);
+        let single = self.input.pop_front()?;
+        self.rotate(self.input.len() - before);
+        if single == STOP {
+            self.wait = None;
+            self.discard(before);
+        }
+        Some(single)
+    }
+
+    /// Moves the next `count` bytes behind the others.
+    fn rotate(&mut self, count: usize) {
+        for _ in 0..count {
+            if let Some(byte) = self.input.pop_front() {
+                // There is the room that it has just left.
+                let _ = self.input.push_back(byte);
+            }
+        }
+    }
+
+    /// Ends the wait and throws away what has been received behind it.
+    pub(super) fn abandon(&mut self) {
+        self.wait = None;
+        self.discard(self.input.len());
+    }
+
+    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line must
+    /// never be taken for a command.
+    fn discard(&mut self, count: usize) {
+        let mut last = b'\n';
+        for _ in 0..count {
+            last = self.input.pop_front().unwrap_or(last);
+        }
+        if last != b'\n' {
+            self.state = LineState::Skipping(false);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What is commanded: checked as a whole, then sent or kept as a wish. All but [`Stage::stop`] and [`Stage::set_velocity`]
+//! are to be called only when [`Stage::present`] is known.
+
+use super::super::axis::{Axis, AxisValues};
+use super::super::error::ErrorCode;
+use super::super::target::{Coordinates, position};
+use super::{Flight, Stage};
+use crate::link::{Command, Mode, PanelLink};
+use crate::motion::{Position, Stop};
+
+/// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
+const SLOWEST_MM_S: f64 = 1e-3;
+
+impl Stage {
+    /// `MOV`: everything is checked before anything changes.
+    pub fn move_to(
+        &mut self,
+        values: &AxisValues,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let mut target = self.target;
+        for (coordinate, value) in target.iter_mut().zip(values) {
+            *coordinate = value.unwrap_or(*coordinate);
+        }
+        self.aim(target, link)
+    }
+
+    /// `MVR`: relative to the last target.
+    pub fn move_by(
+        &mut self,
+        values: &AxisValues,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let mut target = self.target;
+        for (coordinate, value) in target.iter_mut().zip(values) {
+            *coordinate += value.unwrap_or(0.0);
+        }
+        self.aim(target, link)
+    }
+
+    fn aim(&mut self, target: Coordinates, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        if self.is_faulted() {
+            return Err(ErrorCode::MotionError);
+        }
+        let Some(snapshot) = self
+            .present()
+            .filter(|s| s.referenced && matches!(s.mode, Mode::Holding | Mode::Moving))
+        else {
+            return Err(ErrorCode::NotReady);
+        };
+        let to = position(&target, &self.geometry)?;
+        let (mode, from) = (snapshot.mode, snapshot.setpoint);
+        if mode == Mode::Holding {
+            self.start(from, to, link)?;
+        } else {
+            self.retarget(to);
+        }
+        for axis in Axis::ALL {
+            if axis.component().is_some_and(|i| from[i] != to[i]) {
+                self.moving.insert(axis);
+            }
+        }
+        self.target = target;
+        self.target_is_rest = false;
+        Ok(())
+    }
+
+    /// Stops for another target, unless the motion stops already.
+    fn retarget(&mut self, to: Position) {
+        let stopping = [&self.course, &self.next]
+            .into_iter()
+            .flatten()
+            .any(|course| course.stop.is_some());
+        if !stopping {
+            self.stop_wanted = self.stop_wanted.or(Some(Stop::Smooth));
+        }
+        self.move_wanted = Some(to);
+    }
+
+    /// `STP`, `#24`, `HLT`.
+    pub fn stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+        if self.mode() != Mode::Moving && !self.motion_is_due() {
+            return;
+        }
+        self.move_wanted = None;
+        self.target_is_rest = true;
+        if self.stop_wanted != Some(Stop::Urgent) {
+            self.stop_wanted = Some(stop);
+        }
+        self.carry_on(link);
+    }
+
+    /// `SVO`. Before referencing there is no pose to hold: servo on is accepted, as clients send it first, and comes about
+    /// with `FRF`.
+    pub fn set_servo(&mut self, on: bool, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        let Some(snapshot) = self.present() else {
+            return Err(ErrorCode::Busy);
+        };
+        match (on, snapshot.mode) {
+            (true, Mode::Fault) => Err(ErrorCode::MotionError),
+            (true, Mode::Off) if snapshot.referenced => {
+                self.send(Command::Servo(true), Flight::Other, link)
+            }
+            (false, Mode::Holding | Mode::Moving) => {
+                self.send(Command::Servo(false), Flight::Other, link)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// `FLC`.
+    pub fn acknowledge(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        if self.is_faulted() {
+            self.send(Command::Acknowledge, Flight::Other, link)?;
+        }
+        Ok(())
+    }
+
+    /// `VLS`: speed of the platform centre; rotation goes down with it in proportion, so that a slow move is slow in W too.
+    pub fn set_velocity(&mut self, mm_s: f64) -> Result<(), ErrorCode> {
+        if !(SLOWEST_MM_S..=self.full.speed_mm_s).contains(&mm_s) {
+            return Err(ErrorCode::VelocityLimit);
+        }
+        self.limits.speed_mm_s = mm_s;
+        self.limits.turn_speed_deg_s = self.full.turn_speed_deg_s * (mm_s / self.full.speed_mm_s);
+        Ok(())
+    }
+}

@@ -1,0 +1,206 @@
+//! Every tunable of the controller, in physical units, with the reference stage as default.
+//!
+//! What the tick uses is derived from these once, in [`Config`](crate::config::Config). Defaults come from the reference
+//! stage (DESIGN section 4) unless a line says otherwise.
+
+use crate::motion::Limits;
+use kinematics::Geometry;
+
+/// All parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameters {
+    /// Mechanism.
+    pub geometry: Geometry,
+    /// Limits of motion, and the control rate.
+    pub limits: Limits,
+    /// What the pivots carry, for torque feedforward.
+    pub platform: Platform,
+    /// Ring drives, for feedforward.
+    pub drive: Drive,
+    /// Servo gains.
+    pub servo: Gains,
+    /// Encoders, pivot by pivot.
+    pub encoders: [EncoderSetup; 3],
+    /// When the stage counts as settled.
+    pub window: Window,
+    /// Thresholds of the faults.
+    pub supervision: Supervision,
+}
+
+/// Moving mass in the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Platform {
+    /// Platform without payload.
+    pub mass_kg: f64,
+    /// About the platform centre.
+    pub inertia_kg_m2: f64,
+    /// Payload.
+    pub payload_kg: f64,
+    /// Payload about its own centre of mass.
+    pub payload_inertia_kg_m2: f64,
+    /// Centre of the payload's mass in the platform's axes.
+    pub payload_centre_mm: [f64; 2],
+}
+
+/// A brushed DC motor behind a gear, as seen at the ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Torque constant of the motor, equal to its voltage constant in V s/rad.
+    pub torque_constant_n_m_a: f64,
+    /// Motor turns per ring turn.
+    pub gear_ratio: f64,
+    /// Winding resistance.
+    pub resistance_ohm: f64,
+    /// Winding inductance.
+    pub inductance_h: f64,
+    /// Time in each PWM period for which both switches of a leg are off.
+    pub dead_time_s: f64,
+    /// Current from which the whole dead time counts; below, the PWM's ripple makes up for a part of it.
+    pub dead_time_knee_a: f64,
+    /// PWM frequency.
+    pub pwm_hz: f64,
+    /// Nominal supply; the duty is computed from the measured one.
+    pub supply_v: f64,
+    /// Ring, carriage, gear and rotor together, at the ring.
+    pub inertia_kg_m2: f64,
+    /// Viscous friction at the ring.
+    pub viscous_n_m_s: f64,
+    /// Coulomb friction at the ring.
+    pub coulomb_n_m: f64,
+    /// Way over which friction builds up after a reversal (presliding).
+    pub presliding_rad: f64,
+}
+
+/// Servo gains.
+///
+/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain Kv crosses
+/// over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600 rad/s, 260 Hz. The
+/// electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and the 1.5 kHz resonance
+/// leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia 20 % under the model. The
+/// position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and 12 deg of phase at crossover.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// Velocity setpoint per position error.
+    pub position_1_s: f64,
+    /// Voltage per velocity error.
+    pub velocity_v_s_rad: f64,
+    /// Voltage per integral of the velocity error.
+    pub integral_v_rad: f64,
+    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::servo`].
+    pub learning: f64,
+    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
+    pub friction_learning: f64,
+    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which voltage
+    /// feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
+    pub latency_s: f64,
+}
+
+/// How an encoder is mounted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EncoderSetup {
+    /// Reading, in counts, at pivot angle 0.
+    pub zero_counts: u32,
+    /// Whether it counts down when the pivot angle grows.
+    pub reversed: bool,
+}
+
+/// When the stage counts as settled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Largest following error of any pivot, in encoder counts.
+    pub counts: f64,
+    /// For how long.
+    pub dwell_s: f64,
+}
+
+/// Thresholds of the faults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supervision {
+    /// Largest following error of a pivot.
+    pub following_error_rad: f64,
+    /// Bad encoder frames in a row that are bridged by extrapolation.
+    pub bridged_frames: u8,
+    /// Largest pivot acceleration that can be real: a frame that asks for more is bad, whatever its CRC says.
+    pub plausible_acceleration_rad_s2: f64,
+    /// Lowest supply.
+    pub supply_min_v: f64,
+}
+
+impl Parameters {
+    /// The reference stage.
+    pub const REFERENCE: Self = Self {
+        geometry: Geometry::REFERENCE,
+        limits: Limits {
+            rate_hz: 20_000.0,
+            speed_mm_s: 200.0,
+            acceleration_mm_s2: 4_000.0,
+            jerk_mm_s3: 400_000.0,
+            turn_speed_deg_s: 360.0,
+            turn_acceleration_deg_s2: 7_200.0,
+            turn_jerk_deg_s3: 720_000.0,
+            pivot_rate_rad_s: 10.0,
+            stop_factor: 2.0,
+        },
+        platform: Platform {
+            mass_kg: 3.0,
+            inertia_kg_m2: 0.02,
+            payload_kg: 0.0,
+            payload_inertia_kg_m2: 0.0,
+            payload_centre_mm: [0.0, 0.0],
+        },
+        drive: Drive {
+            torque_constant_n_m_a: 0.06,
+            gear_ratio: 50.0,
+            resistance_ohm: 2.1,
+            inductance_h: 0.7e-3,
+            // What makers of such bridges state.
+            dead_time_s: 200e-9,
+            // A tenth of the largest current ripple, 48 V / (4 L 40 kHz): near rest the pulses are short.
+            dead_time_knee_a: 0.043,
+            pwm_hz: 40e3,
+            supply_v: 48.0,
+            inertia_kg_m2: 0.02,
+            viscous_n_m_s: 0.05,
+            coulomb_n_m: 0.1,
+            presliding_rad: 100e-6,
+        },
+        servo: Gains {
+            position_1_s: 300.0,
+            velocity_v_s_rad: 40.0,
+            integral_v_rad: 14_000.0,
+            learning: 2.0,
+            friction_learning: 0.1,
+            latency_s: 65e-6,
+        },
+        encoders: [
+            EncoderSetup {
+                zero_counts: 12_345_678,
+                reversed: false,
+            },
+            EncoderSetup {
+                zero_counts: 50_331_649,
+                reversed: true,
+            },
+            EncoderSetup {
+                zero_counts: 67_000_000,
+                reversed: false,
+            },
+        ],
+        window: Window {
+            counts: 2.0,
+            dwell_s: 2e-3,
+        },
+        supervision: Supervision {
+            following_error_rad: 2e-3,
+            bridged_frames: 4,
+            plausible_acceleration_rad_s2: 50_000.0,
+            supply_min_v: 36.0,
+        },
+    };
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self::REFERENCE
+    }
+}

@@ -1,0 +1,74 @@
+//! The recorder's hook: what a tick knows, offered at its end.
+
+use crate::drivers::bridge::Duty;
+use crate::link::Mode;
+use crate::motion::Setpoint;
+use kinematics::Angle;
+
+/// All that a tick computed.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The tick.
+    pub tick: u64,
+    /// State of the supervisor.
+    pub mode: Mode,
+    /// Setpoint of the pose.
+    pub setpoint: Setpoint,
+    /// Setpoint of the pivots; the measured angles while the servo is off.
+    pub pivot_setpoints: [Angle; 3],
+    /// Their rates, rad/s.
+    pub pivot_rates: [f32; 3],
+    /// Measured pivots.
+    pub pivots: [Angle; 3],
+    /// Duties.
+    pub duty: [Duty; 3],
+    /// Commands taken so far.
+    pub commands: u32,
+}
+
+/// Somebody who looks at every tick. Runs inside it: no allocation, no blocking, no unbounded work.
+pub trait Record {
+    /// Takes the sample of one tick.
+    fn record(&mut self, sample: &Sample);
+}
+
+impl Record for () {
+    #[inline]
+    fn record(&mut self, _: &Sample) {}
+}
+
+/// A running hash over state, setpoints, measured pivots and duties of every tick: two runs that agree in it agreed at
+/// every tick. FNV-1a over 32-bit words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunningHash(pub u32);
+
+impl Default for RunningHash {
+    fn default() -> Self {
+        Self(0x811C_9DC5)
+    }
+}
+
+impl RunningHash {
+    #[inline]
+    fn word(&mut self, word: u32) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x0100_0193);
+    }
+}
+
+impl Record for RunningHash {
+    #[inline]
+    fn record(&mut self, sample: &Sample) {
+        self.word(sample.tick as u32);
+        self.word(sample.mode as u32);
+        for position in sample.setpoint.position {
+            self.word(position as u32);
+            self.word((position >> 32) as u32);
+        }
+        for i in 0..3 {
+            self.word(sample.pivot_setpoints[i].units() as u32);
+            self.word(sample.pivot_rates[i].to_bits());
+            self.word(sample.pivots[i].units() as u32);
+            self.word(sample.duty[i].0 as u32);
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The servo of one pivot.
+
+use super::friction::Presliding;
+use super::torque::Body;
+use crate::config::{PWM_COUNTS, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::drivers::bridge::Duty;
+use crate::parameters::Parameters;
+
+/// Constants of the servo.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ServoConfig {
+    /// What the pivots carry.
+    pub body: Body,
+    rad_per_unit: f32,
+    rate_hz: f32,
+    position: f32,
+    velocity: f32,
+    integral: f32,
+    learning: [f32; FEATURES],
+    inertia: f32,
+    volt_per_torque: f32,
+    torque_lead_s: f32,
+    volt_per_rate: f32,
+    rate_lead_s: f32,
+    viscous: f32,
+    coulomb: f32,
+    way: f32,
+    per_rate: f32,
+    per_torque: f32,
+    current_step: f32,
+    ampere_per_volt: f32,
+    per_knee: f32,
+    lost_counts: f32,
+    integral_limit: f32,
+    learnt_limit: f32,
+}
+
+/// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
+const FEATURES: usize = 3;
+
+/// Duty kept back from full: the bridge needs its charge pump refreshed and the current sense its window.
+const FULL: f32 = 0.98 * PWM_COUNTS as f32;
+
+impl ServoConfig {
+    /// Derives the constants.
+    pub fn new(parameters: &Parameters) -> Self {
+        let Parameters {
+            geometry,
+            platform,
+            drive,
+            servo,
+            limits,
+            ..
+        } = parameters;
+        let radius_m = geometry.radius_mm * 1e-3;
+        let [x_m, y_m] = platform.payload_centre_mm.map(|mm| mm * 1e-3);
+        let period_s = 1.0 / limits.rate_hz;
+        let torque_per_ampere = drive.torque_constant_n_m_a * drive.gear_ratio;
+        let volt_per_torque = drive.resistance_ohm / torque_per_ampere;
+        // Torque at which its signal is 1: what the reference motion asks for.
+        let torque_scale = 6.0;
+        let learning = servo.integral_v_rad * servo.learning * period_s;
+        Self {
+            body: Body {
+                mass: ((platform.mass_kg + platform.payload_kg) * radius_m * radius_m) as f32,
+                inertia: (platform.inertia_kg_m2
+                    + platform.payload_inertia_kg_m2
+                    + platform.payload_kg * (x_m * x_m + y_m * y_m))
+                    as f32,
+                moment: [x_m, y_m].map(|m| (platform.payload_kg * m * radius_m) as f32),
+            },
+            rad_per_unit: (1.0 / UNITS_PER_RAD) as f32,
+            rate_hz: limits.rate_hz as f32,
+            position: servo.position_1_s as f32,
+            velocity: servo.velocity_v_s_rad as f32,
+            integral: (servo.integral_v_rad * period_s) as f32,
+            learning: [
+                learning as f32,
+                learning as f32,
+                (learning * servo.friction_learning) as f32,
+            ],
+            inertia: drive.inertia_kg_m2 as f32,
+            volt_per_torque: volt_per_torque as f32,
+            torque_lead_s: (servo.latency_s + drive.inductance_h / drive.resistance_ohm) as f32,
+            volt_per_rate: torque_per_ampere as f32,
+            rate_lead_s: servo.latency_s as f32,
+            viscous: drive.viscous_n_m_s as f32,
+            coulomb: drive.coulomb_n_m as f32,
+            way: (1.0 / drive.presliding_rad) as f32,
+            per_rate: (1.0 / limits.pivot_rate_rad_s) as f32,
+            per_torque: (1.0 / torque_scale) as f32,
+            current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
+                as f32,
+            ampere_per_volt: (1.0 / drive.resistance_ohm) as f32,
+            per_knee: (1.0 / drive.dead_time_knee_a) as f32,
+            lost_counts: (drive.dead_time_s * drive.pwm_hz) as f32 * f32::from(PWM_COUNTS),
+            integral_limit: (drive.supply_v * 0.5) as f32,
+            learnt_limit: (drive.supply_v * 0.25) as f32,
+        }
+    }
+}
+
+/// What one pivot should do at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PivotSetpoint {
+    /// Measured minus setpoint, 2^-32 turns.
+    pub error: i32,
+    /// Rate, rad/s.
+    pub rate: f32,
+    /// Acceleration, rad/s^2.
+    pub acceleration: f32,
+    /// Torque the platform asks for, N m.
+    pub platform_torque: f32,
+}
+
+/// State of one pivot's servo.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisServo {
+    integral: f32,
+    last_error: f32,
+    last_torque: f32,
+    friction: Presliding,
+    learnt: [f32; FEATURES],
+    current: f32,
+    carry: f32,
+}
+
+impl AxisServo {
+    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the setpoint.
+    pub fn restart(&mut self) {
+        *self = Self {
+            learnt: self.learnt,
+            ..Self::default()
+        };
+    }
+
+    /// Duty for this tick; see [`counts_per_volt`].
+    #[inline]
+    pub fn step(
+        &mut self,
+        config: &ServoConfig,
+        setpoint: &PivotSetpoint,
+        counts_per_volt: f32,
+    ) -> Duty {
+        let error = -(setpoint.error as f32) * config.rad_per_unit;
+        let drift = (error - self.last_error) * config.rate_hz;
+        self.last_error = error;
+        let r = drift + config.position * error;
+
+        let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
+        let contact = self
+            .friction
+            .advance(setpoint.rate * config.way / config.rate_hz);
+        let torque = inertial + config.viscous * setpoint.rate + config.coulomb * contact;
+        let torque_rate = (torque - self.last_torque) * config.rate_hz;
+        self.last_torque = torque;
+        let forward = config.volt_per_torque * (torque + torque_rate * config.torque_lead_s)
+            + config.volt_per_rate * (setpoint.rate + setpoint.acceleration * config.rate_lead_s);
+
+        let features = [
+            setpoint.rate * config.per_rate,
+            inertial * config.per_torque,
+            contact,
+        ];
+        let mut learnt = 0.0;
+        for (weight, feature) in self.learnt.iter().zip(features) {
+            learnt += weight * feature;
+        }
+        let volts = forward + learnt + self.integral + config.velocity * r;
+        // The current follows the voltage that is wanted, since what the dead time takes of it is made up for.
+        let steady = (volts - config.volt_per_rate * setpoint.rate) * config.ampere_per_volt;
+        self.current += (steady - self.current) * config.current_step;
+        let share = (self.current * config.per_knee).clamp(-1.0, 1.0);
+        let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
+        let limited = counts.clamp(-FULL, FULL);
+
+        // Collecting stops while the bridge is at its end and the error asks for more.
+        if counts == limited || counts * r < 0.0 {
+            let limit = config.integral_limit;
+            self.integral = (self.integral + config.integral * r).clamp(-limit, limit);
+            let limit = config.learnt_limit;
+            for ((weight, feature), gain) in
+                self.learnt.iter_mut().zip(features).zip(config.learning)
+            {
+                *weight = (*weight + gain * feature * r).clamp(-limit, limit);
+            }
+        }
+        self.shape(limited)
+    }
+
+    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200 is
+    /// coarser than friction forgives.
+    #[inline]
+    fn shape(&mut self, counts: f32) -> Duty {
+        let wanted = counts + self.carry;
+        let whole = (wanted + if wanted < 0.0 { -0.5 } else { 0.5 }) as i16;
+        self.carry = wanted - f32::from(whole);
+        Duty(whole)
+    }
+}
+
+/// The duty whose pulses, after the dead time has taken its part, are `wanted`.
+///
+/// Dead time shortens every pulse by `lost` counts, or by all of it if that is less, times the `share` that the current's size
+/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage).
+#[inline]
+fn make_up(wanted: f32, share: f32, lost: f32) -> f32 {
+    let size = wanted.abs();
+    let share = if wanted < 0.0 { -share } else { share };
+    let kept = 1.0 - share;
+    let pulse = if size < lost * kept {
+        size / kept
+    } else {
+        size + lost * share
+    };
+    if wanted < 0.0 { -pulse } else { pulse }
+}
+
+/// PWM counts per volt at a measured supply. A supply that reads as nothing (no ADC yet) gives no drive.
+#[inline]
+pub fn counts_per_volt(supply_counts: f32) -> f32 {
+    const FULL_PER_COUNT: f32 = (PWM_COUNTS as f64 / SUPPLY_V_PER_COUNT) as f32;
+    if supply_counts < 1.0 {
+        0.0
+    } else {
+        FULL_PER_COUNT / supply_counts
+    }
+}

@@ -1,0 +1,38 @@
+//! What the ticks cost, in instructions, exactly: from the first instruction of the interrupt handler to the symbol
+//! `stage_tick_end`. Exception entry and return, and the handler's last few instructions, come on top.
+
+/// Cost of the ticks of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TickCost {
+    /// Ticks counted.
+    pub ticks: u64,
+    /// Instructions of all of them.
+    pub total: u64,
+    /// Instructions of the worst.
+    pub worst: u64,
+    /// The worst one, counted from the start of the run.
+    pub worst_tick: u64,
+    /// Instructions of the last.
+    pub last: u64,
+    /// Latest end of a tick, ns after its interrupt was due.
+    pub latest_end_ns: u64,
+}
+
+impl TickCost {
+    /// Instructions of a tick on average.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.total as f64 / self.ticks.max(1) as f64
+    }
+
+    pub(super) fn add(&mut self, instructions: u64, end_ns: u64) {
+        self.last = instructions;
+        self.total += instructions;
+        if instructions > self.worst {
+            self.worst = instructions;
+            self.worst_tick = self.ticks;
+        }
+        self.latest_end_ns = self.latest_end_ns.max(end_ns);
+        self.ticks += 1;
+    }
+}

@@ -1,0 +1,36 @@
+//! The bench: the unmodified image `stage` on an emulated STM32F427 that has the simulated stage on its pins.
+//!
+//! The emulator is `rigless`. Its time is virtual: 168 million instructions a second, one for each cycle of the real
+//! clock, so that an instruction count is what the cycle counter would show without wait states.
+//!
+//! ```text
+//!  stop k (latch - 1 us)                     tick k                    stop k+1
+//!  |--- latch, SPI by DMA ---|--- control task ---|---------------------|
+//!   plant runs from tick k-1 to tick k, with the        PWM, phase and sleep pins as they stand now
+//!   pins as they stand; frames and ADC inputs are        have acted since the middle of the period
+//!   handed over, then the caller looks
+//! ```
+//!
+//! The stage is stepped once a control period, by the same call and on the same grid as on the host
+//! ([`Stage::advance_period`]), so a run here and one there are the same to the bit. That the plant runs ahead by the
+//! 15 us from latch to tick changes nothing: no pin moves in them.
+//!
+//! [`Stage::advance_period`]: crate::devices::Stage::advance_period
+
+mod bench;
+mod board;
+mod cost;
+mod driver;
+mod encoder;
+mod gaps;
+pub mod image;
+mod line;
+mod period;
+mod twin;
+
+pub use bench::{Bench, BenchError, Outcome};
+pub use cost::TickCost;
+pub use gaps::{Allowed, GAPS};
+pub use period::{Action, Period, Reset, Trace};
+pub use rigless::device::ResetCause;
+pub use twin::{Divergence, Twin};

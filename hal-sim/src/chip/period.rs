@@ -1,0 +1,113 @@
+//! What a caller sees and can do once a control period.
+
+use super::board::ChipBoard;
+use super::cost::TickCost;
+use crate::devices::{BridgeState, Stage};
+use rigless::device::ResetCause;
+use rigless::emulator::Host;
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+
+/// A restart of the chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reset {
+    /// When, ns since power on.
+    pub at_ns: u64,
+    /// By what.
+    pub cause: ResetCause,
+}
+
+/// Something to do to the board at an instant within a period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Press (`true`) or release the emergency stop.
+    EmergencyStop(bool),
+    /// Stop the timer that starts every control period: the loop halts.
+    HaltLoop,
+    /// Keep what the bridges' pins say, for [`Period::probes`].
+    Probe,
+}
+
+/// The image's exported record (`TRACE`), as the last tick left it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Trace {
+    /// Ticks since the chip started.
+    pub ticks: u32,
+    /// Running hash over all ticks: `RunningHash` of the firmware's recorder.
+    pub hash: u32,
+    /// Commands the tick has taken.
+    pub commands: u32,
+    /// Why the chip started, as the image understood it.
+    pub reset_cause: u32,
+}
+
+/// One control period: the frames and the ADC inputs of tick [`Period::tick`] have just been handed over, 16 us before it.
+pub struct Period<'a> {
+    pub(super) board: &'a mut ChipBoard,
+    pub(super) host: &'a mut dyn Host,
+    pub(super) at: VirtualNanos,
+    pub(super) trace_at: u64,
+    pub(super) actions: &'a mut Vec<(u64, Action)>,
+    /// The tick to come, counted from the last start of the chip; so many are done.
+    pub tick: u64,
+    /// The stage at this tick. Its encoders' frames have been handed over already: a fault set now shows next period.
+    pub stage: &'a mut Stage,
+    /// What the pins said over the second half of the last period.
+    pub pins: [BridgeState; 3],
+    /// Whether bridges have switched themselves off. May be changed.
+    pub bridge_faults: &'a mut [bool; 3],
+    /// What ticks cost so far.
+    pub cost: TickCost,
+    /// Restarts so far.
+    pub resets: &'a [Reset],
+    /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
+    pub probes: &'a [(u64, [BridgeState; 3])],
+}
+
+impl Period<'_> {
+    /// Time since power on, ns.
+    #[must_use]
+    pub fn at_ns(&self) -> u64 {
+        self.at.0
+    }
+
+    /// When the tick to come is due, ns since power on.
+    #[must_use]
+    pub fn tick_at_ns(&self) -> u64 {
+        self.at.0 + super::driver::LATCH_NS + super::driver::EARLY_NS
+    }
+
+    /// Sends bytes to the command interface.
+    pub fn send(&mut self, bytes: &[u8]) {
+        if let Some(line) = self.board.line() {
+            line.send(bytes);
+        }
+    }
+
+    /// What the command interface has answered since the last call.
+    pub fn received(&mut self) -> Vec<u8> {
+        self.board.line().map(|line| line.take_received()).unwrap_or_default()
+    }
+
+    /// Does something to the board at an instant to come, ns since power on.
+    pub fn at(&mut self, at_ns: u64, action: Action) {
+        self.actions.push((at_ns, action));
+        self.actions.sort_by_key(|(at_ns, _)| *at_ns);
+    }
+
+    /// The word at an address of the chip's memory, or `None` where there is none.
+    pub fn word(&mut self, address: u64) -> Option<u32> {
+        self.host.read(address, Width::W32).ok().map(|word| word as u32)
+    }
+
+    /// The image's record.
+    pub fn trace(&mut self) -> Trace {
+        let mut word = |index: u64| self.word(self.trace_at + 4 * index).unwrap_or(0);
+        Trace {
+            ticks: word(0),
+            hash: word(1),
+            commands: word(2),
+            reset_cause: word(3),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The arguments, as clap reads them.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+
+use crate::report::DEFAULT_EVERY;
+
+/// Tripivot: a simulated planar XY-Theta stage under its real controller.
+///
+/// Without a command it runs the built-in demonstration: a tour of the disk, three turns of the platform, and back.
+#[derive(Parser, Debug)]
+#[command(version, args_conflicts_with_subcommands = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+    #[command(flatten)]
+    pub(super) simulation: Simulation,
+}
+
+#[derive(Subcommand, Debug)]
+pub(super) enum Command {
+    /// Run a script of GCS lines on the simulated stage.
+    Run {
+        /// The script.
+        file: PathBuf,
+        #[command(flatten)]
+        simulation: Simulation,
+    },
+    /// Pivot angles (deg) of a pose (mm, mm, deg).
+    Inverse(PoseRows),
+    /// Pose (mm, mm, deg) of three pivot angles (deg).
+    Direct(PivotRows),
+    /// Whether the stage can take a pose, and how far it is from each limit. Exit code 1 if it cannot.
+    Check(PoseArguments),
+    /// Draw a quantity over the disk as a contour picture.
+    Map(Map),
+}
+
+/// Options of a simulation.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Simulation {
+    /// Folder for trace and picture [default: target/tripivot/<name>].
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write every N-th tick into the trace.
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_EVERY, value_parser = value_parser!(u32).range(1..))]
+    pub(super) every: u32,
+    /// Seed of the simulated noise: the same seed gives the same trace.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
+    #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = mismatch_percent)]
+    pub(super) mismatch: f64,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// One pose on the command line.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct PoseArguments {
+    /// Centre along x, mm.
+    pub(super) x: f64,
+    /// Centre along y, mm.
+    pub(super) y: f64,
+    /// Orientation, deg, any number of turns.
+    pub(super) theta: f64,
+}
+
+/// One pose on the command line, or many on standard input.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct PoseRows {
+    /// X and Y in mm, THETA in deg.
+    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv")]
+    pub(super) numbers: Vec<f64>,
+    /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3. A line of headings may come first.
+    #[arg(long)]
+    pub(super) csv: bool,
+}
+
+/// Three pivots on the command line, or many rows of them on standard input.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct PivotRows {
+    /// Angles of the pivots on the track, deg.
+    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv")]
+    pub(super) numbers: Vec<f64>,
+    /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta. A line of headings may come first.
+    #[arg(long)]
+    pub(super) csv: bool,
+}
+
+/// A contour picture.
+#[derive(Args, Clone, Debug)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct Map {
+    /// What to draw.
+    pub(super) quantity: Quantity,
+    /// The picture; SVG or PNG by its ending.
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+    /// Orientation of the platform, deg.
+    #[arg(long, default_value_t = 0.0)]
+    pub(super) theta: f64,
+}
+
+/// What a map shows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(super) enum Quantity {
+    /// How evenly the platform moves in all directions: 1 would be isotropic.
+    Dexterity,
+    /// The fastest pivot's rate at the worst direction of the platform's speed.
+    Rate,
+    /// The smallest angle between two pivots.
+    Separation,
+}
+
+/// Beyond that the simulated motors have no torque, or the platform no mass.
+const MISMATCH_LIMIT_PERCENT: f64 = 80.0;
+
+fn mismatch_percent(text: &str) -> Result<f64, String> {
+    let percent: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if percent.abs() <= MISMATCH_LIMIT_PERCENT {
+        Ok(percent)
+    } else {
+        Err(format!(
+            "not from -{MISMATCH_LIMIT_PERCENT} to {MISMATCH_LIMIT_PERCENT}"
+        ))
+    }
+}

@@ -1,0 +1,67 @@
+//! `tripivot` and `tripivot run`: a simulation, its summary and its folder.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use super::arguments::Simulation;
+use super::error::CliError;
+use crate::report::make_folder;
+use crate::run::{self, RunOptions, RunOutcome};
+use crate::script::ScriptError;
+
+/// Where runs go unless `--out` says otherwise, from the current folder.
+const FOLDER: &str = "target/tripivot";
+
+pub(super) fn demonstration(arguments: &Simulation) -> Result<ExitCode, CliError> {
+    simulate("demonstration", arguments, run::demonstration)
+}
+
+pub(super) fn script(file: &Path, arguments: &Simulation) -> Result<ExitCode, CliError> {
+    let name = file
+        .file_stem()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy();
+    simulate(&name, arguments, |options| run::script(file, options))
+}
+
+/// Runs, and prints what came of it. A fault is reported after the summary, which shows how it came to it.
+fn simulate(
+    name: &str,
+    arguments: &Simulation,
+    run: impl FnOnce(&RunOptions) -> Result<RunOutcome, ScriptError>,
+) -> Result<ExitCode, CliError> {
+    let options = options(name, arguments);
+    make_folder(&options.out)?;
+    let outcome = run(&options)?;
+    outcome.run.write(&options.out)?;
+    let mut text = String::new();
+    for (query, answer) in &outcome.answers {
+        text += &format!("{query}\n{}\n", answer.trim_end());
+    }
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    text += &format!(
+        "{}{:<22}{}\n",
+        outcome.run.summary(),
+        "trace and picture in",
+        options.out.display()
+    );
+    (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
+    match outcome.fault {
+        Some(fault) => Err(CliError::Fault(fault)),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn options(name: &str, arguments: &Simulation) -> RunOptions {
+    let default = || PathBuf::from(FOLDER).join(name);
+    RunOptions {
+        out: arguments.out.clone().unwrap_or_else(default),
+        every: arguments.every,
+        seed: arguments.seed,
+        mismatch_percent: arguments.mismatch,
+        quiet: arguments.quiet,
+    }
+}

@@ -1,0 +1,16 @@
+//! The devices between plant and controller, as embedded-hal buses and pins, and as plain bits and levels.
+
+pub mod analog;
+pub mod biss;
+mod bridge;
+mod encoder;
+mod noise;
+mod stage;
+
+pub use bridge::{
+    Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FaultPin, MAX_DUTY, PwmPin,
+    SleepPin,
+};
+pub use encoder::{Encoder, EncoderFault, EncoderParameters};
+pub use noise::Noise;
+pub use stage::{Stage, StageParameters};

@@ -1,0 +1,13 @@
+//! One simulated stage in front of the firmware: on the host, through embedded-hal, and of an emulated STM32F427.
+
+#[cfg(feature = "chip")]
+pub mod chip;
+pub mod cli;
+pub mod client;
+pub mod devices;
+pub mod host;
+pub mod observer;
+pub mod plant;
+pub mod report;
+pub mod run;
+pub mod script;

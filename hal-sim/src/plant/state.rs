@@ -1,0 +1,46 @@
+//! The plant's state vector.
+
+use nalgebra::Vector3;
+
+/// Positions, rates and hidden states of the machine. Its time derivative has the same shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct State {
+    /// Platform pose: x (m), y (m), theta (rad, multi-turn).
+    pub pose: Vector3<f64>,
+    /// Time derivative of the pose.
+    pub twist: Vector3<f64>,
+    /// Motor angles seen at the ring, rad, multi-turn.
+    pub motor_rad: Vector3<f64>,
+    /// Motor rates seen at the ring, rad/s.
+    pub motor_rad_s: Vector3<f64>,
+    /// Winding currents, A.
+    pub current_a: Vector3<f64>,
+    /// Bristle deflections of the ring friction, rad.
+    pub bristle_rad: Vector3<f64>,
+}
+
+impl State {
+    /// `self + factor * rate`.
+    #[inline]
+    pub fn plus(&self, factor: f64, rate: &Self) -> Self {
+        Self {
+            pose: self.pose + factor * rate.pose,
+            twist: self.twist + factor * rate.twist,
+            motor_rad: self.motor_rad + factor * rate.motor_rad,
+            motor_rad_s: self.motor_rad_s + factor * rate.motor_rad_s,
+            current_a: self.current_a + factor * rate.current_a,
+            bristle_rad: self.bristle_rad + factor * rate.bristle_rad,
+        }
+    }
+
+    /// Whether every number is finite. A sum is: infinities and NaN do not cancel out of it.
+    pub fn is_finite(&self) -> bool {
+        let sum = self.pose.sum()
+            + self.twist.sum()
+            + self.motor_rad.sum()
+            + self.motor_rad_s.sum()
+            + self.current_a.sum()
+            + self.bristle_rad.sum();
+        sum.is_finite()
+    }
+}

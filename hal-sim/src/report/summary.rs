@@ -1,0 +1,136 @@
+//! The summary printed after a run.
+
+use std::fmt;
+
+use super::Run;
+use super::sample::Move;
+use super::statistics::Spread;
+
+/// Moves listed at most; a longer run lists those that took longest to settle.
+const MOVES_LISTED: usize = 20;
+
+/// A [`Run`]'s summary: `Display` it.
+#[derive(Clone, Copy, Debug)]
+pub struct Summary<'a> {
+    run: &'a Run,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(run: &'a Run) -> Self {
+        Self { run }
+    }
+}
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        errors(f, self.run)?;
+        moves(f, &self.run.moves)?;
+        limits(f, self.run)
+    }
+}
+
+fn errors(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    let statistics = run.trace.statistics();
+    let ticks = statistics.error_theta_urad.count();
+    writeln!(f, "following error while moving ({ticks} ticks)")?;
+    writeln!(f, "                      {:>10}  {:>10}", "peak", "rms")?;
+    let mut line = |what: &str, spread: &Spread, unit: &str| {
+        let (peak, rms) = (spread.peak(), spread.rms());
+        writeln!(f, "  {what:<20}{peak:>10.3}  {rms:>10.3}  {unit}")
+    };
+    line("centre, distance", &statistics.error_xy_um, "um")?;
+    line("orientation", &statistics.error_theta_urad, "urad")?;
+    line("pivots", &statistics.pivot_error_lsb, "encoder LSB")?;
+    writeln!(f)
+}
+
+fn moves(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
+    if moves.is_empty() {
+        return writeln!(f, "no moves\n");
+    }
+    let listed = listed(moves);
+    write!(f, "moves")?;
+    if listed.len() < moves.len() {
+        write!(
+            f,
+            " ({} of {}, slowest to settle)",
+            listed.len(),
+            moves.len()
+        )?;
+    }
+    writeln!(
+        f,
+        "\n    #    start s    to x mm     y mm   theta deg   profile s   settle ms"
+    )?;
+    for index in listed {
+        one_move(f, index + 1, &moves[index])?;
+    }
+    totals(f, moves)?;
+    writeln!(f)
+}
+
+fn one_move(f: &mut fmt::Formatter<'_>, number: usize, one: &Move) -> fmt::Result {
+    let [x_mm, y_mm, theta_deg] = one.target;
+    let (start_s, profile_s) = (one.start_s, one.profile_s());
+    write!(
+        f,
+        "  {number:>3}  {start_s:>9.3}  {x_mm:>9.3}  {y_mm:>7.3}  {theta_deg:>10.3}  {profile_s:>10.4}  "
+    )?;
+    match one.settle_s() {
+        Some(settle_s) => writeln!(f, "{:>10.2}", 1e3 * settle_s),
+        None => writeln!(f, "{:>10}", "never"),
+    }
+}
+
+fn totals(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
+    let profiles: Vec<f64> = moves.iter().map(Move::profile_s).collect();
+    let settles_ms: Vec<f64> = (moves.iter())
+        .filter_map(|one| Some(1e3 * one.settle_s()?))
+        .collect();
+    let mut line = |what: &str, profile_s: f64, settle_ms: f64| {
+        writeln!(f, "  {what:<46}{profile_s:>10.4}  {settle_ms:>10.2}")
+    };
+    line("mean", mean(&profiles), mean(&settles_ms))?;
+    line("worst", worst(&profiles), worst(&settles_ms))?;
+    match moves.len() - settles_ms.len() {
+        0 => Ok(()),
+        never => writeln!(f, "  never settled: {never}"),
+    }
+}
+
+/// Indices of the moves to list, in the order of time.
+fn listed(moves: &[Move]) -> Vec<usize> {
+    let settle_s = |&index: &usize| moves[index].settle_s().unwrap_or(f64::INFINITY);
+    let mut indices: Vec<usize> = (0..moves.len()).collect();
+    indices.sort_by(|a, b| settle_s(b).total_cmp(&settle_s(a)));
+    indices.truncate(MOVES_LISTED);
+    indices.sort_unstable();
+    indices
+}
+
+fn limits(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    let statistics = run.trace.statistics();
+    let (end_s, wall_s) = (statistics.end_s, run.wall_s);
+    writeln!(
+        f,
+        "{:<22}{:>10.1} %",
+        "peak duty",
+        100.0 * statistics.peak_duty
+    )?;
+    writeln!(
+        f,
+        "{:<22}{:>10.2} deg",
+        "smallest separation", statistics.separation_deg
+    )?;
+    writeln!(f, "{:<22}{end_s:>10.3} s", "simulated time")?;
+    let speed = end_s / wall_s;
+    writeln!(f, "{:<22}{speed:>10.1} times real time", "speed")
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn worst(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NAN, f64::max)
+}

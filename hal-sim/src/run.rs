@@ -1,0 +1,181 @@
+//! Running a script on the simulated stage, on the host.
+
+use std::path::{Path, PathBuf};
+
+use firmware::fault::Fault;
+use firmware::link::{Link, Mode};
+use firmware::panel::{Identity, Panel, Session};
+use firmware::parameters::Parameters;
+
+use crate::client::{Client, Event};
+use crate::devices::StageParameters;
+use crate::host::Host;
+use crate::observer::{Observer, TickRecord};
+use crate::plant::PlantParameters;
+use crate::report::{Progress, Run};
+use crate::script::{Line, Script, ScriptError};
+
+/// What a run is to do besides the script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOptions {
+    /// Folder for trace and pictures.
+    pub out: PathBuf,
+    /// Every so many ticks a row of the trace.
+    pub every: u32,
+    /// Seed of the simulated noise.
+    pub seed: u64,
+    /// By how much the plant departs from the controller's model of it, in percent.
+    pub mismatch_percent: f64,
+    /// No progress bar.
+    pub quiet: bool,
+}
+
+/// A run that came to its end, one way or another.
+#[derive(Debug)]
+pub struct RunOutcome {
+    /// Statistics, trace and moves.
+    pub run: Run,
+    /// The fault that ended it, or the line that was refused, in words.
+    pub fault: Option<String>,
+    /// Answers of the script's queries, with their lines.
+    pub answers: Vec<(String, String)>,
+    /// Running hash of all ticks.
+    pub hash: u32,
+    /// Ticks.
+    pub ticks: u64,
+}
+
+/// Who the simulated controller says it is.
+pub const IDENTITY: Identity = Identity {
+    serial: "SIM",
+    version: env!("CARGO_PKG_VERSION"),
+};
+
+/// The reference stage, off from the controller's model by `mismatch_percent`: heavier, with more friction, and with
+/// weaker motors, the combination that costs the servo most.
+#[must_use]
+pub fn stage_parameters(mismatch_percent: f64, seed: u64) -> StageParameters {
+    let more = 1.0 + mismatch_percent / 100.0;
+    let less = 1.0 - mismatch_percent / 100.0;
+    let reference = PlantParameters::REFERENCE;
+    StageParameters {
+        plant: PlantParameters {
+            platform_mass_kg: reference.platform_mass_kg * more,
+            platform_inertia_kg_m2: reference.platform_inertia_kg_m2 * more,
+            ring_inertia_kg_m2: reference.ring_inertia_kg_m2 * more,
+            motor_inertia_kg_m2: reference.motor_inertia_kg_m2 * more,
+            coulomb_n_m: reference.coulomb_n_m * more,
+            viscous_n_m_s_rad: reference.viscous_n_m_s_rad * more,
+            torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
+            ..reference
+        },
+        seed,
+        ..StageParameters::REFERENCE
+    }
+}
+
+/// Runs the built-in demonstration.
+///
+/// # Errors
+/// None in practice: a test parses its script.
+pub fn demonstration(options: &RunOptions) -> Result<RunOutcome, ScriptError> {
+    Ok(run(&Script::demonstration()?, options))
+}
+
+/// Runs a script file.
+///
+/// # Errors
+/// The script can not be read or has a bad line; nothing has moved.
+pub fn script(path: &Path, options: &RunOptions) -> Result<RunOutcome, ScriptError> {
+    Ok(run(&Script::read(path)?, options))
+}
+
+/// Runs a script on the simulated stage.
+#[must_use]
+pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
+    let parameters = Parameters::REFERENCE;
+    let stage = stage_parameters(options.mismatch_percent, options.seed);
+    simulate(script, &parameters, &stage, options)
+}
+
+/// Ticks between two updates of the progress bar.
+const PROGRESS_EVERY: u64 = 2_000;
+
+/// Bytes between controller and client, on the host.
+#[derive(Default)]
+struct Wire {
+    to_client: Vec<u8>,
+    to_stage: Vec<u8>,
+}
+
+fn simulate(
+    script: &Script,
+    parameters: &Parameters,
+    stage: &StageParameters,
+    options: &RunOptions,
+) -> RunOutcome {
+    let mut host = Host::new(stage, parameters);
+    let mut link = Link::new();
+    let (mut tick_link, mut panel_link) = link.split();
+    let mut panel = Panel::new(parameters, IDENTITY);
+    let mut session = Session::new();
+    let mut client = Client::new(script);
+    let mut observer = Observer::new(parameters, options.every);
+    let mut record = TickRecord::default();
+    let mut wire = Wire::default();
+    let mut answers = Vec::new();
+    let mut ticks = 0;
+    let progress = Progress::new(script.lines.len() as u64, options.quiet);
+    let fault = loop {
+        let pose = host.stage.latched_pose();
+        host.tick(&mut tick_link, &mut record);
+        ticks += 1;
+        if let Some(sample) = &record.sample {
+            observer.look(sample, pose);
+            if sample.mode == Mode::Fault {
+                break Some(fault_text(script, &client, host.fault()));
+            }
+        }
+        let taken = session.receive(&wire.to_stage);
+        wire.to_stage.drain(..taken);
+        // Writing to a vector does not fail.
+        let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
+        let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client));
+        wire.to_stage.extend(bytes);
+        match event {
+            Some(Event::Done(line, Some(answer))) => answers.push((line.text, answer)),
+            Some(Event::Refused(line, error)) => {
+                let at = place(script, &line);
+                break Some(format!("{at}: refused with GCS error {error}"));
+            }
+            Some(Event::Finished) => break None,
+            _ => {}
+        }
+        if ticks % PROGRESS_EVERY == 0 {
+            progress.update(client.done() as u64, ticks as f64 * host.stage.period_s());
+        }
+    };
+    RunOutcome {
+        run: Run {
+            name: script.name.clone(),
+            geometry: parameters.geometry,
+            trace: observer.trace,
+            moves: observer.moves,
+            wall_s: progress.finish(),
+        },
+        fault,
+        answers,
+        hash: record.hash.0,
+        ticks,
+    }
+}
+
+fn place(script: &Script, line: &Line) -> String {
+    format!("{}:{}: {}", script.name, line.number, line.text)
+}
+
+fn fault_text(script: &Script, client: &Client, fault: Option<Fault>) -> String {
+    let at = (client.current()).map_or_else(|| script.name.clone(), |line| place(script, line));
+    let fault = fault.map_or_else(|| "unknown".to_owned(), |fault| fault.to_string());
+    format!("fault: {fault}; at {at}")
+}

@@ -1,0 +1,185 @@
+//! The report of a run made up here: what is written, what is printed, and that no run is too odd for it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use hal_sim::report::{Move, Run, Sample, Trace};
+use kinematics::{Geometry, Pose, inverse, margins};
+
+/// Circling at 50 mm with two ticks of standstill at either end.
+fn sample(tick: u32, ticks: u32) -> Sample {
+    let angle = f64::from(tick) / f64::from(ticks) * 6.0;
+    let pose = Pose {
+        x: 0.5 * angle.cos(),
+        y: 0.5 * angle.sin(),
+        theta: 2.0 * angle,
+    };
+    let geometry = Geometry::REFERENCE;
+    let pivots = inverse(&pose).expect("inside the track").pivots;
+    let room_rad = margins(&geometry, &pose)
+        .expect("inside the track")
+        .separation_rad;
+    let place = [100.0 * pose.x, 100.0 * pose.y, pose.theta.to_degrees()];
+    Sample {
+        time_s: f64::from(tick) * 50e-6,
+        moving: (2..ticks - 2).contains(&tick),
+        setpoint: place,
+        setpoint_rate: [0.0; 3],
+        pose: place,
+        error: [0.3, -0.4, 2.0],
+        pivot_setpoint_deg: pivots.map(f64::to_degrees),
+        pivot_rate_rad_s: [0.0; 3],
+        pivot_error_lsb: [1.0; 3],
+        duty: [0.25, -0.5, 0.125],
+        separation_deg: (room_rad + geometry.separation_rad).to_degrees(),
+    }
+}
+
+fn run(ticks: u32, every: u32) -> Run {
+    let mut trace = Trace::new(every);
+    (0..ticks).for_each(|tick| trace.record(&sample(tick, ticks)));
+    let one = |number: u32| Move {
+        start_s: f64::from(number),
+        profile_end_s: f64::from(number) + 0.5,
+        settled_s: (number != 1).then_some(f64::from(number) + 0.51),
+        target: [1.0, -2.0, 720.0],
+    };
+    Run {
+        name: "made up".to_owned(),
+        geometry: Geometry::REFERENCE,
+        trace,
+        moves: (0..3).map(one).collect(),
+        wall_s: 0.01,
+    }
+}
+
+/// A fresh folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+#[test]
+fn four_files_are_written_the_same_each_time() {
+    let (first, second) = (folder("first"), folder("second").join("below"));
+    for folder in [&first, &second] {
+        run(1_001, 20)
+            .write(folder)
+            .expect("the folder can be written");
+    }
+    for file in ["trace.csv", "moves.csv", "picture.svg", "picture.png"] {
+        let bytes = fs::read(first.join(file)).expect(file);
+        assert!(!bytes.is_empty());
+        assert!(
+            bytes == fs::read(second.join(file)).expect(file),
+            "{file} differs"
+        );
+    }
+    assert_eq!(fs::read_dir(&first).expect("a folder").count(), 4);
+}
+
+#[test]
+fn the_tables_hold_what_was_recorded() {
+    let folder = folder("tables");
+    run(1_001, 20)
+        .write(&folder)
+        .expect("the folder can be written");
+    let trace = fs::read_to_string(folder.join("trace.csv")).expect("the trace");
+    let rows: Vec<Vec<&str>> = trace
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(rows.len(), 1 + 51);
+    let cell = |row: usize, name: &str| {
+        let column = rows[0].iter().position(|heading| *heading == name);
+        rows[row][column.expect(name)]
+    };
+    assert_eq!(cell(2, "time_s"), "0.001000");
+    assert_eq!((cell(1, "moving"), cell(2, "moving")), ("0", "1"));
+    assert_eq!(
+        (cell(1, "x_mm"), cell(1, "y_setpoint_mm")),
+        ("50.000000000", "0.000000000")
+    );
+    assert_eq!(cell(7, "theta_error_urad"), "2.000000");
+    assert_eq!(cell(7, "duty_2"), "-0.5000000");
+    assert_eq!(cell(7, "error_xy_um"), "0.500000");
+    let last_deg: f64 = cell(51, "pivot_2_setpoint_deg").parse().expect("a number");
+    assert!((last_deg - sample(1_000, 1_001).pivot_setpoint_deg[1]).abs() < 1e-9);
+
+    let moves = fs::read_to_string(folder.join("moves.csv")).expect("the moves");
+    let lines: Vec<&str> = moves.lines().collect();
+    assert_eq!(
+        lines[0],
+        "start_s,profile_end_s,settled_s,settle_s,x_mm,y_mm,theta_deg"
+    );
+    assert_eq!(
+        lines[2],
+        "1.000000,1.500000,,,1.000000000,-2.000000000,720.000000000"
+    );
+    assert!(lines[3].starts_with("2.000000,2.500000,2.510000,0.010000,"));
+}
+
+#[test]
+fn the_summary_tells_what_happened() {
+    let summary = run(1_001, 20).summary().to_string();
+    for line in [
+        "following error while moving (997 ticks)",
+        "  centre, distance         0.500       0.500  um",
+        "    1      0.000      1.000   -2.000     720.000      0.5000       10.00",
+        "    2      1.000      1.000   -2.000     720.000      0.5000       never",
+        "  never settled: 1",
+        "peak duty                   50.0 %",
+        "simulated time             0.050 s",
+        "speed                        5.0 times real time",
+    ] {
+        assert!(
+            summary.lines().any(|other| other == line),
+            "{line}\n{summary}"
+        );
+    }
+}
+
+#[test]
+fn a_long_run_lists_the_moves_slowest_to_settle() {
+    let mut run = run(100, 1);
+    run.moves = (0..100)
+        .map(|number| Move {
+            start_s: f64::from(number),
+            profile_end_s: f64::from(number) + 0.5,
+            settled_s: Some(f64::from(number) + 0.5 + 1e-3 * f64::from(number % 50)),
+            target: [0.0; 3],
+        })
+        .collect();
+    let summary = run.summary().to_string();
+    assert!(summary.contains("moves (20 of 100, slowest to settle)"));
+    assert!(summary.contains("       49.00\n") && !summary.contains("       39.00\n"));
+}
+
+#[test]
+fn a_run_that_never_began_still_has_a_report() {
+    let mut empty = run(5, 1);
+    empty.trace = Trace::new(1);
+    empty.moves.clear();
+    empty.name = "<a&b>\u{7}".to_owned();
+    empty
+        .write(&folder("empty"))
+        .expect("the folder can be written");
+    assert!(!empty.picture().contains("NaN"));
+    assert!(empty.summary().to_string().contains("no moves"));
+}
+
+#[test]
+fn odd_numbers_do_not_break_the_picture() {
+    let mut odd = run(50, 1);
+    for value in [f64::NAN, f64::INFINITY, -1e300, 1e-300] {
+        odd.trace.record(&Sample {
+            pose: [value; 3],
+            error: [value; 3],
+            duty: [value; 3],
+            ..sample(50, 50)
+        });
+    }
+    odd.write(&folder("odd"))
+        .expect("the folder can be written");
+}

@@ -1,0 +1,1 @@
+//! What crosses crates: long scenarios, real clients, target runs.
