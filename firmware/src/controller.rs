@@ -10,7 +10,7 @@ use crate::motion::{Motion, Position, Setpoint};
 use crate::number::Fixed;
 use crate::recorder::{Record, Sample};
 use crate::reference;
-use crate::servo::{AxisServo, PivotSetpoint, counts_per_volt, platform_torques};
+use crate::servo::{AxisServo, PivotSetpoint, platform_torques};
 use crate::settling::Settling;
 use kinematics::{Angle, Guide, Inverse, Pose, direct, inverse, pivot_motion};
 
@@ -295,7 +295,7 @@ impl State {
         } else {
             Mode::Holding
         };
-        let counts_per_volt = counts_per_volt(self.supply);
+        let counts_per_volt = config.servo.counts_per_volt(self.supply);
         let mut duty = [Duty(0); 3];
         for i in 0..3 {
             let pivot = PivotSetpoint {

@@ -3,6 +3,7 @@
 //! What the tick uses is derived from these once, in [`Config`](crate::config::Config). Defaults come from the reference
 //! stage (DESIGN section 4) unless a line says otherwise.
 
+use crate::config::PWM_COUNTS;
 use crate::motion::Limits;
 use kinematics::Geometry;
 
@@ -59,6 +60,8 @@ pub struct Drive {
     pub dead_time_knee_a: f64,
     /// PWM frequency.
     pub pwm_hz: f64,
+    /// Counts of a full PWM period; at most 32,767.
+    pub pwm_counts: u16,
     /// Nominal supply; the duty is computed from the measured one.
     pub supply_v: f64,
     /// Ring, carriage, gear and rotor together, at the ring.
@@ -158,6 +161,7 @@ impl Parameters {
             // A tenth of the largest current ripple, 48 V / (4 L 40 kHz): near rest the pulses are short.
             dead_time_knee_a: 0.043,
             pwm_hz: 40e3,
+            pwm_counts: PWM_COUNTS,
             supply_v: 48.0,
             inertia_kg_m2: 0.02,
             viscous_n_m_s: 0.05,

@@ -10,7 +10,11 @@ pub struct Client {
     next: usize,
     pending: Option<Pending>,
     received: Vec<u8>,
+    idle_polls: u32,
 }
+
+/// Polls, one a tick, after which a `WAC` at rest is given up: a minute at 20 kHz.
+const PATIENCE: u32 = 1_200_000;
 
 /// A line that was sent, and what of its answer is here.
 #[derive(Debug)]
@@ -28,6 +32,8 @@ pub enum Event {
     Done(Line, Option<String>),
     /// A line was refused with this error.
     Refused(Line, String),
+    /// A `WAC` has waited for a minute in which nothing moved: what it waits for will not come.
+    Stuck(Line),
     /// All lines are done.
     Finished,
 }
@@ -44,6 +50,7 @@ impl Client {
             next: 0,
             pending: None,
             received: Vec::new(),
+            idle_polls: 0,
         }
     }
 
@@ -59,8 +66,9 @@ impl Client {
         self.pending.as_ref().map(|pending| &pending.line)
     }
 
-    /// Takes what the controller has sent; gives what to send and what has happened.
-    pub fn poll(&mut self, received: &[u8]) -> (Vec<u8>, Option<Event>) {
+    /// Takes what the controller has sent, and whether the stage moves; gives what to send and what has happened. To be
+    /// called once a tick.
+    pub fn poll(&mut self, received: &[u8], moving: bool) -> (Vec<u8>, Option<Event>) {
         self.received.extend_from_slice(received);
         let Some(pending) = &mut self.pending else {
             return self.send_next();
@@ -72,8 +80,19 @@ impl Client {
             pending.missing -= 1;
         }
         if pending.missing > 0 {
-            return (Vec::new(), None);
+            let waits = first_word(&pending.line.text).eq_ignore_ascii_case("WAC");
+            self.idle_polls = if waits && !moving {
+                self.idle_polls + 1
+            } else {
+                0
+            };
+            let stuck = self.idle_polls > PATIENCE;
+            return (
+                Vec::new(),
+                stuck.then(|| Event::Stuck(pending.line.clone())),
+            );
         }
+        self.idle_polls = 0;
         let Some(Pending {
             line, mut answers, ..
         }) = self.pending.take()

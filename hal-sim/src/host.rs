@@ -35,12 +35,12 @@ fn sure<T, E>(result: Result<T, E>) -> Option<T> {
 }
 
 impl Host {
-    /// A stage with a freshly started controller.
+    /// A stage with a freshly started controller. The counts of the PWM are the controller's parameter.
     #[must_use]
     pub fn new(stage: &StageParameters, parameters: &Parameters) -> Self {
         let (bridges, drivers): (Vec<_>, Vec<_>) = (0..AXES)
             .filter_map(|_| {
-                let (bridge, pins) = Bridge::new();
+                let (bridge, pins) = Bridge::with_pwm_counts(parameters.drive.pwm_counts);
                 let driver = Driver::new(pins.pwm, pins.direction, pins.sleep, pins.fault);
                 Some((bridge, sure(driver)?))
             })

@@ -37,6 +37,7 @@ pub struct Observer {
     radius_mm: f64,
     period_s: f64,
     window_counts: f64,
+    pwm_counts: f64,
     under_way: Option<f64>,
 }
 
@@ -51,6 +52,7 @@ impl Observer {
             period_s: 1.0 / parameters.limits.rate_hz,
             // The half lets a setpoint between two counts be met; the controller's own window has it too.
             window_counts: parameters.window.counts + 0.5,
+            pwm_counts: f64::from(parameters.drive.pwm_counts),
             under_way: None,
         }
     }
@@ -94,7 +96,7 @@ impl Observer {
             }),
             duty: tick
                 .duty
-                .map(|duty| f64::from(duty.0) / f64::from(firmware::config::PWM_COUNTS)),
+                .map(|duty| f64::from(duty.0) / self.pwm_counts),
             separation_deg: separation_rad(pivots.map(|units| units / TURN * TAU)).to_degrees(),
         }
     }

@@ -1,6 +1,6 @@
 //! Running a script on the simulated stage, on the host.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use firmware::fault::Fault;
 use firmware::link::{Link, Mode};
@@ -8,12 +8,12 @@ use firmware::panel::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
 
 use crate::client::{Client, Event};
-use crate::devices::StageParameters;
+use crate::devices::{FINE_PWM, StageParameters};
 use crate::host::Host;
 use crate::observer::{Observer, TickRecord};
-use crate::plant::PlantParameters;
+use crate::plant::{Imperfections, PlantParameters};
 use crate::report::{Progress, Run};
-use crate::script::{Line, Script, ScriptError};
+use crate::script::{Line, Script};
 
 /// What a run is to do besides the script.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct RunOptions {
     pub seed: u64,
     /// By how much the plant departs from the controller's model of it, in percent.
     pub mismatch_percent: f64,
+    /// Imperfections of the simulated stage.
+    pub imperfections: Imperfections,
     /// No progress bar.
     pub quiet: bool,
 }
@@ -51,12 +53,12 @@ pub const IDENTITY: Identity = Identity {
     version: env!("CARGO_PKG_VERSION"),
 };
 
-/// The reference stage, off from the controller's model by `mismatch_percent`: heavier, with more friction, and with
-/// weaker motors, the combination that costs the servo most.
+/// The reference stage as the options have it: off from the controller's model by their mismatch, heavier, with more
+/// friction, and with weaker motors, the combination that costs the servo most.
 #[must_use]
-pub fn stage_parameters(mismatch_percent: f64, seed: u64) -> StageParameters {
-    let more = 1.0 + mismatch_percent / 100.0;
-    let less = 1.0 - mismatch_percent / 100.0;
+pub fn stage_parameters(options: &RunOptions) -> StageParameters {
+    let more = 1.0 + options.mismatch_percent / 100.0;
+    let less = 1.0 - options.mismatch_percent / 100.0;
     let reference = PlantParameters::REFERENCE;
     StageParameters {
         plant: PlantParameters {
@@ -67,34 +69,26 @@ pub fn stage_parameters(mismatch_percent: f64, seed: u64) -> StageParameters {
             coulomb_n_m: reference.coulomb_n_m * more,
             viscous_n_m_s_rad: reference.viscous_n_m_s_rad * more,
             torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
+            imperfections: options.imperfections,
             ..reference
         },
-        seed,
+        seed: options.seed,
         ..StageParameters::REFERENCE
     }
-}
-
-/// Runs the built-in demonstration.
-///
-/// # Errors
-/// None in practice: a test parses its script.
-pub fn demonstration(options: &RunOptions) -> Result<RunOutcome, ScriptError> {
-    Ok(run(&Script::demonstration()?, options))
-}
-
-/// Runs a script file.
-///
-/// # Errors
-/// The script can not be read or has a bad line; nothing has moved.
-pub fn script(path: &Path, options: &RunOptions) -> Result<RunOutcome, ScriptError> {
-    Ok(run(&Script::read(path)?, options))
 }
 
 /// Runs a script on the simulated stage.
 #[must_use]
 pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
-    let parameters = Parameters::REFERENCE;
-    let stage = stage_parameters(options.mismatch_percent, options.seed);
+    let stage = stage_parameters(options);
+    let mut parameters = Parameters::REFERENCE;
+    if !options.imperfections.pwm_quantisation {
+        parameters.drive.pwm_counts = FINE_PWM;
+    }
+    if !options.imperfections.dead_time {
+        // What is not there must not be made up for: that would be positive feedback around rest.
+        parameters.drive.dead_time_s = 0.0;
+    }
     simulate(script, &parameters, &stage, options)
 }
 
@@ -130,7 +124,9 @@ fn simulate(
         let pose = host.stage.latched_pose();
         host.tick(&mut tick_link, &mut record);
         ticks += 1;
+        let mut moving = false;
         if let Some(sample) = &record.sample {
+            moving = sample.mode == Mode::Moving;
             observer.look(sample, pose);
             if sample.mode == Mode::Fault {
                 break Some(fault_text(script, &client, host.fault()));
@@ -140,7 +136,7 @@ fn simulate(
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
-        let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client));
+        let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
         wire.to_stage.extend(bytes);
         match event {
             Some(Event::Done(line, Some(answer))) => answers.push((line.text, answer)),
@@ -148,6 +144,7 @@ fn simulate(
                 let at = place(script, &line);
                 break Some(format!("{at}: refused with GCS error {error}"));
             }
+            Some(Event::Stuck(line)) => break Some(stuck_text(script, &line)),
             Some(Event::Finished) => break None,
             _ => {}
         }
@@ -168,6 +165,12 @@ fn simulate(
         hash: record.hash.0,
         ticks,
     }
+}
+
+/// What is said of a line that waits for ever.
+pub(crate) fn stuck_text(script: &Script, line: &Line) -> String {
+    let at = place(script, line);
+    format!("{at}: still waiting, and the stage has been at rest for a simulated minute")
 }
 
 fn place(script: &Script, line: &Line) -> String {

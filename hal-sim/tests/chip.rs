@@ -31,7 +31,8 @@ where
 
 /// Whether no bridge is driven: asleep, or without a pulse.
 fn quiet(pins: &[BridgeState; 3]) -> bool {
-    pins.iter().all(|bridge| !bridge.awake || bridge.pulse == 0.0)
+    pins.iter()
+        .all(|bridge| !bridge.awake || bridge.pulse == 0.0)
 }
 
 #[test]
@@ -53,13 +54,17 @@ fn chip_and_host_agree_to_the_bit_through_a_move() {
         if period.tick < 20_000 {
             return Continue(());
         }
-        send.send((mode, period.trace(), period.stage.plant.pose())).expect("the test waits");
+        send.send((mode, period.trace(), period.stage.plant.pose()))
+            .expect("the test waits");
         Break(())
     });
     let (mode, trace, pose) = receive.recv().expect("the last period");
     assert_eq!(mode, Some(Mode::Holding));
     assert_eq!((trace.commands, trace.reset_cause), (2, POWER_ON));
-    assert!((pose[0] - 0.02).abs() < 1e-6 && (pose[1] + 0.03).abs() < 1e-6, "{pose:?}");
+    assert!(
+        (pose[0] - 0.02).abs() < 1e-6 && (pose[1] + 0.03).abs() < 1e-6,
+        "{pose:?}"
+    );
     assert!(outcome.cost.latest_end_ns < 25_000, "{:?}", outcome.cost);
     println!("{:?}, mean {:.1}", outcome.cost, outcome.cost.mean());
 }
@@ -84,7 +89,8 @@ fn the_emergency_stop_cuts_the_pwm_in_the_same_period_and_its_twin_drives_on() {
                 1_100 => period.send(b"ERR?\n"),
                 1_200 => {
                     let answer = String::from_utf8_lossy(&period.received()).into_owned();
-                    send.send((period.probes.to_vec(), answer, period.pins)).expect("the test waits");
+                    send.send((period.probes.to_vec(), answer, period.pins))
+                        .expect("the test waits");
                     return Break(());
                 }
                 _ => {}
@@ -112,7 +118,8 @@ fn silent_encoders_leave_the_bridges_asleep_and_the_reference_refused() {
         match period.tick {
             100 => period.send(b"FRF X\nERR?\nSVO X 1\nERR?\n"),
             2_000 => {
-                send.send((period.received(), period.pins)).expect("the test waits");
+                send.send((period.received(), period.pins))
+                    .expect("the test waits");
                 return Break(());
             }
             _ => {}
@@ -136,7 +143,8 @@ fn a_halted_loop_is_reset_by_the_watchdog_which_the_image_tells() {
                 period.at(at, Action::HaltLoop);
             }
             (1, 100) => {
-                send.send((period.trace(), period.pins)).expect("the test waits");
+                send.send((period.trace(), period.pins))
+                    .expect("the test waits");
                 return Break(());
             }
             _ => {}

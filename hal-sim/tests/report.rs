@@ -104,6 +104,8 @@ fn the_tables_hold_what_was_recorded() {
     assert_eq!(cell(7, "theta_error_urad"), "2.000000");
     assert_eq!(cell(7, "duty_2"), "-0.5000000");
     assert_eq!(cell(7, "error_xy_um"), "0.500000");
+    let separation_deg = sample(120, 1_001).separation_deg;
+    assert_eq!(cell(7, "separation_deg"), format!("{separation_deg:.6}"));
     let last_deg: f64 = cell(51, "pivot_2_setpoint_deg").parse().expect("a number");
     assert!((last_deg - sample(1_000, 1_001).pivot_setpoint_deg[1]).abs() < 1e-9);
 
@@ -153,6 +155,15 @@ fn a_long_run_lists_the_moves_slowest_to_settle() {
         .collect();
     let summary = run.summary().to_string();
     assert!(summary.contains("moves (20 of 100, slowest to settle)"));
+    let numbers: Vec<u32> = (summary.lines())
+        .filter(|line| line.len() == 72)
+        .filter_map(|line| line.split_whitespace().next()?.parse().ok())
+        .collect();
+    // In the order of time: numbers 41 to 50, then 91 to 100.
+    assert!(
+        numbers.is_sorted() && numbers.len() == 20,
+        "{numbers:?}\n{summary}"
+    );
     assert!(summary.contains("       49.00\n") && !summary.contains("       39.00\n"));
 }
 

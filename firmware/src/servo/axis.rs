@@ -2,7 +2,7 @@
 
 use super::friction::Presliding;
 use super::torque::Body;
-use crate::config::{PWM_COUNTS, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::config::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::drivers::bridge::Duty;
 use crate::parameters::Parameters;
 
@@ -31,6 +31,8 @@ pub struct ServoConfig {
     ampere_per_volt: f32,
     per_knee: f32,
     lost_counts: f32,
+    full: f32,
+    full_per_supply_count: f32,
     integral_limit: f32,
     learnt_limit: f32,
 }
@@ -39,7 +41,7 @@ pub struct ServoConfig {
 const FEATURES: usize = 3;
 
 /// Duty kept back from full: the bridge needs its charge pump refreshed and the current sense its window.
-const FULL: f32 = 0.98 * PWM_COUNTS as f32;
+const FULL: f64 = 0.98;
 
 impl ServoConfig {
     /// Derives the constants.
@@ -93,9 +95,23 @@ impl ServoConfig {
                 as f32,
             ampere_per_volt: (1.0 / drive.resistance_ohm) as f32,
             per_knee: (1.0 / drive.dead_time_knee_a) as f32,
-            lost_counts: (drive.dead_time_s * drive.pwm_hz) as f32 * f32::from(PWM_COUNTS),
+            lost_counts: (drive.dead_time_s * drive.pwm_hz) as f32 * f32::from(drive.pwm_counts),
+            full: (FULL * f64::from(drive.pwm_counts)) as f32,
+            full_per_supply_count: (f64::from(drive.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
             integral_limit: (drive.supply_v * 0.5) as f32,
             learnt_limit: (drive.supply_v * 0.25) as f32,
+        }
+    }
+}
+
+impl ServoConfig {
+    /// PWM counts per volt at a measured supply (ADC counts). A supply that reads as nothing gives no drive.
+    #[inline]
+    pub fn counts_per_volt(&self, supply_counts: f32) -> f32 {
+        if supply_counts < 1.0 {
+            0.0
+        } else {
+            self.full_per_supply_count / supply_counts
         }
     }
 }
@@ -134,7 +150,7 @@ impl AxisServo {
         };
     }
 
-    /// Duty for this tick; see [`counts_per_volt`].
+    /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
     #[inline]
     pub fn step(
         &mut self,
@@ -172,7 +188,7 @@ impl AxisServo {
         self.current += (steady - self.current) * config.current_step;
         let share = (self.current * config.per_knee).clamp(-1.0, 1.0);
         let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
-        let limited = counts.clamp(-FULL, FULL);
+        let limited = counts.clamp(-config.full, config.full);
 
         // Collecting stops while the bridge is at its end and the error asks for more.
         if counts == limited || counts * r < 0.0 {
@@ -214,15 +230,4 @@ fn make_up(wanted: f32, share: f32, lost: f32) -> f32 {
         size + lost * share
     };
     if wanted < 0.0 { -pulse } else { pulse }
-}
-
-/// PWM counts per volt at a measured supply. A supply that reads as nothing (no ADC yet) gives no drive.
-#[inline]
-pub fn counts_per_volt(supply_counts: f32) -> f32 {
-    const FULL_PER_COUNT: f32 = (PWM_COUNTS as f64 / SUPPLY_V_PER_COUNT) as f32;
-    if supply_counts < 1.0 {
-        0.0
-    } else {
-        FULL_PER_COUNT / supply_counts
-    }
 }

@@ -18,6 +18,6 @@ mod axis;
 mod friction;
 mod torque;
 
-pub use axis::{AxisServo, PivotSetpoint, ServoConfig, counts_per_volt};
+pub use axis::{AxisServo, PivotSetpoint, ServoConfig};
 pub use friction::Presliding;
 pub use torque::{Body, platform_torques};

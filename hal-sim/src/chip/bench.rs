@@ -71,12 +71,19 @@ impl Bench {
     /// Takes the image from memory.
     pub fn from_elf(elf: Vec<u8>, stage: Stage) -> Result<Self, BenchError> {
         let name = PathBuf::from("stage");
-        Self::new(Image::new(&name, elf, None).map_err(BenchError::Image)?, stage)
+        Self::new(
+            Image::new(&name, elf, None).map_err(BenchError::Image)?,
+            stage,
+        )
     }
 
     fn new(image: Image, stage: Stage) -> Result<Self, BenchError> {
         let symbols = Symbols::read(image.bytes(), even).map_err(BenchError::Symbols)?;
-        Ok(Self { image, symbols, stage })
+        Ok(Self {
+            image,
+            symbols,
+            stage,
+        })
     }
 
     /// Address of a symbol of the image, for [`Period::word`].
@@ -95,12 +102,14 @@ impl Bench {
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
-        let mut session = Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
+        let mut session =
+            Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));
         session.watch(Watch::Instruction(landmarks.tick_end));
         let driver = StageDriver::new(on_period, self.stage, landmarks);
         let images = [self.image];
-        let finished = emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
+        let finished =
+            emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
         let gaps = gaps::unexpected(&finished.session);
         let driver = finished.driver;
         if driver.never_started {

@@ -9,11 +9,11 @@ use rigless::machine::armv7m::{Core, Fpu, MpuRegions, Variant};
 use rigless::machine::{Board, Target};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
-use rigless::soc::{Error, Fault, Width};
 use rigless::soc::stm32f427::Stm32f427;
 use rigless::soc::stm32f427::peripherals::adc::Channel as AdcChannel;
 use rigless::soc::stm32f427::peripherals::gpio::Pin;
 use rigless::soc::stm32f427::peripherals::tim::Channel as TimerChannel;
+use rigless::soc::{Error, Fault, Width};
 use rigless::time::VirtualNanos;
 use std::num::{NonZeroU32, NonZeroU64};
 
@@ -108,7 +108,8 @@ impl ChipBoard {
     pub fn bridges(&mut self, now: VirtualNanos, faults: [bool; 3]) -> [BridgeState; 3] {
         let duty = self.duty(now).unwrap_or([0; 3]);
         let (port, registers) = self.mcu.port(PORT_D);
-        let level = |pin: u8| Pin::new(pin).is_some_and(|pin| port.level(pin, registers) == Level::High);
+        let level =
+            |pin: u8| Pin::new(pin).is_some_and(|pin| port.level(pin, registers) == Level::High);
         [0, 1, 2].map(|axis| BridgeState {
             pulse: f64::from(duty[axis]) / f64::from(MAX_DUTY),
             forward: level(DIRECTION[axis]),
@@ -154,9 +155,10 @@ impl ChipBoard {
     /// Drives the break input, which also brings the timer's model up to now.
     fn settle_pwm(&mut self, now: VirtualNanos) {
         let level = self.emergency_stop;
-        self.mcu.drive_advanced_timer(now, TIM1, |timer, registers, context| {
-            timer.drive_break(level, registers, context);
-        });
+        self.mcu
+            .drive_advanced_timer(now, TIM1, |timer, registers, context| {
+                timer.drive_break(level, registers, context);
+            });
     }
 }
 

@@ -4,7 +4,7 @@ use super::board::ChipBoard;
 use super::cost::TickCost;
 use super::period::{Action, Period, Reset};
 use crate::devices::{BridgeState, Stage};
-use rigless::emulator::{AccessKind, Driver, Host, HitKind, Settled, Stop};
+use rigless::emulator::{AccessKind, Driver, HitKind, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use std::ops::ControlFlow;
@@ -90,7 +90,10 @@ impl<F> StageDriver<F> {
         }
         self.resets = resets
             .iter()
-            .map(|reset| Reset { at_ns: reset.at.0, cause: reset.cause })
+            .map(|reset| Reset {
+                at_ns: reset.at.0,
+                cause: reset.cause,
+            })
             .collect();
         self.started_at = None;
         self.tick = 0;
@@ -118,19 +121,26 @@ impl<F> StageDriver<F> {
         } else if let (Some(began), Some(started_at)) = (self.tick_began.take(), self.started_at) {
             // The tick under way is the one before the one to come.
             let due = started_at + FIRST_TICK_NS + self.tick.saturating_sub(1) * PERIOD_NS;
-            self.cost.add(instructions - began, at.0.saturating_sub(due));
+            self.cost
+                .add(instructions - began, at.0.saturating_sub(due));
         }
     }
 
     fn run_actions(&mut self, session: &mut Session<ChipBoard>, now: VirtualNanos) {
-        while self.actions.first().is_some_and(|(at_ns, _)| *at_ns <= now.0) {
+        while self
+            .actions
+            .first()
+            .is_some_and(|(at_ns, _)| *at_ns <= now.0)
+        {
             let (_, action) = self.actions.remove(0);
             let board = session.board_mut();
             match action {
                 Action::EmergencyStop(pressed) => board.set_emergency_stop(now, pressed),
                 // The register exists: the image wrote to it before.
                 Action::HaltLoop => drop(board.stop_latch_timer(now)),
-                Action::Probe => self.probes.push((now.0, board.bridges(now, self.bridge_faults))),
+                Action::Probe => self
+                    .probes
+                    .push((now.0, board.bridges(now, self.bridge_faults))),
             }
         }
     }
@@ -141,7 +151,12 @@ where
     F: FnMut(&mut Period<'_>) -> ControlFlow<()>,
 {
     /// Moves the stage to the tick to come, hands its signals over, and lets the caller look.
-    fn period(&mut self, session: &mut Session<ChipBoard>, now: VirtualNanos, host: &mut dyn Host) -> ControlFlow<()> {
+    fn period(
+        &mut self,
+        session: &mut Session<ChipBoard>,
+        now: VirtualNanos,
+        host: &mut dyn Host,
+    ) -> ControlFlow<()> {
         let board = session.board_mut();
         let pins = board.bridges(now, self.bridge_faults);
         if self.tick > 0 {
@@ -163,7 +178,9 @@ where
             resets: &self.resets,
             probes: &self.probes,
         });
-        session.board_mut().set_bridge_faults(now, self.bridge_faults);
+        session
+            .board_mut()
+            .set_bridge_faults(now, self.bridge_faults);
         self.tick += 1;
         flow
     }
@@ -182,7 +199,12 @@ impl<F> Driver<ChipBoard> for StageDriver<F>
 where
     F: FnMut(&mut Period<'_>) -> ControlFlow<()> + Send,
 {
-    fn on_settled(&mut self, session: &mut Session<ChipBoard>, _host: &mut dyn Host, settled: Settled) {
+    fn on_settled(
+        &mut self,
+        session: &mut Session<ChipBoard>,
+        _host: &mut dyn Host,
+        settled: Settled,
+    ) {
         let now = match settled {
             Settled::Access { access, .. } => access.virtual_time,
             Settled::Stop(stop) => stop.at,
@@ -205,14 +227,21 @@ where
         }
     }
 
-    fn on_stop(&mut self, session: &mut Session<ChipBoard>, stop: Stop, host: &mut dyn Host) -> Option<VirtualNanos> {
+    fn on_stop(
+        &mut self,
+        session: &mut Session<ChipBoard>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
         let now = stop.at;
         self.notice_resets(session, now);
         self.run_actions(session, now);
         let Some(started_at) = self.started_at else {
             return self.search(now);
         };
-        if now.0 >= Self::stop_ns(started_at, self.tick) && self.period(session, now, host).is_break() {
+        if now.0 >= Self::stop_ns(started_at, self.tick)
+            && self.period(session, now, host).is_break()
+        {
             return None;
         }
         let next = Self::stop_ns(started_at, self.tick);

@@ -30,7 +30,10 @@ impl Peer for EncoderLine {
         if bits != 8 {
             return 0;
         }
-        let byte = self.frame.get(self.next).map_or(IDLE, |byte| u32::from(*byte));
+        let byte = self
+            .frame
+            .get(self.next)
+            .map_or(IDLE, |byte| u32::from(*byte));
         self.next += 1;
         byte
     }

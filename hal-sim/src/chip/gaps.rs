@@ -18,10 +18,12 @@ pub const GAPS: &[Allowed] = &[];
 
 /// Every gap of the run that is not allowed, in words.
 pub fn unexpected(session: &Session<ChipBoard>) -> Vec<String> {
-    let unmapped = session
-        .unmapped()
-        .into_iter()
-        .map(|gap| (format!("{:#010x}", gap.address), format!("{gap}: no register there")));
+    let unmapped = session.unmapped().into_iter().map(|gap| {
+        (
+            format!("{:#010x}", gap.address),
+            format!("{gap}: no register there"),
+        )
+    });
     let refused = session
         .refused()
         .iter()
@@ -38,10 +40,12 @@ pub fn unexpected(session: &Session<ChipBoard>) -> Vec<String> {
         let said = format!("{address:#010x}, in {}, is no register", gap.instance);
         (format!("{address:#010x}"), said)
     });
-    let unrouted = session
-        .unrouted()
-        .iter()
-        .map(|(instance, number)| (format!("{instance}.{number}"), format!("interrupt {number} of {instance} goes nowhere")));
+    let unrouted = session.unrouted().iter().map(|(instance, number)| {
+        (
+            format!("{instance}.{number}"),
+            format!("interrupt {number} of {instance} goes nowhere"),
+        )
+    });
     let told = session.told().map(|told| {
         let what = format!("{}.{}", told.instance, told.register);
         (what.clone(), format!("{what}: {}", told.reason))

@@ -26,11 +26,13 @@ mod gaps;
 pub mod image;
 mod line;
 mod period;
+mod run;
 mod twin;
 
 pub use bench::{Bench, BenchError, Outcome};
 pub use cost::TickCost;
 pub use gaps::{Allowed, GAPS};
+pub use run::{ChipError, ChipOutcome, run};
 pub use period::{Action, Period, Reset, Trace};
 pub use rigless::device::ResetCause;
 pub use twin::{Divergence, Twin};

@@ -86,7 +86,10 @@ impl Period<'_> {
 
     /// What the command interface has answered since the last call.
     pub fn received(&mut self) -> Vec<u8> {
-        self.board.line().map(|line| line.take_received()).unwrap_or_default()
+        self.board
+            .line()
+            .map(|line| line.take_received())
+            .unwrap_or_default()
     }
 
     /// Does something to the board at an instant to come, ns since power on.
@@ -97,7 +100,10 @@ impl Period<'_> {
 
     /// The word at an address of the chip's memory, or `None` where there is none.
     pub fn word(&mut self, address: u64) -> Option<u32> {
-        self.host.read(address, Width::W32).ok().map(|word| word as u32)
+        self.host
+            .read(address, Width::W32)
+            .ok()
+            .map(|word| word as u32)
     }
 
     /// The image's record.

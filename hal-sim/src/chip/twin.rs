@@ -71,7 +71,10 @@ impl Twin {
     pub fn new(parameters: &Parameters) -> Self {
         let (panel_side, panel_link) = endless_link();
         let (tick_link, tick_side) = endless_link();
-        let identity = Identity { serial: "", version: "" };
+        let identity = Identity {
+            serial: "",
+            version: "",
+        };
         Self {
             config: Config::new(parameters),
             state: State::new(),
@@ -99,7 +102,10 @@ impl Twin {
     ///
     /// # Errors
     /// Where the two went apart.
-    pub fn follow(&mut self, period: &mut Period<'_>) -> Result<Option<(&TickRecord, [f64; 3])>, Divergence> {
+    pub fn follow(
+        &mut self,
+        period: &mut Period<'_>,
+    ) -> Result<Option<(&TickRecord, [f64; 3])>, Divergence> {
         let trace = period.trace();
         if u64::from(trace.ticks) != period.tick {
             return Err(Divergence::Ticks {
@@ -123,7 +129,13 @@ impl Twin {
             return Ok(None);
         };
         self.relay(&trace)?;
-        tick(&self.config, &mut self.state, &inputs, &mut self.tick_link, &mut self.record);
+        tick(
+            &self.config,
+            &mut self.state,
+            &inputs,
+            &mut self.tick_link,
+            &mut self.record,
+        );
         if self.record.hash.0 != trace.hash {
             return Err(Divergence::Hash {
                 ticks: trace.ticks,
@@ -144,7 +156,9 @@ impl Twin {
         }
         // As often as the chip's idle task does in a period, and once more.
         for _ in 0..SERVICES {
-            let Ok(()) = self.panel.service(&mut self.session, &mut self.panel_link, &mut Nowhere);
+            let Ok(()) = self
+                .panel
+                .service(&mut self.session, &mut self.panel_link, &mut Nowhere);
         }
     }
 
@@ -191,11 +205,19 @@ impl fmt::Display for Divergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Hash { ticks, chip, host } => {
-                write!(f, "after {ticks} ticks the hash is {chip:08x} on the chip and {host:08x} on the host")
+                write!(
+                    f,
+                    "after {ticks} ticks the hash is {chip:08x} on the chip and {host:08x} on the host"
+                )
             }
-            Self::Ticks { chip, host } => write!(f, "the chip has done {chip} ticks in {host} periods"),
+            Self::Ticks { chip, host } => {
+                write!(f, "the chip has done {chip} ticks in {host} periods")
+            }
             Self::Command { ticks } => {
-                write!(f, "after {ticks} ticks the chip has taken a command that the host's panel did not give")
+                write!(
+                    f,
+                    "after {ticks} ticks the chip has taken a command that the host's panel did not give"
+                )
             }
         }
     }

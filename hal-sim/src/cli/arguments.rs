@@ -27,6 +27,9 @@ pub(super) enum Command {
         #[command(flatten)]
         simulation: Simulation,
     },
+    /// Run a script on the image for the controller's chip, emulated, and compare it with the host to the bit.
+    #[cfg(feature = "chip")]
+    Chip(ChipRun),
     /// Pivot angles (deg) of a pose (mm, mm, deg).
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
@@ -52,9 +55,48 @@ pub(super) struct Simulation {
     /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
     #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = mismatch_percent)]
     pub(super) mismatch: f64,
+    /// Imperfections of the simulated stage to switch off.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(super) without: Vec<Imperfection>,
+    /// Switch on the eccentricity of the encoders: a stage that has not been calibrated.
+    #[arg(long)]
+    pub(super) eccentricity: bool,
     /// No progress bar.
     #[arg(long, short)]
     pub(super) quiet: bool,
+}
+
+/// A run on the emulated chip.
+#[cfg(feature = "chip")]
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipRun {
+    /// The script [default: the demonstration].
+    pub(super) file: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) simulation: Simulation,
+}
+
+/// What a simulated stage can do without.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(super) enum Imperfection {
+    /// All of them.
+    All,
+    /// Coulomb, static and presliding friction.
+    DryFriction,
+    /// Viscous friction.
+    ViscousFriction,
+    /// Elastic transmission.
+    Compliance,
+    /// Dead zone in the transmission.
+    Backlash,
+    /// Torque ripple of the motors.
+    TorqueRipple,
+    /// Encoder noise.
+    EncoderNoise,
+    /// Dead time of the bridges.
+    DeadTime,
+    /// Counts of the PWM.
+    PwmQuantisation,
 }
 
 /// One pose on the command line.

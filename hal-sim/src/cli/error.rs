@@ -35,6 +35,9 @@ pub(super) enum CliError {
     Report(#[from] ReportError),
     #[error(transparent)]
     Script(#[from] ScriptError),
+    #[cfg(feature = "chip")]
+    #[error(transparent)]
+    Chip(#[from] crate::chip::ChipError),
     /// The stage faulted in a run, or refused a line.
     #[error("{0}")]
     Fault(String),

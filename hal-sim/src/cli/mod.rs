@@ -4,6 +4,8 @@
 
 mod arguments;
 mod check;
+#[cfg(feature = "chip")]
+mod chip;
 mod direct;
 mod error;
 mod inverse;
@@ -61,6 +63,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         None => simulate::demonstration(&arguments.simulation),
         Some(Command::Run { file, simulation }) => simulate::script(&file, &simulation),
+        #[cfg(feature = "chip")]
+        Some(Command::Chip(chip)) => chip::run(&chip),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

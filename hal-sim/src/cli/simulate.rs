@@ -4,17 +4,18 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::arguments::Simulation;
+use super::arguments::{Imperfection, Simulation};
 use super::error::CliError;
+use crate::plant::Imperfections;
 use crate::report::make_folder;
-use crate::run::{self, RunOptions, RunOutcome};
-use crate::script::ScriptError;
+use crate::run::{self, RunOptions};
+use crate::script::Script;
 
 /// Where runs go unless `--out` says otherwise, from the current folder.
 const FOLDER: &str = "target/tripivot";
 
 pub(super) fn demonstration(arguments: &Simulation) -> Result<ExitCode, CliError> {
-    simulate("demonstration", arguments, run::demonstration)
+    simulate("demonstration", arguments, &Script::demonstration()?)
 }
 
 pub(super) fn script(file: &Path, arguments: &Simulation) -> Result<ExitCode, CliError> {
@@ -22,18 +23,14 @@ pub(super) fn script(file: &Path, arguments: &Simulation) -> Result<ExitCode, Cl
         .file_stem()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
-    simulate(&name, arguments, |options| run::script(file, options))
+    simulate(&name, arguments, &Script::read(file)?)
 }
 
 /// Runs, and prints what came of it. A fault is reported after the summary, which shows how it came to it.
-fn simulate(
-    name: &str,
-    arguments: &Simulation,
-    run: impl FnOnce(&RunOptions) -> Result<RunOutcome, ScriptError>,
-) -> Result<ExitCode, CliError> {
+fn simulate(name: &str, arguments: &Simulation, script: &Script) -> Result<ExitCode, CliError> {
     let options = options(name, arguments);
     make_folder(&options.out)?;
-    let outcome = run(&options)?;
+    let outcome = run::run(script, &options);
     outcome.run.write(&options.out)?;
     let mut text = String::new();
     for (query, answer) in &outcome.answers {
@@ -55,13 +52,40 @@ fn simulate(
     }
 }
 
-fn options(name: &str, arguments: &Simulation) -> RunOptions {
+pub(super) fn options(name: &str, arguments: &Simulation) -> RunOptions {
     let default = || PathBuf::from(FOLDER).join(name);
     RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,
         seed: arguments.seed,
         mismatch_percent: arguments.mismatch,
+        imperfections: imperfections(arguments),
         quiet: arguments.quiet,
     }
+}
+
+fn imperfections(arguments: &Simulation) -> Imperfections {
+    let mut on = Imperfections {
+        encoder_eccentricity: arguments.eccentricity,
+        ..Imperfections::CALIBRATED
+    };
+    for without in &arguments.without {
+        match without {
+            Imperfection::All => {
+                on = Imperfections {
+                    compliance: false,
+                    ..Imperfections::NONE
+                }
+            }
+            Imperfection::DryFriction => on.dry_friction = false,
+            Imperfection::ViscousFriction => on.viscous_friction = false,
+            Imperfection::Compliance => on.compliance = false,
+            Imperfection::Backlash => on.backlash = false,
+            Imperfection::TorqueRipple => on.torque_ripple = false,
+            Imperfection::EncoderNoise => on.encoder_noise = false,
+            Imperfection::DeadTime => on.dead_time = false,
+            Imperfection::PwmQuantisation => on.pwm_quantisation = false,
+        }
+    }
+    on
 }

@@ -15,6 +15,8 @@ use crate::plant::Drive;
 
 /// Counts of the reference stage's PWM: 168 MHz over 40 kHz.
 pub const MAX_DUTY: u16 = 4200;
+/// Counts of a PWM whose quantisation is switched off: as fine as a signed 16-bit duty can be.
+pub const FINE_PWM: u16 = 32_000;
 
 /// What a bridge is made like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,9 +108,12 @@ pub struct BridgePins {
     pub fault: FaultPin,
 }
 
-/// A PWM channel of [`MAX_DUTY`] counts.
+/// A PWM channel.
 #[derive(Debug)]
-pub struct PwmPin(Rc<Cell<BridgeState>>);
+pub struct PwmPin {
+    shared: Rc<Cell<BridgeState>>,
+    counts: u16,
+}
 
 /// The phase pin.
 #[derive(Debug)]
@@ -123,12 +128,21 @@ pub struct SleepPin(Rc<Cell<BridgeState>>);
 pub struct FaultPin(Rc<Cell<BridgeState>>);
 
 impl Bridge {
-    /// A bridge in reset, and its pins.
+    /// A bridge in reset, and its pins; the PWM has [`MAX_DUTY`] counts.
     #[must_use]
     pub fn new() -> (Self, BridgePins) {
+        Self::with_pwm_counts(MAX_DUTY)
+    }
+
+    /// A bridge in reset, and its pins, with so many counts in a period of the PWM.
+    #[must_use]
+    pub fn with_pwm_counts(counts: u16) -> (Self, BridgePins) {
         let shared = Rc::new(Cell::new(BridgeState::RESET));
         let pins = BridgePins {
-            pwm: PwmPin(Rc::clone(&shared)),
+            pwm: PwmPin {
+                shared: Rc::clone(&shared),
+                counts,
+            },
             direction: DirectionPin(Rc::clone(&shared)),
             sleep: SleepPin(Rc::clone(&shared)),
             fault: FaultPin(Rc::clone(&shared)),
@@ -160,12 +174,12 @@ impl pwm::ErrorType for PwmPin {
 
 impl SetDutyCycle for PwmPin {
     fn max_duty_cycle(&self) -> u16 {
-        MAX_DUTY
+        self.counts
     }
 
     fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-        let pulse = f64::from(duty.min(MAX_DUTY)) / f64::from(MAX_DUTY);
-        change(&self.0, |state| state.pulse = pulse);
+        let pulse = f64::from(duty.min(self.counts)) / f64::from(self.counts);
+        change(&self.shared, |state| state.pulse = pulse);
         Ok(())
     }
 }

@@ -8,8 +8,8 @@ mod noise;
 mod stage;
 
 pub use bridge::{
-    Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FaultPin, MAX_DUTY, PwmPin,
-    SleepPin,
+    Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
+    PwmPin, SleepPin,
 };
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use noise::Noise;

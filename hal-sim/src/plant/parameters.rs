@@ -55,6 +55,8 @@ pub struct Imperfections {
     pub encoder_eccentricity: bool,
     /// Voltage lost in the bridges' dead time.
     pub dead_time: bool,
+    /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::devices::FINE_PWM) counts, as many as a duty can name.
+    pub pwm_quantisation: bool,
 }
 
 impl Imperfections {
@@ -68,6 +70,7 @@ impl Imperfections {
         encoder_noise: false,
         encoder_eccentricity: false,
         dead_time: false,
+        pwm_quantisation: false,
     };
 
     /// A real machine whose encoders have been calibrated: everything but their eccentricity.
@@ -80,6 +83,7 @@ impl Imperfections {
         encoder_noise: true,
         encoder_eccentricity: false,
         dead_time: true,
+        pwm_quantisation: true,
     };
 
     /// Everything.

@@ -115,7 +115,7 @@ fn move_row(one: &Move) -> [String; MOVE_COLUMNS.len()] {
 }
 
 /// Fixed decimals without the sign of a zero.
-fn fixed(value: f64, decimals: usize) -> String {
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),

@@ -47,6 +47,9 @@ fn draw_heading(svg: &mut Svg, run: &Run) {
 fn facts_line(run: &Run) -> String {
     let statistics = run.trace.statistics();
     let moves = run.moves.len();
+    if statistics.error_xy_um.count() == 0 {
+        return format!("{moves} moves in {:.1} s", statistics.end_s);
+    }
     let mut line = format!(
         "{moves} moves in {:.1} s  \u{b7}  rms following error {} \u{b5}m, {} \u{b5}rad",
         statistics.end_s,
@@ -152,7 +155,9 @@ fn time_axis(run: &Run) -> TimeAxis {
     } else {
         start_s + 1.0
     };
-    ticks.values.retain(|tick| (start_s..=end_s).contains(tick));
+    // The first sample lies one period after zero, and zero is still to be named.
+    let slack_s = 1e-3 * (end_s - start_s);
+    (ticks.values).retain(|tick| (start_s - slack_s..=end_s + slack_s).contains(tick));
     let pixels = (CHART_LEFT, CHART_LEFT + CHART_WIDTH);
     TimeAxis {
         scale: Scale::new((start_s, end_s), pixels),

@@ -36,6 +36,9 @@ const DEGREE_STEPS: [f64; 10] = [
     15.0, 30.0, 45.0, 90.0, 180.0, 360.0, 720.0, 1_080.0, 1_800.0, 3_600.0,
 ];
 
+/// Share of a step, less than a tenth of a pixel, that asks for no further step: a stage rests nanometres below zero.
+const UNSEEN: f64 = 1e-3;
+
 /// A range widened to whole steps, and those steps.
 #[derive(Clone, Debug)]
 pub(super) struct Ticks {
@@ -49,7 +52,7 @@ impl Ticks {
     pub(super) fn covering((low, high): (f64, f64), count: f64, steps: Steps) -> Self {
         let (low, high) = widened(low, high);
         let step = round_step((high - low) / count, steps);
-        let (first, last) = ((low / step).floor(), (high / step).ceil());
+        let (first, last) = ((low / step + UNSEEN).floor(), (high / step - UNSEEN).ceil());
         let values = (0..=(last - first) as u32)
             .map(|index| (first + f64::from(index)) * step)
             .collect();
@@ -102,6 +105,8 @@ mod tests {
         assert_eq!(ticks.range, (-1.0, 2.0));
         let turns = Ticks::covering((0.0, 1080.0), 4.0, Steps::Degrees);
         assert_eq!(turns.values, [0.0, 360.0, 720.0, 1080.0]);
+        let at_rest = Ticks::covering((-1e-6, 1080.000_001), 4.0, Steps::Degrees);
+        assert_eq!(at_rest.range, (0.0, 1080.0));
         let small = Ticks::covering((0.0, 0.034), 4.0, Steps::Decimal);
         assert_eq!(small.label(small.values[1]), "0.01");
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Run;
+use super::csv::fixed;
 use super::sample::Move;
 use super::statistics::Spread;
 
@@ -32,6 +33,9 @@ impl fmt::Display for Summary<'_> {
 fn errors(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     let statistics = run.trace.statistics();
     let ticks = statistics.error_theta_urad.count();
+    if ticks == 0 {
+        return writeln!(f, "following error: the setpoint never moved\n");
+    }
     writeln!(f, "following error while moving ({ticks} ticks)")?;
     writeln!(f, "                      {:>10}  {:>10}", "peak", "rms")?;
     let mut line = |what: &str, spread: &Spread, unit: &str| {
@@ -70,11 +74,11 @@ fn moves(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
 }
 
 fn one_move(f: &mut fmt::Formatter<'_>, number: usize, one: &Move) -> fmt::Result {
-    let [x_mm, y_mm, theta_deg] = one.target;
+    let [x_mm, y_mm, theta_deg] = one.target.map(|value| fixed(value, 3));
     let (start_s, profile_s) = (one.start_s, one.profile_s());
     write!(
         f,
-        "  {number:>3}  {start_s:>9.3}  {x_mm:>9.3}  {y_mm:>7.3}  {theta_deg:>10.3}  {profile_s:>10.4}  "
+        "  {number:>3}  {start_s:>9.3}  {x_mm:>9}  {y_mm:>7}  {theta_deg:>10}  {profile_s:>10.4}  "
     )?;
     match one.settle_s() {
         Some(settle_s) => writeln!(f, "{:>10.2}", 1e3 * settle_s),

@@ -42,7 +42,10 @@ impl Analog {
             adc.jsqr().write(|w| {
                 w.jl().bits(3);
                 w.jsq1().bits(FIRST_CHANNEL).jsq2().bits(FIRST_CHANNEL + 1);
-                w.jsq3().bits(FIRST_CHANNEL + 2).jsq4().bits(FIRST_CHANNEL + 3)
+                w.jsq3()
+                    .bits(FIRST_CHANNEL + 2)
+                    .jsq4()
+                    .bits(FIRST_CHANNEL + 3)
             });
         }
         adc.cr2().write(|w| w.adon().enabled());

@@ -58,7 +58,8 @@ impl Bridges {
     /// Which bridges report a fault.
     #[inline(always)]
     pub fn faults(&mut self) -> [bool; 3] {
-        let Ok(faults) = (|| Ok::<_, Infallible>([self.0.faulty()?, self.1.faulty()?, self.2.faulty()?]))();
+        let Ok(faults) =
+            (|| Ok::<_, Infallible>([self.0.faulty()?, self.1.faulty()?, self.2.faulty()?]))();
         faults
     }
 
@@ -72,13 +73,20 @@ impl Bridges {
 }
 
 #[inline(always)]
-fn set_axis<const N: u8, D, S, F>(bridge: &mut Bridge<PwmChannel<N>, D, S, F>, duty: Duty, awake: bool)
-where
+fn set_axis<const N: u8, D, S, F>(
+    bridge: &mut Bridge<PwmChannel<N>, D, S, F>,
+    duty: Duty,
+    awake: bool,
+) where
     D: OutputPin<Error = Infallible>,
     S: OutputPin<Error = Infallible>,
     F: InputPin,
 {
-    let done = if awake { bridge.drive(duty) } else { bridge.coast() };
+    let done = if awake {
+        bridge.drive(duty)
+    } else {
+        bridge.coast()
+    };
     match done {
         Ok(()) => {}
         Err(BridgeError::Pwm(never) | BridgeError::Pin(never)) => match never {},
@@ -130,7 +138,10 @@ impl Board {
         );
 
         // The break input is connected before the timer that it cuts, the timer before its outputs.
-        port_e.pe15.into_alternate::<1>().set_internal_resistor(Pull::Down);
+        port_e
+            .pe15
+            .into_alternate::<1>()
+            .set_internal_resistor(Pull::Down);
         let (pwm, (pwm1, pwm2, pwm3)) = pwm::configure(peripherals.TIM1, &mut rcc);
         port_e.pe9.into_alternate::<1>();
         port_e.pe11.into_alternate::<1>();

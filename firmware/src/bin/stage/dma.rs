@@ -19,6 +19,7 @@ pub enum Mode {
 /// One stream of one controller, its request selected by `channel`.
 pub struct Stream {
     controller: &'static pac::dma2::RegisterBlock,
+    registers: &'static pac::dma2::ST,
     number: usize,
     channel: u8,
 }
@@ -46,8 +47,9 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
     // SAFETY: the controllers were handed over, and each stream's registers go to one owner. The flag registers, which
     // streams share, are only read, and written with ones that clear the stream's own flags.
     let (one, two) = unsafe { (&*pac::DMA1::ptr(), &*pac::DMA2::ptr()) };
-    let stream = |controller, number, channel| Stream {
+    let stream = |controller: &'static pac::dma2::RegisterBlock, number, channel| Stream {
         controller,
+        registers: controller.st(number),
         number,
         channel,
     };
@@ -66,7 +68,7 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
 impl Stream {
     /// Sets the stream up, stopped: bytes between the data register at `peripheral` and memory.
     pub fn configure(&mut self, mode: Mode, peripheral: *mut u32) {
-        let registers = self.controller.st(self.number);
+        let registers = self.registers;
         // SAFETY: `peripheral` is the address of a data register; every channel number is defined.
         unsafe {
             registers.par().write(|w| w.pa().bits(peripheral as u32));
@@ -88,9 +90,11 @@ impl Stream {
     /// stopped. It is not in the core-coupled memory, which DMA does not reach.
     #[inline(always)]
     pub unsafe fn start(&mut self, memory: *mut u8, bytes: u16) {
-        let registers = self.controller.st(self.number);
+        let registers = self.registers;
         self.clear_flags();
-        registers.m0ar().write(|w| unsafe { w.m0a().bits(memory as u32) });
+        registers
+            .m0ar()
+            .write(|w| unsafe { w.m0a().bits(memory as u32) });
         registers.ndtr().write(|w| w.ndt().set(bytes));
         // What the processor wrote to the buffer is there before the stream fetches it.
         cortex_m::asm::dmb();
@@ -99,19 +103,19 @@ impl Stream {
 
     /// Asks the stream to stop; it does after the byte under way.
     pub fn stop(&mut self) {
-        self.controller.st(self.number).cr().modify(|_, w| w.en().disabled());
+        self.registers.cr().modify(|_, w| w.en().disabled());
     }
 
     /// Whether a transfer is under way.
     #[inline(always)]
     pub fn is_running(&self) -> bool {
-        self.controller.st(self.number).cr().read().en().is_enabled()
+        self.registers.cr().read().en().is_enabled()
     }
 
     /// Bytes the transfer under way has still to move.
     #[inline(always)]
     pub fn remaining(&self) -> u16 {
-        self.controller.st(self.number).ndtr().read().ndt().bits()
+        self.registers.ndtr().read().ndt().bits()
     }
 
     /// Whether the stream has come to the end of its buffer since the flag was cleared.

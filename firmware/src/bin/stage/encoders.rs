@@ -18,8 +18,8 @@ use stm32f4xx_hal::{
 /// Bytes of one frame.
 pub const FRAME_BYTES: usize = 8;
 
-/// What stands in for a frame that did not arrive: a line that never leaves idle.
-const MISSING: [u8; FRAME_BYTES] = [0xFF; FRAME_BYTES];
+/// A frame that did not arrive: a line that never leaves idle.
+const MISSING: u64 = u64::MAX;
 
 const BIT_HZ: u32 = 5_250_000;
 /// Codes of the SPI's baud rate: the bus clock over 2 to the power of one more.
@@ -42,9 +42,8 @@ unsafe impl Send for Port {}
 /// The three encoders' ports.
 pub struct Encoders([Port; 3]);
 
-/// Where DMA leaves a frame.
-#[repr(align(4))]
-struct Buffer(UnsafeCell<[u8; FRAME_BYTES]>);
+/// Where DMA leaves a frame, byte by byte in the order of the line: one word, so that it is read as one.
+struct Buffer(UnsafeCell<u64>);
 
 // SAFETY: only its port touches it, and only while no transfer is under way.
 unsafe impl Sync for Buffer {}
@@ -99,7 +98,8 @@ impl Port {
         let data = spi.dr().as_ptr().cast();
         receive.configure(Mode::Receive, data);
         transmit.configure(Mode::Transmit, data);
-        spi.cr2().write(|w| w.rxdmaen().enabled().txdmaen().enabled());
+        spi.cr2()
+            .write(|w| w.rxdmaen().enabled().txdmaen().enabled());
         spi.cr1().write(|w| {
             w.mstr().master().ssm().enabled().ssi().slave_not_selected();
             w.cpol().idle_high().cpha().second_edge();
@@ -121,23 +121,21 @@ impl Port {
         }
         // SAFETY: the buffers are statics in RAM that only this port uses, and it reads its own once the stream is done.
         unsafe {
-            self.receive.start(self.buffer.0.get().cast(), FRAME_BYTES as u16);
+            self.receive
+                .start(self.buffer.0.get().cast(), FRAME_BYTES as u16);
             self.transmit.start(IDLE.0.get().cast(), FRAME_BYTES as u16);
         }
     }
 
     #[inline(always)]
     fn frame(&mut self) -> [u8; FRAME_BYTES] {
-        if self.receive.is_running() || self.receive.remaining() != 0 {
+        // A transfer that was not started is noticed as well: the one that kept it from starting has bytes left.
+        if self.receive.remaining() != 0 {
             self.abandon();
-            return MISSING;
+            return MISSING.to_ne_bytes();
         }
-        // SAFETY: the stream is done. Volatile, since the compiler does not know who wrote there; if the stream was
-        // not started, this would be an old frame, so it is wiped below.
-        let frame = unsafe { self.buffer.0.get().read_volatile() };
-        // SAFETY: as above.
-        unsafe { self.buffer.0.get().write_volatile(MISSING) };
-        frame
+        // SAFETY: the stream is done. Volatile, since the compiler does not know who wrote there.
+        unsafe { self.buffer.0.get().read_volatile() }.to_ne_bytes()
     }
 
     /// Gives a transfer up, and leaves the port such that the next one begins with its own first byte.

@@ -167,7 +167,9 @@ mod app {
         let local = context.local;
         loop {
             local.receiver.pass_to(|bytes| local.session.receive(bytes));
-            let Ok(()) = local.panel.service(local.session, local.panel_link, local.transmitter);
+            let Ok(()) = local
+                .panel
+                .service(local.session, local.panel_link, local.transmitter);
             local.transmitter.send();
             watchdog::feed();
             cortex_m::asm::wfi();

@@ -31,7 +31,10 @@ pub struct PwmTimer {
 pub struct PwmChannel<const CHANNEL: u8>(());
 
 /// Configures TIM1, stopped, the outputs held low.
-pub fn configure(tim: pac::TIM1, rcc: &mut Rcc) -> (PwmTimer, (PwmChannel<1>, PwmChannel<2>, PwmChannel<3>)) {
+pub fn configure(
+    tim: pac::TIM1,
+    rcc: &mut Rcc,
+) -> (PwmTimer, (PwmChannel<1>, PwmChannel<2>, PwmChannel<3>)) {
     pac::TIM1::enable(rcc);
     // URS: only an overflow sets the update flag, not the software update below.
     tim.cr1().write(|w| w.arpe().enabled().urs().counter_only());
@@ -40,8 +43,10 @@ pub fn configure(tim: pac::TIM1, rcc: &mut Rcc) -> (PwmTimer, (PwmChannel<1>, Pw
         w.oc1m().pwm_mode1().oc1pe().enabled();
         w.oc2m().pwm_mode1().oc2pe().enabled()
     });
-    tim.ccmr2_output().write(|w| w.oc3m().pwm_mode1().oc3pe().enabled());
-    tim.ccer().write(|w| w.cc1e().set_bit().cc2e().set_bit().cc3e().set_bit());
+    tim.ccmr2_output()
+        .write(|w| w.oc3m().pwm_mode1().oc3pe().enabled());
+    tim.ccer()
+        .write(|w| w.cc1e().set_bit().cc2e().set_bit().cc3e().set_bit());
     // Break on a low level, so that a broken wire stops; no automatic restart; a disabled output is held at its idle
     // level, low. Lock level 1 keeps a stray write from undoing that.
     tim.bdtr().write(|w| {
@@ -51,7 +56,10 @@ pub fn configure(tim: pac::TIM1, rcc: &mut Rcc) -> (PwmTimer, (PwmChannel<1>, Pw
         unsafe { w.lock().bits(0b01) }
     });
     tim.egr().write(|w| w.ug().set_bit());
-    (PwmTimer { tim }, (PwmChannel(()), PwmChannel(()), PwmChannel(())))
+    (
+        PwmTimer { tim },
+        (PwmChannel(()), PwmChannel(()), PwmChannel(())),
+    )
 }
 
 impl PwmTimer {

@@ -59,7 +59,9 @@ pub fn configure(
     // SAFETY: the buffer is a static in RAM; `Receiver` reads only what the stream has left behind.
     unsafe { receive.start(RECEIVED.0.get().cast(), BYTES as u16) };
     usart.cr3().write(|w| w.dmar().enabled().dmat().enabled());
-    usart.cr1().write(|w| w.ue().enabled().te().enabled().re().enabled());
+    usart
+        .cr1()
+        .write(|w| w.ue().enabled().te().enabled().re().enabled());
     let receiver = Receiver {
         stream: receive,
         next: 0,
@@ -128,7 +130,10 @@ impl Transmitter {
         }
         self.wait();
         // SAFETY: the buffer is a static in RAM, and nothing is written to it until the stream is done.
-        unsafe { self.stream.start(SENDING.0.get().cast(), self.filled as u16) };
+        unsafe {
+            self.stream
+                .start(SENDING.0.get().cast(), self.filled as u16)
+        };
         self.filled = 0;
     }
 

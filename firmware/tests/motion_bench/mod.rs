@@ -1,0 +1,200 @@
+//! What the motion tests share: random positions and moves, and the limits that every tick is held against.
+#![allow(dead_code, reason = "every test file uses its own part")]
+
+use firmware::motion::{Axis, Limits, Plan, Position, plan_line};
+use firmware::parameters::Parameters;
+use kinematics::{Geometry, Pose, Twist, inverse, pivot_rates};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
+use std::f64::consts::{PI, TAU};
+
+/// 2^32: units of a position in a track radius or a turn.
+pub const UNIT: f64 = 4_294_967_296.0;
+/// 2^72: units of an [`Axis`].
+pub const AXIS_UNIT: f64 = 4_722_366_482_869_645_213_696.0;
+/// Room for the roundings of f64 when a limit is checked.
+pub const SLACK: f64 = 1.0 + 1e-6;
+
+pub const GEOMETRY: Geometry = Geometry::REFERENCE;
+pub const LIMITS: Limits = Parameters::REFERENCE.limits;
+
+/// Fixed seed, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
+pub fn settings(cases: u32) -> Config {
+    let seed = std::env::var("PROPTEST_RNG_SEED")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(20_260_214);
+    println!("proptest seed {seed}");
+    Config {
+        cases,
+        rng_seed: RngSeed::Fixed(seed),
+        rng_algorithm: RngAlgorithm::ChaCha,
+        failure_persistence: None,
+        ..Config::default()
+    }
+}
+
+/// Position of a pose in mm and turns.
+pub fn at(x_mm: f64, y_mm: f64, turns: f64) -> Position {
+    let length = |mm: f64| (mm / GEOMETRY.radius_mm * UNIT).round() as i64;
+    [length(x_mm), length(y_mm), (turns * UNIT).round() as i64]
+}
+
+/// Positions in the usable disk, theta within `turns` turns.
+pub fn positions(turns: f64) -> impl Strategy<Value = Position> {
+    (0.0..=80.0_f64, -PI..PI, -turns..=turns)
+        .prop_map(|(r, direction, turns)| at(r * direction.cos(), r * direction.sin(), turns))
+}
+
+/// Moves of every size, from units to the whole disk and a few turns: an end, and a share of the way back to it.
+pub fn moves() -> impl Strategy<Value = (Position, Position)> {
+    (positions(2.0), positions(2.0), -9.0..=0.0_f64).prop_map(|(from, to, exponent)| {
+        let share = 10_f64.powf(exponent);
+        let part = |a: i64, b: i64| a + ((b - a) as f64 * share) as i64;
+        let to = [
+            part(from[0], to[0]),
+            part(from[1], to[1]),
+            part(from[2], to[2]),
+        ];
+        (from, to)
+    })
+}
+
+pub fn line(from: Position, to: Position) -> Plan {
+    plan_line(7, from, to, &LIMITS, &GEOMETRY).expect("a move inside the disk")
+}
+
+pub fn at_rest(position: Position) -> [Axis; 3] {
+    position.map(Axis::at_rest)
+}
+
+/// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that the
+/// tick drops at the end.
+pub fn states(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+    let mut axes = start;
+    let mut all = vec![axes];
+    for piece in &plan.pieces {
+        for _ in 0..piece.ticks {
+            for (i, axis) in axes.iter_mut().enumerate() {
+                axis.advance(piece.jerk[i], plan.nudge[i]);
+            }
+            all.push(axes);
+        }
+    }
+    all
+}
+
+/// The states where pieces meet, and in the middle of each; enough for what is monotonic or linear in a piece.
+pub fn corners(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+    let mut axes = start;
+    let mut all = vec![axes];
+    for piece in &plan.pieces {
+        let after = |ticks| [0, 1, 2].map(|i| axes[i].after(ticks, piece.jerk[i], plan.nudge[i]));
+        all.push(after(piece.ticks / 2));
+        let end = after(piece.ticks);
+        all.push(end);
+        axes = end;
+    }
+    all
+}
+
+/// Velocity in track radii and turns per second.
+pub fn velocity(axes: &[Axis; 3]) -> [f64; 3] {
+    axes.map(|axis| axis.velocity as f64 / AXIS_UNIT * LIMITS.rate_hz)
+}
+
+/// Acceleration in track radii and turns per second squared.
+pub fn acceleration(axes: &[Axis; 3]) -> [f64; 3] {
+    axes.map(|axis| axis.acceleration as f64 / AXIS_UNIT * LIMITS.rate_hz.powi(2))
+}
+
+/// Part of what is allowed, of a rate in track radii and turns: along the path, and of rotation.
+pub fn share(rate: [f64; 3], path_mm: f64, turn_deg: f64) -> f64 {
+    let path = rate[0].hypot(rate[1]) * GEOMETRY.radius_mm / path_mm;
+    path.max(rate[2].abs() * 360.0 / turn_deg)
+}
+
+/// Largest part of its limit that speed, acceleration and jerk reach in a plan.
+pub fn worst_shares(plan: &Plan, start: [Axis; 3]) -> [f64; 3] {
+    let hz = LIMITS.rate_hz;
+    let mut worst = [0.0_f64; 3];
+    for axes in corners(plan, start) {
+        let speed = share(velocity(&axes), LIMITS.speed_mm_s, LIMITS.turn_speed_deg_s);
+        let force = share(
+            acceleration(&axes),
+            LIMITS.acceleration_mm_s2,
+            LIMITS.turn_acceleration_deg_s2,
+        );
+        worst = [worst[0].max(speed), worst[1].max(force), worst[2]];
+    }
+    for piece in &plan.pieces {
+        let jerk = piece.jerk.map(|jerk| jerk as f64 / AXIS_UNIT * hz.powi(3));
+        worst[2] = worst[2].max(share(jerk, LIMITS.jerk_mm_s3, LIMITS.turn_jerk_deg_s3));
+    }
+    worst
+}
+
+/// Largest pivot rate (rad/s) of a state.
+pub fn pivot_rate(axes: &[Axis; 3]) -> f64 {
+    let position = axes.map(|axis| axis.position as f64 / AXIS_UNIT);
+    let pose = Pose {
+        x: position[0],
+        y: position[1],
+        // Whole turns change nothing.
+        theta: position[2].fract() * TAU,
+    };
+    let [x, y, turns] = velocity(axes);
+    let twist = Twist {
+        x,
+        y,
+        theta: turns * TAU,
+    };
+    let guides = inverse(&pose).expect("a pose inside the track").guides;
+    pivot_rates(&guides, &twist)
+        .iter()
+        .fold(0.0, |worst, rate| worst.max(rate.abs()))
+}
+
+/// Distance of a state from the line `from` -> `to`, units: how far its axes disagree on how much of the way is done.
+pub fn off_line(axes: &[Axis; 3], from: &Position, to: &Position) -> f64 {
+    let way = [0, 1, 2].map(|i| (to[i] - from[i]) as f64);
+    // Units with their fraction, relative to the start: small enough for f64.
+    let done = [0, 1, 2]
+        .map(|i| (axes[i].position - (i128::from(from[i]) << 40)) as f64 / (AXIS_UNIT / UNIT));
+    let longest = (0..3).fold(0, |best, i| {
+        if way[i].abs() > way[best].abs() {
+            i
+        } else {
+            best
+        }
+    });
+    if way[longest] == 0.0 {
+        return done.iter().fold(0.0, |worst, d| worst.max(d.abs()));
+    }
+    let share = done[longest] / way[longest];
+    (0..3).fold(0.0, |worst, i| worst.max((done[i] - share * way[i]).abs()))
+}
+
+/// Duration in ticks of the fastest motion over a path parameter of 1, in continuous time, after the textbook's cases
+/// (Biagiotti and Melchiorri, 2008, section 3.4: `tj` is the time of constant jerk, `ta` that of the whole acceleration).
+pub fn optimum_ticks(rate: f64, acceleration: f64, jerk: f64) -> f64 {
+    let (tj, ta) = if rate * jerk >= acceleration * acceleration {
+        let tj = acceleration / jerk;
+        (tj, tj + rate / acceleration)
+    } else {
+        let tj = (rate / jerk).sqrt();
+        (tj, 2.0 * tj)
+    };
+    let cruise = 1.0 / rate - ta;
+    if cruise >= 0.0 {
+        return 2.0 * ta + cruise;
+    }
+    let tj_full = acceleration / jerk;
+    let root = (acceleration.powi(4) / jerk.powi(2) + 4.0 * acceleration).sqrt();
+    let ta = (acceleration * acceleration / jerk + root) / (2.0 * acceleration);
+    if ta >= 2.0 * tj_full && tj == tj_full {
+        2.0 * ta
+    } else {
+        4.0 * (0.5 / jerk).cbrt()
+    }
+}

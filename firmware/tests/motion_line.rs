@@ -1,0 +1,213 @@
+//! Lines: arrival, limits, straightness, symmetry, duration.
+
+mod motion_bench;
+
+use firmware::motion::{Line, Refusal, check_target, plan_line};
+use motion_bench::*;
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(settings(400))]
+
+    #[test]
+    fn the_integers_arrive_by_themselves((from, to) in moves()) {
+        let plan = line(from, to);
+        let last = *corners(&plan, at_rest(from)).last().unwrap();
+        for i in 0..3 {
+            prop_assert_eq!((last[i].velocity, last[i].acceleration), (0, 0));
+            // What is dropped at the end: well under a thousandth of a unit (1.5 prad).
+            let rest = last[i].position - (i128::from(to[i]) << 40);
+            prop_assert!(rest.unsigned_abs() < 1 << 30, "axis {} misses by {:e} units", i, rest as f64 / 2f64.powi(40));
+        }
+        prop_assert_eq!(plan.state_after(&at_rest(from), plan.ticks()), at_rest(to));
+    }
+
+    #[test]
+    fn limits_hold((from, to) in moves()) {
+        let worst = worst_shares(&line(from, to), at_rest(from));
+        prop_assert!(worst.iter().all(|&share| share <= SLACK), "{worst:?}");
+    }
+
+    #[test]
+    fn one_limit_is_used_up_in_a_long_move((from, to) in (positions(2.0), positions(2.0))) {
+        let plan = line(from, to);
+        let start = at_rest(from);
+        let worst = worst_shares(&plan, start);
+        // Speed, acceleration and jerk are each a bound of their own, and the pivots' bound may stand in for the speed.
+        prop_assert!(worst[2] > 0.9, "{worst:?}");
+    }
+
+    #[test]
+    fn pivots_keep_their_rate((from, to) in moves()) {
+        let plan = line(from, to);
+        let ticks = plan.ticks();
+        for k in 0..=200 {
+            let state = plan.state_after(&at_rest(from), ticks * k / 200);
+            let rate = pivot_rate(&state);
+            prop_assert!(rate <= LIMITS.pivot_rate_rad_s * SLACK, "{rate} rad/s");
+        }
+    }
+
+    #[test]
+    fn backwards_is_forwards_backwards((from, to) in moves()) {
+        let (there, back) = (line(from, to), line(to, from));
+        let ticks = there.ticks();
+        prop_assert_eq!(back.ticks(), ticks);
+        for k in 0..=20 {
+            let k = ticks * k / 20;
+            let one = there.state_after(&at_rest(from), k);
+            let other = back.state_after(&at_rest(to), ticks - k);
+            for i in 0..3 {
+                prop_assert!((one[i].rounded() - other[i].rounded()).abs() <= 1);
+                prop_assert!((one[i].velocity + other[i].velocity).abs() <= 12 * ticks as i64);
+            }
+        }
+    }
+
+    #[test]
+    fn duration_is_the_optimum_and_four_ticks((from, to) in moves()) {
+        prop_assume!(from != to);
+        let limits = LIMITS.along(&Line::new(&from, &to), &GEOMETRY);
+        let optimum = optimum_ticks(limits.rate, limits.acceleration, limits.jerk);
+        let ticks = line(from, to).ticks() as f64;
+        prop_assert!(ticks >= optimum * (1.0 - 1e-9), "{ticks} < {optimum}");
+        prop_assert!(ticks < optimum + 4.0, "{ticks} > {optimum}");
+    }
+
+    #[test]
+    fn outside_the_disk_is_refused(from in positions(2.0), beyond in 80.0001..500.0_f64, direction in -3.2..3.2_f64) {
+        let to = at(beyond * direction.cos(), beyond * direction.sin(), 0.5);
+        let refusal = plan_line(1, from, to, &LIMITS, &GEOMETRY).unwrap_err();
+        let Refusal::OutsideDisk { radius_mm, usable_mm } = refusal else {
+            return Err(TestCaseError::fail(format!("{refusal:?}")));
+        };
+        prop_assert!((radius_mm - beyond).abs() < 1e-6 && (usable_mm - 80.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_rim_itself_is_inside(direction in -3.2..3.2_f64) {
+        prop_assert_eq!(check_target(&at(80.0 * direction.cos(), 80.0 * direction.sin(), 0.0), &GEOMETRY), Ok(()));
+    }
+}
+
+proptest! {
+    // Tick by tick through whole moves.
+    #![proptest_config(settings(60))]
+
+    #[test]
+    fn every_tick_is_on_the_line_and_steps_by_its_velocity((from, to) in moves()) {
+        let plan = line(from, to);
+        let all = states(&plan, at_rest(from));
+        for pair in all.windows(2) {
+            prop_assert!(off_line(&pair[1], &from, &to) < 0.01);
+            for i in 0..3 {
+                let (a, b) = (pair[0][i], pair[1][i]);
+                let step = (b.position - a.position) as f64;
+                let mean = (a.velocity as f64 + b.velocity as f64) / 2.0;
+                // A cubic's step is its mean velocity, jerk / 12 aside; and the nudge.
+                let jerk = (b.acceleration - a.acceleration) as f64;
+                prop_assert!((step - mean + jerk / 12.0).abs() <= plan.nudge[i].abs() as f64 + 2.0 + 1e-9 * mean.abs());
+                prop_assert!((b.velocity - a.velocity - a.acceleration).abs() <= (jerk as i64).abs() / 2 + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn the_closed_form_is_the_tick_to_the_bit((from, to) in moves(), fraction in 0.0..1.0_f64) {
+        let plan = line(from, to);
+        let all = states(&plan, at_rest(from));
+        let tick = (fraction * plan.ticks() as f64) as u64;
+        for tick in [0, 1, tick, plan.ticks().saturating_sub(1)] {
+            if tick < plan.ticks() {
+                prop_assert_eq!(plan.state_after(&at_rest(from), tick), all[tick as usize]);
+            }
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_turns_arrive_exactly() {
+    for (from, to) in [
+        (at(0.0, 0.0, -10_000.0), at(0.0, 0.0, 10_000.0)),
+        (at(-76.0, 3.0, 10_000.0), at(10.0, -79.0, -9_999.123)),
+        (at(0.0, 0.0, 0.0), at(1e-6, 0.0, 10_000.0)),
+    ] {
+        let plan = line(from, to);
+        let last = *corners(&plan, at_rest(from)).last().unwrap();
+        for i in 0..3 {
+            assert_eq!((last[i].velocity, last[i].acceleration), (0, 0));
+            let rest = last[i].position - (i128::from(to[i]) << 40);
+            assert!(
+                rest.unsigned_abs() < 1 << 36,
+                "misses by {:e} units",
+                rest as f64 / 2f64.powi(40)
+            );
+        }
+        for axes in corners(&plan, at_rest(from)) {
+            assert!(off_line(&axes, &from, &to) < 0.1);
+        }
+        let worst = worst_shares(&plan, at_rest(from));
+        assert!(worst.iter().all(|&share| share <= SLACK), "{worst:?}");
+        assert_eq!(plan.state_after(&at_rest(from), plan.ticks()), at_rest(to));
+    }
+}
+
+#[test]
+fn no_way_is_no_pieces_and_one_unit_is_exact() {
+    let here = at(12.0, -3.0, 0.3);
+    let plan = line(here, here);
+    assert_eq!((plan.ticks(), plan.end), (0, here));
+    for i in 0..3 {
+        for step in [1, -1] {
+            let mut to = here;
+            to[i] += step;
+            let plan = line(here, to);
+            assert!((1..=6).contains(&plan.ticks()), "{} ticks", plan.ticks());
+            assert_eq!(plan.state_after(&at_rest(here), plan.ticks()), at_rest(to));
+        }
+    }
+}
+
+#[test]
+fn a_diagonal_is_no_faster_than_a_straight() {
+    let straight = line(at(-50.0, 0.0, 0.0), at(50.0, 0.0, 0.0)).ticks();
+    let side = 50.0 / 2f64.sqrt();
+    let diagonal = line(at(-side, -side, 0.0), at(side, side, 0.0)).ticks();
+    assert!(straight.abs_diff(diagonal) <= 1, "{straight} {diagonal}");
+    // 100 mm at 200 mm/s, 4 m/s^2, 400 m/s^3: 0.5 s + 50 ms + 10 ms, all whole ticks.
+    assert_eq!(straight, 11_200);
+}
+
+#[test]
+fn the_pivots_bound_slows_a_turn_at_the_rim_only() {
+    let turn = |r_mm: f64| line(at(r_mm, 0.0, 0.0), at(r_mm, 0.0, 1.0)).ticks();
+    // 360 deg/s needs (1 + r) 2 pi <= 10 rad/s: r <= 0.59.
+    assert_eq!(turn(0.0), turn(59.0));
+    assert!(turn(80.0) > turn(60.0) && turn(60.0) > turn(59.0));
+    // A whole turn meets the worst orientation: the bound is reached, not just kept.
+    let plan = line(at(80.0, 0.0, 0.0), at(80.0, 0.0, 1.0));
+    let start = at_rest(at(80.0, 0.0, 0.0));
+    let worst = (0..=1000).map(|k| pivot_rate(&plan.state_after(&start, plan.ticks() * k / 1000)));
+    let worst = worst.fold(0.0, f64::max);
+    assert!(
+        (0.98..=1.0 + 1e-6).contains(&(worst / LIMITS.pivot_rate_rad_s)),
+        "{worst} rad/s"
+    );
+}
+
+#[test]
+fn limits_that_allow_no_motion_are_refused() {
+    for bad in [0.0, -1.0, f64::NAN] {
+        let limits = firmware::motion::Limits {
+            jerk_mm_s3: bad,
+            ..LIMITS
+        };
+        let refusal = plan_line(1, at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), &limits, &GEOMETRY);
+        assert_eq!(refusal, Err(Refusal::Limits), "{bad}");
+    }
+    let far = [0, 0, (1_000_000_000 << 32) + 1];
+    assert_eq!(
+        plan_line(1, [0; 3], far, &LIMITS, &GEOMETRY),
+        Err(Refusal::TooManyTurns)
+    );
+}
