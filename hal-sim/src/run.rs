@@ -12,7 +12,7 @@ use crate::devices::{FINE_PWM, StageParameters};
 use crate::host::Host;
 use crate::observer::{Observer, TickRecord};
 use crate::plant::{Imperfections, PlantParameters};
-use crate::report::{Progress, Run};
+use crate::report::{DEFAULT_EVERY, Progress, Run};
 use crate::script::{Line, Script};
 
 /// What a run is to do besides the script.
@@ -30,6 +30,20 @@ pub struct RunOptions {
     pub imperfections: Imperfections,
     /// No progress bar.
     pub quiet: bool,
+}
+
+impl Default for RunOptions {
+    /// What the command line has by default.
+    fn default() -> Self {
+        Self {
+            out: PathBuf::from("target/tripivot/run"),
+            every: DEFAULT_EVERY,
+            seed: 1,
+            mismatch_percent: 20.0,
+            imperfections: Imperfections::CALIBRATED,
+            quiet: true,
+        }
+    }
 }
 
 /// A run that came to its end, one way or another.

@@ -1,11 +1,12 @@
-//! What the simulated stage costs. Not a test of anything, so it is ignored by default:
-//! `cargo test --release -p hal-sim --test plant_speed -- --ignored --nocapture`.
+//! What the simulation costs on this machine, as a table: `cargo bench -p hal-sim`.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
 use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::run::{RunOptions, run};
+use hal_sim::script::Script;
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;
@@ -14,9 +15,7 @@ const PERIODS: u32 = 20_000;
 /// The substeps of one control period, s.
 const SUBSTEPS_S: [f64; 4] = [12.5e-6, 12.5e-6, 10e-6, 15e-6];
 
-#[test]
-#[ignore = "prints a table of timings"]
-fn print_cost_of_a_control_period() {
+fn main() {
     println!("{:<44} {:>8}", "one control period of 50 us", "us");
     for (name, imperfections) in [
         ("plant, ideal", Imperfections::NONE),
@@ -35,6 +34,27 @@ fn print_cost_of_a_control_period() {
         micros_each(|| run_stage(&mut stage))
     );
     assert_eq!(stage.plant.broken(), None);
+    whole_run();
+}
+
+/// The demonstration, controller and report's bookkeeping included.
+fn whole_run() {
+    let script = Script::demonstration().expect("the built-in script");
+    let fastest = (0..3)
+        .map(|_| {
+            let outcome = run(&script, &RunOptions::default());
+            let simulated_s = outcome.run.trace.statistics().end_s;
+            (simulated_s / outcome.run.wall_s, outcome)
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((speed, outcome)) = fastest {
+        let micros = outcome.run.wall_s / outcome.ticks as f64 * 1e6;
+        println!(
+            "{:<44} {micros:>8.3}",
+            "demonstration: stage, controller, records"
+        );
+        println!("{:<44} {speed:>8.1} times real time", "");
+    }
 }
 
 fn run_plant(plant: &mut Plant) {
