@@ -36,9 +36,6 @@ pub const SUPPLY_V_PER_COUNT: f64 = 66.0 / 4096.0;
 /// Motor current of one count: DRV8874, 450 uA/A into 1 kohm, 3.3 V full scale.
 pub const CURRENT_A_PER_COUNT: f64 = 3.3 / 4096.0 / (450e-6 * 1_000.0);
 
-/// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
-pub const PWM_COUNTS: u16 = 4200;
-
 pub(crate) const UNITS_PER_RAD: f64 = 4_294_967_296.0 / core::f64::consts::TAU;
 
 impl Config {

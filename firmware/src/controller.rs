@@ -1,18 +1,19 @@
 //! The control loop: one function of state and inputs.
 
+mod supervisor;
+
 use crate::config::Config;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::encoder::Encoder;
 use crate::fault::{Fault, FaultKind};
-use crate::link::{Command, Mode, Snapshot, TickLink};
+use crate::link::{Mode, Snapshot, TickLink};
 use crate::motion::{Motion, Position, Setpoint};
 use crate::number::Fixed;
 use crate::recorder::{Record, Sample};
-use crate::reference;
 use crate::servo::{AxisServo, PivotSetpoint, platform_torques};
 use crate::settling::Settling;
-use kinematics::{Angle, Guide, Inverse, Pose, direct, inverse, pivot_motion};
+use kinematics::{Angle, Guide, Inverse, PivotMotion, Pose, direct, inverse, pivot_motion};
 
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
@@ -69,11 +70,8 @@ pub fn tick(
     recorder: &mut impl Record,
 ) -> Outputs {
     state.tick = state.tick.wrapping_add(1);
-    for i in 0..3 {
-        state.encoders[i].take(&config.encoders[i], &inputs.frames[i]);
-    }
-    let pivots = state.encoders.each_ref().map(Encoder::angle);
-    let pose = direct::<Fixed>(&pivots).ok();
+    let mut pivots = decode(config, &mut state.encoders, &inputs.frames);
+    let pose = measure(&pivots);
     // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.tick == 1 {
@@ -81,16 +79,19 @@ pub fn tick(
     }
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
-    if let Some(command) = link.commands.dequeue() {
+    // Obeyed where it lies: a plan is too long to be moved twice.
+    let command = link.commands.peek();
+    let commanded = command.is_some();
+    if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
         state.obey(command, &pivots, pose.as_ref());
+        let _ = link.commands.dequeue();
+        // Once more: referencing gives the pivots their turns.
+        pivots = state.encoders.each_ref().map(Encoder::angle);
     }
-    // Once more: referencing gives the pivots their turns.
-    let pivots = state.encoders.each_ref().map(Encoder::angle);
     state.check_inputs(config, inputs, pose.is_none());
 
-    state.motion.advance();
-    let setpoint = state.motion.setpoint(&config.scale);
+    let setpoint = advance(config, &mut state.motion);
     let driven = if state.servo_on() {
         state.drive(config, &setpoint, &pivots)
     } else {
@@ -111,11 +112,57 @@ pub fn tick(
         duty,
         commands: state.commands,
     });
-    if link.snapshots.ready() {
+    // Not in a tick that has taken a command, which is the longest as it is.
+    if !commanded && link.snapshots.ready() {
         // There is room: `ready` said so, and only this side fills the queue.
         let _ = link.snapshots.enqueue(state.snapshot(&pivots));
     }
     outputs
+}
+
+// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
+// each between its symbols.
+
+/// Encoder frames to pivot angles.
+#[inline(never)]
+fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) -> [Angle; 3] {
+    for i in 0..3 {
+        encoders[i].take(&config.encoders[i], &frames[i]);
+    }
+    encoders.each_ref().map(Encoder::angle)
+}
+
+/// The pose that the pivots set, if they set one.
+#[inline(never)]
+fn measure(pivots: &[Angle; 3]) -> Option<Pose<Fixed>> {
+    direct(pivots).ok()
+}
+
+/// The motion generator's next setpoint.
+#[inline(never)]
+fn advance(config: &Config, motion: &mut Motion) -> Setpoint {
+    motion.advance();
+    motion.setpoint(&config.scale)
+}
+
+/// Setpoints of the three pivots.
+struct Pivots {
+    angles: [Angle; 3],
+    motion: PivotMotion<f32>,
+    torques: [f32; 3],
+}
+
+/// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
+#[inline(never)]
+fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
+    let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
+    let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
+    let (twist, acceleration) = (&setpoint.twist, &setpoint.acceleration);
+    Some(Pivots {
+        angles: pivots,
+        motion: pivot_motion(&guides, twist, acceleration),
+        torques: platform_torques(&config.servo.body, &guides, twist, acceleration),
+    })
 }
 
 const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
@@ -133,125 +180,6 @@ impl State {
         self.fault
     }
 
-    fn servo_on(&self) -> bool {
-        matches!(self.mode, Mode::Holding | Mode::Moving)
-    }
-
-    /// Whether the bridges drive or brake. Off coasts, so that a stage can be moved by hand; a fault brakes, but for one of
-    /// the bridges or of their supply, which can not be trusted to.
-    fn awake(&self) -> bool {
-        match (self.mode, self.fault) {
-            (Mode::Off, _) => false,
-            (_, Some(fault)) => {
-                !matches!(fault.kind, FaultKind::BridgeFault | FaultKind::SupplyLow)
-            }
-            _ => true,
-        }
-    }
-
-    fn obey(&mut self, command: Command, pivots: &[Angle; 3], pose: Option<&Pose<Fixed>>) {
-        match command {
-            Command::Acknowledge => {
-                if self.fault.take().is_some() {
-                    self.mode = Mode::Off;
-                }
-            }
-            _ if self.mode == Mode::Fault => self.refused = self.refused.wrapping_add(1),
-            Command::Reference => self.reference(pivots, pose),
-            Command::Servo(true) => self.hold(pose),
-            Command::Servo(false) => self.mode = Mode::Off,
-            Command::Move(plan) => {
-                let taken = self.servo_on() && self.motion.accept(plan).is_ok();
-                if taken {
-                    self.mode = Mode::Moving;
-                    self.settling.start();
-                } else {
-                    self.refused = self.refused.wrapping_add(1);
-                }
-            }
-        }
-    }
-
-    /// Takes theta and the pivots' turns from what single-turn encoders show, and holds.
-    fn reference(&mut self, pivots: &[Angle; 3], pose: Option<&Pose<Fixed>>) {
-        let ready = self
-            .encoders
-            .iter()
-            .all(|encoder| encoder.unusable().is_none());
-        let (true, Some(pose)) = (ready, pose) else {
-            self.refused = self.refused.wrapping_add(1);
-            return;
-        };
-        if self.referenced {
-            self.hold(Some(pose));
-            return;
-        }
-        let (theta, unwrapped) = reference::within_one_turn(pose.theta, pivots);
-        for (encoder, angle) in self.encoders.iter_mut().zip(unwrapped) {
-            encoder.unwrap_near(angle);
-        }
-        self.referenced = true;
-        self.hold(Some(&Pose { theta, ..*pose }));
-    }
-
-    /// Servo on, at the pose where the stage is. Nothing happens when it is on already.
-    fn hold(&mut self, pose: Option<&Pose<Fixed>>) {
-        let (true, Some(pose)) = (self.referenced, pose) else {
-            self.refused = self.refused.wrapping_add(1);
-            return;
-        };
-        if self.servo_on() {
-            return;
-        }
-        self.motion.rest_at(position(pose));
-        self.settling.start();
-        self.mode = Mode::Holding;
-        for servo in &mut self.servo {
-            servo.restart();
-        }
-    }
-
-    fn check_inputs(&mut self, config: &Config, inputs: &Inputs, no_pose: bool) {
-        if self.mode == Mode::Fault {
-            return;
-        }
-        if inputs.emergency_stop {
-            self.fail(FaultKind::EmergencyStop, None, 0.0, 0.0);
-            return;
-        }
-        if self.referenced {
-            for i in 0..3 {
-                if let Some(kind) = self.encoders[i].unusable() {
-                    self.referenced = false;
-                    self.fail(kind, Some(i), 0.0, 0.0);
-                    return;
-                }
-            }
-        }
-        if !self.servo_on() {
-            return;
-        }
-        for i in 0..3 {
-            if inputs.bridge_fault[i] {
-                self.fail(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
-                return;
-            }
-        }
-        if inputs.supply_counts < config.limits.supply_min {
-            let volts = |counts: u16| f32::from(counts) * crate::config::SUPPLY_V_PER_COUNT as f32;
-            self.fail(
-                FaultKind::SupplyLow,
-                None,
-                volts(inputs.supply_counts),
-                volts(config.limits.supply_min),
-            );
-            return;
-        }
-        if no_pose {
-            self.fail(FaultKind::ImpossiblePose, None, 0.0, 0.0);
-        }
-    }
-
     /// Setpoint to duties; `None` when a fault came of it.
     fn drive(
         &mut self,
@@ -259,32 +187,25 @@ impl State {
         setpoint: &Setpoint,
         pivots: &[Angle; 3],
     ) -> Option<Driven> {
-        let Some(Inverse {
-            pivots: target,
-            guides,
-        }) = pose(&setpoint.position).and_then(|pose| inverse(&pose).ok())
+        let Some(Pivots {
+            angles: target,
+            motion,
+            torques,
+        }) = pivots_of(config, setpoint)
         else {
             self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
-        let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
-        let (twist, acceleration) = (&setpoint.twist, &setpoint.acceleration);
-        let motion = pivot_motion(&guides, twist, acceleration);
-        let torques = platform_torques(&config.servo.body, &guides, twist, acceleration);
 
         let mut errors = [0i32; 3];
         for i in 0..3 {
-            let error = pivots[i].units().wrapping_sub(target[i].units());
-            errors[i] = error.clamp(i64::from(i32::MIN + 1), i64::from(i32::MAX)) as i32;
-            if errors[i].unsigned_abs() > config.limits.following_error.unsigned_abs() {
+            let error = (pivots[i] - target[i]).units();
+            errors[i] = error as i32;
+            let most = config.limits.following_error;
+            if i64::from(errors[i]) != error || errors[i].unsigned_abs() > most.unsigned_abs() {
                 const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
-                let limit = config.limits.following_error as f32 * RAD;
-                self.fail(
-                    FaultKind::FollowingError,
-                    Some(i),
-                    errors[i] as f32 * RAD,
-                    limit,
-                );
+                let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
+                self.fail(FaultKind::FollowingError, Some(i), value, limit);
                 return None;
             }
         }
@@ -307,18 +228,6 @@ impl State {
             duty[i] = self.servo[i].step(&config.servo, &pivot, counts_per_volt);
         }
         Some((target, motion.rates, duty))
-    }
-
-    fn fail(&mut self, kind: FaultKind, pivot: Option<usize>, value: f32, limit: f32) {
-        self.mode = Mode::Fault;
-        self.fault = Some(Fault {
-            kind,
-            pivot: pivot.map(|i| i as u8),
-            tick: self.tick,
-            value,
-            limit,
-        });
-        self.settling.start();
     }
 
     fn snapshot(&self, pivots: &[Angle; 3]) -> Snapshot {
@@ -349,13 +258,4 @@ fn pose(position: &Position) -> Option<Pose<Fixed>> {
         y: Fixed::from_position(position[1])?,
         theta: Angle::from_units(position[2]),
     })
-}
-
-/// The position of a pose.
-fn position(pose: &Pose<Fixed>) -> Position {
-    [
-        pose.x.to_position(),
-        pose.y.to_position(),
-        pose.theta.units(),
-    ]
 }

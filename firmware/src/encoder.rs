@@ -77,19 +77,34 @@ impl Encoder {
         }
     }
 
+    #[inline]
     fn take_fraction(&mut self, config: &EncoderConfig, fraction: u32) {
-        let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
         // After bridged frames the angle has gone on by itself: `moved` is from where it was expected to be.
-        let surprise = moved.wrapping_sub(self.step);
+        let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
+        let surprise = moved.wrapping_sub(self.step).unsigned_abs();
+        if self.bad == 0 && self.good == READY && surprise <= config.change.unsigned_abs() {
+            self.go_on(moved);
+            self.step = moved;
+        } else {
+            self.regain(config, fraction, moved, surprise);
+        }
+    }
+
+    /// Takes a frame after a bad one, or one of the first.
+    #[cold]
+    fn regain(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, surprise: u32) {
         let ticks = i32::from(self.bad) + 1;
         let allowed = config.change.saturating_mul(ticks.saturating_mul(ticks));
         if self.good == 0 {
             self.angle = Angle::from_units(i64::from(fraction));
             self.step = 0;
             self.good = 1;
-        } else if surprise.unsigned_abs() <= allowed.unsigned_abs() {
-            self.angle = Angle::from_units(self.angle.units().wrapping_add(i64::from(moved)));
-            self.step = if self.bad == 0 { moved } else { self.step };
+        } else if surprise <= allowed.unsigned_abs() {
+            self.go_on(moved);
+            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+            self.step = self
+                .step
+                .wrapping_add(moved.wrapping_sub(self.step) / ticks);
             self.good = (self.good + 1).min(READY);
         } else {
             self.miss(config, FaultKind::EncoderJump);
@@ -101,13 +116,19 @@ impl Encoder {
         }
     }
 
+    #[inline]
+    fn go_on(&mut self, step: i32) {
+        self.angle = Angle::from_units(self.angle.units().wrapping_add(i64::from(step)));
+    }
+
+    #[cold]
     fn miss(&mut self, config: &EncoderConfig, reason: FaultKind) {
         self.reason = Some(reason);
         self.bad = self.bad.saturating_add(1);
         if self.bad > config.bridged || self.good < READY {
             self.good = 0;
         } else {
-            self.angle = Angle::from_units(self.angle.units().wrapping_add(i64::from(self.step)));
+            self.go_on(self.step);
         }
     }
 

@@ -1,7 +1,8 @@
 //! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
-//! for one. [`PanelLink::snapshot`] throws away a snapshot that has been waiting, so that what it returns is new.
+//! for one and it took no command: that tick is the longest as it is. [`PanelLink::snapshot`] throws away a snapshot that
+//! has been waiting, so that what it returns is new.
 
 use crate::fault::Fault;
 use crate::motion::{Plan, Position};

@@ -3,9 +3,11 @@
 //! What the tick uses is derived from these once, in [`Config`](crate::config::Config). Defaults come from the reference
 //! stage (DESIGN section 4) unless a line says otherwise.
 
-use crate::config::PWM_COUNTS;
 use crate::motion::Limits;
 use kinematics::Geometry;
+
+/// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
+pub const PWM_COUNTS: u16 = 4200;
 
 /// All parameters.
 #[derive(Clone, Debug, PartialEq)]

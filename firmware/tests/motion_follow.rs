@@ -189,3 +189,18 @@ fn a_later_stop_replaces_an_accepted_one() {
     }
     assert_eq!((motion.moving(), motion.position()), (false, urgent.end));
 }
+
+#[test]
+fn a_plan_without_a_way_is_over_at_once() {
+    let here = at(3.0, 4.0, 0.5);
+    let mut motion = started(&line(here, here));
+    motion.advance();
+    assert_eq!((motion.moving(), motion.position()), (false, here));
+    // And the next is taken as usual.
+    let next = line(here, at(0.0, 0.0, 0.0));
+    assert_eq!(motion.accept(next.clone()), Ok(()));
+    for _ in 0..next.ticks() {
+        motion.advance();
+    }
+    assert_eq!((motion.moving(), motion.position()), (false, next.end));
+}

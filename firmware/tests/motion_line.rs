@@ -2,7 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{Line, Refusal, check_target, plan_line};
+use firmware::motion::{Limits, Line, PathLimits, Profile, Refusal, check_target, plan_line};
 use motion_bench::*;
 use proptest::prelude::*;
 
@@ -100,8 +100,7 @@ proptest! {
         let all = states(&plan, at_rest(from));
         for pair in all.windows(2) {
             prop_assert!(off_line(&pair[1], &from, &to) < 0.01);
-            for i in 0..3 {
-                let (a, b) = (pair[0][i], pair[1][i]);
+            for (i, (a, b)) in pair[0].iter().zip(&pair[1]).enumerate() {
                 let step = (b.position - a.position) as f64;
                 let mean = (a.velocity as f64 + b.velocity as f64) / 2.0;
                 // A cubic's step is its mean velocity, jerk / 12 aside; and the nudge.
@@ -197,17 +196,75 @@ fn the_pivots_bound_slows_a_turn_at_the_rim_only() {
 
 #[test]
 fn limits_that_allow_no_motion_are_refused() {
-    for bad in [0.0, -1.0, f64::NAN] {
-        let limits = firmware::motion::Limits {
-            jerk_mm_s3: bad,
+    let with: [fn(f64) -> Limits; 9] = [
+        |rate_hz| Limits { rate_hz, ..LIMITS },
+        |speed_mm_s| Limits {
+            speed_mm_s,
             ..LIMITS
-        };
-        let refusal = plan_line(1, at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), &limits, &GEOMETRY);
-        assert_eq!(refusal, Err(Refusal::Limits), "{bad}");
+        },
+        |acceleration_mm_s2| Limits {
+            acceleration_mm_s2,
+            ..LIMITS
+        },
+        |jerk_mm_s3| Limits {
+            jerk_mm_s3,
+            ..LIMITS
+        },
+        |turn_speed_deg_s| Limits {
+            turn_speed_deg_s,
+            ..LIMITS
+        },
+        |turn_acceleration_deg_s2| Limits {
+            turn_acceleration_deg_s2,
+            ..LIMITS
+        },
+        |turn_jerk_deg_s3| Limits {
+            turn_jerk_deg_s3,
+            ..LIMITS
+        },
+        |pivot_rate_rad_s| Limits {
+            pivot_rate_rad_s,
+            ..LIMITS
+        },
+        |stop_factor| Limits {
+            stop_factor,
+            ..LIMITS
+        },
+    ];
+    let (from, to) = (at(0.0, 0.0, 0.0), at(1.0, 0.0, 1.0));
+    for (i, with) in with.iter().enumerate() {
+        for bad in [0.0, -1.0, f64::NAN] {
+            let refusal = plan_line(1, from, to, &with(bad), &GEOMETRY);
+            assert_eq!(refusal, Err(Refusal::Limits), "limit {i}: {bad}");
+        }
+        assert!(
+            plan_line(1, from, to, &with(20_000.0), &GEOMETRY).is_ok(),
+            "limit {i}"
+        );
     }
+    let slow = Limits {
+        speed_mm_s: 1e-300,
+        ..LIMITS
+    };
+    assert_eq!(
+        plan_line(1, from, to, &slow, &GEOMETRY),
+        Err(Refusal::Limits)
+    );
     let far = [0, 0, (1_000_000_000 << 32) + 1];
     assert_eq!(
-        plan_line(1, [0; 3], far, &LIMITS, &GEOMETRY),
+        plan_line(1, from, far, &LIMITS, &GEOMETRY),
         Err(Refusal::TooManyTurns)
     );
+}
+
+proptest! {
+    #![proptest_config(settings(60))]
+
+    #[test]
+    fn a_profile_needs_positive_limits(good in 1e-9..1.0_f64, which in 0..3_usize, bad in prop_oneof![Just(0.0), Just(-0.1), Just(f64::NAN)]) {
+        let mut limits = [good; 3];
+        limits[which] = bad;
+        let [rate, acceleration, jerk] = limits;
+        prop_assert_eq!(Profile::new(&PathLimits { rate, acceleration, jerk }), None);
+    }
 }

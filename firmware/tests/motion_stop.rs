@@ -10,19 +10,12 @@ fn stop(of: &Plan, from: Position, at: u64, how: Stop) -> Option<Plan> {
     plan_stop(8, of, &at_rest(from), at, &LIMITS, &GEOMETRY, how)
 }
 
-/// A move, and a tick of it at which it can be stopped.
+/// A move, and a tick of it: at which it can be stopped, unless the plan comes to rest as soon.
 fn moves_under_way() -> impl Strategy<Value = (Position, Position, Plan, u64)> {
-    (moves(), 0.0..1.0_f64).prop_filter_map("no tick to stop at", |((from, to), fraction)| {
+    (moves(), 0.0..1.0_f64).prop_map(|((from, to), fraction)| {
         let plan = line(from, to);
-        let stoppable = plan.ticks() - plan.pieces.last()?.ticks;
-        (stoppable > 1).then(|| {
-            (
-                from,
-                to,
-                plan,
-                1 + (fraction * (stoppable - 1) as f64) as u64,
-            )
-        })
+        let at = (fraction * plan.ticks() as f64) as u64;
+        (from, to, plan, at)
     })
 }
 
@@ -33,17 +26,17 @@ proptest! {
     fn ends_at_rest_on_the_line_and_not_beyond_its_end((from, to, plan, at) in moves_under_way()) {
         let seam = plan.state_after(&at_rest(from), at);
         for how in [Stop::Smooth, Stop::Urgent] {
-            let stop = stop(&plan, from, at, how).expect("a tick to stop at");
+            let Some(stop) = stop(&plan, from, at, how) else { continue };
             let all = corners(&stop, seam);
             for axes in &all {
                 prop_assert!(off_line(axes, &from, &to) < 1.0, "{}", off_line(axes, &from, &to));
             }
             let last = all.last().unwrap();
             for i in 0..3 {
-                // What is dropped at the end: the fraction of a unit, and a speed under 1e-6 units a tick.
+                // What is dropped at the end: the fraction of a unit, and a speed under 2e-5 units a tick.
                 prop_assert_eq!(last[i].rounded(), stop.end[i]);
-                prop_assert!(last[i].velocity.unsigned_abs() < 1 << 20, "{} {}", i, last[i].velocity);
-                prop_assert!(last[i].acceleration.unsigned_abs() < 1 << 20);
+                prop_assert!(last[i].velocity.unsigned_abs() < 1 << 24, "{} {}", i, last[i].velocity);
+                prop_assert!(last[i].acceleration.unsigned_abs() < 1 << 24);
                 let (least, most) = (from[i].min(to[i]), from[i].max(to[i]));
                 prop_assert!((least - 1..=most + 1).contains(&stop.end[i]), "beyond by {}", (stop.end[i] - most).max(least - stop.end[i]));
             }
@@ -52,38 +45,52 @@ proptest! {
 
     #[test]
     fn smooth_keeps_the_limits((from, _, plan, at) in moves_under_way()) {
-        let stop = stop(&plan, from, at, Stop::Smooth).expect("a tick to stop at");
+        let Some(stop) = stop(&plan, from, at, Stop::Smooth) else { return Ok(()) };
         let worst = worst_shares(&stop, plan.state_after(&at_rest(from), at));
         prop_assert!(worst.iter().all(|&share| share <= SLACK), "{worst:?}");
     }
 
     #[test]
     fn urgent_keeps_its_own_and_is_not_longer((from, _, plan, at) in moves_under_way()) {
-        let urgent = stop(&plan, from, at, Stop::Urgent).expect("a tick to stop at");
-        let smooth = stop(&plan, from, at, Stop::Smooth).expect("a tick to stop at");
+        let Some(urgent) = stop(&plan, from, at, Stop::Urgent) else { return Ok(()) };
         let factor = LIMITS.stop_factor;
         let worst = worst_shares(&urgent, plan.state_after(&at_rest(from), at));
         prop_assert!(worst[0] <= SLACK && worst[1] <= factor * SLACK && worst[2] <= factor * factor * SLACK, "{worst:?}");
-        prop_assert!(urgent.ticks() <= smooth.ticks());
+        // Without a smooth stop the plan itself is as soon.
+        let smooth = stop(&plan, from, at, Stop::Smooth).map_or(plan.ticks() - at, |stop| stop.ticks());
+        prop_assert!(urgent.ticks() <= smooth);
     }
 
     #[test]
     fn pivots_keep_their_rate((from, _, plan, at) in moves_under_way()) {
         let seam = plan.state_after(&at_rest(from), at);
-        let stop = stop(&plan, from, at, Stop::Smooth).expect("a tick to stop at");
+        let Some(stop) = stop(&plan, from, at, Stop::Smooth) else { return Ok(()) };
         for axes in corners(&stop, seam) {
             prop_assert!(pivot_rate(&axes) <= LIMITS.pivot_rate_rad_s * SLACK);
         }
     }
 
     #[test]
-    fn none_only_in_the_last_segment((from, to) in moves(), fraction in 0.0..1.0_f64) {
+    fn comes_sooner_than_the_end_or_there_is_none((from, _, plan, at) in moves_under_way()) {
+        // Until its jerk turns against the motion, a line is on its way to higher speed.
+        let first = plan.pieces.first().map_or([0; 3], |piece| piece.jerk);
+        let against = |jerk: &[i64; 3]| (0..3).any(|i| jerk[i] != 0 && jerk[i].signum() == -first[i].signum());
+        let speeding_up: u64 = plan.pieces.iter().take_while(|piece| !against(&piece.jerk)).map(|piece| piece.ticks).sum();
+        let left = plan.ticks() - at;
+        for how in [Stop::Smooth, Stop::Urgent] {
+            match stop(&plan, from, at, how) {
+                Some(stop) => prop_assert!(stop.ticks() < left),
+                None => prop_assert!(at == 0 || at + 3 >= speeding_up, "none at {at}, {how:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn there_is_none_at_both_ends((from, to) in moves(), late in 0..1_000_u64) {
         let plan = line(from, to);
-        prop_assume!(!plan.pieces.is_empty());
-        let at = (fraction * plan.ticks() as f64) as u64;
-        let stoppable = plan.ticks() - plan.pieces.last().unwrap().ticks;
-        prop_assert_eq!(stop(&plan, from, at, Stop::Smooth).is_some(), (1..stoppable).contains(&at), "tick {} of {:?}", at, plan);
-        prop_assert_eq!(stop(&plan, from, plan.ticks() + at, Stop::Urgent), None);
+        for at in [0, plan.ticks(), plan.ticks() + late] {
+            prop_assert_eq!(stop(&plan, from, at, Stop::Urgent), None);
+        }
     }
 }
 

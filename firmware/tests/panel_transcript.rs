@@ -51,8 +51,8 @@ fn help_lists_what_is_there() {
         .collect();
     assert_eq!(
         names.join(" "),
-        "#3 #4 #5 #7 #24 *IDN? CSV? DEL ERR? FLC FLT? FRF FRF? HLT HLP? MOV MOV? MVR ONT? POS? SAI? SSN? STP SVO SVO? \
-         TMN? TMX? VER? VLS VLS? WAC"
+        "#3 #4 #5 #7 #24 *IDN? CCL? CST? CSV? DEL ERR? FLC FLT? FRF FRF? HLT HLP? HPA? LIM? MOV MOV? MVR NLM NLM? ONT? \
+         PLM PLM? POS? PUN? SAI? SPA SPA? SSL SSL? SSN? STP SVO SVO? TMN? TMX? TRA? TRS? VER? VLS VLS? VMO? WAC"
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {
         // With no parameters each is either understood or short of them, never unknown.
@@ -187,6 +187,28 @@ fn parameters_are_checked() {
         ("DEL", "24"),
         ("DEL -1", "17"),
         ("DEL 1e30", "17"),
+        ("NLM X", "24"),
+        ("SSL X 2", "17"),
+        ("VMO?", "24"),
+        ("TRA? X", "24"),
+        ("TRA? X 0 W 0", "17"),
+        ("SPA? X", "24"),
+        ("SPA? Q 0x0E000200", "15"),
+        ("SPA? 2 0x0E000200", "15"),
+        ("SPA? 1 0x07000601", "15"),
+        ("SPA? X 0x0E000201", "54"),
+        ("SPA? X speed", "25"),
+        ("SPA? X 0x", "25"),
+        ("SPA? X 0x100000000", "25"),
+        ("SPA", "24"),
+        ("SPA 1 0x54500100", "24"),
+        ("SPA 1 0x54500100 fast", "25"),
+        ("SPA 1 0x12345678 1", "54"),
+        ("SPA X 0x07000601 mm", "64"),
+        ("SPA 1 0x0E000200 1", "64"),
+        ("SPA 1 0x54500100 200.1", "17"),
+        ("SPA 1 0x54500100 0", "17"),
+        ("SPA 1 0x54500100 -1", "17"),
         ("WAC", "24"),
         ("WAC ONT?", "24"),
         ("WAC ONT? W", "24"),
@@ -348,4 +370,214 @@ fn referencing_leaves_servo_on_and_is_harmless_when_repeated() {
     assert_eq!(bench.error_after("FRF"), "0");
     assert_eq!(bench.say("SVO? X\n"), "X=1\n");
     assert_eq!(bench.tick.log, ["reference", "off", "on"]);
+}
+
+#[test]
+fn what_clients_ask_of_a_stage() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.say("CST? X W\n"), "X=XYT-1 \nW=XYT-1\n");
+    assert_eq!(
+        bench.say("PUN?\n"),
+        "X=mm \nY=mm \nZ=mm \nU=deg \nV=deg \nW=deg\n"
+    );
+    assert_eq!(bench.say("LIM? X\nTRS? X\nCCL?\n"), "X=0\nX=0\n0\n");
+}
+
+#[test]
+fn parameters_in_either_notation() {
+    let mut bench = Bench::new();
+    let all = "X 0x7000601=mm \n1 0xE000200=0.00005 \nW 0x7000601=deg\n";
+    assert_eq!(
+        bench.say("SPA? X 0x07000601 1 234881536 w 0x7000601\n"),
+        all
+    );
+    assert_eq!(
+        bench.say("SPA? X 0xe000200 1 0x16000201 Y 0X19001900\n"),
+        "X 0xE000200=0.00005 \n1 0x16000201=0 \nY 0x19001900=0\n"
+    );
+    let nine = " 1 0xE000200".repeat(9);
+    assert_eq!(bench.error_after(&format!("SPA?{nine}")), "24");
+}
+
+#[test]
+fn every_parameter_is_listed_once_and_answered() {
+    let mut bench = Bench::new();
+    let help = bench.say("HPA?\n");
+    let lines: Vec<_> = help.split(" \n").collect();
+    assert_eq!(*lines.last().unwrap(), "end of help\n");
+    let mut ids = Vec::new();
+    for line in &lines[1..lines.len() - 1] {
+        let (id, rest) = line.split_once('=').unwrap();
+        let columns: Vec<_> = rest.split('\t').collect();
+        let ["", "0", items, kind, _, text] = columns[..] else {
+            panic!("{line:?}");
+        };
+        assert!(!text.contains('=') && !id.contains(' '), "{line:?}");
+        let item = if items == "6" { "Y" } else { "1" };
+        let answer = bench.say(&format!("SPA? {item} {id}\n"));
+        let value = answer.strip_prefix(&format!("{item} {id}=")).unwrap();
+        let is_number = value.trim_end().parse::<f64>().is_ok();
+        assert_eq!(is_number, kind != "CHAR", "{line:?}: {value}");
+        let is_whole = value.trim_end().parse::<i64>().is_ok();
+        assert!(is_whole || kind != "INT", "{line:?}: {value}");
+        ids.push(id.to_owned());
+    }
+    let count = ids.len();
+    ids.sort();
+    ids.dedup();
+    assert_eq!(ids.len(), count);
+    // Without parameters all are answered: those of axes six times.
+    assert_eq!(bench.say("SPA?\n").matches('=').count(), count + 5);
+}
+
+#[test]
+fn limits_of_motion_are_lowered_and_raised_again() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("VLS 150"), "0");
+    assert_eq!(
+        bench.error_after("SPA 1 0x54500100 120 1 0x54500103 90"),
+        "0"
+    );
+    assert_eq!(
+        bench.say("SPA? 1 0x54500100 1 0x54500103\nVLS?\n"),
+        "1 0x54500100=120 \n1 0x54500103=90\n120\n"
+    );
+    assert_eq!(bench.error_after("VLS 121"), "8");
+    // One out of range: nothing changes.
+    assert_eq!(
+        bench.error_after("SPA 1 0x54500100 50 1 0x54500101 4001"),
+        "17"
+    );
+    assert_eq!(bench.say("SPA? 1 0x54500100\n"), "1 0x54500100=120\n");
+    assert_eq!(bench.say("MOV W 20\n"), "");
+    assert_eq!(bench.error_after("SPA 1 0x54500100 200"), "53");
+    bench.run_to_rest();
+    assert_eq!(bench.error_after("SPA 1 0x54500100 200"), "0");
+    assert_eq!(bench.say("VLS?\n"), "120\n");
+    assert_eq!(bench.error_after("VLS 200"), "0");
+}
+
+#[test]
+fn lower_limits_make_slower_moves() {
+    let ticks = |limit: &str| {
+        let mut bench = Bench::ready();
+        assert_eq!(bench.error_after(limit), "0");
+        bench.say("MOV X 20\n");
+        let start = bench.tick.now.tick;
+        bench.run_to_rest();
+        bench.tick.now.tick - start
+    };
+    let full = ticks("");
+    for lower in [
+        "SPA 1 0x54500100 20",
+        "SPA 1 0x54500101 400",
+        "SPA 1 0x54500102 4000",
+    ] {
+        assert!(ticks(lower) > full + full / 2, "{lower}");
+    }
+}
+
+#[test]
+fn soft_limits() {
+    let mut bench = Bench::ready();
+    assert_eq!(
+        bench.say("NLM? X Z\nPLM? W\nSSL? X\n"),
+        "X=-80 \nZ=0\nW=3600000\nX=1\n"
+    );
+    assert_eq!(bench.error_after("NLM X -5 W -90"), "0");
+    assert_eq!(bench.error_after("PLM X 6"), "0");
+    assert_eq!(bench.say("NLM? X W\nPLM? X\n"), "X=-5 \nW=-90\nX=6\n");
+    for (line, error) in [
+        ("MOV X -5.1", "7"),
+        ("MOV X 6.1", "7"),
+        ("MVR W -90.1", "7"),
+        ("NLM X -80.1", "27"),
+        ("PLM X 81", "27"),
+        ("NLM X 7", "27"),
+        // The target would be out of them.
+        ("NLM X 1", "27"),
+        ("NLM Z -1", "27"),
+        ("MOV X 6", "0"),
+        ("SSL X 0", "0"),
+        ("MOV X 10", "0"),
+        ("SSL X 1", "27"),
+        ("MOV X 0", "0"),
+        ("SSL X 1", "0"),
+        ("MOV X 6.1", "7"),
+    ] {
+        assert_eq!(bench.error_after(line), error, "{line}");
+    }
+    assert_eq!(bench.say("TMN? X\nMOV? X\n"), "X=-80\nX=0\n");
+}
+
+#[test]
+fn vmo_and_tra_answer_what_a_move_meets() {
+    let mut bench = Bench::ready();
+    for (line, answer) in [
+        ("VMO? X 60 Y 50", "1"),
+        ("VMO? X 60 Y 60", "0"),
+        ("VMO? X 80", "1"),
+        ("VMO? Z 0.1", "0"),
+        ("VMO? W 3600000.1", "0"),
+        ("TRA? X 1", "X=80"),
+        ("TRA? X -0.5", "X=-80"),
+        ("TRA? Z 1", "Z=0"),
+        ("TRA? W -3", "W=-3600000"),
+        ("TRA? X 3 Y 4 W 0", "X=48 \nY=64 \nW=0"),
+    ] {
+        assert_eq!(
+            bench.say(&format!("{line}\n")),
+            format!("{answer}\n"),
+            "{line}"
+        );
+    }
+    // From where it stands, and as far as soft limits go.
+    bench.say("MOV X 48\n");
+    bench.run_to_rest();
+    assert_eq!(bench.say("TRA? Y -2\n"), "Y=-64\n");
+    assert_eq!(bench.say("VMO? Y 64.1\nVMO? Y -64\n"), "0\n1\n");
+    assert_eq!(bench.error_after("NLM Y -10"), "0");
+    assert_eq!(
+        bench.say("TRA? Y -2\nVMO? Y -11\nVMO? Y -10\n"),
+        "Y=-10\n0\n1\n"
+    );
+    // On the line, not in its own way to the limit.
+    assert_eq!(bench.say("TRA? X -3 Y -4\n"), "X=40.5 \nY=-10\n");
+    assert_eq!(bench.say("ERR?\n"), "0\n");
+}
+
+/// The answer of `TRA?` is taken by `MOV`, and a hair more is not, in any direction and from anywhere.
+#[test]
+fn tra_is_exact() {
+    use proptest::prelude::*;
+    use proptest::test_runner::{Config, RngSeed, TestRunner};
+    let mut runner = TestRunner::new(Config {
+        cases: 300,
+        rng_seed: RngSeed::Fixed(20_261_121),
+        failure_persistence: None,
+        ..Config::default()
+    });
+    let disk = (0.0..79.9_f64, 0.0..6.3_f64);
+    runner
+        .run(&(disk, 0.0..6.3_f64), |((radius, at), towards)| {
+            let mut bench = Bench::ready();
+            let [x, y] = [radius * at.cos(), radius * at.sin()];
+            let [dx, dy] = [towards.cos(), towards.sin()];
+            bench.say(&format!("MOV X {x} Y {y}\n"));
+            let answer = bench.say(&format!("TRA? X {dx} Y {dy}\n"));
+            let end: Vec<f64> = (answer.lines())
+                .map(|line| line.trim_end().split_once('=').unwrap().1.parse().unwrap())
+                .collect();
+            // Where the line meets the rim at its flattest, a twentieth of this hair points outwards: five times the slack
+            // that a target on the rim itself has.
+            let more = [end[0] + dx * 1e-5, end[1] + dy * 1e-5];
+            let ask =
+                |bench: &mut Bench, [x, y]: [f64; 2]| bench.say(&format!("VMO? X {x} Y {y}\n"));
+            prop_assert_eq!(ask(&mut bench, [end[0], end[1]]), "1\n");
+            prop_assert_eq!(ask(&mut bench, more), "0\n");
+            let turned = (end[0] - x) * dy - (end[1] - y) * dx;
+            prop_assert!(turned.abs() < 1e-9, "off the line by {turned} mm");
+            Ok(())
+        })
+        .unwrap();
 }

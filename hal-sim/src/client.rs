@@ -1,6 +1,6 @@
 //! A client that runs a script over the command interface, as any client would: a line, then `ERR?`, then the next line.
 
-use crate::script::{Line, Script};
+use crate::script::{Line, Script, single_byte};
 
 /// Runs a script. The same on the host, where bytes go straight to the interpreter, and on the emulated chip, where they go
 /// over its USART.
@@ -113,7 +113,11 @@ impl Client {
             return (Vec::new(), Some(Event::Finished));
         };
         self.next += 1;
-        let bytes = format!("{}\nERR?\n", line.text).into_bytes();
+        let mut bytes = match single_byte(&line.text) {
+            Some(byte) => vec![byte],
+            None => line.text.clone().into_bytes(),
+        };
+        bytes.extend(b"\nERR?\n");
         let missing = 1 + usize::from(asks(&line.text));
         self.pending = Some(Pending {
             line,
@@ -130,7 +134,7 @@ fn first_word(text: &str) -> &str {
 
 fn asks(text: &str) -> bool {
     let word = first_word(text);
-    word.ends_with('?') || ["#4", "#5", "#7"].contains(&word)
+    word.ends_with('?') || ["#5", "#7"].contains(&word)
 }
 
 fn stops(text: &str) -> bool {

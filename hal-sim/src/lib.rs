@@ -11,3 +11,5 @@ pub mod plant;
 pub mod report;
 pub mod run;
 pub mod script;
+#[cfg(unix)]
+pub mod serve;

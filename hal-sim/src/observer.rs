@@ -94,9 +94,7 @@ impl Observer {
             pivot_error_lsb: [0, 1, 2].map(|i| {
                 (tick.pivots[i].units() - tick.pivot_setpoints[i].units()) as f64 / PER_COUNT
             }),
-            duty: tick
-                .duty
-                .map(|duty| f64::from(duty.0) / self.pwm_counts),
+            duty: tick.duty.map(|duty| f64::from(duty.0) / self.pwm_counts),
             separation_deg: separation_rad(pivots.map(|units| units / TURN * TAU)).to_degrees(),
         }
     }

@@ -95,6 +95,13 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
 #[must_use]
 pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
     let stage = stage_parameters(options);
+    let parameters = controller_parameters(options);
+    simulate(script, &parameters, &stage, options)
+}
+
+/// The controller's parameters, as the imperfections that are left make them.
+#[must_use]
+pub fn controller_parameters(options: &RunOptions) -> Parameters {
     let mut parameters = Parameters::REFERENCE;
     if !options.imperfections.pwm_quantisation {
         parameters.drive.pwm_counts = FINE_PWM;
@@ -103,7 +110,7 @@ pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
         // What is not there must not be made up for: that would be positive feedback around rest.
         parameters.drive.dead_time_s = 0.0;
     }
-    simulate(script, &parameters, &stage, options)
+    parameters
 }
 
 /// Ticks between two updates of the progress bar.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use firmware::panel::{ErrorCode, parse};
+use firmware::panel::{ErrorCode, ParseError, parse};
 
 /// A line to be sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl Script {
                 continue;
             }
             let number = index + 1;
-            parse(text.as_bytes()).map_err(|error| ScriptError::Line {
+            check(text).map_err(|error| ScriptError::Line {
                 name: name.to_owned(),
                 line: number,
                 column: raw.len() - raw.trim_start().len() + error.column,
@@ -126,6 +126,23 @@ impl Script {
     }
 }
 
+/// Commands that are a single byte on the wire, in a script `#` and the byte's number.
+const SINGLE_BYTES: [u8; 3] = [5, 7, 24];
+
+/// The byte that a line like `#5` stands for.
+#[must_use]
+pub fn single_byte(text: &str) -> Option<u8> {
+    let byte = text.strip_prefix('#')?.parse().ok()?;
+    SINGLE_BYTES.contains(&byte).then_some(byte)
+}
+
+fn check(text: &str) -> Result<(), ParseError> {
+    match single_byte(text) {
+        Some(_) => Ok(()),
+        None => parse(text.as_bytes()).map(|_| ()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,9 +158,9 @@ mod tests {
         let ScriptError::Line { line, column, .. } = &error else {
             panic!("{error}");
         };
-        assert_eq!((*line, *column), (4, 9), "{error}");
+        assert_eq!((*line, *column), (4, 10), "{error}");
         assert!(
-            error.to_string().starts_with("tour.gcs:4:9: expected "),
+            error.to_string().starts_with("tour.gcs:4:10: expected "),
             "{error}"
         );
     }

@@ -116,7 +116,7 @@ fn silent_encoders_leave_the_bridges_asleep_and_the_reference_refused() {
     run(stage, move |period| {
         assert!(quiet(&period.pins));
         match period.tick {
-            100 => period.send(b"FRF X\nERR?\nSVO X 1\nERR?\n"),
+            100 => period.send(b"FRF X\nERR?\nSVO X 1\nERR?\nFLT?\n"),
             2_000 => {
                 send.send((period.received(), period.pins))
                     .expect("the test waits");
@@ -129,6 +129,8 @@ fn silent_encoders_leave_the_bridges_asleep_and_the_reference_refused() {
     let (answers, pins) = receive.recv().expect("the last period");
     let answers = String::from_utf8_lossy(&answers).into_owned();
     assert!(answers.starts_with("45\n"), "{answers:?}");
+    let says_so = answers.contains("encoder does not answer, pivot 1");
+    assert!(says_so, "{answers:?}");
     assert_eq!(pins, BRIDGES_ASLEEP);
 }
 
@@ -142,8 +144,10 @@ fn a_halted_loop_is_reset_by_the_watchdog_which_the_image_tells() {
                 let at = period.tick_at_ns();
                 period.at(at, Action::HaltLoop);
             }
-            (1, 100) => {
-                send.send((period.trace(), period.pins))
+            (1, 100) => period.send(b"FLT?\n"),
+            (1, 200) => {
+                let answer = String::from_utf8_lossy(&period.received()).into_owned();
+                send.send((period.trace(), period.pins, answer))
                     .expect("the test waits");
                 return Break(());
             }
@@ -151,8 +155,12 @@ fn a_halted_loop_is_reset_by_the_watchdog_which_the_image_tells() {
         }
         Continue(())
     });
-    let (trace, pins) = receive.recv().expect("the last period");
+    let (trace, pins, answer) = receive.recv().expect("the last period");
     assert_eq!(trace.reset_cause, WATCHDOG);
+    assert_eq!(
+        answer,
+        "0 no fault, started by the watchdog: the control loop stood still\n"
+    );
     assert_eq!(pins, BRIDGES_ASLEEP);
     assert_eq!(outcome.resets.len(), 1);
     assert_eq!(outcome.resets[0].cause, ResetCause::Model("IWDG"));

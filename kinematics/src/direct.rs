@@ -66,8 +66,8 @@ impl<T: Scalar> Complex<T> {
 
     fn times(self, other: Self) -> Self {
         Self {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
+            re: T::sum_of_products((self.re, other.re), (-self.im, other.im)),
+            im: T::sum_of_products((self.re, other.im), (self.im, other.re)),
         }
     }
 
@@ -75,6 +75,13 @@ impl<T: Scalar> Complex<T> {
         Self {
             re: self.re * factor,
             im: self.im * factor,
+        }
+    }
+
+    fn half(self) -> Self {
+        Self {
+            re: self.re.half(),
+            im: self.im.half(),
         }
     }
 
@@ -96,7 +103,7 @@ pub fn direct<T: Scalar>(pivots: &[T::Angle; 3]) -> Result<Pose<T>, DirectError>
     }
     let [z1, z2, z3] = pivots.map(Complex::<T>::on_track);
     // S1 and S2 differ only in the sign of the part across z2 - z3.
-    let along = z1.minus(z2.plus(z3).scaled(T::HALF));
+    let along = z1.minus(z2.plus(z3).half());
     let across = Complex {
         re: z2.im - z3.im,
         im: z3.re - z2.re,
@@ -110,7 +117,7 @@ pub fn direct<T: Scalar>(pivots: &[T::Angle; 3]) -> Result<Pose<T>, DirectError>
     let u = Complex { re, im };
     // rho_1 + w rho_2 + conj(w) rho_3, the guides' lengths without their mean.
     let imbalance = u.times(s2.conjugate());
-    check_lengths(s1.re * u.re + s1.im * u.im, imbalance)?;
+    check_lengths(T::sum_of_products((s1.re, u.re), (s1.im, u.im)), imbalance)?;
 
     // 3 C: with every length positive the centre is inside the track, so this is below 3.
     let centre = s0.minus(u.times(imbalance)).scaled(T::THIRD);
@@ -126,8 +133,8 @@ pub fn direct<T: Scalar>(pivots: &[T::Angle; 3]) -> Result<Pose<T>, DirectError>
 /// Every guide's length is positive. `total` is their sum |S1|, and `3 rho_i = total + 2 Re(conj(w)^(i-1) imbalance)`;
 /// compared, not summed, since the sum may leave the range of a fixed-point number.
 fn check_lengths<T: Scalar>(total: T, imbalance: Complex<T>) -> Result<(), DirectError> {
-    let half_total = total * T::HALF;
-    let (half_re, wide_im) = (imbalance.re * T::HALF, imbalance.im * T::SIN_60);
+    let half_total = total.half();
+    let (half_re, wide_im) = (imbalance.re.half(), imbalance.im * T::SIN_60);
     let lacking = [-imbalance.re, half_re - wide_im, half_re + wide_im];
     match lacking.iter().position(|&lack| lack >= half_total) {
         Some(index) => Err(DirectError::ReversedGuide { guide: index + 1 }),

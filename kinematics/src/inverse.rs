@@ -64,6 +64,7 @@ pub(crate) struct Meeting<T: Scalar> {
 }
 
 /// Where the guides of a pose meet the track.
+#[inline]
 pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], InverseError> {
     if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
         return Err(InverseError::NotFinite);
@@ -82,13 +83,13 @@ pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], I
 /// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay small.
 fn inside_track<T: Scalar>(x: T, y: T) -> bool {
     let within = |coordinate: T| -T::ONE < coordinate && coordinate < T::ONE;
-    within(x) && within(y) && x * x + y * y < T::ONE
+    within(x) && within(y) && T::sum_of_products((x, x), (y, y)) < T::ONE
 }
 
 /// (cos, sin) of `theta - 30 deg`, `theta + 90 deg` and `theta + 210 deg`, from one sine and cosine.
 fn guide_directions<T: Scalar>(theta: T::Angle) -> [(T, T); 3] {
     let (sin, cos) = T::sin_cos(theta);
-    let (sin_half, cos_half) = (sin * T::HALF, cos * T::HALF);
+    let (sin_half, cos_half) = (sin.half(), cos.half());
     let (sin_wide, cos_wide) = (sin * T::SIN_60, cos * T::SIN_60);
     [
         (cos_wide + sin_half, sin_wide - cos_half),
@@ -98,8 +99,9 @@ fn guide_directions<T: Scalar>(theta: T::Angle) -> [(T, T); 3] {
 }
 
 /// Where the guide of this direction (cos, sin) meets the track.
+#[inline(always)]
 fn meet_one<T: Scalar>(pose: &Pose<T>, (cos, sin): (T, T)) -> Result<Meeting<T>, InverseError> {
-    let offset = pose.y * cos - pose.x * sin;
+    let offset = T::sum_of_products((pose.y, cos), (-pose.x, sin));
     // A centre inside the track by less than a rounding can still give an offset of one.
     let (swing, cosine) = offset.asin_cos().ok_or(InverseError::OutsideTrack)?;
     let guide = Guide {
@@ -107,7 +109,7 @@ fn meet_one<T: Scalar>(pose: &Pose<T>, (cos, sin): (T, T)) -> Result<Meeting<T>,
         sin,
         offset,
         cosine,
-        projection: pose.x * cos + pose.y * sin,
+        projection: T::sum_of_products((pose.x, cos), (pose.y, sin)),
     };
     Ok(Meeting { swing, guide })
 }

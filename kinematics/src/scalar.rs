@@ -41,6 +41,18 @@ pub trait Scalar:
     /// 120 deg.
     const ANGLE_120: Self::Angle;
 
+    /// Half of this number.
+    #[inline]
+    fn half(self) -> Self {
+        self * Self::HALF
+    }
+
+    /// `a b + c d`: most products of the position equations come in pairs, which a fixed-point number sums before it rounds.
+    #[inline]
+    fn sum_of_products((a, b): (Self, Self), (c, d): (Self, Self)) -> Self {
+        a * b + c * d
+    }
+
     /// Sine and cosine of `angle`, in this order.
     fn sin_cos(angle: Self::Angle) -> (Self, Self);
 

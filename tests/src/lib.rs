@@ -1,1 +1,199 @@
 //! What crosses crates: long scenarios, real clients, target runs.
+//!
+//! [`Bench`] is the stage as a user has it, one command connection to a controller that runs the simulated machine through
+//! its own drivers, with a hand on every part that can be broken.
+
+use firmware::controller::Outputs;
+use firmware::fault::{Fault, FaultKind};
+use firmware::link::{Link, Mode, PanelLink, TickLink};
+use firmware::panel::{Panel, Session};
+use firmware::parameters::Parameters;
+use firmware::recorder::Sample;
+use hal_sim::devices::StageParameters;
+use hal_sim::host::Host;
+use hal_sim::observer::TickRecord;
+use hal_sim::run::{IDENTITY, RunOptions, stage_parameters};
+
+/// Encoder counts in 2^-32 turns.
+const UNITS_PER_COUNT: i64 = 64;
+/// Ticks that anything may take before a test gives up: 200 seconds of the stage's time.
+const PATIENCE: u32 = 4_000_000;
+
+/// A simulated stage, its controller, and a connection to it.
+pub struct Bench {
+    /// Stage and controller.
+    pub host: Host,
+    /// What the last tick put out.
+    pub outputs: Outputs,
+    panel: Panel,
+    session: Session,
+    tick_link: TickLink<'static>,
+    panel_link: PanelLink<'static>,
+    record: TickRecord,
+    answers: Vec<u8>,
+    /// Largest following error of a pivot since [`Bench::forget_errors`], encoder counts.
+    worst_error_counts: u64,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self::new(&stage_parameters(&RunOptions::default()))
+    }
+}
+
+impl Bench {
+    /// A stage that has just been switched on.
+    #[must_use]
+    pub fn new(stage: &StageParameters) -> Self {
+        // The queues live as long as the process: a test has a few of them.
+        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let parameters = Parameters::REFERENCE;
+        Self {
+            host: Host::new(stage, &parameters),
+            outputs: Outputs::default(),
+            panel: Panel::new(&parameters, IDENTITY),
+            session: Session::new(),
+            tick_link,
+            panel_link,
+            record: TickRecord::default(),
+            answers: Vec::new(),
+            worst_error_counts: 0,
+        }
+    }
+
+    /// Referenced, holding and settled.
+    ///
+    /// # Panics
+    /// When referencing fails.
+    #[must_use]
+    pub fn ready() -> Self {
+        let mut bench = Self::default();
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        bench
+    }
+
+    /// One tick, and one turn of the command side.
+    pub fn tick(&mut self) {
+        self.outputs = self.host.tick(&mut self.tick_link, &mut self.record);
+        if matches!(self.mode(), Mode::Holding | Mode::Moving) {
+            self.worst_error_counts = self.worst_error_counts.max(self.error_counts());
+        }
+        // Writing to a vector does not fail.
+        let _ = (self.panel).service(&mut self.session, &mut self.panel_link, &mut self.answers);
+    }
+
+    /// So many ticks.
+    pub fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.tick();
+        }
+    }
+
+    /// Ticks until `done`.
+    ///
+    /// # Panics
+    /// When that takes too long.
+    pub fn run_until(&mut self, what: &str, mut done: impl FnMut(&Self) -> bool) {
+        for _ in 0..PATIENCE {
+            if done(self) {
+                return;
+            }
+            self.tick();
+        }
+        panic!("{what}: not after {PATIENCE} ticks; {:?}", self.fault());
+    }
+
+    /// Sends lines and runs until they are carried out; their answers.
+    ///
+    /// # Panics
+    /// When that takes too long.
+    pub fn say(&mut self, text: &str) -> String {
+        let mut bytes = text.as_bytes();
+        for _ in 0..PATIENCE {
+            let taken = self.session.receive(bytes);
+            bytes = &bytes[taken..];
+            self.tick();
+            if bytes.is_empty() && self.session.is_idle() {
+                return String::from_utf8_lossy(&std::mem::take(&mut self.answers)).into_owned();
+            }
+        }
+        panic!("{text:?} is not done after {PATIENCE} ticks");
+    }
+
+    /// The error that a line leaves.
+    pub fn error_after(&mut self, line: &str) -> String {
+        self.say(&format!("{line}\nERR?\n")).trim_end().to_owned()
+    }
+
+    /// The number that a query of one axis answers.
+    ///
+    /// # Panics
+    /// When it is no number.
+    pub fn value(&mut self, query: &str) -> f64 {
+        let answer = self.say(&format!("{query}\n"));
+        let number = answer.trim_end().split('=').nth(1);
+        number
+            .and_then(|number| number.parse().ok())
+            .unwrap_or_else(|| panic!("{query} answers {answer:?}"))
+    }
+
+    /// Runs until the stage has settled.
+    pub fn settle(&mut self) {
+        self.say("WAC ONT? W = 1\n");
+    }
+
+    /// What the last tick computed.
+    ///
+    /// # Panics
+    /// Before the first tick.
+    #[must_use]
+    pub fn sample(&self) -> &Sample {
+        self.record.sample.as_ref().expect("a tick has run")
+    }
+
+    /// State of the supervisor.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.record.sample.as_ref().map_or(Mode::Off, |s| s.mode)
+    }
+
+    /// The latched fault.
+    #[must_use]
+    pub fn fault(&self) -> Option<Fault> {
+        self.host.fault()
+    }
+
+    /// Its kind.
+    #[must_use]
+    pub fn fault_kind(&self) -> Option<FaultKind> {
+        self.fault().map(|fault| fault.kind)
+    }
+
+    /// Hash of all ticks so far.
+    #[must_use]
+    pub fn hash(&self) -> u32 {
+        self.record.hash.0
+    }
+
+    /// Starts a new peak of the following error.
+    pub fn forget_errors(&mut self) {
+        self.worst_error_counts = 0;
+    }
+
+    /// Largest following error of a pivot (measured, encoder counts) since then.
+    #[must_use]
+    pub fn worst_error_counts(&self) -> u64 {
+        self.worst_error_counts
+    }
+
+    fn error_counts(&self) -> u64 {
+        let sample = self.sample();
+        let error = |i: usize| {
+            (sample.pivots[i] - sample.pivot_setpoints[i])
+                .units()
+                .unsigned_abs()
+        };
+        (0..3).map(error).max().unwrap_or_default() / UNITS_PER_COUNT.unsigned_abs()
+    }
+}

@@ -9,7 +9,6 @@
 //! The acknowledge is as long as the encoder needs, so the frame is aligned on the bits themselves. The CRC (polynomial 0x43,
 //! start value 0, sent inverted) covers position and flags.
 
-use crc::{Algorithm, Crc, Table};
 use embedded_hal::spi::SpiBus;
 
 /// Position bits.
@@ -18,18 +17,46 @@ pub const POSITION_BITS: u32 = 26;
 const PAYLOAD_BITS: u32 = POSITION_BITS + 2 + 6;
 /// Start bit and the zero bit after it.
 const HEAD_BITS: u32 = 2;
+/// The zero bit, where the start bit is bit 31.
+const ZERO_BIT: u32 = 1 << 30;
 
-const CRC_6: Algorithm<u8> = Algorithm {
-    width: 6,
-    poly: 0x03,
-    init: 0,
-    refin: false,
-    refout: false,
-    xorout: 0x3F,
-    check: 0,
-    residue: 0,
-};
-static CRC: Crc<u8, Table<1>> = Crc::<u8, Table<1>>::new(&CRC_6);
+/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the CRC,
+/// not inverted, of the seven bits n at bit 7 k.
+static CRC_OF_SEVEN_BITS: [u32; 128] = crc_table();
+const CRC_MASK: u32 = 0x3F;
+const CRC_POLYNOMIAL: u32 = 0x43;
+
+const fn crc_table() -> [u32; 128] {
+    let mut table = [0; 128];
+    let mut bits = 0;
+    while bits < 128 {
+        let mut group = 0;
+        let mut remainder = (bits as u32) << 6;
+        while group < 4 {
+            // Seven steps of division bring the remainder to where the group above has its own.
+            let mut bit = 13;
+            while bit > 6 {
+                bit -= 1;
+                if remainder >> bit & 1 == 1 {
+                    remainder ^= CRC_POLYNOMIAL << (bit - 6);
+                }
+            }
+            table[bits] |= remainder << (8 * group);
+            remainder <<= 7;
+            group += 1;
+        }
+        bits += 1;
+    }
+    table
+}
+
+/// CRC of position and flags, not inverted, in the lowest six bits; what lies above them means nothing.
+#[inline]
+fn crc(covered: u32) -> u32 {
+    let part =
+        |group: u32| CRC_OF_SEVEN_BITS[(covered >> (7 * group) & 0x7F) as usize] >> (8 * group);
+    part(0) ^ part(1) ^ part(2) ^ part(3)
+}
 
 /// The eight bytes of a transfer, as they came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,23 +87,27 @@ pub enum FrameError {
     Error,
 }
 
-/// Decodes one frame.
+/// Decodes one frame. A frame that is whole starts in the first 28 bits, so the chip looks for it in one register.
 #[inline]
 pub fn decode(frame: &RawFrame) -> Result<Reading, FrameError> {
-    let bits = u64::from_be_bytes(frame.0);
-    let idle = bits.leading_ones();
-    let answer = bits.wrapping_shl(idle);
-    let acknowledge = answer.leading_zeros();
+    let [a, b, c, d, e, f, g, h] = frame.0;
+    let (first, second) = (
+        u32::from_be_bytes([a, b, c, d]),
+        u32::from_be_bytes([e, f, g, h]),
+    );
+    let idle = first.leading_ones();
+    let acknowledge = first.wrapping_shl(idle).leading_zeros();
+    // At least one: the first bit is either idle or acknowledge.
     let start = idle + acknowledge;
-    if start + HEAD_BITS + PAYLOAD_BITS > 64 {
+    if start > 64 - HEAD_BITS - PAYLOAD_BITS {
         return Err(FrameError::Silent);
     }
-    let head = bits.wrapping_shl(start);
-    let payload = head.wrapping_shl(HEAD_BITS) >> (64 - PAYLOAD_BITS);
-    let covered = (payload >> 6) as u32;
-    let zero_bit_set = head & (1 << 62) != 0;
-    // Four zero bits in front make whole bytes and, with start value 0, do not change the CRC.
-    if zero_bit_set || CRC.checksum(&covered.to_be_bytes()) != payload as u8 & 0x3F {
+    // Start bit, zero bit, position, flags and two bits of the CRC; then its other four.
+    let head = first.wrapping_shl(start) | second.wrapping_shr(32 - start);
+    let tail = second.wrapping_shl(start) >> 28;
+    let covered = head << HEAD_BITS >> 4;
+    let sent = (head << 4 | tail) & CRC_MASK;
+    if head & ZERO_BIT != 0 || crc(covered) & CRC_MASK != sent ^ CRC_MASK {
         return Err(FrameError::Crc);
     }
     if covered & 0b10 == 0 {

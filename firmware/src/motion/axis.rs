@@ -13,6 +13,10 @@ pub const SUB_BITS: u32 = 40;
 /// Every jerk is a multiple of this, so that the halves and sixths of the cubic are whole numbers.
 pub const JERK_STEP: i64 = 6;
 
+/// Times 3 this is 1, modulo 2^64: a multiple of 3 times it is a third of it, without the library call that a division of
+/// 64 bits is on the chip.
+const INVERSE_OF_3: i64 = 0xAAAA_AAAA_AAAA_AAAB_u64 as i64;
+
 /// Position, velocity and acceleration of one axis at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Axis {
@@ -38,16 +42,18 @@ impl Axis {
     /// besides; see [`Plan::nudge`](super::Plan::nudge).
     #[inline]
     pub fn advance(&mut self, jerk: i64, nudge: i64) {
+        // Both are even, so that the shifts are the halves; the sixth is exact as well.
+        let half_jerk = jerk >> 1;
         let step = self
             .velocity
-            .wrapping_add(self.acceleration / 2)
-            .wrapping_add(jerk / JERK_STEP)
+            .wrapping_add(self.acceleration >> 1)
+            .wrapping_add(half_jerk.wrapping_mul(INVERSE_OF_3))
             .wrapping_add(nudge);
         self.position = self.position.wrapping_add(i128::from(step));
         self.velocity = self
             .velocity
             .wrapping_add(self.acceleration)
-            .wrapping_add(jerk / 2);
+            .wrapping_add(half_jerk);
         self.acceleration = self.acceleration.wrapping_add(jerk);
     }
 

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::plan::{Piece, Plan, Position, Start};
+use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
 
 /// Where the stage should be at a tick.
@@ -45,15 +46,20 @@ impl Scale {
 }
 
 /// The motion of the setpoint: at rest, or following a plan.
+///
+/// A plan is 900 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
     axes: [Axis; 3],
-    plan: Option<Plan>,
-    next: Option<Plan>,
+    slots: [Plan; 2],
+    /// Slot of the plan under way, or of the last one.
+    current: usize,
+    moving: bool,
+    /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
+    splice: Option<u64>,
     piece: usize,
     left: u64,
     done: u64,
-    last: u32,
 }
 
 /// A plan does not start where the motion is (any more); nothing has changed.
@@ -64,30 +70,36 @@ impl Motion {
     /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
     pub fn rest_at(&mut self, position: Position) {
         self.axes = position.map(Axis::at_rest);
-        self.plan = None;
-        self.next = None;
+        self.moving = false;
+        self.splice = None;
         self.done = 0;
     }
 
     /// Whether a plan is under way.
     #[inline]
     pub fn moving(&self) -> bool {
-        self.plan.is_some()
+        self.moving
     }
 
     /// Identity of the plan under way or last ended, and its ticks done.
+    #[inline]
     pub fn progress(&self) -> (u32, u64) {
-        (self.last, self.done)
+        (self.slots[self.current & 1].id, self.done)
     }
 
     /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
-    pub fn accept(&mut self, plan: Plan) -> Result<(), Stale> {
-        match (&self.plan, plan.start) {
-            (None, Start::Rest(from)) if from == self.position() => self.begin(plan),
-            (Some(current), Start::Splice { plan: id, tick })
-                if current.id == id && tick >= self.done =>
+    pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
+        let plan = plan.borrow();
+        match plan.start {
+            Start::Rest(from) if !self.moving && same(&from, &self.position()) => {
+                self.keep(plan);
+                self.begin();
+            }
+            Start::Splice { plan: id, tick }
+                if self.moving && self.progress().0 == id && tick >= self.done =>
             {
-                self.next = Some(plan);
+                self.keep(plan);
+                self.splice = Some(tick);
             }
             _ => return Err(Stale),
         }
@@ -97,13 +109,13 @@ impl Motion {
     /// One tick on. Bounded: at most one change of piece or plan.
     #[inline]
     pub fn advance(&mut self) {
-        if let Some(Start::Splice { tick, .. }) = self.next.as_ref().map(|next| next.start)
-            && tick == self.done
-            && let Some(next) = self.next.take()
-        {
-            self.begin(next);
+        if !self.moving {
+            return;
         }
-        let Some(plan) = &self.plan else { return };
+        if self.splice == Some(self.done) {
+            self.begin();
+        }
+        let plan = &self.slots[self.current & 1];
         if let Some(Piece { jerk, .. }) = plan.pieces.get(self.piece) {
             for (axis, (jerk, nudge)) in self.axes.iter_mut().zip(jerk.iter().zip(&plan.nudge)) {
                 axis.advance(*jerk, *nudge);
@@ -154,19 +166,39 @@ impl Motion {
         ]
     }
 
-    fn begin(&mut self, plan: Plan) {
+    /// Copies a plan into the free slot.
+    fn keep(&mut self, plan: &Plan) {
+        let slot = &mut self.slots[(self.current + 1) & 1];
+        slot.id = plan.id;
+        slot.pieces.clear();
+        for piece in &plan.pieces {
+            // As many fit as come.
+            let _ = slot.pieces.push(*piece);
+        }
+        slot.nudge = plan.nudge;
+        slot.end = plan.end;
+    }
+
+    /// Starts the plan in the other slot.
+    fn begin(&mut self) {
+        self.current = (self.current + 1) & 1;
+        self.moving = true;
+        self.splice = None;
         self.piece = 0;
+        let plan = &self.slots[self.current & 1];
         self.left = plan.pieces.first().map_or(0, |piece| piece.ticks);
         self.done = 0;
-        self.last = plan.id;
-        self.plan = Some(plan);
     }
 
     /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
     fn finish(&mut self) {
-        if let Some(plan) = self.plan.take() {
-            self.axes = plan.end.map(Axis::at_rest);
-        }
-        self.next = None;
+        self.axes = self.slots[self.current & 1].end.map(Axis::at_rest);
+        self.moving = false;
+        self.splice = None;
     }
+}
+
+/// Equality, word by word: that of arrays is a call that compares bytes.
+fn same(a: &Position, b: &Position) -> bool {
+    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
 }

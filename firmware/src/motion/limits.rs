@@ -69,6 +69,28 @@ impl Line {
 }
 
 impl Limits {
+    /// Whether every limit is a positive number: along a line the smallest counts, which would hide one that is not.
+    pub fn all_positive(&self) -> bool {
+        let Self {
+            rate_hz,
+            speed_mm_s,
+            acceleration_mm_s2,
+            jerk_mm_s3,
+            turn_speed_deg_s,
+            turn_acceleration_deg_s2,
+            turn_jerk_deg_s3,
+            pivot_rate_rad_s,
+            stop_factor,
+        } = *self;
+        let translation = [speed_mm_s, acceleration_mm_s2, jerk_mm_s3];
+        let rotation = [turn_speed_deg_s, turn_acceleration_deg_s2, turn_jerk_deg_s3];
+        let others = [rate_hz, pivot_rate_rad_s, stop_factor];
+        [translation, rotation, others]
+            .as_flattened()
+            .iter()
+            .all(|&limit| limit > 0.0)
+    }
+
     /// The limits along `line`.
     ///
     /// The pivots' rate is kept by a bound that holds anywhere on the line at any orientation (DESIGN section 3): speed over

@@ -73,6 +73,9 @@ pub fn plan_line(
     geometry: &Geometry,
 ) -> Result<Plan, Refusal> {
     check_target(&to, geometry)?;
+    if !limits.all_positive() {
+        return Err(Refusal::Limits);
+    }
     let mut plan = Plan {
         id,
         start: Start::Rest(from),

@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use heapless::Vec;
 
-/// Pieces a plan can hold: a seven-segment profile.
-pub const MAX_PIECES: usize = 7;
+/// Pieces a plan can hold: the nine segments of three axes' profiles, no two of which begin together.
+pub const MAX_PIECES: usize = 27;
 
 /// x and y in 2^-32 track radii, theta in 2^-32 turns (multi-turn).
 pub type Position = [i64; 3];
@@ -47,6 +47,19 @@ pub struct Plan {
     pub nudge: [i64; 3],
     /// Where it ends, at rest, exactly.
     pub end: Position,
+}
+
+impl Default for Plan {
+    /// Nothing to do, at the origin.
+    fn default() -> Self {
+        Self {
+            id: 0,
+            start: Start::Rest([0; 3]),
+            pieces: Vec::new(),
+            nudge: [0; 3],
+            end: [0; 3],
+        }
+    }
 }
 
 impl Plan {

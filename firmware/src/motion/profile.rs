@@ -28,6 +28,15 @@ impl Profile {
     /// The shortest profile over a path parameter of 1 within `limits`; `None` when a limit is not a positive number or
     /// the move would last longer than 2^52 ticks.
     pub fn new(limits: &PathLimits) -> Option<Self> {
+        let PathLimits {
+            rate,
+            acceleration,
+            jerk,
+        } = *limits;
+        // NaN is not over zero either.
+        if !(rate > 0.0 && acceleration > 0.0 && jerk > 0.0) {
+            return None;
+        }
         let [b1, b2, b3] = shortest(limits);
         let jerk = ticks(b1)?;
         let ramp = ticks(b2)?.max(jerk);

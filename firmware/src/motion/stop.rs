@@ -18,7 +18,8 @@ pub enum Stop {
 const PER_UNIT: f64 = 1.0 / 4_722_366_482_869_645_213_696.0; // 2^-72
 
 /// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself comes to
-/// rest no later: at its end, or in its last segment.
+/// rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor at its start,
+/// where nothing moves yet.
 ///
 /// The velocity and the acceleration of a straight move are parallel, so one brake profile of three segments serves all
 /// axes: acceleration to -a, held, back to zero. From its durations, rounded up to whole ticks, each axis' own jerks follow
@@ -39,6 +40,10 @@ pub fn plan_stop(
     }
     let state = of.state_after(axes, at);
     let times = brake_ticks(&state, limits, geometry, stop)?;
+    // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it.
+    if at + times.iter().sum::<u64>() >= of.ticks() {
+        return None;
+    }
     let mut pieces = [Piece::default(); 3];
     let mut end = state;
     for (piece, ticks) in pieces.iter_mut().zip(times) {
@@ -107,7 +112,7 @@ fn brake_ticks(
 }
 
 /// Jerks of the first and the last segment that bring one axis to rest in `times`.
-fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
+pub(super) fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
     let (v, a0) = (i128::from(axis.velocity), i128::from(axis.acceleration));
     let (n1, n2, n3) = (i128::from(n1), i128::from(n2), i128::from(n3));
     let peak = -(2 * v + a0 * n1) / (n1 + 2 * n2 + n3);

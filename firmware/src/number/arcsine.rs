@@ -5,7 +5,7 @@
 //! exchange in 50-digit arithmetic (largest error of P 5.2e-11 turns).
 
 use super::trigonometric::horner;
-use super::{Fixed, root};
+use super::{Fixed, multiply, root};
 use kinematics::Angle;
 
 /// P(z), coefficients times 2^33 (z carries 32 fraction bits: the point stays).
@@ -22,38 +22,33 @@ const TURNS: [i32; 10] = [
     204_584_506,
 ];
 
+const ONE: u32 = 1 << 29;
 const ONE_SQUARED: i64 = 1 << 58;
-const HALF_SQUARED: i64 = 1 << 57;
-const QUARTER_TURN: i64 = 1 << 30;
-
-/// s P(s^2) in 2^-32 turns, for 0 <= `square` <= 1/2 (58 fraction bits).
-#[inline]
-fn small(s: Fixed, square: i64) -> i64 {
-    let z = ((square >> 26) as u32).min(i32::MAX as u32) as i32;
-    (i64::from(s.bits()) * i64::from(horner(&TURNS, z)) + (1 << 29)) >> 30
-}
+/// The last number under sqrt(1/2): its square and that of its complement, under a half, fit 32 fraction bits.
+const ROOT_OF_HALF: u32 = 379_625_062;
+const QUARTER_TURN: i32 = 1 << 30;
 
 /// asin(d) and sqrt(1 - d^2); `None` unless |d| < 1. Error of the angle under 4e-9 rad, the conditioning of the second form
 /// near |d| = 1 aside.
 #[inline]
 pub(super) fn asin_cos(d: Fixed) -> Option<(Angle, Fixed)> {
-    let square = i64::from(d.bits()) * i64::from(d.bits());
-    let rest = ONE_SQUARED - square;
-    if rest <= 0 {
+    let size = d.bits().unsigned_abs();
+    if size >= ONE {
         return None;
     }
+    let square = Fixed::add_product(0, d, d);
+    let rest = ONE_SQUARED - square;
     let cosine = root::sqrt_fixed(rest);
-    let angle = if square <= HALF_SQUARED {
-        small(d, square)
-    } else {
-        let complement = QUARTER_TURN - small(cosine, rest);
-        if d.bits() < 0 {
-            -complement
-        } else {
-            complement
-        }
+    let steep = size > ROOT_OF_HALF;
+    let (s, square) = if steep { (cosine, rest) } else { (d, square) };
+    let turns = horner(&TURNS, (square >> 26) as i32);
+    let angle = (multiply::add_product(1 << 29, s.bits(), turns) >> 30) as i32;
+    let angle = match (steep, d.bits() < 0) {
+        (false, _) => angle,
+        (true, false) => QUARTER_TURN - angle,
+        (true, true) => angle - QUARTER_TURN,
     };
-    Some((Angle::from_units(angle), cosine))
+    Some((Angle::from_units(i64::from(angle)), cosine))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A fixed-point number with 29 fraction bits, for lengths in track radii, sines and cosines.
 
-use super::{arcsine, polar, trigonometric};
+use super::{arcsine, multiply, polar, trigonometric};
 use core::ops::{Add, Mul, Neg, Sub};
 use kinematics::{Angle, Scalar};
 
@@ -51,6 +51,18 @@ impl Fixed {
         (self.0 as i64) << (32 - Self::FRACTION_BITS)
     }
 
+    /// `sum` plus the product, both with 58 fraction bits.
+    #[inline]
+    pub(super) fn add_product(sum: i64, a: Self, b: Self) -> i64 {
+        multiply::add_product(sum, a.0, b.0)
+    }
+
+    /// From 58 fraction bits, rounded down.
+    #[inline]
+    const fn from_product(product: i64) -> Self {
+        Self((product >> Self::FRACTION_BITS) as i32)
+    }
+
     /// As a float, rounded to its 24 bits.
     #[inline]
     pub fn to_f32(self) -> f32 {
@@ -62,6 +74,9 @@ impl Fixed {
         f64::from(self.0) / f64::from(1u32 << Self::FRACTION_BITS)
     }
 }
+
+/// Half of the last bit, with 58 fraction bits: what makes rounding down rounding to nearest.
+const HALF_LSB: i64 = 1 << (Fixed::FRACTION_BITS - 1);
 
 impl Add for Fixed {
     type Output = Self;
@@ -92,9 +107,7 @@ impl Mul for Fixed {
     /// Rounded to nearest.
     #[inline]
     fn mul(self, other: Self) -> Self {
-        const HALF: i64 = 1 << (Fixed::FRACTION_BITS - 1);
-        let product = i64::from(self.0) * i64::from(other.0);
-        Self((product.wrapping_add(HALF) >> Self::FRACTION_BITS) as i32)
+        Self::from_product(Self::add_product(HALF_LSB, self, other))
     }
 }
 
@@ -108,6 +121,17 @@ impl Scalar for Fixed {
     const ANGLE_ZERO: Angle = Angle::ZERO;
     const ANGLE_30: Angle = Angle::DEG_30;
     const ANGLE_120: Angle = Angle::DEG_120;
+
+    #[inline]
+    fn half(self) -> Self {
+        Self(self.0.wrapping_add(1) >> 1)
+    }
+
+    /// Rounded to nearest, once. Two products of numbers under 2 apiece at least fit.
+    #[inline]
+    fn sum_of_products((a, b): (Self, Self), (c, d): (Self, Self)) -> Self {
+        Self::from_product(Self::add_product(Self::add_product(HALF_LSB, a, b), c, d))
+    }
 
     #[inline]
     fn sin_cos(angle: Angle) -> (Self, Self) {

@@ -10,9 +10,11 @@
 
 mod arcsine;
 mod fixed;
+mod multiply;
 mod polar;
 mod root;
 mod trigonometric;
 
 pub use fixed::Fixed;
+pub(crate) use root::round;
 pub use root::sqrt_f32;

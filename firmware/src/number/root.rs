@@ -1,6 +1,6 @@
 //! Square roots: one instruction in f32 on the chip, and a corrected one in fixed point.
 
-use super::Fixed;
+use super::{Fixed, multiply};
 
 #[cfg(target_arch = "arm")]
 mod chip {
@@ -34,7 +34,7 @@ pub fn sqrt_f32(value: f32) -> f32 {
     libm::sqrtf(value)
 }
 
-/// Square root of `square` / 2^58, for 0 < `square` <= 2^58: a float's root and one Newton step, to about one LSB of
+/// Square root of `square` / 2^58, for 2^28 <= `square` <= 2^58: a float's root and one Newton step, to about one LSB of
 /// [`Fixed`] for results over 0.05.
 #[inline]
 pub(super) fn sqrt_fixed(square: i64) -> Fixed {
@@ -42,23 +42,37 @@ pub(super) fn sqrt_fixed(square: i64) -> Fixed {
     // 2^30 times the square fits a float's exponent and an i32; its root is 2^15 times the root.
     let rough = sqrt_f32((square >> 28) as i32 as f32) * UP_TO_FIXED;
     let root = rough as i32;
-    if root == 0 {
-        return Fixed::from_bits(0);
-    }
-    let residue = square.wrapping_sub(i64::from(root) * i64::from(root));
+    let residue = multiply::add_product(square, -root, root);
     let correction = (residue >> 8) as i32 as f32 * 128.0 / rough;
-    Fixed::from_bits(root.wrapping_add(round(correction)))
+    Fixed::from_bits(root.wrapping_add(round(correction).0))
 }
 
-/// Nearest integer, for values well inside an i32.
+/// Nearest integer (of two, the even one), as an integer and as a float, for values within +-2^21.
+///
+/// So far up the floats are the integers: adding the offset rounds, and the low bits of the sum are the result.
 #[inline]
-pub(super) fn round(value: f32) -> i32 {
-    (value + if value < 0.0 { -0.5 } else { 0.5 }) as i32
+pub(crate) fn round(value: f32) -> (i32, f32) {
+    const OFFSET: f32 = 12_582_912.0; // 1.5 times 2^23
+    const SPARE_BITS: u32 = 10;
+    let sum = value + OFFSET;
+    (
+        (sum.to_bits() << SPARE_BITS) as i32 >> SPARE_BITS,
+        sum - OFFSET,
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rounds_to_the_nearest_even_up_to_its_range() {
+        for k in -2_097_151..2_097_151 {
+            let value = k as f32 + 0.25;
+            assert_eq!(round(value), (k, k as f32), "{value}");
+        }
+        assert_eq!([0.5, 1.5, -0.5, -1.5].map(|v| round(v).0), [0, 2, 0, -2]);
+    }
 
     #[test]
     fn fixed_root_is_within_one_lsb() {

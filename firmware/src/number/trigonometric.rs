@@ -11,7 +11,7 @@
 //! 3.4e-12 and 4.7e-11). Coefficient k is stored times 2^(s0 + 2k): z carries 30 fraction bits and a multiplication keeps
 //! the upper 32 of 64, so each Horner step moves the point by two.
 
-use super::Fixed;
+use super::{Fixed, multiply};
 
 /// S(z), coefficient k times 2^(31 + 2k).
 const SINE: [i32; 5] = [1_686_629_713, -693_598_667, 85_569_259, -5_026_472, 169_873];
@@ -24,12 +24,6 @@ const COSINE: [i32; 5] = [
     970_267,
 ];
 
-/// Upper half of the product (SMMUL on the chip).
-#[inline]
-pub(super) fn high(a: i32, b: i32) -> i32 {
-    ((i64::from(a) * i64::from(b)) >> 32) as i32
-}
-
 /// Coefficients times powers of z, highest first (a chain of SMMLA on the chip).
 #[inline]
 pub(super) fn horner<const N: usize>(coefficients: &[i32; N], z: i32) -> i32 {
@@ -37,7 +31,7 @@ pub(super) fn horner<const N: usize>(coefficients: &[i32; N], z: i32) -> i32 {
     let mut k = N - 1;
     while k > 0 {
         k -= 1;
-        sum = coefficients[k].wrapping_add(high(sum, z));
+        sum = multiply::add_high(coefficients[k], sum, z);
     }
     sum
 }
@@ -50,8 +44,8 @@ pub(super) fn sin_cos(fraction: u32) -> (Fixed, Fixed) {
     let quadrant = shifted >> 30;
     // Offset from the quadrant's centre: 45 deg is 2^29 units of angle, here 2^31.
     let y = (fraction.wrapping_sub(quadrant << 30) << 2) as i32;
-    let z = high(y, y);
-    let sine = (i64::from(horner(&SINE, z)) * i64::from(y) + (1 << 32)) >> 33;
+    let z = multiply::add_high(0, y, y);
+    let sine = multiply::add_product(1 << 32, horner(&SINE, z), y) >> 33;
     let cosine = horner(&COSINE, z).wrapping_add(1) >> 1;
     let (sine, cosine) = if quadrant & 1 == 0 {
         (sine as i32, cosine)

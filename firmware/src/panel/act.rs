@@ -3,8 +3,10 @@
 use super::Panel;
 use super::axis::{Axis, AxisValues};
 use super::error::ErrorCode;
+use super::parameter::{Parameter, Settings};
 use super::request::Action;
 use super::session::{Awaited, Session, Wait};
+use super::soft::SoftLimits;
 use crate::link::PanelLink;
 use crate::motion::Stop;
 
@@ -34,6 +36,10 @@ impl Panel {
             }
             Action::Move(values) => self.stage.move_to(&values, link),
             Action::MoveRelative(values) => self.stage.move_by(&values, link),
+            Action::SoftLowest(values) => self.stage.set_soft(SoftLimits::set_lowest, &values),
+            Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
+            Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
+            Action::Set(settings) => self.set(&settings),
             Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
             Action::Stop => {
                 self.stops = self.stops.wrapping_add(1);
@@ -59,6 +65,23 @@ impl Panel {
                 Ok(())
             }
         }
+    }
+
+    /// All settings or, when one is out of range, none. A motion under way was planned with other limits: not then.
+    fn set(&mut self, settings: &Settings) -> Result<(), ErrorCode> {
+        if !self.stage.moving().is_empty() {
+            return Err(ErrorCode::InMotion);
+        }
+        let mut limits = self.parameters.limits;
+        for (address, value) in settings.iter().flatten() {
+            let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
+            if !parameter.set(*value, &mut limits, &self.rated) {
+                return Err(ErrorCode::OutOfRange);
+            }
+        }
+        self.parameters.limits = limits;
+        self.stage.set_limits(limits);
+        Ok(())
     }
 
     fn wait(&self, session: &mut Session, what: Awaited) {

@@ -1,12 +1,17 @@
 //! Answering queries.
 
 use super::Panel;
-use super::axis::{Axis, AxisSet};
+use super::axis::{Axis, AxisSet, AxisValues};
+use super::parameter::{Address, Addresses, PARAMETERS, Parameter};
 use super::reply::{Reply, one_line};
-use super::request::{Quantity, Query};
+use super::request::{Property, Quantity, Query};
 use super::session::Session;
 use super::table::COMMANDS;
+use super::target::Coordinates;
 use embedded_io::Write;
+
+/// What `CST?` answers.
+const STAGE_TYPE: &str = "XYT-1";
 
 /// Bit 16 of `#4`: referenced.
 const STATUS_REFERENCED: u32 = 1 << 16;
@@ -37,6 +42,9 @@ impl Panel {
                 one_line(out, format_args!("{}", error.number()))
             }
             Query::Velocity => one_line(out, format_args!("{}", self.stage.velocity_mm_s())),
+            Query::ParameterHelp => parameter_help(out),
+            // There is nothing that a higher level would allow.
+            Query::Level => one_line(out, format_args!("0")),
             Query::Fault => self.fault(out),
             Query::Status => one_line(out, format_args!("{}", self.status())),
             Query::Moving => one_line(out, format_args!("{:x}", self.stage.moving().mask())),
@@ -72,6 +80,60 @@ impl Panel {
         reply.end()
     }
 
+    /// Answers a query about axes in words.
+    pub(super) fn tell<W: Write>(
+        &self,
+        property: Property,
+        axes: AxisSet,
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        let mut reply = Reply::new(out);
+        for axis in axes.iter() {
+            let text = match property {
+                Property::Stage => STAGE_TYPE,
+                Property::Unit => axis.unit(),
+            };
+            reply.line(format_args!("{}={text}", axis.letter()))?;
+        }
+        reply.end()
+    }
+
+    /// Answers `SPA?`.
+    pub(super) fn tell_parameters<W: Write>(
+        &self,
+        addresses: &Addresses,
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        let mut reply = Reply::new(out);
+        for &Address { item, id } in addresses.iter().flatten() {
+            if let Some(parameter) = Parameter::find(id) {
+                let value = parameter.value(item, &self.parameters);
+                reply.line(format_args!("{item} 0x{id:X}={value}"))?;
+            }
+        }
+        if addresses[0].is_none() {
+            for parameter in PARAMETERS {
+                for item in parameter.items() {
+                    let (id, value) = (parameter.id, parameter.value(item, &self.parameters));
+                    reply.line(format_args!("{item} 0x{id:X}={value}"))?;
+                }
+            }
+        }
+        reply.end()
+    }
+
+    /// Answers `VMO?`.
+    pub(super) fn tell_reachable<W: Write>(
+        &self,
+        values: &AxisValues,
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        one_line(
+            out,
+            format_args!("{}", u8::from(self.stage.is_reachable(values))),
+        )
+    }
+
     fn status(&self) -> u32 {
         if self.stage.value(Quantity::Referenced, Axis::X) == 1.0 {
             STATUS_REFERENCED
@@ -90,7 +152,10 @@ impl Panel {
         }
         let mut reply = Reply::new(out);
         if snapshot.encoder_faults == [None; 3] {
-            reply.line(format_args!("0 no fault"))?;
+            match self.start {
+                None => reply.line(format_args!("0 no fault"))?,
+                Some(cause) => reply.line(format_args!("0 no fault, started by {cause}"))?,
+            }
         }
         for (pivot, kind) in (1..).zip(snapshot.encoder_faults) {
             if let Some(kind) = kind {
@@ -99,6 +164,31 @@ impl Panel {
         }
         reply.end()
     }
+}
+
+/// Answers `TRA?`: where the axes that were named come to.
+pub(super) fn tell_reach<W: Write>(
+    values: &AxisValues,
+    end: &Coordinates,
+    out: &mut W,
+) -> Result<(), W::Error> {
+    let mut reply = Reply::new(out);
+    for axis in Axis::ALL {
+        if values[axis.index()].is_some() {
+            reply.line(format_args!("{}={}", axis.letter(), end[axis.index()]))?;
+        }
+    }
+    reply.end()
+}
+
+fn parameter_help<W: Write>(out: &mut W) -> Result<(), W::Error> {
+    let mut reply = Reply::new(out);
+    reply.line(format_args!("The following parameters are there:"))?;
+    for parameter in PARAMETERS {
+        reply.line(format_args!("{parameter}"))?;
+    }
+    reply.line(format_args!("end of help"))?;
+    reply.end()
 }
 
 fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {

@@ -43,6 +43,14 @@ impl Axis {
         }
     }
 
+    /// Unit of its positions.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::X | Self::Y | Self::Z => "mm",
+            Self::U | Self::V | Self::W => "deg",
+        }
+    }
+
     /// Its place in [`Axis::ALL`].
     pub const fn index(self) -> usize {
         self as usize

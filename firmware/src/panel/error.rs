@@ -31,8 +31,16 @@ pub enum ErrorCode {
     ParameterCount = 24,
     /// Not a number, or not a finite one.
     InvalidNumber = 25,
+    /// A soft limit is out of the travel, crosses the other one, or leaves out where the stage is.
+    SoftLimit = 27,
     /// An encoder does not answer, or the pivots are no pose.
     ReferencingFailed = 45,
+    /// Not while something moves.
+    InMotion = 53,
+    /// No such parameter.
+    UnknownParameter = 54,
+    /// The parameter can only be read.
+    ReadOnly = 64,
     /// A pivot was too far from its setpoint; the motors are off.
     FollowingError = 504,
     /// The command can not be taken now; nothing of it was done.

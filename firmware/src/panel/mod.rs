@@ -16,6 +16,8 @@
 //! | `session` | input, line, error and wait of a connection |
 //! | `stage` | what is known of the stage, in flight to it, wanted of it |
 //! | `answer`, `act` | what a request does |
+//! | `parameter` | what parameters there are |
+//! | `soft`, `reach` | limits of targets, and how far one can go |
 //!
 //! Lines are handled in order. While a command is on its way to the tick (one tick) lines that depend on it stay where they
 //! are; while `DEL`, `WAC` or `FRF` waits all lines do, and single bytes act ahead of them. A stop (`STP`, `#24`) from any
@@ -27,24 +29,30 @@ mod answer;
 mod axis;
 mod course;
 mod error;
+mod parameter;
 mod parse;
+mod reach;
 mod reply;
 mod request;
 mod scan;
 mod session;
+mod soft;
 mod stage;
 mod table;
 mod target;
 
 pub use axis::{Axis, AxisSet, AxisValues};
 pub use error::ErrorCode;
+pub use parameter::{ADDRESSES, Address, Addresses, Item, Settings};
 pub use parse::{ParseError, parse};
-pub use request::{Action, Condition, Operator, Quantity, Query, Request};
+pub use request::{Action, Condition, Operator, Property, Quantity, Query, Request};
 pub use session::{LINE_BYTES, Session};
 
 use crate::fault::FaultKind;
 use crate::link::PanelLink;
+use crate::motion::Limits;
 use crate::parameters::Parameters;
+use answer::tell_reach;
 use embedded_io::Write;
 use session::{Awaited, Event};
 use stage::{Referencing, Stage};
@@ -62,7 +70,12 @@ pub struct Identity {
 /// What all connections share.
 pub struct Panel {
     identity: Identity,
+    parameters: Parameters,
+    /// Limits of motion that the stage was set up for.
+    rated: Limits,
     stage: Stage,
+    /// Why the controller started, if that is worth telling.
+    start: Option<&'static str>,
     /// Times `STP` or `#24` was given.
     stops: u32,
 }
@@ -72,9 +85,17 @@ impl Panel {
     pub fn new(parameters: &Parameters, identity: Identity) -> Self {
         Self {
             identity,
+            parameters: parameters.clone(),
+            rated: parameters.limits,
             stage: Stage::new(parameters),
             stops: 0,
+            start: None,
         }
+    }
+
+    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault.
+    pub fn note_start(&mut self, cause: &'static str) {
+        self.start = Some(cause);
     }
 
     /// Takes new snapshots, carries on what is pending, handles what `session` has received and writes the replies to `out`.
@@ -178,6 +199,13 @@ impl Panel {
             Request::Nothing => {}
             Request::Ask(query) => self.answer(query, session, out)?,
             Request::Read(quantity, axes) => self.read(quantity, axes, out)?,
+            Request::Tell(property, axes) => self.tell(property, axes, out)?,
+            Request::Parameters(addresses) => self.tell_parameters(&addresses, out)?,
+            Request::Reachable(values) => self.tell_reachable(&values, out)?,
+            Request::Reach(values) => match self.stage.reach(&values) {
+                Some(end) => tell_reach(&values, &end, out)?,
+                None => session.error = ErrorCode::OutOfRange,
+            },
             Request::Act(action) => {
                 if let Err(code) = self.act(action, session, link) {
                     session.error = code;

@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, AxisSet, AxisValues};
 use super::error::ErrorCode;
+use super::parameter::{Address, Addresses, Item, Parameter, Settings};
 use super::request::{Condition, Operator, Quantity, Request};
 use super::scan::{Scanner, Word};
 use super::table::{Syntax, find};
@@ -53,6 +54,10 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
             request
         }
         Syntax::Read(quantity) => Request::Read(quantity, axes(&mut scanner)?),
+        Syntax::Tell(property) => Request::Tell(property, axes(&mut scanner)?),
+        Syntax::AskValues(request) => request(values(&mut scanner)?),
+        Syntax::Parameters => Request::Parameters(addresses(&mut scanner)?),
+        Syntax::Settings(action) => Request::Act(action(settings(&mut scanner)?)),
         Syntax::Axes(action) => Request::Act(action(axes(&mut scanner)?)),
         Syntax::Values(action) => Request::Act(action(values(&mut scanner)?)),
         Syntax::Number(action) => Request::Act(action(number(scanner.next())?)),
@@ -121,6 +126,72 @@ fn axis(word: Word<'_>, named: &mut AxisSet) -> Result<Axis, ParseError> {
         return Err(word.unfit(ErrorCode::AxisTwice, "an axis that has not been named yet"));
     }
     Ok(axis)
+}
+
+/// Pairs of item and parameter up to the end of the line.
+fn addresses(scanner: &mut Scanner<'_>) -> Result<Addresses, ParseError> {
+    let mut addresses = Addresses::default();
+    for place in &mut addresses {
+        if scanner.is_at_end() {
+            break;
+        }
+        *place = Some(address(scanner)?.0);
+    }
+    Ok(addresses)
+}
+
+/// Triples of item, parameter and number up to the end of the line, at least one.
+fn settings(scanner: &mut Scanner<'_>) -> Result<Settings, ParseError> {
+    let mut settings = Settings::default();
+    for place in &mut settings {
+        let (address, id) = address(scanner)?;
+        if Parameter::find(address.id).is_some_and(Parameter::is_read_only) {
+            return Err(id.unfit(ErrorCode::ReadOnly, "a parameter that can be set"));
+        }
+        *place = Some((address, number(scanner.next())?));
+        if scanner.is_at_end() {
+            break;
+        }
+    }
+    Ok(settings)
+}
+
+/// An item and a parameter that it has; the parameter's word besides.
+fn address<'a>(scanner: &mut Scanner<'a>) -> Result<(Address, Word<'a>), ParseError> {
+    let word = scanner.word();
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, "an item: 1 or an axis"));
+    }
+    let item = match word.text {
+        b"1" => Some(Item::System),
+        name => Axis::named(name).map(Item::Axis),
+    };
+    let item = item.ok_or_else(|| word.unfit(ErrorCode::InvalidAxis, "an item: 1 or an axis"))?;
+    let id = scanner.word();
+    if id.text.is_empty() {
+        return Err(id.unfit(ErrorCode::ParameterCount, "a parameter's number"));
+    }
+    let number = parameter_id(id.text)
+        .ok_or_else(|| id.unfit(ErrorCode::InvalidNumber, "a parameter's number"))?;
+    let parameter = Parameter::find(number).ok_or_else(|| {
+        id.unfit(
+            ErrorCode::UnknownParameter,
+            "a parameter of those HPA? lists",
+        )
+    })?;
+    if !parameter.belongs_to(item) {
+        return Err(word.unfit(ErrorCode::InvalidAxis, "an axis"));
+    }
+    Ok((Address { item, id: number }, id))
+}
+
+/// Decimal, or hexadecimal after 0x.
+fn parameter_id(text: &[u8]) -> Option<u32> {
+    let text = core::str::from_utf8(text).ok()?;
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u32::from_str_radix(digits, 16).ok(),
+        None => text.parse().ok(),
+    }
 }
 
 fn number(word: Word<'_>) -> Result<f64, ParseError> {

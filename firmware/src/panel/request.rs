@@ -1,6 +1,7 @@
 //! What a line or a single byte asks for.
 
 use super::axis::{Axis, AxisSet, AxisValues};
+use super::parameter::{Addresses, Settings};
 
 /// A command, understood but not yet carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +12,14 @@ pub enum Request {
     Ask(Query),
     /// A question about axes, answered in a line each.
     Read(Quantity, AxisSet),
+    /// A question about axes that is answered in words.
+    Tell(Property, AxisSet),
+    /// `SPA?`
+    Parameters(Addresses),
+    /// `VMO?`: whether this target can be moved to.
+    Reachable(AxisValues),
+    /// `TRA?`: how far one can go in this direction.
+    Reach(AxisValues),
     /// Something to be done; no answer.
     Act(Action),
 }
@@ -34,6 +43,10 @@ pub enum Query {
     Error,
     /// `VLS?`
     Velocity,
+    /// `HPA?`
+    ParameterHelp,
+    /// `CCL?`: command level.
+    Level,
     /// `FLT?`
     Fault,
     /// `#4`
@@ -61,6 +74,25 @@ pub enum Quantity {
     Lowest,
     /// `TMX?`: mm and deg.
     Highest,
+    /// `NLM?`: mm and deg.
+    SoftLowest,
+    /// `PLM?`: mm and deg.
+    SoftHighest,
+    /// `SSL?`: 1 when soft limits count.
+    SoftActive,
+    /// `LIM?`: 0, there are no limit switches.
+    LimitSwitch,
+    /// `TRS?`: 0, there are no reference switches; the encoders are absolute.
+    ReferenceSwitch,
+}
+
+/// What is told of each axis in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Property {
+    /// `CST?`: the stage's type.
+    Stage,
+    /// `PUN?`: unit of its positions.
+    Unit,
 }
 
 /// Something to be done.
@@ -74,6 +106,14 @@ pub enum Action {
     Move(AxisValues),
     /// `MVR`
     MoveRelative(AxisValues),
+    /// `NLM`: mm and deg.
+    SoftLowest(AxisValues),
+    /// `PLM`: mm and deg.
+    SoftHighest(AxisValues),
+    /// `SSL`: 0 or 1.
+    SoftActive(AxisValues),
+    /// `SPA`
+    Set(Settings),
     /// `VLS`, mm/s.
     Velocity(f64),
     /// `STP`, `#24`: stop at the highest deceleration, and every script with it.
@@ -150,8 +190,9 @@ impl Request {
     /// does, and what is constant does not either.
     pub(super) const fn needs_present(&self) -> bool {
         match self {
-            Self::Nothing | Self::Read(Quantity::Lowest | Quantity::Highest, _) => false,
-            Self::Read(..) => true,
+            Self::Nothing | Self::Tell(..) | Self::Parameters(_) => false,
+            Self::Read(Quantity::Lowest | Quantity::Highest, _) => false,
+            Self::Read(..) | Self::Reachable(_) | Self::Reach(_) => true,
             Self::Ask(query) => matches!(query, Query::Error | Query::Fault),
             Self::Act(action) => {
                 !matches!(action, Action::Stop | Action::Halt(_) | Action::Velocity(_))

@@ -1,7 +1,8 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
 use super::axis::{AxisSet, AxisValues};
-use super::request::{Action, Condition, Quantity, Query, Request};
+use super::parameter::Settings;
+use super::request::{Action, Condition, Property, Quantity, Query, Request};
 
 /// A command.
 pub(super) struct Entry {
@@ -25,8 +26,16 @@ pub(super) enum Syntax {
     Read(Quantity),
     /// Axes; none stands for all.
     Axes(fn(AxisSet) -> Action),
+    /// Axes; none stands for all.
+    Tell(Property),
     /// Pairs of axis and number.
     Values(fn(AxisValues) -> Action),
+    /// Pairs of axis and number.
+    AskValues(fn(AxisValues) -> Request),
+    /// Pairs of item and parameter; none stands for all.
+    Parameters,
+    /// Triples of item, parameter and number.
+    Settings(fn(Settings) -> Action),
     /// A number.
     Number(fn(f64) -> Action),
     /// Query, axis, operator, number.
@@ -62,6 +71,12 @@ pub(super) const COMMANDS: &[Entry] = &[
     byte("#7", 7, Request::Ask(Query::Ready), "is controller ready"),
     byte("#24", 24, Request::Act(Action::Stop), "stop all axes"),
     ask("*IDN?", Query::Identity, "get device identification"),
+    ask("CCL?", Query::Level, "get command level"),
+    entry(
+        "CST?",
+        Syntax::Tell(Property::Stage),
+        "[{<axis>}] get stage type",
+    ),
     ask("CSV?", Query::Syntax, "get syntax version"),
     entry(
         "DEL",
@@ -91,6 +106,12 @@ pub(super) const COMMANDS: &[Entry] = &[
         "[{<axis>}] halt smoothly",
     ),
     ask("HLP?", Query::Help, "get list of commands"),
+    ask("HPA?", Query::ParameterHelp, "get list of parameters"),
+    read(
+        "LIM?",
+        Quantity::LimitSwitch,
+        "[{<axis>}] get whether there are limit switches",
+    ),
     entry(
         "MOV",
         Syntax::Values(Action::Move),
@@ -102,12 +123,57 @@ pub(super) const COMMANDS: &[Entry] = &[
         Syntax::Values(Action::MoveRelative),
         "{<axis> <distance>} set target relative to the last target",
     ),
+    entry(
+        "NLM",
+        Syntax::Values(Action::SoftLowest),
+        "{<axis> <position>} set lowest position of the soft limits",
+    ),
+    read(
+        "NLM?",
+        Quantity::SoftLowest,
+        "[{<axis>}] get lowest position of the soft limits",
+    ),
     read("ONT?", Quantity::OnTarget, "[{<axis>}] get on-target state"),
+    entry(
+        "PLM",
+        Syntax::Values(Action::SoftHighest),
+        "{<axis> <position>} set highest position of the soft limits",
+    ),
+    read(
+        "PLM?",
+        Quantity::SoftHighest,
+        "[{<axis>}] get highest position of the soft limits",
+    ),
     read("POS?", Quantity::Position, "[{<axis>}] get real position"),
+    entry(
+        "PUN?",
+        Syntax::Tell(Property::Unit),
+        "[{<axis>}] get unit of position",
+    ),
     entry(
         "SAI?",
         Syntax::All(Request::Ask(Query::Axes)),
         "[ALL] get axis identifiers",
+    ),
+    entry(
+        "SPA",
+        Syntax::Settings(Action::Set),
+        "{<item> <parameter> <value>} set parameter",
+    ),
+    entry(
+        "SPA?",
+        Syntax::Parameters,
+        "[{<item> <parameter>}] get parameter",
+    ),
+    entry(
+        "SSL",
+        Syntax::Values(Action::SoftActive),
+        "{<axis> <0|1>} set whether soft limits count",
+    ),
+    read(
+        "SSL?",
+        Quantity::SoftActive,
+        "[{<axis>}] get whether soft limits count",
     ),
     ask("SSN?", Query::Serial, "get serial number"),
     entry(
@@ -123,6 +189,16 @@ pub(super) const COMMANDS: &[Entry] = &[
     read("SVO?", Quantity::Servo, "[{<axis>}] get servo mode"),
     read("TMN?", Quantity::Lowest, "[{<axis>}] get lowest position"),
     read("TMX?", Quantity::Highest, "[{<axis>}] get highest position"),
+    entry(
+        "TRA?",
+        Syntax::AskValues(Request::Reach),
+        "{<axis> <direction>} get the furthest target in this direction",
+    ),
+    read(
+        "TRS?",
+        Quantity::ReferenceSwitch,
+        "[{<axis>}] get whether there are reference switches",
+    ),
     ask("VER?", Query::Version, "get firmware version"),
     entry(
         "VLS",
@@ -130,6 +206,11 @@ pub(super) const COMMANDS: &[Entry] = &[
         "<velocity> set system velocity",
     ),
     ask("VLS?", Query::Velocity, "get system velocity"),
+    entry(
+        "VMO?",
+        Syntax::AskValues(Request::Reachable),
+        "{<axis> <position>} get whether a target can be moved to",
+    ),
     entry(
         "WAC",
         Syntax::Condition(Action::Wait),

@@ -4,6 +4,7 @@ use super::friction::Presliding;
 use super::torque::Body;
 use crate::config::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::drivers::bridge::Duty;
+use crate::number;
 use crate::parameters::Parameters;
 
 /// Constants of the servo.
@@ -11,30 +12,27 @@ use crate::parameters::Parameters;
 pub struct ServoConfig {
     /// What the pivots carry.
     pub body: Body,
-    rad_per_unit: f32,
-    rate_hz: f32,
+    /// Of the following error's change in a tick and of the error itself (2^-32 turns, measured minus setpoint) to r.
+    drift: f32,
     position: f32,
     velocity: f32,
     integral: f32,
     learning: [f32; FEATURES],
     inertia: f32,
     volt_per_torque: f32,
-    torque_lead_s: f32,
+    volt_per_torque_step: f32,
     volt_per_rate: f32,
-    rate_lead_s: f32,
+    volt_per_acceleration: f32,
     viscous: f32,
     coulomb: f32,
-    way: f32,
-    per_rate: f32,
-    per_torque: f32,
+    way_s: f32,
+    share_per_volt: f32,
     current_step: f32,
-    ampere_per_volt: f32,
-    per_knee: f32,
     lost_counts: f32,
     full: f32,
     full_per_supply_count: f32,
     integral_limit: f32,
-    learnt_limit: f32,
+    learnt_limit: [f32; FEATURES],
 }
 
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
@@ -61,7 +59,12 @@ impl ServoConfig {
         let volt_per_torque = drive.resistance_ohm / torque_per_ampere;
         // Torque at which its signal is 1: what the reference motion asks for.
         let torque_scale = 6.0;
+        // What makes each signal about 1 is taken into its weight: gains carry it twice, limits once.
+        let scale = [1.0 / limits.pivot_rate_rad_s, 1.0 / torque_scale, 1.0];
+        let share = [1.0, 1.0, servo.friction_learning];
         let learning = servo.integral_v_rad * servo.learning * period_s;
+        let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
+        let rad_per_unit = 1.0 / UNITS_PER_RAD;
         Self {
             body: Body {
                 mass: ((platform.mass_kg + platform.payload_kg) * radius_m * radius_m) as f32,
@@ -71,35 +74,27 @@ impl ServoConfig {
                     as f32,
                 moment: [x_m, y_m].map(|m| (platform.payload_kg * m * radius_m) as f32),
             },
-            rad_per_unit: (1.0 / UNITS_PER_RAD) as f32,
-            rate_hz: limits.rate_hz as f32,
-            position: servo.position_1_s as f32,
+            drift: (-limits.rate_hz * rad_per_unit) as f32,
+            position: (-servo.position_1_s * rad_per_unit) as f32,
             velocity: servo.velocity_v_s_rad as f32,
             integral: (servo.integral_v_rad * period_s) as f32,
-            learning: [
-                learning as f32,
-                learning as f32,
-                (learning * servo.friction_learning) as f32,
-            ],
+            learning: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
             inertia: drive.inertia_kg_m2 as f32,
             volt_per_torque: volt_per_torque as f32,
-            torque_lead_s: (servo.latency_s + drive.inductance_h / drive.resistance_ohm) as f32,
+            volt_per_torque_step: (volt_per_torque * torque_lead_s * limits.rate_hz) as f32,
             volt_per_rate: torque_per_ampere as f32,
-            rate_lead_s: servo.latency_s as f32,
+            volt_per_acceleration: (torque_per_ampere * servo.latency_s) as f32,
             viscous: drive.viscous_n_m_s as f32,
             coulomb: drive.coulomb_n_m as f32,
-            way: (1.0 / drive.presliding_rad) as f32,
-            per_rate: (1.0 / limits.pivot_rate_rad_s) as f32,
-            per_torque: (1.0 / torque_scale) as f32,
+            way_s: (period_s / drive.presliding_rad) as f32,
+            share_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
             current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
                 as f32,
-            ampere_per_volt: (1.0 / drive.resistance_ohm) as f32,
-            per_knee: (1.0 / drive.dead_time_knee_a) as f32,
             lost_counts: (drive.dead_time_s * drive.pwm_hz) as f32 * f32::from(drive.pwm_counts),
             full: (FULL * f64::from(drive.pwm_counts)) as f32,
             full_per_supply_count: (f64::from(drive.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
             integral_limit: (drive.supply_v * 0.5) as f32,
-            learnt_limit: (drive.supply_v * 0.25) as f32,
+            learnt_limit: scale.map(|scale| (drive.supply_v * 0.25 * scale) as f32),
         }
     }
 }
@@ -136,7 +131,9 @@ pub struct AxisServo {
     last_error: f32,
     last_torque: f32,
     friction: Presliding,
+    /// Weights of the signals, volts per unit.
     learnt: [f32; FEATURES],
+    /// Motor current over the dead time's knee.
     current: f32,
     carry: f32,
 }
@@ -151,54 +148,44 @@ impl AxisServo {
     }
 
     /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
-    #[inline]
+    #[inline(never)]
     pub fn step(
         &mut self,
         config: &ServoConfig,
         setpoint: &PivotSetpoint,
         counts_per_volt: f32,
     ) -> Duty {
-        let error = -(setpoint.error as f32) * config.rad_per_unit;
-        let drift = (error - self.last_error) * config.rate_hz;
+        let error = setpoint.error as f32;
+        let r = config.drift * (error - self.last_error) + config.position * error;
         self.last_error = error;
-        let r = drift + config.position * error;
 
+        let contact = self.friction.advance(setpoint.rate * config.way_s);
         let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
-        let contact = self
-            .friction
-            .advance(setpoint.rate * config.way / config.rate_hz);
         let torque = inertial + config.viscous * setpoint.rate + config.coulomb * contact;
-        let torque_rate = (torque - self.last_torque) * config.rate_hz;
+        let model = config.volt_per_torque * torque
+            + config.volt_per_torque_step * (torque - self.last_torque)
+            + config.volt_per_acceleration * setpoint.acceleration;
         self.last_torque = torque;
-        let forward = config.volt_per_torque * (torque + torque_rate * config.torque_lead_s)
-            + config.volt_per_rate * (setpoint.rate + setpoint.acceleration * config.rate_lead_s);
+        let features = [setpoint.rate, inertial, contact];
+        let learnt = self.learnt[0] * features[0]
+            + self.learnt[1] * features[1]
+            + self.learnt[2] * features[2];
 
-        let features = [
-            setpoint.rate * config.per_rate,
-            inertial * config.per_torque,
-            contact,
-        ];
-        let mut learnt = 0.0;
-        for (weight, feature) in self.learnt.iter().zip(features) {
-            learnt += weight * feature;
-        }
-        let volts = forward + learnt + self.integral + config.velocity * r;
-        // The current follows the voltage that is wanted, since what the dead time takes of it is made up for.
-        let steady = (volts - config.volt_per_rate * setpoint.rate) * config.ampere_per_volt;
-        self.current += (steady - self.current) * config.current_step;
-        let share = (self.current * config.per_knee).clamp(-1.0, 1.0);
+        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead time
+        // takes of it is made up for.
+        let over_emf = model + learnt + self.integral + config.velocity * r;
+        self.current += (over_emf * config.share_per_volt - self.current) * config.current_step;
+        let volts = over_emf + config.volt_per_rate * setpoint.rate;
+        let share = limit(self.current, 1.0);
         let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
-        let limited = counts.clamp(-config.full, config.full);
+        let limited = limit(counts, config.full);
 
         // Collecting stops while the bridge is at its end and the error asks for more.
         if counts == limited || counts * r < 0.0 {
-            let limit = config.integral_limit;
-            self.integral = (self.integral + config.integral * r).clamp(-limit, limit);
-            let limit = config.learnt_limit;
-            for ((weight, feature), gain) in
-                self.learnt.iter_mut().zip(features).zip(config.learning)
-            {
-                *weight = (*weight + gain * feature * r).clamp(-limit, limit);
+            self.integral = limit(self.integral + config.integral * r, config.integral_limit);
+            for (k, feature) in features.into_iter().enumerate() {
+                let weight = self.learnt[k] + config.learning[k] * r * feature;
+                self.learnt[k] = limit(weight, config.learnt_limit[k]);
             }
         }
         self.shape(limited)
@@ -209,25 +196,44 @@ impl AxisServo {
     #[inline]
     fn shape(&mut self, counts: f32) -> Duty {
         let wanted = counts + self.carry;
-        let whole = (wanted + if wanted < 0.0 { -0.5 } else { 0.5 }) as i16;
-        self.carry = wanted - f32::from(whole);
-        Duty(whole)
+        let (whole, rounded) = number::round(wanted);
+        self.carry = wanted - rounded;
+        Duty(whole as i16)
     }
+}
+
+/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).
+#[inline]
+fn limit(value: f32, most: f32) -> f32 {
+    if value.abs() <= most {
+        value
+    } else {
+        end(value, most)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn end(value: f32, most: f32) -> f32 {
+    if value < 0.0 { -most } else { most }
 }
 
 /// The duty whose pulses, after the dead time has taken its part, are `wanted`.
 ///
 /// Dead time shortens every pulse by `lost` counts, or by all of it if that is less, times the `share` that the current's size
-/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage).
+/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse that comes out no
+/// longer than `lost` is one that loses its share of itself.
 #[inline]
 fn make_up(wanted: f32, share: f32, lost: f32) -> f32 {
-    let size = wanted.abs();
-    let share = if wanted < 0.0 { -share } else { share };
-    let kept = 1.0 - share;
-    let pulse = if size < lost * kept {
-        size / kept
+    let pulse = wanted + lost * share;
+    let (size, share) = if wanted < 0.0 {
+        (-pulse, -share)
     } else {
-        size + lost * share
+        (pulse, share)
     };
-    if wanted < 0.0 { -pulse } else { pulse }
+    if size >= lost {
+        pulse
+    } else {
+        wanted / (1.0 - share)
+    }
 }

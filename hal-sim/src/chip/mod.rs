@@ -32,7 +32,7 @@ mod twin;
 pub use bench::{Bench, BenchError, Outcome};
 pub use cost::TickCost;
 pub use gaps::{Allowed, GAPS};
-pub use run::{ChipError, ChipOutcome, run};
 pub use period::{Action, Period, Reset, Trace};
 pub use rigless::device::ResetCause;
+pub use run::{ChipError, ChipOutcome, run};
 pub use twin::{Divergence, Twin};

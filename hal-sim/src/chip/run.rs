@@ -55,7 +55,11 @@ impl fmt::Display for ChipError {
             Self::NoImage => write!(f, "no image: build it with `cargo stage` first"),
             Self::Bench(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Gaps(gaps) => {
-                write!(f, "the image touched what the emulator does not model: {}", gaps.join("; "))
+                write!(
+                    f,
+                    "the image touched what the emulator does not model: {}",
+                    gaps.join("; ")
+                )
             }
             Self::Lost => write!(f, "the emulator ended before the script"),
         }
@@ -113,7 +117,9 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
     let outcome = Bench::load(path, stage)
         .map_err(bench)?
         .run(move |period| {
-            let Some(now) = &mut runner else { return Break(()) };
+            let Some(now) = &mut runner else {
+                return Break(());
+            };
             let flow = now.period(period);
             match flow {
                 Continue(()) => Continue(()),
@@ -160,7 +166,7 @@ impl Runner {
         let (bytes, event) = self.client.poll(&received, self.moving);
         period.send(&bytes);
         self.twin.receive(&bytes);
-        if period.tick % PROGRESS_EVERY == 0 {
+        if period.tick.is_multiple_of(PROGRESS_EVERY) {
             let simulated_s = period.tick as f64 * self.period_s;
             self.progress.update(self.client.done() as u64, simulated_s);
         }

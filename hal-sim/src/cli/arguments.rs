@@ -27,6 +27,9 @@ pub(super) enum Command {
         #[command(flatten)]
         simulation: Simulation,
     },
+    /// Run the simulated stage in real time and let GCS clients drive it, over TCP and a pseudo-terminal.
+    #[cfg(unix)]
+    Serve(Serve),
     /// Run a script on the image for the controller's chip, emulated, and compare it with the host to the bit.
     #[cfg(feature = "chip")]
     Chip(ChipRun),
@@ -49,6 +52,16 @@ pub(super) struct Simulation {
     /// Write every N-th tick into the trace.
     #[arg(long, value_name = "N", default_value_t = DEFAULT_EVERY, value_parser = value_parser!(u32).range(1..))]
     pub(super) every: u32,
+    #[command(flatten)]
+    pub(super) stage: SimulatedStage,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// The simulated stage.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SimulatedStage {
     /// Seed of the simulated noise: the same seed gives the same trace.
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
@@ -61,9 +74,23 @@ pub(super) struct Simulation {
     /// Switch on the eccentricity of the encoders: a stage that has not been calibrated.
     #[arg(long)]
     pub(super) eccentricity: bool,
-    /// No progress bar.
-    #[arg(long, short)]
-    pub(super) quiet: bool,
+}
+
+/// The simulated stage, served.
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+pub(super) struct Serve {
+    /// Address and port to listen at; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50000")]
+    pub(super) listen: String,
+    /// Simulated seconds in a second.
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = speed)]
+    pub(super) speed: f64,
+    /// A pseudo-terminal besides, in place of the controller's serial line.
+    #[arg(long)]
+    pub(super) pty: bool,
+    #[command(flatten)]
+    pub(super) stage: SimulatedStage,
 }
 
 /// A run on the emulated chip.
@@ -171,5 +198,19 @@ fn mismatch_percent(text: &str) -> Result<f64, String> {
         Err(format!(
             "not from -{MISMATCH_LIMIT_PERCENT} to {MISMATCH_LIMIT_PERCENT}"
         ))
+    }
+}
+
+/// Slowest and fastest: 20 ticks a second, and more than any machine computes.
+#[cfg(unix)]
+const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
+#[cfg(unix)]
+fn speed(text: &str) -> Result<f64, String> {
+    let speed: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if SPEEDS.contains(&speed) {
+        Ok(speed)
+    } else {
+        Err(format!("not from {} to {}", SPEEDS.start(), SPEEDS.end()))
     }
 }

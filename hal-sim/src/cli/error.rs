@@ -35,6 +35,9 @@ pub(super) enum CliError {
     Report(#[from] ReportError),
     #[error(transparent)]
     Script(#[from] ScriptError),
+    #[cfg(unix)]
+    #[error(transparent)]
+    Serve(#[from] crate::serve::ServeError),
     #[cfg(feature = "chip")]
     #[error(transparent)]
     Chip(#[from] crate::chip::ChipError),

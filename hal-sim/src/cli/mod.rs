@@ -11,6 +11,8 @@ mod error;
 mod inverse;
 mod map;
 mod rows;
+#[cfg(unix)]
+mod serve;
 mod simulate;
 mod units;
 
@@ -63,6 +65,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         None => simulate::demonstration(&arguments.simulation),
         Some(Command::Run { file, simulation }) => simulate::script(&file, &simulation),
+        #[cfg(unix)]
+        Some(Command::Serve(arguments)) => serve::run(&arguments),
         #[cfg(feature = "chip")]
         Some(Command::Chip(chip)) => chip::run(&chip),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),

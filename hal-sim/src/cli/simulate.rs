@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::arguments::{Imperfection, Simulation};
+use super::arguments::{Imperfection, SimulatedStage, Simulation};
 use super::error::CliError;
 use crate::plant::Imperfections;
 use crate::report::make_folder;
@@ -57,14 +57,14 @@ pub(super) fn options(name: &str, arguments: &Simulation) -> RunOptions {
     RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,
-        seed: arguments.seed,
-        mismatch_percent: arguments.mismatch,
-        imperfections: imperfections(arguments),
+        seed: arguments.stage.seed,
+        mismatch_percent: arguments.stage.mismatch,
+        imperfections: imperfections(&arguments.stage),
         quiet: arguments.quiet,
     }
 }
 
-fn imperfections(arguments: &Simulation) -> Imperfections {
+pub(super) fn imperfections(arguments: &SimulatedStage) -> Imperfections {
     let mut on = Imperfections {
         encoder_eccentricity: arguments.eccentricity,
         ..Imperfections::CALIBRATED

@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(ticks.range, (-1.0, 2.0));
         let turns = Ticks::covering((0.0, 1080.0), 4.0, Steps::Degrees);
         assert_eq!(turns.values, [0.0, 360.0, 720.0, 1080.0]);
-        let at_rest = Ticks::covering((-1e-6, 1080.000_001), 4.0, Steps::Degrees);
+        let at_rest = Ticks::covering((-1e-6, 1_080.000_001), 4.0, Steps::Degrees);
         assert_eq!(at_rest.range, (0.0, 1080.0));
         let small = Ticks::covering((0.0, 0.034), 4.0, Steps::Decimal);
         assert_eq!(small.label(small.values[1]), "0.01");

@@ -92,6 +92,7 @@ impl Stream {
     pub unsafe fn start(&mut self, memory: *mut u8, bytes: u16) {
         let registers = self.registers;
         self.clear_flags();
+        // SAFETY: every address is defined; that it is a good one is the caller's promise.
         registers
             .m0ar()
             .write(|w| unsafe { w.m0a().bits(memory as u32) });

@@ -47,6 +47,16 @@ pub enum ResetCause {
 }
 
 impl ResetCause {
+    /// What is worth telling over the command interface: a start that nobody asked for.
+    pub const fn unasked(self) -> Option<&'static str> {
+        match self {
+            Self::Watchdog => Some("the watchdog: the control loop stood still"),
+            Self::Software => Some("a panic or a processor fault"),
+            Self::BrownOut => Some("a dip of the supply"),
+            _ => None,
+        }
+    }
+
     /// Reads the flags and clears them for the next time. Every reset also sets the pin's flag, so that one comes last.
     pub fn take(rcc: &mut pac::RCC) -> Self {
         let flags = rcc.csr().read();

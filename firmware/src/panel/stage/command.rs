@@ -3,10 +3,12 @@
 
 use super::super::axis::{Axis, AxisValues};
 use super::super::error::ErrorCode;
+use super::super::soft::SoftLimits;
 use super::super::target::{Coordinates, position};
 use super::{Flight, Stage};
 use crate::link::{Command, Mode, PanelLink};
-use crate::motion::{Position, Stop};
+use crate::motion::{Limits, Stop};
+use kinematics::Geometry;
 
 /// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
 const SLOWEST_MM_S: f64 = 1e-3;
@@ -48,12 +50,16 @@ impl Stage {
         else {
             return Err(ErrorCode::NotReady);
         };
+        if !self.soft.allow(&target) {
+            return Err(ErrorCode::PositionLimit);
+        }
         let to = position(&target, &self.geometry)?;
         let (mode, from) = (snapshot.mode, snapshot.setpoint);
         if mode == Mode::Holding {
             self.start(from, to, link)?;
         } else {
-            self.retarget(to);
+            self.move_wanted = Some(to);
+            self.rest_first = false;
         }
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
@@ -63,18 +69,6 @@ impl Stage {
         self.target = target;
         self.target_is_rest = false;
         Ok(())
-    }
-
-    /// Stops for another target, unless the motion stops already.
-    fn retarget(&mut self, to: Position) {
-        let stopping = [&self.course, &self.next]
-            .into_iter()
-            .flatten()
-            .any(|course| course.stop.is_some());
-        if !stopping {
-            self.stop_wanted = self.stop_wanted.or(Some(Stop::Smooth));
-        }
-        self.move_wanted = Some(to);
     }
 
     /// `STP`, `#24`, `HLT`.
@@ -114,6 +108,24 @@ impl Stage {
             self.send(Command::Acknowledge, Flight::Other, link)?;
         }
         Ok(())
+    }
+
+    /// Changes the soft limits; only by ones that leave the target inside.
+    pub fn set_soft(
+        &mut self,
+        change: fn(&mut SoftLimits, &AxisValues, &Coordinates, &Geometry) -> Result<(), ErrorCode>,
+        values: &AxisValues,
+    ) -> Result<(), ErrorCode> {
+        change(&mut self.soft, values, &self.target, &self.geometry)
+    }
+
+    /// Other limits of motion, for the plans to come. `VLS` stays, as far as they allow it.
+    pub fn set_limits(&mut self, limits: Limits) {
+        let mm_s = self.limits.speed_mm_s.min(limits.speed_mm_s);
+        self.full = limits;
+        self.limits = limits;
+        // Not refused: it is inside the new limits, which are far over the slowest.
+        let _ = self.set_velocity(mm_s);
     }
 
     /// `VLS`: speed of the platform centre; rotation goes down with it in proportion, so that a slow move is slow in W too.

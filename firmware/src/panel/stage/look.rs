@@ -1,8 +1,9 @@
 //! What queries ask of the stage.
 
-use super::super::axis::{Axis, AxisSet};
+use super::super::axis::{Axis, AxisSet, AxisValues};
+use super::super::reach::furthest;
 use super::super::request::Quantity;
-use super::super::target::{Coordinates, coordinates, measured, travel};
+use super::super::target::{Coordinates, coordinates, measured, position, travel};
 use super::{Flight, Stage};
 use crate::link::Mode;
 
@@ -21,7 +22,26 @@ impl Stage {
             // Adding 0 turns -0 into 0.
             Quantity::Lowest => -travel(axis, &self.geometry) + 0.0,
             Quantity::Highest => travel(axis, &self.geometry),
+            Quantity::SoftLowest => self.soft.lowest[index],
+            Quantity::SoftHighest => self.soft.highest[index],
+            Quantity::SoftActive => flag(self.soft.active[index]),
+            Quantity::LimitSwitch | Quantity::ReferenceSwitch => 0.0,
         }
+    }
+
+    /// Whether `MOV` would take this target, once referenced and with the servo on.
+    pub fn is_reachable(&self, values: &AxisValues) -> bool {
+        let mut target = self.target;
+        for (coordinate, value) in target.iter_mut().zip(values) {
+            *coordinate = value.unwrap_or(*coordinate);
+        }
+        self.soft.allow(&target) && position(&target, &self.geometry).is_ok()
+    }
+
+    /// The furthest target in this direction from the last one; `None` when it is no direction.
+    pub fn reach(&self, values: &AxisValues) -> Option<Coordinates> {
+        let direction = values.map(|value| value.unwrap_or(0.0));
+        furthest(&self.target, &direction, &self.soft, &self.geometry)
     }
 
     /// Measured pose. Without a reference there is none: 0. With pivots that are no pose (a fault) the setpoint stands for it.

@@ -22,13 +22,14 @@ pub(super) use reference::Referencing;
 use super::axis::AxisSet;
 use super::course::Course;
 use super::error::ErrorCode;
+use super::soft::SoftLimits;
 use super::target::{Coordinates, coordinates};
 use crate::link::{Command, Mode, PanelLink, Snapshot};
 use crate::motion::{Limits, Position, Stop};
 use crate::parameters::Parameters;
 use kinematics::Geometry;
 
-/// Ticks between the snapshot a stop is planned from and the tick at which it takes over: 2 ms for planning.
+/// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for planning.
 const LOOK_AHEAD: u64 = 40;
 /// Where doubling it ends: a stop that is late even so finds the motion at rest.
 const LOOK_AHEAD_MOST: u64 = 20_000;
@@ -39,6 +40,7 @@ pub(super) struct Stage {
     limits: Limits,
     /// Limits of the parameters: those of full system velocity.
     full: Limits,
+    soft: SoftLimits,
     snapshot: Option<Snapshot>,
     sent: u32,
     /// Plans refused by the tick when the command in flight was sent.
@@ -52,6 +54,8 @@ pub(super) struct Stage {
     look_ahead: u64,
     stop_wanted: Option<Stop>,
     move_wanted: Option<Position>,
+    /// The move that is wanted can not be had without a stop before.
+    rest_first: bool,
     target: Coordinates,
     /// The target is where the stage comes to rest, not where it was sent.
     target_is_rest: bool,
@@ -78,6 +82,7 @@ impl Stage {
             geometry: parameters.geometry,
             limits: parameters.limits,
             full: parameters.limits,
+            soft: SoftLimits::new(&parameters.geometry),
             snapshot: None,
             sent: 0,
             refused: 0,
@@ -88,6 +93,7 @@ impl Stage {
             look_ahead: LOOK_AHEAD,
             stop_wanted: None,
             move_wanted: None,
+            rest_first: false,
             target: Coordinates::default(),
             target_is_rest: true,
             moving: AxisSet::EMPTY,
@@ -148,10 +154,14 @@ impl Stage {
     /// The tick has taken what was in flight, or refused it.
     fn land(&mut self, flight: Flight, refused: bool) {
         let Flight::Move(course) = flight else { return };
+        match (refused, course.is_splice()) {
+            (true, true) => self.look_ahead = (self.look_ahead * 2).min(LOOK_AHEAD_MOST),
+            (false, true) => self.look_ahead = LOOK_AHEAD,
+            _ => {}
+        }
         match (course.stop, refused) {
-            (Some(_), true) => self.look_ahead = (self.look_ahead * 2).min(LOOK_AHEAD_MOST),
+            (Some(_), true) => {}
             (Some(stop), false) => {
-                self.look_ahead = LOOK_AHEAD;
                 // An urgent stop may have been asked for while a smooth one was in flight.
                 self.stop_wanted = self
                     .stop_wanted
@@ -159,9 +169,12 @@ impl Stage {
                 self.will_rest_at(&course.plan.end);
                 self.next = Some(course);
             }
+            (None, false) if course.is_splice() => self.next = Some(course),
             (None, false) => self.course = Some(course),
             // The setpoint was not where the snapshot said: tried again from where it is, unless stopped meanwhile.
-            (None, true) if self.stop_wanted.is_none() => self.move_wanted = Some(course.plan.end),
+            (None, true) if self.stop_wanted.is_none() && self.move_wanted.is_none() => {
+                self.move_wanted = Some(course.plan.end);
+            }
             (None, true) => {}
         }
     }

@@ -1,0 +1,270 @@
+//! Retargets in motion: random tours of targets, each left at any tick, also for stops.
+
+mod motion_bench;
+
+use firmware::motion::{
+    Axis, Bounds, Motion, NoTransition, Plan, Position, Stop, plan_curved_stop, plan_stop,
+    plan_transition,
+};
+use motion_bench::*;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+
+/// All of the disk.
+const ANYWHERE: Bounds = [[-(1 << 32), 1 << 32]; 2];
+
+fn retarget(of: &Plan, from: &[Axis; 3], at: u64, to: Position) -> Result<Plan, NoTransition> {
+    plan_transition(of.id + 1, of, from, at, to, &LIMITS, &GEOMETRY, &ANYWHERE)
+}
+
+/// A line and further targets, each with the part of the motion before after which it comes.
+fn tours() -> impl Strategy<Value = ((Position, Position), Vec<(Position, f64)>)> {
+    (
+        (positions(2.0), positions(2.0)),
+        prop::collection::vec((positions(2.0), 0.0..1.0_f64), 1..4),
+    )
+}
+
+/// Everything a plan that is followed from `start` has to keep, tick by tick; `factor` for urgent stops.
+fn keeps_the_law(plan: &Plan, start: [Axis; 3], factor: f64) -> Result<(), TestCaseError> {
+    let mut worst = [0.0_f64; 5];
+    let mut axes = start;
+    for piece in &plan.pieces {
+        let jerk = piece
+            .jerk
+            .map(|jerk| jerk as f64 / AXIS_UNIT * LIMITS.rate_hz.powi(3));
+        worst[2] = worst[2].max(share(jerk, LIMITS.jerk_mm_s3, LIMITS.turn_jerk_deg_s3));
+        for _ in 0..piece.ticks {
+            for (i, axis) in axes.iter_mut().enumerate() {
+                axis.advance(piece.jerk[i], plan.nudge[i]);
+            }
+            let speed = share(velocity(&axes), LIMITS.speed_mm_s, LIMITS.turn_speed_deg_s);
+            let force = share(
+                acceleration(&axes),
+                LIMITS.acceleration_mm_s2,
+                LIMITS.turn_acceleration_deg_s2,
+            );
+            let [x, y] = [0, 1].map(|i| axes[i].position as f64 / AXIS_UNIT);
+            worst[0] = worst[0].max(speed);
+            worst[1] = worst[1].max(force);
+            worst[3] = worst[3].max(x.hypot(y) / GEOMETRY.usable_radius());
+            worst[4] = worst[4].max(pivot_rate(&axes) / LIMITS.pivot_rate_rad_s);
+        }
+    }
+    let slack = 1.0 + 2e-4;
+    let most = [1.0, factor, factor * factor, 1.0, 1.0];
+    for (i, (worst, most)) in worst.iter().zip(most).enumerate() {
+        prop_assert!(
+            *worst <= most * slack,
+            "law {} of speed, acceleration, jerk, disk, pivots: {} (factor {}) {:?} {:?}",
+            i,
+            worst,
+            factor,
+            start,
+            plan
+        );
+    }
+    for (i, axis) in axes.iter().enumerate() {
+        // What is dropped at the end is less than a unit of position, and a speed under 1e-3 units a tick.
+        let off = axis.position - (i128::from(plan.end[i]) << 40);
+        prop_assert!(
+            (-(1_i128 << 36)..1 << 41).contains(&off),
+            "axis {i} ends {off} off"
+        );
+        prop_assert!(
+            axis.velocity.unsigned_abs() < 1 << 30,
+            "{i} {}",
+            axis.velocity
+        );
+        prop_assert!(
+            axis.acceleration.unsigned_abs() < 1 << 24,
+            "{i} {}",
+            axis.acceleration
+        );
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(settings(1_000))]
+
+    #[test]
+    fn tours_keep_the_law(((from, to), targets) in tours()) {
+        let mut plan = line(from, to);
+        let mut start = at_rest(from);
+        let mut curved = false;
+        for (to, part) in targets {
+            let at = (part * plan.ticks() as f64) as u64;
+            for (stop, factor) in [(Stop::Smooth, 1.0), (Stop::Urgent, LIMITS.stop_factor)] {
+                if curved && let Some(stop) = plan_curved_stop(plan.id + 1, &plan, &start, at, &LIMITS, &GEOMETRY, stop) {
+                    keeps_the_law(&stop, plan.state_after(&start, at), factor)?;
+                }
+            }
+            match retarget(&plan, &start, at, to) {
+                Ok(next) => {
+                    start = plan.state_after(&start, at);
+                    keeps_the_law(&next, start, 1.0)?;
+                    prop_assert_eq!(next.end, to);
+                    plan = next;
+                    curved = true;
+                }
+                Err(NoTransition::NeedsStop) => {}
+                Err(refused) => prop_assert!(false, "{:?}", refused),
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(settings(500))]
+
+    /// Along the rim, a little inwards or outwards: curves that bulge.
+    #[test]
+    fn along_the_rim_the_disk_is_kept(angles in prop::array::uniform3(0.2..1.2_f64), radii in prop::array::uniform3(76.0..80.0_f64), part in 0.0..1.0_f64) {
+        let mut angle = 0.0;
+        let [from, to, other] = [0, 1, 2].map(|i| {
+            angle += angles[i];
+            at(radii[i] * angle.cos(), radii[i] * angle.sin(), 0.0)
+        });
+        let (plan, start) = (line(from, to), at_rest(from));
+        let leave = (part * plan.ticks() as f64) as u64;
+        if let Ok(next) = retarget(&plan, &start, leave, other) {
+            keeps_the_law(&next, plan.state_after(&start, leave), 1.0)?;
+        }
+    }
+}
+
+/// The setpoint of a tour in the very code of the tick: no position, velocity or acceleration is ever off what the integers
+/// of one plan after the other give.
+#[test]
+fn the_tick_follows_a_tour_without_a_step() {
+    let from = at(-50.0, 10.0, 0.2);
+    let mut plan = line(from, at(60.0, 20.0, 1.0));
+    let mut start = at_rest(from);
+    let mut motion = Motion::default();
+    motion.rest_at(from);
+    motion.accept(&plan).unwrap();
+    let scale = firmware::motion::Scale::new(LIMITS.rate_hz);
+    let mut random = 1_u64;
+    for round in 0..40 {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(round);
+        let part = (random >> 40) as f64 / (1 << 24) as f64;
+        let angle = part * 60.0;
+        let to = at(40.0 * angle.cos(), 40.0 * angle.sin(), part * 4.0 - 2.0);
+        let leave = 1 + (part * 0.8 * plan.ticks() as f64) as u64;
+        let next = retarget(&plan, &start, leave, to).expect("inside, and slow enough");
+        for tick in 1..=leave {
+            motion.advance();
+            if tick == 1 {
+                motion.accept(&next).unwrap();
+            }
+            let expected = plan.state_after(&start, tick).map(|axis| axis.rounded());
+            assert_eq!(motion.setpoint(&scale).position, expected);
+        }
+        start = plan.state_after(&start, leave);
+        // The first tick of the new plan goes on from the last state of the old one, to the bit.
+        let jerk = next.pieces[0].jerk;
+        let mut one = start;
+        for i in 0..3 {
+            one[i].advance(jerk[i], next.nudge[i]);
+        }
+        assert_eq!(next.state_after(&start, 1), one);
+        plan = next;
+    }
+    for _ in 0..plan.ticks() {
+        motion.advance();
+    }
+    assert!(!motion.moving());
+    assert_eq!(motion.position(), plan.end);
+}
+
+/// How good transitions are: seldom refused for the sake of the coupled limits, and as a rule faster than stopping first.
+#[test]
+fn a_transition_is_the_rule_and_saves_time() {
+    for (turns, most_refused) in [(2.0, 50), (0.02, 250)] {
+        let (ratios, refused) = durations_with_a_stop_for_one(turns);
+        let at = |part: f64| ratios[((ratios.len() - 1) as f64 * part) as usize];
+        println!(
+            "within {turns} turns: {} transitions, {refused} stops first; of the duration with a stop: least {:.3}, 5 % {:.3}, median {:.3}, 95 % {:.3}, most {:.3}",
+            ratios.len(),
+            at(0.0),
+            at(0.05),
+            at(0.5),
+            at(0.95),
+            at(1.0),
+        );
+        assert!(refused < most_refused, "{refused}");
+        assert!(at(0.5) < 0.99, "{}", at(0.5));
+    }
+}
+
+/// Durations of transitions over those of a stop and a line, sorted, and how many needed a stop.
+fn durations_with_a_stop_for_one(turns: f64) -> (Vec<f64>, usize) {
+    let mut runner = proptest::test_runner::TestRunner::new(settings(1));
+    let three = prop::array::uniform3(positions(turns));
+    let (mut ratios, mut refused) = (Vec::new(), 0);
+    for _ in 0..1_000 {
+        let [from, to, other] = three.new_tree(&mut runner).unwrap().current();
+        let leave = (0.0..1.0_f64).new_tree(&mut runner).unwrap().current();
+        let (plan, start) = (line(from, to), at_rest(from));
+        let leave = (leave * plan.ticks() as f64) as u64;
+        let Ok(next) = retarget(&plan, &start, leave, other) else {
+            refused += 1;
+            continue;
+        };
+        let (rest, ticks) =
+            match plan_stop(8, &plan, &start, leave, &LIMITS, &GEOMETRY, Stop::Smooth) {
+                Some(stop) => (stop.end, stop.ticks()),
+                None => (plan.end, plan.ticks() - leave),
+            };
+        ratios.push(next.ticks() as f64 / (ticks + line(rest, other).ticks()) as f64);
+    }
+    ratios.sort_by(f64::total_cmp);
+    (ratios, refused)
+}
+
+#[test]
+fn a_target_outside_is_refused_with_the_reason() {
+    let from = at(-50.0, 0.0, 0.0);
+    let plan = line(from, at(50.0, 0.0, 0.0));
+    let result = retarget(&plan, &at_rest(from), 3_000, at(70.0, 70.0, 0.0));
+    assert!(
+        matches!(
+            result,
+            Err(NoTransition::Refused(
+                firmware::motion::Refusal::OutsideDisk { .. }
+            ))
+        ),
+        "{result:?}"
+    );
+}
+
+/// At full speed towards the rim, a target aside would be reached by a curve beyond it.
+#[test]
+fn near_the_rim_and_the_bounds_it_needs_a_stop() {
+    let from = at(-70.0, 0.0, 0.0);
+    let plan = line(from, at(80.0, 0.0, 0.0));
+    let late = plan.ticks() - 1_000;
+    let result = retarget(&plan, &at_rest(from), late, at(70.0, 30.0, 0.0));
+    assert_eq!(result, Err(NoTransition::NeedsStop));
+    let x = |mm: f64| (mm / GEOMETRY.radius_mm * UNIT) as i64;
+    let plan_within = |highest: f64| {
+        let bounds = [[x(-80.0), x(highest)], [x(-80.0), x(80.0)]];
+        let middle = plan.ticks() / 2;
+        let back = at(-20.0, 30.0, 0.0);
+        plan_transition(
+            8,
+            &plan,
+            &at_rest(from),
+            middle,
+            back,
+            &LIMITS,
+            &GEOMETRY,
+            &bounds,
+        )
+    };
+    assert!(plan_within(30.0).is_ok());
+    assert_eq!(plan_within(6.0), Err(NoTransition::NeedsStop));
+}

@@ -1,0 +1,37 @@
+//! The demonstration, whole, at the numbers the project promises.
+
+use hal_sim::run::{RunOptions, run};
+use hal_sim::script::Script;
+
+#[test]
+fn the_demonstration_keeps_its_promises() {
+    let options = RunOptions::default();
+    assert_eq!(options.mismatch_percent, 20.0);
+    let script = Script::demonstration().expect("a good script");
+    let outcome = run(&script, &options);
+    println!("{}", outcome.run.summary());
+    assert_eq!(outcome.fault, None);
+    let statistics = outcome.run.trace.statistics();
+    let (centre_um, theta_urad) = (
+        statistics.error_xy_um.rms(),
+        statistics.error_theta_urad.rms(),
+    );
+    assert!(
+        centre_um < 0.5 && theta_urad < 5.0,
+        "{centre_um} um, {theta_urad} urad"
+    );
+    // It has moved, far and long: 95 % of the disk, three turns.
+    assert!(statistics.error_xy_um.count() > 100_000);
+    assert!(outcome.run.moves.len() >= 12);
+    let furthest = (outcome.run.moves.iter()).map(|one| one.target[0].hypot(one.target[1]));
+    assert!((furthest.fold(0.0, f64::max) - 76.0).abs() < 0.01);
+    for one in &outcome.run.moves {
+        let settle_s = one.settle_s().expect("settled");
+        assert!(settle_s <= 0.030, "{:?}: {settle_s} s", one.target);
+    }
+    assert!(
+        statistics.peak_duty < 0.98,
+        "saturated: {}",
+        statistics.peak_duty
+    );
+}

@@ -1,0 +1,45 @@
+//! The same seed and script give the same run, byte for byte.
+
+use std::fs;
+use std::path::Path;
+
+use hal_sim::run::{RunOptions, RunOutcome, run};
+use hal_sim::script::Script;
+
+const SCRIPT: &str = "FRF\nWAC ONT? W = 1\nMOV X 20 Y -10 W 30\nDEL 60\nHLT\nWAC ONT? W = 1\nPOS? X W\nMVR Y 3\nWAC ONT? Y = 1\n";
+
+fn outcome(seed: u64, folder: &Path) -> RunOutcome {
+    let script = Script::parse("determinism", SCRIPT).expect("a good script");
+    let options = RunOptions {
+        out: folder.to_owned(),
+        every: 7,
+        seed,
+        ..RunOptions::default()
+    };
+    let outcome = run(&script, &options);
+    assert_eq!(outcome.fault, None);
+    outcome
+}
+
+fn files(outcome: &RunOutcome, folder: &Path) -> [Vec<u8>; 2] {
+    outcome.run.write(folder).expect("a folder of ours");
+    ["trace.csv", "moves.csv"].map(|name| fs::read(folder.join(name)).expect("written"))
+}
+
+#[test]
+fn a_seed_is_a_run() {
+    let folder = |name: &str| Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let [one, same, other] = [("one", 5), ("same", 5), ("other", 6)].map(|(name, seed)| {
+        let folder = folder(name);
+        let outcome = outcome(seed, &folder);
+        let files = files(&outcome, &folder);
+        (outcome, files)
+    });
+    assert_eq!(one.0.hash, same.0.hash);
+    assert_eq!(one.0.ticks, same.0.ticks);
+    assert_eq!(one.0.answers, same.0.answers);
+    assert!(one.1 == same.1, "the traces differ");
+    assert!(one.1[0].len() > 100_000, "{} bytes", one.1[0].len());
+    assert_ne!(one.0.hash, other.0.hash);
+    assert!(one.1[0] != other.1[0], "another seed has the same trace");
+}

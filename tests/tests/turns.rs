@@ -1,0 +1,31 @@
+//! Rotation without end.
+
+use tests::Bench;
+
+/// A hundred and twenty turns and back: nothing that counts turns may lose one, or a fraction of one.
+#[test]
+fn turns_come_back_to_the_same_counts() {
+    const TURN: i64 = 1 << 32;
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("MOV X 7 Y -5 W 33"), "0");
+    bench.settle();
+    let pivots = |bench: &Bench| bench.sample().pivot_setpoints.map(|angle| angle.units());
+    let start = pivots(&bench);
+    for (target, turns) in [(43_233, 120), (33, 0)] {
+        assert_eq!(bench.error_after(&format!("MOV W {target}")), "0");
+        bench.forget_errors();
+        bench.run_until("120 turns", |bench| {
+            bench.sample().setpoint.position[2] == target * TURN / 360
+        });
+        bench.settle();
+        assert_eq!(
+            pivots(&bench),
+            start.map(|units| units + turns * TURN),
+            "{turns} turns"
+        );
+        // The machine has been there.
+        let truth = bench.host.stage.plant.pose()[2].to_degrees();
+        assert!((truth - target as f64).abs() < 1e-4, "{truth} deg");
+        assert!((bench.value("POS? W") - target as f64).abs() < 6e-5);
+    }
+}
