@@ -11,7 +11,7 @@ use crate::client::{Client, Event};
 use crate::devices::{FINE_PWM, StageParameters};
 use crate::host::Host;
 use crate::observer::{Observer, TickRecord};
-use crate::plant::{Imperfections, PlantParameters};
+use crate::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Progress, Run};
 use crate::script::{Line, Script};
 
@@ -26,6 +26,8 @@ pub struct RunOptions {
     pub seed: u64,
     /// By how much the plant departs from the controller's model of it, in percent.
     pub mismatch_percent: f64,
+    /// Mass of a load on the platform that the controller knows nothing of: a cylinder of 50 mm radius, 20 mm off the centre.
+    pub payload_kg: f64,
     /// Imperfections of the simulated stage.
     pub imperfections: Imperfections,
     /// No progress bar.
@@ -40,6 +42,7 @@ impl Default for RunOptions {
             every: DEFAULT_EVERY,
             seed: 1,
             mismatch_percent: 20.0,
+            payload_kg: 0.0,
             imperfections: Imperfections::CALIBRATED,
             quiet: true,
         }
@@ -67,6 +70,11 @@ pub const IDENTITY: Identity = Identity {
     version: env!("CARGO_PKG_VERSION"),
 };
 
+/// Radius of the payload's cylinder, m.
+const CYLINDER_M: f64 = 0.05;
+/// Its distance from the platform's centre, m.
+const OFF_CENTRE_M: f64 = 0.02;
+
 /// The reference stage as the options have it: off from the controller's model by their mismatch, heavier, with more
 /// friction, and with weaker motors, the combination that costs the servo most.
 #[must_use]
@@ -83,6 +91,12 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
             coulomb_n_m: reference.coulomb_n_m * more,
             viscous_n_m_s_rad: reference.viscous_n_m_s_rad * more,
             torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
+            payload: Payload {
+                mass_kg: options.payload_kg,
+                inertia_kg_m2: options.payload_kg * CYLINDER_M * CYLINDER_M / 2.0,
+                eccentricity_m: OFF_CENTRE_M,
+                direction_rad: 0.7,
+            },
             imperfections: options.imperfections,
             ..reference
         },

@@ -207,5 +207,7 @@ impl Runner {
 }
 
 fn apart(divergence: &Divergence) -> String {
-    format!("chip and host differ: {divergence}")
+    format!(
+        "chip and host differ: {divergence}; is the image older than the sources (`cargo stage` builds it)?"
+    )
 }

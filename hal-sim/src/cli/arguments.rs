@@ -68,6 +68,9 @@ pub(super) struct SimulatedStage {
     /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
     #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = mismatch_percent)]
     pub(super) mismatch: f64,
+    /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
+    #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = payload_kg)]
+    pub(super) payload: f64,
     /// Imperfections of the simulated stage to switch off.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(super) without: Vec<Imperfection>,
@@ -189,6 +192,18 @@ pub(super) enum Quantity {
 
 /// Beyond that the simulated motors have no torque, or the platform no mass.
 const MISMATCH_LIMIT_PERCENT: f64 = 80.0;
+
+/// What the reference stage carries at most.
+const PAYLOAD_LIMIT_KG: f64 = 5.0;
+
+fn payload_kg(text: &str) -> Result<f64, String> {
+    let kg: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=PAYLOAD_LIMIT_KG).contains(&kg) {
+        Ok(kg)
+    } else {
+        Err(format!("not between 0 and {PAYLOAD_LIMIT_KG}"))
+    }
+}
 
 fn mismatch_percent(text: &str) -> Result<f64, String> {
     let percent: f64 = text.parse().map_err(|_| "not a number".to_owned())?;

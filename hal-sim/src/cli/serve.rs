@@ -32,6 +32,7 @@ fn options(arguments: &Serve) -> ServeOptions {
     let options = RunOptions {
         seed: stage.seed,
         mismatch_percent: stage.mismatch,
+        payload_kg: stage.payload,
         imperfections: imperfections(stage),
         ..RunOptions::default()
     };

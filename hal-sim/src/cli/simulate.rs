@@ -59,6 +59,7 @@ pub(super) fn options(name: &str, arguments: &Simulation) -> RunOptions {
         every: arguments.every,
         seed: arguments.stage.seed,
         mismatch_percent: arguments.stage.mismatch,
+        payload_kg: arguments.stage.payload,
         imperfections: imperfections(&arguments.stage),
         quiet: arguments.quiet,
     }

@@ -32,10 +32,8 @@ impl Payload {
 /// Which departures from an ideal machine are simulated.
 ///
 /// A flag only gates its effect: the size stands in [`PlantParameters`] (or in the parameters of the device), so an
-/// effect can be switched off and on again without losing its number. The two quantisations have no flag, because they
-/// are the shape of the interface: an encoder frame holds whole counts, and a PWM channel takes whole counts. Who wants
-/// the plant without them reads [`Plant::pivots_rad`](super::Plant::pivots_rad) and drives it with
-/// [`Drive::Voltage`](super::Drive::Voltage).
+/// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
+/// whole counts, and the true angle is the plant's to tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Imperfections {
     /// Coulomb, static and presliding friction at the rings (the bristle model).
