@@ -178,3 +178,28 @@ fn the_loop_is_stable_on_a_ring() {
     // 50 ms later it is within an encoder LSB.
     assert!(late < 94e-9, "{late:e} rad");
 }
+
+/// A number gone wrong somewhere above must not become full drive.
+#[test]
+fn what_is_no_number_asks_for_no_drive() {
+    let config = config();
+    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    for broken in [
+        PivotSetpoint {
+            rate: f32::NAN,
+            ..asking(1.0, 1e-5)
+        },
+        PivotSetpoint {
+            acceleration: f32::NAN,
+            ..asking(1.0, 1e-5)
+        },
+        asking(f32::NAN, 1e-5),
+    ] {
+        let mut servo = AxisServo::default();
+        servo.step(&config, &asking(1.0, 1e-5), per_volt);
+        for _ in 0..3 {
+            let duty = servo.step(&config, &broken, per_volt).0;
+            assert!(duty.abs() <= 1, "{broken:?}: {duty}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, AxisValues};
 use super::error::ErrorCode;
-use super::target::{Coordinates, travel};
+use super::target::{Coordinates, replaced, travel};
 use kinematics::Geometry;
 
 /// Lowest and highest targets, mm and deg, and whether they count.
@@ -38,7 +38,7 @@ impl SoftLimits {
         geometry: &Geometry,
     ) -> Result<(), ErrorCode> {
         let mut wanted = *self;
-        replace(&mut wanted.lowest, values);
+        wanted.lowest = replaced(&wanted.lowest, values);
         self.change(wanted, target, geometry)
     }
 
@@ -50,7 +50,7 @@ impl SoftLimits {
         geometry: &Geometry,
     ) -> Result<(), ErrorCode> {
         let mut wanted = *self;
-        replace(&mut wanted.highest, values);
+        wanted.highest = replaced(&wanted.highest, values);
         self.change(wanted, target, geometry)
     }
 
@@ -90,11 +90,5 @@ impl SoftLimits {
         }
         *self = wanted;
         Ok(())
-    }
-}
-
-fn replace(coordinates: &mut Coordinates, values: &AxisValues) {
-    for (coordinate, value) in coordinates.iter_mut().zip(values) {
-        *coordinate = value.unwrap_or(*coordinate);
     }
 }

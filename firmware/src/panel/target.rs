@@ -1,12 +1,17 @@
 //! Between mm and deg of the interface and the [`Position`]s of the motion layer.
 
-use super::axis::Axis;
+use super::axis::{Axis, AxisValues};
 use super::error::ErrorCode;
 use crate::motion::{Position, check_target};
 use kinematics::{Angle, Geometry, direct};
 
 /// Coordinates in the order of [`Axis::ALL`], mm and deg.
 pub(super) type Coordinates = [f64; 6];
+
+/// The coordinates with those replaced that have a value.
+pub(super) fn replaced(coordinates: &Coordinates, values: &AxisValues) -> Coordinates {
+    core::array::from_fn(|i| values[i].unwrap_or(coordinates[i]))
+}
 
 /// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
 const W_TRAVEL_DEG: f64 = 3_600_000.0;

@@ -212,10 +212,17 @@ fn limit(value: f32, most: f32) -> f32 {
     }
 }
 
+/// What is no number asks for nothing: not for full drive.
 #[cold]
 #[inline(never)]
 fn end(value: f32, most: f32) -> f32 {
-    if value < 0.0 { -most } else { most }
+    if value < 0.0 {
+        -most
+    } else if value > 0.0 {
+        most
+    } else {
+        0.0
+    }
 }
 
 /// The duty whose pulses, after the dead time has taken its part, are `wanted`.

@@ -4,7 +4,7 @@
 use super::super::axis::{Axis, AxisValues};
 use super::super::error::ErrorCode;
 use super::super::soft::SoftLimits;
-use super::super::target::{Coordinates, position};
+use super::super::target::{Coordinates, position, replaced};
 use super::{Flight, Stage};
 use crate::link::{Command, Mode, PanelLink};
 use crate::motion::{Limits, Stop};
@@ -20,11 +20,7 @@ impl Stage {
         values: &AxisValues,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        let mut target = self.target;
-        for (coordinate, value) in target.iter_mut().zip(values) {
-            *coordinate = value.unwrap_or(*coordinate);
-        }
-        self.aim(target, link)
+        self.aim(replaced(&self.target, values), link)
     }
 
     /// `MVR`: relative to the last target.

@@ -3,7 +3,7 @@
 use super::super::axis::{Axis, AxisSet, AxisValues};
 use super::super::reach::furthest;
 use super::super::request::Quantity;
-use super::super::target::{Coordinates, coordinates, measured, position, travel};
+use super::super::target::{Coordinates, coordinates, measured, position, replaced, travel};
 use super::{Flight, Stage};
 use crate::link::Mode;
 
@@ -31,10 +31,7 @@ impl Stage {
 
     /// Whether `MOV` would take this target, once referenced and with the servo on.
     pub fn is_reachable(&self, values: &AxisValues) -> bool {
-        let mut target = self.target;
-        for (coordinate, value) in target.iter_mut().zip(values) {
-            *coordinate = value.unwrap_or(*coordinate);
-        }
+        let target = replaced(&self.target, values);
         self.soft.allow(&target) && position(&target, &self.geometry).is_ok()
     }
 
