@@ -7,13 +7,17 @@ use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::encoder::Encoder;
 use crate::fault::{Fault, FaultKind};
+use crate::interval::Interval;
 use crate::link::{Mode, Snapshot, TickLink};
 use crate::motion::{Motion, Position, Setpoint};
 use crate::number::Fixed;
 use crate::recorder::{Record, Sample};
 use crate::servo::{AxisServo, PivotSetpoint, platform_torques};
 use crate::settling::Settling;
-use kinematics::{Angle, Guide, Inverse, PivotMotion, Pose, direct, inverse, pivot_motion};
+use kinematics::{
+    Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
+    pivot_motion_in_platform_axes,
+};
 
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
@@ -28,6 +32,10 @@ pub struct Inputs {
     pub current_counts: [u16; 3],
     /// Supply, ADC counts.
     pub supply_counts: u16,
+    /// Cost of the tick before, processor cycles; 0 where nobody counts them.
+    pub tick_cycles: u32,
+    /// The tick before ended after its deadline, or there should have been one more since.
+    pub late: bool,
 }
 
 /// What a tick gives the hardware.
@@ -53,6 +61,7 @@ pub struct State {
     supply: f32,
     commands: u32,
     refused: u32,
+    interval: Interval,
 }
 
 /// One period of the control loop, at 20 kHz by default.
@@ -63,15 +72,15 @@ pub struct State {
 /// no panic, no unbounded loop, no f64; its cost on the chip stands in the README and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
-    config: &Config,
+    config: &mut Config,
     state: &mut State,
     inputs: &Inputs,
     link: &mut TickLink<'_>,
     recorder: &mut impl Record,
 ) -> Outputs {
     state.tick = state.tick.wrapping_add(1);
+    state.interval.count(inputs.tick_cycles, inputs.late);
     let mut pivots = decode(config, &mut state.encoders, &inputs.frames);
-    let pose = measure(&pivots);
     // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.tick == 1 {
@@ -84,14 +93,15 @@ pub fn tick(
     let commanded = command.is_some();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
-        state.obey(command, &pivots, pose.as_ref());
+        state.obey(config, command, &pivots);
         let _ = link.commands.dequeue();
         // Once more: referencing gives the pivots their turns.
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
-    state.check_inputs(config, inputs, pose.is_none());
+    state.check_inputs(config, inputs);
 
-    let setpoint = advance(config, &mut state.motion);
+    let point = advance(config, &mut state.motion);
+    let setpoint = state.motion.centre().platform(&point);
     let driven = if state.servo_on() {
         state.drive(config, &setpoint, &pivots)
     } else {
@@ -102,20 +112,33 @@ pub fn tick(
         duty,
         awake: state.awake(),
     };
-    recorder.record(&Sample {
+    let sample = || Sample {
         tick: state.tick,
         mode: state.mode,
+        fault: state.fault.map(|fault| fault.kind),
         setpoint,
+        point,
         pivot_setpoints: target,
         pivot_rates: rates,
         pivots,
         duty,
+        current_counts: inputs.current_counts,
+        supply_counts: inputs.supply_counts,
+        tick_cycles: inputs.tick_cycles,
         commands: state.commands,
-    });
+    };
+    recorder.record(&sample());
+    // Made anew, so that a tick that records nothing has it in registers only.
+    if link.recorder.is_wanted() {
+        link.recorder.record(&sample());
+    }
     // Not in a tick that has taken a command, which is the longest as it is.
     if !commanded && link.snapshots.ready() {
         // There is room: `ready` said so, and only this side fills the queue.
-        let _ = link.snapshots.enqueue(state.snapshot(&pivots));
+        let _ = link
+            .snapshots
+            .enqueue(state.snapshot(&pivots, &target, duty));
+        state.interval = Interval::default();
     }
     outputs
 }
@@ -132,13 +155,7 @@ fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) 
     encoders.each_ref().map(Encoder::angle)
 }
 
-/// The pose that the pivots set, if they set one.
-#[inline(never)]
-fn measure(pivots: &[Angle; 3]) -> Option<Pose<Fixed>> {
-    direct(pivots).ok()
-}
-
-/// The motion generator's next setpoint.
+/// The motion generator's next setpoint, of the point that is moved.
 #[inline(never)]
 fn advance(config: &Config, motion: &mut Motion) -> Setpoint {
     motion.advance();
@@ -157,11 +174,11 @@ struct Pivots {
 fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
     let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
     let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
-    let (twist, acceleration) = (&setpoint.twist, &setpoint.acceleration);
+    let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
     Some(Pivots {
         angles: pivots,
-        motion: pivot_motion(&guides, twist, acceleration),
-        torques: platform_torques(&config.servo.body, &guides, twist, acceleration),
+        motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
+        torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
     })
 }
 
@@ -209,8 +226,10 @@ impl State {
                 return None;
             }
         }
-        self.settling
+        let worst = self
+            .settling
             .look(&config.limits, &errors, self.motion.moving());
+        self.interval.look(worst);
         self.mode = if self.motion.moving() {
             Mode::Moving
         } else {
@@ -230,7 +249,7 @@ impl State {
         Some((target, motion.rates, duty))
     }
 
-    fn snapshot(&self, pivots: &[Angle; 3]) -> Snapshot {
+    fn snapshot(&self, pivots: &[Angle; 3], target: &[Angle; 3], duty: [Duty; 3]) -> Snapshot {
         let (plan, plan_tick) = self.motion.progress();
         Snapshot {
             tick: self.tick,
@@ -239,13 +258,18 @@ impl State {
             referenced: self.referenced,
             encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
             pivots: *pivots,
+            // A difference that does not fit is a fault, and then the target is what is measured.
+            pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
+            duty,
             setpoint: self.motion.position(),
+            centre: self.motion.centre(),
             plan,
             plan_tick,
             settled: self.settling.settled() && self.servo_on(),
             commands: self.commands,
             refused: self.refused,
             peak_following_error_rad: self.settling.peak_rad(),
+            interval: self.interval,
         }
     }
 }

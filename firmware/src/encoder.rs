@@ -31,6 +31,27 @@ impl EncoderConfig {
     }
 }
 
+impl EncoderConfig {
+    /// Whether a reading means the same angle to both.
+    pub fn reads_as(&self, other: &Self) -> bool {
+        self.zero == other.zero && self.reversed == other.reversed
+    }
+
+    /// What an ideal encoder shows at a pivot angle: for machines that are simulated.
+    pub fn counts_at(&self, angle: Angle) -> u32 {
+        let fraction = if self.reversed {
+            angle.fraction().wrapping_neg()
+        } else {
+            angle.fraction()
+        };
+        // To the nearest count.
+        fraction
+            .wrapping_add(self.zero)
+            .wrapping_add(1 << (ALIGN - 1))
+            >> ALIGN
+    }
+}
+
 /// One encoder's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Encoder {

@@ -21,8 +21,6 @@ pub enum FaultKind {
     EmergencyStop,
     /// The supply is under its limit; value and limit in V.
     SupplyLow,
-    /// The measured pivots are no pose of the mechanism.
-    ImpossiblePose,
     /// A setpoint left what the mechanism can reach, or is not finite.
     ImpossibleSetpoint,
 }
@@ -54,7 +52,6 @@ impl FaultKind {
             Self::BridgeFault => "bridge reports a fault",
             Self::EmergencyStop => "emergency stop pressed",
             Self::SupplyLow => "supply voltage too low",
-            Self::ImpossiblePose => "measured pivots are no pose of the mechanism",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
         }
     }

@@ -14,6 +14,7 @@ pub mod controller;
 pub mod drivers;
 pub mod encoder;
 pub mod fault;
+pub mod interval;
 pub mod link;
 pub mod motion;
 pub mod number;

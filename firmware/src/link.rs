@@ -4,8 +4,12 @@
 //! for one and it took no command: that tick is the longest as it is. [`PanelLink::snapshot`] throws away a snapshot that
 //! has been waiting, so that what it returns is new.
 
+use crate::config::Config;
+use crate::drivers::bridge::Duty;
 use crate::fault::Fault;
-use crate::motion::{Plan, Position};
+use crate::interval::Interval;
+use crate::motion::{Centre, Plan, Position};
+use crate::recorder::{PanelRecorder, Recorder, TABLES, TickRecorder, WIDEST};
 use heapless::spsc::{Consumer, Producer, Queue};
 use kinematics::Angle;
 
@@ -25,9 +29,18 @@ pub enum Command {
     Servo(bool),
     /// Execute a plan. Refused by the tick (and counted) when its start is no longer where the motion is.
     Move(Plan),
+    /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or not;
+    /// the platform does not move.
+    Centre(Centre),
+    /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the encoders'
+    /// readings mean; such a change takes the reference.
+    Configure(Config),
     /// Acknowledge the latched fault.
     Acknowledge,
 }
+
+// Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
+const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());
 
 /// State of the supervisor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,8 +71,14 @@ pub struct Snapshot {
     pub encoder_faults: [Option<crate::fault::FaultKind>; 3],
     /// Measured pivot angles; valid once referenced.
     pub pivots: [Angle; 3],
-    /// Setpoint of the pose.
+    /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.
+    pub pivot_errors: [i32; 3],
+    /// Duties.
+    pub duty: [Duty; 3],
+    /// Setpoint of the point that is moved.
     pub setpoint: Position,
+    /// That point.
+    pub centre: Centre,
     /// Identity of the plan under way, or of the last one.
     pub plan: u32,
     /// Ticks of it that are done.
@@ -72,13 +91,22 @@ pub struct Snapshot {
     pub refused: u32,
     /// Largest following error of a pivot since the last start of a motion, rad.
     pub peak_following_error_rad: f32,
+    /// What the loop has counted since the snapshot before.
+    pub interval: Interval,
 }
 
-/// Storage of both queues.
-#[derive(Default)]
+/// Rows that a record of any signals can have: with all tables 16,384 samples.
+pub const RECORD_ROWS: usize = 2048;
+/// Words of the data recorder.
+pub const RECORD_WORDS: usize = RECORD_ROWS * WIDEST;
+
+const _: () = assert!(RECORD_ROWS * TABLES >= 16_384);
+
+/// Storage of both queues, and of the data recorder.
 pub struct Link {
     commands: Queue<Command, COMMANDS>,
     snapshots: Queue<Snapshot, SNAPSHOTS>,
+    recorder: Recorder<RECORD_WORDS>,
 }
 
 /// The tick's ends.
@@ -87,24 +115,30 @@ pub struct TickLink<'a> {
     pub commands: Consumer<'a, Command>,
     /// Where snapshots are left.
     pub snapshots: Producer<'a, Snapshot>,
+    /// The data recorder's end in the tick.
+    pub recorder: TickRecorder<'a>,
 }
 
 /// The command side's ends.
 pub struct PanelLink<'a> {
     commands: Producer<'a, Command>,
     snapshots: Consumer<'a, Snapshot>,
+    /// The data recorder's end outside the tick.
+    pub recorder: PanelRecorder<'a>,
 }
 
 /// The command queue is full: nothing was queued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueueFull;
 
+#[allow(clippy::new_without_default)] // A default of 100 KB is nothing to be made in passing.
 impl Link {
     /// Empty queues.
     pub const fn new() -> Self {
         Self {
             commands: Queue::new(),
             snapshots: Queue::new(),
+            recorder: Recorder::new(),
         }
     }
 
@@ -112,20 +146,35 @@ impl Link {
     pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
         let (command_in, command_out) = self.commands.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
+        let (tick_recorder, panel_recorder) = self.recorder.split();
         (
             TickLink {
                 commands: command_out,
                 snapshots: snapshot_in,
+                recorder: tick_recorder,
             },
             PanelLink {
                 commands: command_in,
                 snapshots: snapshot_out,
+                recorder: panel_recorder,
             },
         )
     }
 }
 
+impl TickLink<'_> {
+    /// Throws away the commands that wait: the controller starts again.
+    pub fn clear(&mut self) {
+        while self.commands.dequeue().is_some() {}
+    }
+}
+
 impl PanelLink<'_> {
+    /// Throws away the snapshots that wait: the controller starts again.
+    pub fn clear(&mut self) {
+        while self.snapshots.dequeue().is_some() {}
+    }
+
     /// Queues a command.
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
         self.commands.enqueue(command).map_err(|_| QueueFull)

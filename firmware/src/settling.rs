@@ -16,9 +16,9 @@ impl Settling {
         *self = Self::default();
     }
 
-    /// Takes the following errors of a tick (2^-32 turns).
+    /// Takes the following errors of a tick, 2^-32 turns; gives the largest.
     #[inline]
-    pub fn look(&mut self, limits: &SupervisionConfig, errors: &[i32; 3], moving: bool) {
+    pub fn look(&mut self, limits: &SupervisionConfig, errors: &[i32; 3], moving: bool) -> u32 {
         let mut worst = 0;
         for error in errors {
             worst = worst.max(error.unsigned_abs());
@@ -30,6 +30,7 @@ impl Settling {
             self.inside += 1;
         }
         self.settled = self.inside >= limits.dwell;
+        worst
     }
 
     /// Settled at the last tick.

@@ -3,6 +3,7 @@
 //! Both get the very same inputs: a fixed-point length is a double exactly, and an angle is reduced to its fraction of a turn
 //! before it becomes one, so that doubles are good to 1e-15 here and turns cost them nothing.
 
+use firmware::motion::Centre;
 use firmware::number::Fixed;
 use kinematics::{Angle, Pose, direct, inverse};
 use proptest::prelude::*;
@@ -13,10 +14,16 @@ use std::f64::consts::{PI, TAU};
 const QUARTER_LSB_RAD: f64 = 2.3e-8;
 /// What it does: pinned, so that a loss of digits is seen long before the goal.
 const PIVOT_RAD: f64 = 8.0e-9;
+/// With a centre of rotation up to a track radius from the platform's.
+const PIVOT_OFF_CENTRE_RAD: f64 = 1.0e-8;
 const CENTRE: f64 = 1.0e-8;
 const THETA_RAD: f64 = 8.0e-9;
-const _: () =
-    assert!(PIVOT_RAD < QUARTER_LSB_RAD && CENTRE < QUARTER_LSB_RAD && THETA_RAD < QUARTER_LSB_RAD);
+const _: () = assert!(
+    PIVOT_RAD < PIVOT_OFF_CENTRE_RAD
+        && PIVOT_OFF_CENTRE_RAD < QUARTER_LSB_RAD
+        && CENTRE < QUARTER_LSB_RAD
+        && THETA_RAD < QUARTER_LSB_RAD
+);
 
 const UNIT_RAD: f64 = TAU / 4_294_967_296.0;
 const TURNS: i64 = 10_000;
@@ -107,6 +114,53 @@ fn measured_poses_are_exact_to_a_quarter_lsb() {
     }
     println!("worst error of the centre {centre:e} track radii, of the orientation {theta:e} rad");
     assert!(centre < CENTRE && theta < THETA_RAD, "{centre:e} {theta:e}");
+}
+
+/// Largest error of a pivot, rad, when not the platform's centre is commanded but the point at `point` (track radii).
+fn pivot_error_off_centre(pose: &Pose<Fixed>, point: [f64; 2]) -> f64 {
+    let centre = Centre::new(point).expect("near enough");
+    let [x, y] = centre.point();
+    let commanded = {
+        // Where the point is, to the unit below: the platform is then near `pose`, wherever exactly.
+        let (sin, cos) = reduced(pose.theta).sin_cos();
+        let units = |radii: f64| (radii * 4_294_967_296.0) as i64;
+        [
+            pose.x.to_position() + units(x * cos - y * sin),
+            pose.y.to_position() + units(x * sin + y * cos),
+            pose.theta.units(),
+        ]
+    };
+    let exact = {
+        let (sin, cos) = reduced(pose.theta).sin_cos();
+        Pose {
+            x: commanded[0] as f64 / 4_294_967_296.0 - (x * cos - y * sin),
+            y: commanded[1] as f64 / 4_294_967_296.0 - (x * sin + y * cos),
+            theta: reduced(pose.theta),
+        }
+    };
+    let platform = centre.to_platform(&commanded);
+    let fixed = inverse(&Pose {
+        x: Fixed::from_position(platform[0]).expect("inside the track"),
+        y: Fixed::from_position(platform[1]).expect("inside the track"),
+        theta: Angle::from_units(platform[2]),
+    });
+    let exact = inverse(&exact).expect("inside the track").pivots;
+    (fixed.expect("inside the track").pivots.into_iter())
+        .zip(exact)
+        .map(|(fixed, exact)| difference(fixed, exact).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn pivot_setpoints_are_exact_about_any_centre() {
+    let mut worst = 0.0_f64;
+    for (k, pose) in grid().enumerate() {
+        let (r, direction) = (((k % 97) as f64 / 96.0).sqrt() * 0.999_999, k as f64);
+        let point = [r * direction.cos(), r * direction.sin()];
+        worst = worst.max(pivot_error_off_centre(&pose, point));
+    }
+    println!("worst pivot error about a centre {worst:e} rad");
+    assert!(worst < PIVOT_OFF_CENTRE_RAD, "{worst:e} rad");
 }
 
 fn settings() -> Config {

@@ -7,7 +7,7 @@ use motion_bench::*;
 use proptest::prelude::*;
 
 fn stop(of: &Plan, from: Position, at: u64, how: Stop) -> Option<Plan> {
-    plan_stop(8, of, &at_rest(from), at, &LIMITS, &GEOMETRY, how)
+    plan_stop(8, of, &at_rest(from), at, &GROUND, how)
 }
 
 /// A move, and a tick of it: at which it can be stopped, unless the plan comes to rest as soon.
@@ -51,11 +51,12 @@ proptest! {
     }
 
     #[test]
-    fn urgent_keeps_its_own_and_is_not_longer((from, _, plan, at) in moves_under_way()) {
+    fn urgent_is_as_hard_as_the_pivots_can_follow_and_not_longer((from, _, plan, at) in moves_under_way()) {
         let Some(urgent) = stop(&plan, from, at, Stop::Urgent) else { return Ok(()) };
+        let parts = worst_parts(&urgent, plan.state_after(&at_rest(from), at), &GROUND);
         let factor = LIMITS.stop_factor;
-        let worst = worst_shares(&urgent, plan.state_after(&at_rest(from), at));
-        prop_assert!(worst[0] <= SLACK && worst[1] <= factor * SLACK && worst[2] <= factor * factor * SLACK, "{worst:?}");
+        prop_assert!(parts[2] <= factor * factor * SLACK, "{parts:?}");
+        prop_assert!(parts[3] <= SLACK && parts[4] <= 1.001 && parts[5] <= 1.001, "{parts:?}");
         // Without a smooth stop the plan itself is as soon.
         let smooth = stop(&plan, from, at, Stop::Smooth).map_or(plan.ticks() - at, |stop| stop.ticks());
         prop_assert!(urgent.ticks() <= smooth);
@@ -106,7 +107,8 @@ fn from_full_speed_a_stop_takes_what_the_limits_ask() {
             (stop.end[0] - start) as f64 / UNIT * GEOMETRY.radius_mm,
         )
     };
-    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm; urgent 25 ms and 5 ms, 3 mm.
+    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm. Urgent: the pivots allow 28 m/s^2 here, more than the 17.9 m/s^2
+    // that 1,600 m/s^3 lead to; 2 sqrt(v / j) = 22.4 ms, 2.24 mm.
     let (ticks, mm) = way(Stop::Smooth);
     assert!(
         ticks.abs_diff(1_200) <= 2 && (mm - 6.0).abs() < 0.02,
@@ -114,7 +116,7 @@ fn from_full_speed_a_stop_takes_what_the_limits_ask() {
     );
     let (ticks, mm) = way(Stop::Urgent);
     assert!(
-        ticks.abs_diff(600) <= 2 && (mm - 3.0).abs() < 0.02,
+        ticks.abs_diff(448) <= 2 && (mm - 2.24).abs() < 0.02,
         "{ticks} {mm}"
     );
 }

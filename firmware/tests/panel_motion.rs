@@ -6,9 +6,10 @@ use firmware::fault::FaultKind;
 use firmware::link::{COMMANDS, Command, Mode};
 use panel_bench::Bench;
 
-/// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s. An urgent stop in x, twice 4 m/s^2 on 100 mm, stays
-/// under it too.
+/// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 6.5e-3;
+/// The same of an urgent stop: a pivot's 300 rad/s^2. That of x is 1 track radius a second or less for 1 rad/s of a pivot.
+const HARD: f32 = 15e-3;
 
 #[test]
 fn a_move_and_its_signs() {
@@ -145,7 +146,7 @@ fn a_halt_is_smooth_and_a_stop_is_shorter() {
         // The target is where it stands now.
         assert!((bench.value("MOV? X") - to).abs() < 3e-7, "{stop:?}");
         assert_eq!(bench.tick.log, ["move", "move"]);
-        assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+        assert!(bench.tick.worst_jump < HARD, "{}", bench.tick.worst_jump);
         ways.push(to - from);
     }
     let [halt, halt_x, stop, single, _] = ways[..] else {
@@ -432,7 +433,7 @@ fn a_move_after_a_stop_starts_from_where_it_stops() {
             assert!(x < 50.0, "{stop}: {x}");
             assert!((bench.value("MOV? X") - x).abs() < 3e-7);
             assert!((bench.value("POS? Y") - 2.0).abs() < 3e-7);
-            assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+            assert!(bench.tick.worst_jump < HARD, "{}", bench.tick.worst_jump);
         }
     }
 }

@@ -5,8 +5,8 @@ mod panel_bench;
 use firmware::link::Mode;
 use panel_bench::Bench;
 
-/// Largest change of velocity in a tick: twice (an urgent stop) 7,200 deg/s^2 at 20 kHz, in rad/s.
-const SMOOTH: f32 = 2.0 * 6.5e-3;
+/// Largest change of velocity in a tick: an urgent stop brakes as hard as a pivot can, 300 rad/s^2 at 20 kHz, in rad/s.
+const SMOOTH: f32 = 1.5e-2;
 
 /// SplitMix64's sequence, a number below `n`.
 fn random(state: &mut u64, n: u64) -> u64 {

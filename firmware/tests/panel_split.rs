@@ -74,12 +74,35 @@ fn stream() -> impl Strategy<Value = Vec<u8>> {
         "MOV X 100\n",
         "*IDN?\n",
         "SAI? ALL\n",
+        "CCL 1 ADVANCED\n",
+        "SPA 1 0x54500300 250\n",
+        "SPA 1 0x54500100",
+        "SPA? 1 0x54500100\n",
+        "VAR A 1\n",
+        "VAR A",
+        "VAR? A\n",
+        "ADD A $A 1\n",
+        "$A",
+        "${A}",
+        "MAC BEG m\n",
+        "MAC END\n",
+        "MAC? m\n",
+        "MAC DEL m\n",
+        "MAC FREE?\n",
+        "MEX VAR? A > 0\n",
+        "JRC -1",
+        "LST\n",
+        "EVT?\n",
+        "HBT?\n",
     ])
     .prop_map(|word: &str| word.as_bytes().to_vec());
     let noise = prop::collection::vec(any::<u8>(), 0..300);
     prop::collection::vec(prop_oneof![20 => words, 1 => noise], 0..40)
         .prop_map(|pieces| pieces.concat())
 }
+
+/// What a refused line leaves as it was.
+const STATE: &str = "MOV?\nSVO?\nVLS?\nSPA?\nVAR?\nMAC?\nMAC FREE?\nHBT?\n";
 
 /// The answers to `bytes`, cut at `cuts`, with no tick between them; then the ticks run. `None` when a wait filled the input.
 fn answers(bytes: &[u8], cuts: &[prop::sample::Index]) -> Option<(Vec<u8>, Vec<&'static str>)> {
@@ -126,14 +149,14 @@ proptest! {
     fn an_error_changes_nothing(line in stream()) {
         let line: Vec<u8> = line.into_iter().filter(|byte| (b' '..=b'~').contains(byte)).take(200).collect();
         let mut bench = Bench::ready();
-        let before = bench.say("MOV?\nSVO?\nVLS?\n");
+        let before = bench.say(STATE);
         bench.offer(0, &line);
         bench.offer(0, b"\n");
         bench.run(3);
         bench.answers_of(0);
         let waits = !bench.session(0).is_idle();
         if !waits && bench.say("ERR?\n") != "0\n" {
-            prop_assert_eq!(bench.say("MOV?\nSVO?\nVLS?\n"), before);
+            prop_assert_eq!(bench.say(STATE), before);
             prop_assert!(bench.tick.log.is_empty());
         }
     }

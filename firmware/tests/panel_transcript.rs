@@ -2,7 +2,9 @@
 
 mod panel_bench;
 
+use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
+use firmware::parameters::Parameters;
 use panel_bench::Bench;
 
 const ZEROS: &str = "X=0.000000000 \nY=0.000000000 \nZ=0.000000000 \nU=0.000000000 \nV=0.000000000 \nW=0.000000000\n";
@@ -51,8 +53,12 @@ fn help_lists_what_is_there() {
         .collect();
     assert_eq!(
         names.join(" "),
-        "#3 #4 #5 #7 #24 *IDN? CCL? CST? CSV? DEL ERR? FLC FLT? FRF FRF? HLT HLP? HPA? LIM? MOV MOV? MVR NLM NLM? ONT? \
-         PLM PLM? POS? PUN? SAI? SPA SPA? SSL SSL? SSN? STP SVO SVO? TMN? TMX? TRA? TRS? VER? VLS VLS? VMO? WAC"
+        "#3 #4 #5 #6 #7 #8 #9 #24 *IDN? ADD CCL CCL? CST? CSV? DEL DRC DRC? DRL? DRR? DRT DRT? ERR? EVT? FLC FLT? FRF FRF? HDR? HBT HBT? HLT HLP? HPA? \
+         JOG JOG? JRC KEN KEN? KET? KLN KLN? KLS? KLT? KRM KSD KSF KST KSW LIM? LST LST? \
+         MAC MAC MAC MAC MAC MAC MAC MAC MAC? MEX MON? MOV MOV? MRT MRW MVR NLM NLM? ONT? \
+         PLM PLM? POS? PUN? RBT RMC? RTR RTR? SAI? SCT SCT? SPA SPA? SPI SPI? SSL SSL? SSN? STE STP SVO SVO? \
+         TMN? TMX? TNR? TRA? TRS? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
+         WAV WAV? WCL WGC WGC? WGO WGO? WSL WSL? WTR WTR?"
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {
         // With no parameters each is either understood or short of them, never unknown.
@@ -111,11 +117,7 @@ fn single_bytes_between_and_inside_lines() {
     assert_eq!(bench.say("\x05\n"), "0\n");
     assert_eq!(bench.say("\x05\x04\x07"), "0\n65536\n\u{B1}\n");
     assert_eq!(bench.say("SV\x05O? X\n"), "0\nX=1\n");
-    // Not there yet: #6, #8, #9.
-    for byte in ["\x06", "\x08", "\x09"] {
-        assert_eq!(bench.say(byte), "");
-        assert_eq!(bench.say("ERR?\n"), "2\n");
-    }
+    assert_eq!(bench.say("\x09"), "0\n");
 }
 
 #[test]
@@ -209,6 +211,14 @@ fn parameters_are_checked() {
         ("SPA 1 0x54500100 200.1", "17"),
         ("SPA 1 0x54500100 0", "17"),
         ("SPA 1 0x54500100 -1", "17"),
+        ("SPA 1 0x54500300 250", "60"),
+        ("CCL", "24"),
+        ("CCL x", "25"),
+        ("CCL 1", "56"),
+        ("CCL 1 advance", "56"),
+        ("CCL 2 ADVANCED", "17"),
+        ("CCL 0.5 ADVANCED", "17"),
+        ("CCL 1 ADVANCED now", "24"),
         ("WAC", "24"),
         ("WAC ONT?", "24"),
         ("WAC ONT? W", "24"),
@@ -393,7 +403,7 @@ fn parameters_in_either_notation() {
     );
     assert_eq!(
         bench.say("SPA? X 0xe000200 1 0x16000201 Y 0X19001900\n"),
-        "X 0xE000200=0.00005 \n1 0x16000201=0 \nY 0x19001900=0\n"
+        "X 0xE000200=0.00005 \n1 0x16000201=2048 \nY 0x19001900=0\n"
     );
     let nine = " 1 0xE000200".repeat(9);
     assert_eq!(bench.error_after(&format!("SPA?{nine}")), "24");
@@ -409,7 +419,7 @@ fn every_parameter_is_listed_once_and_answered() {
     for line in &lines[1..lines.len() - 1] {
         let (id, rest) = line.split_once('=').unwrap();
         let columns: Vec<_> = rest.split('\t').collect();
-        let ["", "0", items, kind, _, text] = columns[..] else {
+        let ["", "0" | "1", items, kind, _, text] = columns[..] else {
             panic!("{line:?}");
         };
         assert!(!text.contains('=') && !id.contains(' '), "{line:?}");
@@ -580,4 +590,56 @@ fn tra_is_exact() {
             Ok(())
         })
         .unwrap();
+}
+
+/// The two numbers of a field of `MON?`.
+fn range(reply: &str, field: &str) -> [f64; 2] {
+    let line = reply.lines().find_map(|line| line.strip_prefix(field));
+    let numbers: Vec<f64> = (line.expect(field).split_whitespace())
+        .map(|number| number.parse().unwrap())
+        .collect();
+    numbers.try_into().unwrap()
+}
+
+#[test]
+fn mon_tells_the_lowest_and_the_highest_since_it_was_last_asked_on_this_connection() {
+    let mut bench = Bench::ready();
+    let other = bench.connect();
+    bench.tick.place(30.0, 0.0, 45.0);
+    bench.run(2);
+    bench.say("MON?\n");
+    bench.say_to(other, "MON?\n");
+    // One tick each: a spike up and one down.
+    for (error, duty) in [(0, 0), (4_000, 50), (-1_000, -100), (0, 0)] {
+        bench.tick.now.pivot_errors = [0, error, 0];
+        bench.tick.now.duty = [0, 0, duty].map(Duty);
+        bench.run(1);
+    }
+    let reply = bench.say("MON?\n");
+    let urad = |units: f64| units * std::f64::consts::TAU / 4_294_967_296.0 * 1e6;
+    let [low, high] = range(&reply, "ERROR2=");
+    assert!(
+        (low - urad(-1_000.0)).abs() < 1e-3 && (high - urad(4_000.0)).abs() < 1e-3,
+        "{reply}"
+    );
+    assert_eq!(range(&reply, "ERROR1="), [0.0; 2]);
+    let counts = f64::from(Parameters::REFERENCE.drive.pwm_counts);
+    let [low, high] = range(&reply, "DUTY3=");
+    assert!(
+        (low + 100.0 / counts).abs() < 1e-5 && (high - 50.0 / counts).abs() < 1e-5,
+        "{reply}"
+    );
+    let pose = " \nMODE=holding \nX=30.000000 \nY=0.000000 \nW=45.000000 \nPIVOT1=";
+    assert!(
+        reply.starts_with("TICK=") && reply.contains(pose),
+        "{reply}"
+    );
+    // It has been told; the other connection has not.
+    bench.run(1);
+    assert_eq!(range(&bench.say("MON?\n"), "ERROR2="), [0.0; 2]);
+    let reply = bench.say_to(other, "MON?\n");
+    assert!(
+        (range(&reply, "ERROR2=")[1] - urad(4_000.0)).abs() < 1e-3,
+        "{reply}"
+    );
 }

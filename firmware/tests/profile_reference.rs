@@ -43,7 +43,7 @@ fn setting(name: &str, default: u64) -> u64 {
 }
 
 /// Limits and a state, in any relation to each other: idle, at the limits, far over them, far or near or nowhere to go.
-fn draw(random: &mut Random) -> (Task, AxisLimits) {
+fn draw(random: &mut Random) -> (Task, AxisLimits<f64>) {
     let jerk = if random.once_in(10) {
         random.magnitude(-3.0, 6.0)
     } else {
@@ -97,7 +97,7 @@ fn draw(random: &mut Random) -> (Task, AxisLimits) {
 }
 
 /// Follows a profile: the law that its end is exact and its limits hold, but for a start over them.
-fn follow(task: &Task, limits: &AxisLimits, profile: &AxisProfile) {
+fn follow(task: &Task, limits: &AxisLimits<f64>, profile: &AxisProfile<f64>) {
     let (mut p, mut v, mut a) = (0.0_f64, task.velocity, task.acceleration);
     let mut travelled = task.distance.abs();
     let slack = 1.0 + 1e-6;
@@ -153,7 +153,7 @@ fn follow(task: &Task, limits: &AxisLimits, profile: &AxisProfile) {
     );
 }
 
-fn least_duration(distance: f64, limits: &AxisLimits) -> f64 {
+fn least_duration(distance: f64, limits: &AxisLimits<f64>) -> f64 {
     let task = Task {
         distance,
         velocity: 0.0,
@@ -173,7 +173,7 @@ fn as_fast_as_the_reference_within_the_limits_to_an_exact_end() {
     let (mut compared, mut failed, mut worst, mut shorter, mut in_time, mut early) =
         (0, 0, 0.0_f64, 0, 0_u64, 0_u64);
     for _ in 0..cases {
-        let axes: [(Task, AxisLimits); 3] = std::array::from_fn(|_| draw(&mut random));
+        let axes: [(Task, AxisLimits<f64>); 3] = std::array::from_fn(|_| draw(&mut random));
         let fastest = axes.map(|(task, limits)| {
             let profile = AxisProfile::fastest(&task, &limits)
                 .unwrap_or_else(|error| panic!("{error:?} {task:?} {limits:?}"));

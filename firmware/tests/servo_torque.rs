@@ -2,7 +2,7 @@
 
 use firmware::parameters::{Parameters, Platform};
 use firmware::servo::{Presliding, ServoConfig, platform_torques};
-use kinematics::{Acceleration, Pose, Twist, inverse};
+use kinematics::{Acceleration, Pose, Twist, in_platform_axes, inverse};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
 use std::f64::consts::PI;
@@ -115,6 +115,7 @@ proptest! {
         let guides = inverse(&pose).unwrap().guides.map(|guide| guide.map(|value| value as f32));
         let twist = Twist { x: (v[0] / RADIUS_M) as f32, y: (v[1] / RADIUS_M) as f32, theta: v[2] as f32 };
         let acceleration = Acceleration { x: (a[0] / RADIUS_M) as f32, y: (a[1] / RADIUS_M) as f32, theta: a[2] as f32 };
+        let (twist, acceleration) = in_platform_axes(&guides, &twist, &acceleration);
         let torques = platform_torques(&body, &guides, &twist, &acceleration).map(f64::from);
         for k in 0..3 {
             let column = pivot_per(q, k);

@@ -59,7 +59,7 @@ impl Host {
     /// One tick of the controller, and the stage's motion up to the next.
     pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
         let inputs = self.inputs();
-        let outputs = tick(&self.config, &mut self.state, &inputs, link, recorder);
+        let outputs = tick(&mut self.config, &mut self.state, &inputs, link, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
             let done = if outputs.awake {
                 driver.drive(duty)
@@ -71,6 +71,12 @@ impl Host {
         let pins: [BridgeState; AXES] = self.bridges.each_ref().map(Bridge::state);
         self.stage.advance_period(pins);
         outputs
+    }
+
+    /// Starts the controller again, with these parameters; the stage stays as it is.
+    pub fn restart(&mut self, parameters: &Parameters) {
+        self.config = Config::new(parameters);
+        self.state = State::new();
     }
 
     /// The latched fault.
@@ -96,6 +102,8 @@ impl Host {
             emergency_stop: self.emergency_stop,
             current_counts,
             supply_counts,
+            tick_cycles: 0,
+            late: false,
         }
     }
 }

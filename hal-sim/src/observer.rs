@@ -6,7 +6,7 @@ use firmware::parameters::Parameters;
 use firmware::recorder::{Record, RunningHash, Sample as TickSample};
 use std::f64::consts::{PI, TAU};
 
-use crate::report::{Move, Sample, Trace};
+use crate::report::{MotionSample, Move, Sample, Trace};
 
 const TURN: f64 = 4_294_967_296.0;
 /// Units of angle in an encoder count.
@@ -39,6 +39,9 @@ pub struct Observer {
     window_counts: f64,
     pwm_counts: f64,
     under_way: Option<f64>,
+    /// Accelerations of the moved point (mm, deg) and rates of the pivots at the last tick: what follows from them is a
+    /// difference.
+    last: ([f64; 3], [f64; 3]),
 }
 
 impl Observer {
@@ -54,6 +57,7 @@ impl Observer {
             window_counts: parameters.window.counts + 0.5,
             pwm_counts: f64::from(parameters.drive.pwm_counts),
             under_way: None,
+            last: Default::default(),
         }
     }
 
@@ -68,7 +72,7 @@ impl Observer {
         self.trace.record(&sample);
     }
 
-    fn sample(&self, tick: &TickSample, pose: [f64; 3]) -> Sample {
+    fn sample(&mut self, tick: &TickSample, pose: [f64; 3]) -> Sample {
         let [x, y, turns] = tick.setpoint.position.map(|units| units as f64 / TURN);
         let setpoint = [x * self.radius_mm, y * self.radius_mm, turns * 360.0];
         let (true_mm, true_rad) = ([pose[0] * 1e3, pose[1] * 1e3], pose[2]);
@@ -91,11 +95,33 @@ impl Observer {
             ],
             pivot_setpoint_deg: pivots.map(|units| units / TURN * 360.0),
             pivot_rate_rad_s: tick.pivot_rates.map(f64::from),
+            motion: self.motion(tick),
             pivot_error_lsb: [0, 1, 2].map(|i| {
                 (tick.pivots[i].units() - tick.pivot_setpoints[i].units()) as f64 / PER_COUNT
             }),
             duty: tick.duty.map(|duty| f64::from(duty.0) / self.pwm_counts),
             separation_deg: separation_rad(pivots.map(|units| units / TURN * TAU)).to_degrees(),
+        }
+    }
+
+    fn motion(&mut self, tick: &TickSample) -> MotionSample {
+        let (twist, acceleration) = (&tick.point.twist, &tick.point.acceleration);
+        let scaled = |x: f32, y: f32, theta: f32| {
+            let [x, y] = [x, y].map(|radii| f64::from(radii) * self.radius_mm);
+            [x, y, f64::from(theta).to_degrees()]
+        };
+        let rates = scaled(twist.x, twist.y, twist.theta);
+        let accelerations = scaled(acceleration.x, acceleration.y, acceleration.theta);
+        let pivots = tick.pivot_rates.map(f64::from);
+        let (last, last_pivots) = std::mem::replace(&mut self.last, (accelerations, pivots));
+        let per_s =
+            |now: [f64; 3], last: [f64; 3]| [0, 1, 2].map(|i| (now[i] - last[i]) / self.period_s);
+        let jerks = per_s(accelerations, last);
+        let along = |[x, y, _]: [f64; 3]| x.hypot(y);
+        MotionSample {
+            translation: [rates, accelerations, jerks].map(along),
+            rotation: [rates[2], accelerations[2], jerks[2]],
+            pivots_rad_s2: per_s(pivots, last_pivots),
         }
     }
 

@@ -171,6 +171,13 @@ fn simulate(
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
+        if panel.wants_restart() {
+            host.restart(parameters);
+            panel = Panel::new(parameters, IDENTITY);
+            session.start_again();
+            tick_link.clear();
+            panel_link.clear();
+        }
         let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
         wire.to_stage.extend(bytes);
         match event {
@@ -191,6 +198,7 @@ fn simulate(
         run: Run {
             name: script.name.clone(),
             geometry: parameters.geometry,
+            limits: parameters.limits,
             trace: observer.trace,
             moves: observer.moves,
             wall_s: progress.finish(),

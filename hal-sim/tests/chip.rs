@@ -165,3 +165,49 @@ fn a_halted_loop_is_reset_by_the_watchdog_which_the_image_tells() {
     assert_eq!(outcome.resets.len(), 1);
     assert_eq!(outcome.resets[0].cause, ResetCause::Model("IWDG"));
 }
+
+#[test]
+fn a_restart_by_command_is_told_as_one_and_the_loop_counts_its_cost() {
+    const COMMAND: u32 = 7;
+    let (send, receive) = mpsc::channel();
+    let mut answers = Vec::new();
+    let mut before = String::new();
+    let outcome = run(stage(), move |period| {
+        answers.extend(period.received());
+        if period.resets.is_empty() {
+            match period.tick {
+                20 => period.send(b"FRF X\n"),
+                400 => period.send(b"LST?\n"),
+                800 => {
+                    before = String::from_utf8_lossy(&std::mem::take(&mut answers)).into_owned();
+                    period.send(b"RBT\n");
+                }
+                2_000 => panic!("no restart"),
+                _ => {}
+            }
+        } else if period.tick == 100 {
+            answers.clear();
+            period.send(b"FLT?\nFRF? X\n");
+        } else if period.tick == 400 {
+            let after = String::from_utf8_lossy(&answers).into_owned();
+            send.send((before.clone(), after, period.trace().reset_cause))
+                .expect("the test waits");
+            return Break(());
+        }
+        Continue(())
+    });
+    let (before, after, cause) = receive.recv().expect("the last period");
+    assert_eq!(cause, COMMAND);
+    assert_eq!(after, "0 no fault\nX=0\n");
+    let told = |name: &str| -> f64 {
+        let line = before.lines().find_map(|line| line.strip_prefix(name));
+        let value = line.unwrap_or_else(|| panic!("{name} in {before:?}"));
+        value.trim().parse().expect("a number")
+    };
+    // The bench counts from the interrupt's first instruction, the chip between two readings inside it.
+    let (worst, mean) = (told("CYCLES_WORST="), told("CYCLES_MEAN="));
+    let most = outcome.cost.worst as f64;
+    assert!(0.7 * most < worst && worst <= most, "{worst} of {most}");
+    assert!(0.5 * worst < mean && mean <= worst, "{mean} of {worst}");
+    assert_eq!(told("LATE="), 0.0);
+}

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use hal_sim::report::{Move, Run, Sample, Trace};
+use firmware::parameters::Parameters;
+use hal_sim::report::{MotionSample, Move, Run, Sample, Trace};
 use kinematics::{Geometry, Pose, inverse, margins};
 
 /// Circling at 50 mm with two ticks of standstill at either end.
@@ -29,6 +30,10 @@ fn sample(tick: u32, ticks: u32) -> Sample {
         error: [0.3, -0.4, 2.0],
         pivot_setpoint_deg: pivots.map(f64::to_degrees),
         pivot_rate_rad_s: [0.0; 3],
+        motion: MotionSample {
+            translation: [200.0, 4_000.0, 400_000.0],
+            ..MotionSample::default()
+        },
         pivot_error_lsb: [1.0; 3],
         duty: [0.25, -0.5, 0.125],
         separation_deg: (room_rad + geometry.separation_rad).to_degrees(),
@@ -47,6 +52,7 @@ fn run(ticks: u32, every: u32) -> Run {
     Run {
         name: "made up".to_owned(),
         geometry: Geometry::REFERENCE,
+        limits: Parameters::REFERENCE.limits,
         trace,
         moves: (0..3).map(one).collect(),
         wall_s: 0.01,
@@ -61,14 +67,22 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn four_files_are_written_the_same_each_time() {
+fn seven_files_are_written_the_same_each_time() {
     let (first, second) = (folder("first"), folder("second").join("below"));
     for folder in [&first, &second] {
         run(1_001, 20)
             .write(folder)
             .expect("the folder can be written");
     }
-    for file in ["trace.csv", "moves.csv", "picture.svg", "picture.png"] {
+    for file in [
+        "trace.csv",
+        "moves.csv",
+        "picture.svg",
+        "picture.png",
+        "motion.svg",
+        "motion.png",
+        "report.html",
+    ] {
         let bytes = fs::read(first.join(file)).expect(file);
         assert!(!bytes.is_empty());
         assert!(
@@ -76,7 +90,7 @@ fn four_files_are_written_the_same_each_time() {
             "{file} differs"
         );
     }
-    assert_eq!(fs::read_dir(&first).expect("a folder").count(), 4);
+    assert_eq!(fs::read_dir(&first).expect("a folder").count(), 7);
 }
 
 #[test]
@@ -177,6 +191,9 @@ fn a_run_that_never_began_still_has_a_report() {
         .write(&folder("empty"))
         .expect("the folder can be written");
     assert!(!empty.picture().contains("NaN"));
+    let document = empty.document();
+    assert!(document.contains("<title>Tripivot: &lt;a&amp;b&gt;"));
+    assert!(!document.contains("<a&b>"));
     assert!(empty.summary().to_string().contains("no moves"));
 }
 
@@ -193,4 +210,40 @@ fn odd_numbers_do_not_break_the_picture() {
     }
     odd.write(&folder("odd"))
         .expect("the folder can be written");
+}
+
+/// What stands alone asks for nothing: no address, no file, no script or style from elsewhere.
+#[test]
+fn the_document_stands_alone() {
+    let document = run(1_001, 20).document();
+    for outside in [
+        "http:", "https:", "src=", "href=", "@import", "url(", "import {", "export ", "fetch(",
+    ] {
+        assert!(!document.contains(outside), "{outside}");
+    }
+    for part in [
+        "<style>",
+        "class Plot",
+        "function drawMechanism",
+        "\"ticks\":1001",
+    ] {
+        assert!(document.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn a_minute_of_motion_stays_under_five_megabytes() {
+    let ticks = 60 * 20_000;
+    let mut long = run(5, 1);
+    long.trace = Trace::new(u32::MAX);
+    let some: Vec<Sample> = (0..1_000).map(|tick| sample(tick, 1_000)).collect();
+    for tick in 0..ticks {
+        long.trace.record(&Sample {
+            time_s: f64::from(tick) * 50e-6,
+            ..some[tick as usize % some.len()]
+        });
+    }
+    let bytes = long.document().len();
+    assert!(bytes > 500_000, "{bytes}: it has the data in it");
+    assert!(bytes < 5_000_000, "{bytes}");
 }

@@ -201,7 +201,7 @@ fn a_client_that_does_not_read_is_cut_off_and_holds_nobody_up() {
     let mut deaf = served.connect();
     let name = deaf.port.local_addr().unwrap().to_string();
     let flood = thread::spawn(move || {
-        let lines = "HLP?\n".repeat(1000);
+        let lines = "POS?\n".repeat(1000);
         while deaf.port.write_all(lines.as_bytes()).is_ok() {}
     });
     let mut client = served.ready();
@@ -314,7 +314,8 @@ fn tripivot(arguments: &[&str]) -> (Child, String, BufReader<std::process::Child
 
 #[test]
 fn control_c_ends_it_cleanly() {
-    let (mut child, line, mut out) = tripivot(&["--listen", "127.0.0.1:0", "--seed", "3"]);
+    let (mut child, line, mut out) =
+        tripivot(&["--listen", "127.0.0.1:0", "--web", "off", "--seed", "3"]);
     let address: SocketAddr = line
         .trim()
         .strip_prefix("listening at ")
@@ -354,4 +355,39 @@ fn an_address_that_is_taken_is_said_in_one_line() {
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(text.lines().count(), 1, "{text}");
     }
+}
+
+#[test]
+fn a_macro_goes_on_with_nobody_connected() {
+    let served = Served::start(20.0, false);
+    let mut client = served.ready();
+    client.ask(
+        "MAC BEG go\nDEL 200\nMOV X 5\nWAC ONT? X = 1\nVAR DONE 1\nMAC END\nMAC START go\nERR?\n",
+    );
+    drop(client);
+    served.notice(|notice| matches!(notice, Notice::Left(_)));
+    let mut client = served.connect();
+    let end = Instant::now() + PATIENCE;
+    while client.ask("RMC?\n") != "\n" {
+        assert!(Instant::now() < end, "the macro does not end");
+    }
+    assert_eq!(client.ask("VAR? DONE\n"), "DONE=1\n");
+    assert_eq!(client.ask("MOV? X\n"), "X=5\n");
+    served.assert_no_fault();
+}
+
+#[test]
+fn a_restart_forgets_settings_and_keeps_clients() {
+    let served = Served::start(20.0, false);
+    let mut client = served.ready();
+    assert_eq!(
+        client.ask("SPA 1 0x54500100 100\nVAR A 1\nRBT\nERR?\n"),
+        "0\n"
+    );
+    served.notice(|notice| matches!(notice, Notice::Restarted));
+    assert_eq!(client.ask("SPA? 1 0x54500100\n"), "1 0x54500100=200\n");
+    assert_eq!(client.ask("VAR?\n"), "\n");
+    assert_eq!(client.ask("FRF? X\n"), "X=0\n");
+    assert_eq!(client.ask("FRF\nWAC ONT? X = 1\nERR?\n"), "0\n");
+    served.assert_no_fault();
 }

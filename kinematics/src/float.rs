@@ -23,10 +23,10 @@ macro_rules! impl_float {
                 $sincos(angle)
             }
 
-            fn asin_cos(self) -> Option<(Self, Self)> {
-                // The product keeps its digits near the ends, where 1 - self^2 loses them.
-                (-1.0 < self && self < 1.0)
-                    .then(|| ($asin(self), $sqrt((1.0 - self) * (1.0 + self))))
+            fn asin_cos(sines: [Self; 3]) -> Option<[(Self, Self); 3]> {
+                // The product keeps its digits near the ends, where 1 - sine^2 loses them.
+                (sines.iter().all(|&sine| -1.0 < sine && sine < 1.0))
+                    .then(|| sines.map(|sine| ($asin(sine), $sqrt((1.0 - sine) * (1.0 + sine)))))
             }
 
             fn polar(re: Self, im: Self) -> Option<(Self, Self, Self)> {

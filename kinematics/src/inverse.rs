@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::guide::Guide;
 use crate::pose::Pose;
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 
 /// The pivots of a pose, and the guides on the way to them.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -72,12 +72,55 @@ pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], I
     if !inside_track(pose.x, pose.y) {
         return Err(InverseError::OutsideTrack);
     }
-    let [direction_1, direction_2, direction_3] = guide_directions(pose.theta);
-    Ok([
-        meet_one(pose, direction_1)?,
-        meet_one(pose, direction_2)?,
-        meet_one(pose, direction_3)?,
-    ])
+    let (sin, cos) = T::sin_cos(pose.theta);
+    // The centre in the platform's own axes, in which the guides always point the same way.
+    let x = T::sum_of_products((pose.x, cos), (pose.y, sin));
+    let y = T::sum_of_products((pose.y, cos), (-pose.x, sin));
+    let directions = guide_directions(sin, cos);
+    let (offsets, projections) = seen_by_guides(x, y);
+    // A centre inside the track by less than a rounding can still give an offset of one.
+    let swings = T::asin_cos(offsets).ok_or(InverseError::OutsideTrack)?;
+    Ok([0, 1, 2].map(|i| {
+        let ((cos, sin), (swing, cosine)) = (directions[i], swings[i]);
+        let guide = Guide {
+            cos,
+            sin,
+            offset: offsets[i],
+            cosine,
+            projection: projections[i],
+        };
+        Meeting { swing, guide }
+    }))
+}
+
+/// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose centre is at
+/// (`x`, `y`) along the platform's own axes, seen along these. `None` for a centre that is not inside the track. The square
+/// root is the caller's: on the chip there is an instruction for it, which this crate does not know.
+pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[Guide<T>; 3]> {
+    // NaN is inside of nothing.
+    if !inside_track(x, y) {
+        return None;
+    }
+    let (offsets, projections) = seen_by_guides(x, y);
+    let directions = guide_directions(T::ZERO, T::ONE);
+    Some([0, 1, 2].map(|i| Guide {
+        cos: directions[i].0,
+        sin: directions[i].1,
+        offset: offsets[i],
+        cosine: sqrt((T::ONE - offsets[i]) * (T::ONE + offsets[i])),
+        projection: projections[i],
+    }))
+}
+
+/// d_i and q_i of a centre at (`x`, `y`) along the platform's own axes, in which the guides always point the same way.
+#[inline]
+fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
+    let (x_half, y_half) = (x.half(), y.half());
+    let (x_wide, y_wide) = (x * T::SIN_60, y * T::SIN_60);
+    (
+        [x_half + y_wide, -x, x_half - y_wide],
+        [x_wide - y_half, y, -(x_wide + y_half)],
+    )
 }
 
 /// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay small.
@@ -86,9 +129,9 @@ fn inside_track<T: Scalar>(x: T, y: T) -> bool {
     within(x) && within(y) && T::sum_of_products((x, x), (y, y)) < T::ONE
 }
 
-/// (cos, sin) of `theta - 30 deg`, `theta + 90 deg` and `theta + 210 deg`, from one sine and cosine.
-fn guide_directions<T: Scalar>(theta: T::Angle) -> [(T, T); 3] {
-    let (sin, cos) = T::sin_cos(theta);
+/// (cos, sin) of `theta - 30 deg`, `theta + 90 deg` and `theta + 210 deg`, from the sine and cosine of theta.
+#[inline]
+fn guide_directions<T: Scalar>(sin: T, cos: T) -> [(T, T); 3] {
     let (sin_half, cos_half) = (sin.half(), cos.half());
     let (sin_wide, cos_wide) = (sin * T::SIN_60, cos * T::SIN_60);
     [
@@ -96,20 +139,4 @@ fn guide_directions<T: Scalar>(theta: T::Angle) -> [(T, T); 3] {
         (-sin, cos),
         (sin_half - cos_wide, -(sin_wide + cos_half)),
     ]
-}
-
-/// Where the guide of this direction (cos, sin) meets the track.
-#[inline(always)]
-fn meet_one<T: Scalar>(pose: &Pose<T>, (cos, sin): (T, T)) -> Result<Meeting<T>, InverseError> {
-    let offset = T::sum_of_products((pose.y, cos), (-pose.x, sin));
-    // A centre inside the track by less than a rounding can still give an offset of one.
-    let (swing, cosine) = offset.asin_cos().ok_or(InverseError::OutsideTrack)?;
-    let guide = Guide {
-        cos,
-        sin,
-        offset,
-        cosine,
-        projection: T::sum_of_products((pose.x, cos), (pose.y, sin)),
-    };
-    Ok(Meeting { swing, guide })
 }

@@ -91,8 +91,11 @@ pub use geometry::{
     Geometry, GeometryError, closest_separation_rad, worst_rate_per_rotation, worst_rate_per_speed,
 };
 pub use guide::Guide;
-pub use inverse::{Inverse, InverseError, inverse};
+pub use inverse::{Inverse, InverseError, guides_along_axes, inverse};
 pub use jacobian::{dexterity, jacobian, jacobian_inverse};
 pub use pose::{Acceleration, Pose, Twist};
-pub use rates::{PivotMotion, pivot_accelerations, pivot_motion, pivot_rates};
+pub use rates::{
+    PivotMotion, in_platform_axes, pivot_accelerations, pivot_motion,
+    pivot_motion_in_platform_axes, pivot_rates,
+};
 pub use scalar::{Real, Scalar};

@@ -31,39 +31,76 @@ pub fn pivot_accelerations<T: Real>(
 /// Pivot rates and accelerations together: they share all but a few products, and one division a guide.
 ///
 /// With `alpha_i = phi_i - theta_i`: `alpha_i' = d_i' / c_i` and `phi_i'' = theta'' + (d_i'' + alpha_i'^2 d_i) / c_i`.
+#[inline]
 pub fn pivot_motion<T: Real>(
     guides: &[Guide<T>; 3],
     twist: &Twist<T>,
     acceleration: &Acceleration<T>,
 ) -> PivotMotion<T> {
-    let [motion_1, motion_2, motion_3] = guides.map(|guide| one_pivot(&guide, twist, acceleration));
+    let (twist, acceleration) = in_platform_axes(guides, twist, acceleration);
+    pivot_motion_in_platform_axes(guides, &twist, &acceleration)
+}
+
+/// A twist and an acceleration of the base frame, seen along the platform's axes.
+#[inline]
+pub fn in_platform_axes<T: Real>(
+    guides: &[Guide<T>; 3],
+    twist: &Twist<T>,
+    acceleration: &Acceleration<T>,
+) -> (Twist<T>, Acceleration<T>) {
+    // Guide 2 is the platform's y' axis.
+    let (cos, sin) = (guides[1].sin, -guides[1].cos);
+    let turned = |x: T, y: T| (x * cos + y * sin, y * cos - x * sin);
+    let (x, y) = turned(twist.x, twist.y);
+    let (x_2, y_2) = turned(acceleration.x, acceleration.y);
+    (
+        Twist {
+            x,
+            y,
+            theta: twist.theta,
+        },
+        Acceleration {
+            x: x_2,
+            y: y_2,
+            theta: acceleration.theta,
+        },
+    )
+}
+
+/// [`pivot_motion`] of a twist and an acceleration along the platform's axes, in which the guides' directions are constants.
+#[inline]
+pub fn pivot_motion_in_platform_axes<T: Real>(
+    guides: &[Guide<T>; 3],
+    twist: &Twist<T>,
+    acceleration: &Acceleration<T>,
+) -> PivotMotion<T> {
+    let across = |x: T, y: T| {
+        let (half, wide) = (x * T::HALF, y * T::SIN_60);
+        [half + wide, -x, half - wide]
+    };
+    let (wide, half) = (twist.x * T::SIN_60, twist.y * T::HALF);
+    let along = [wide - half, twist.y, -(wide + half)];
+    let speeds = across(twist.x, twist.y);
+    let pushes = across(acceleration.x, acceleration.y);
+    let pivot = |i: usize| {
+        let guide = &guides[i];
+        let over_cosine = T::ONE / guide.cosine;
+        let swing_rate = (speeds[i] - twist.theta * guide.projection) * over_cosine;
+        // Twice the Coriolis part, and the centripetal one: theta' (2 along + theta' d).
+        let turning = twist.theta * (along[i] + along[i] + twist.theta * guide.offset);
+        let offset_acceleration = pushes[i] - acceleration.theta * guide.projection - turning;
+        let swing_acceleration =
+            (offset_acceleration + swing_rate * swing_rate * guide.offset) * over_cosine;
+        (
+            twist.theta + swing_rate,
+            acceleration.theta + swing_acceleration,
+        )
+    };
+    let [motion_1, motion_2, motion_3] = [pivot(0), pivot(1), pivot(2)];
     PivotMotion {
         rates: [motion_1.0, motion_2.0, motion_3.0],
         accelerations: [motion_1.1, motion_2.1, motion_3.1],
     }
-}
-
-/// Rate and acceleration of one pivot.
-fn one_pivot<T: Real>(
-    guide: &Guide<T>,
-    twist: &Twist<T>,
-    acceleration: &Acceleration<T>,
-) -> (T, T) {
-    let over_cosine = T::ONE / guide.cosine;
-    let along = twist.x * guide.cos + twist.y * guide.sin;
-    let offset_rate = across(guide, twist.x, twist.y) - twist.theta * guide.projection;
-    let swing_rate = offset_rate * over_cosine;
-    // Twice the Coriolis part, and the centripetal one: theta' (2 along + theta' d).
-    let turning = twist.theta * (along + along + twist.theta * guide.offset);
-    let offset_acceleration = across(guide, acceleration.x, acceleration.y)
-        - acceleration.theta * guide.projection
-        - turning;
-    let swing_acceleration =
-        (offset_acceleration + swing_rate * swing_rate * guide.offset) * over_cosine;
-    (
-        twist.theta + swing_rate,
-        acceleration.theta + swing_acceleration,
-    )
 }
 
 /// The part of (x, y) across the guide, to its left.

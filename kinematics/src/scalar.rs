@@ -56,9 +56,10 @@ pub trait Scalar:
     /// Sine and cosine of `angle`, in this order.
     fn sin_cos(angle: Self::Angle) -> (Self, Self);
 
-    /// The arc sine, in (-90 deg, 90 deg), and its cosine sqrt(1 - self^2): together, because every user of one needs
-    /// the other. `None` unless -1 < self < 1, so for NaN too.
-    fn asin_cos(self) -> Option<(Self::Angle, Self)>;
+    /// The arc sine, in (-90 deg, 90 deg), and its cosine sqrt(1 - sine^2), of three sines: together, because every user of
+    /// one needs the other, and three at a time, because three share the loading of a polynomial's coefficients. `None`
+    /// unless -1 < sine < 1 for all of them, so for NaN too.
+    fn asin_cos(sines: [Self; 3]) -> Option<[(Self::Angle, Self); 3]>;
 
     /// Direction of the vector (`re`, `im`): its angle in (-half a turn, half a turn], the cosine and the sine of it.
     /// `None` when the vector is not finite, or too short for its direction to mean anything.

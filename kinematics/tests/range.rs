@@ -67,9 +67,9 @@ impl Scalar for Ranged {
         (ranged(sin), ranged(cos))
     }
 
-    fn asin_cos(self) -> Option<(Angle, Self)> {
-        let (swing, cosine) = self.0.asin_cos()?;
-        Some((angle(swing), ranged(cosine)))
+    fn asin_cos(sines: [Self; 3]) -> Option<[(Angle, Self); 3]> {
+        let swings = f64::asin_cos(sines.map(|sine| sine.0))?;
+        Some(swings.map(|(swing, cosine)| (angle(swing), ranged(cosine))))
     }
 
     fn polar(re: Self, im: Self) -> Option<(Angle, Self, Self)> {

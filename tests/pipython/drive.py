@@ -6,7 +6,7 @@ import socket
 import time
 import unittest
 
-from pipython import GCSDevice, GCSError, gcserror, pitools
+from pipython import GCSDevice, GCSError, datarectools, gcserror, pitools
 from pipython.pidevice.interfaces.piserial import PISerial
 from pipython.pidevice.interfaces.pisocket import PISocket
 
@@ -45,6 +45,9 @@ def recorded(gateway):
 
 class Drive:
     """The same tests for each way to the stage."""
+
+    SERIAL = "SIM"
+    KEEPS_TIME = True
 
     @classmethod
     def open(cls):
@@ -86,11 +89,12 @@ class Drive:
         self.assertEqual(self.stage.axes, AXES)
         self.assertEqual(self.stage.allaxes, AXES)
         self.assertIn("FW:", self.stage.qVER())
-        self.assertEqual(self.stage.qSSN().strip(), "SIM")
+        self.assertEqual(self.stage.qSSN().strip(), self.SERIAL)
         self.assertEqual(self.stage.qCSV(), 2.0)
 
     def test_every_command_that_is_listed_is_known_to_the_client(self):
-        own = {"FLC", "qFLT", "WAC"}
+        # `WAV` has a function for each of its types.
+        own = {"FLC", "HBT", "JRC", "LST", "WAC", "WAV", "qEVT", "qFLT", "qHBT", "qMON"}
         missing = [name for name in self.stage.funcs if not hasattr(self.stage, name)]
         self.assertEqual(set(missing), own)
 
@@ -214,7 +218,7 @@ class Drive:
         stage = self.stage
         self.assertEqual(stage.qSPA("W", 0x07000601)["W"][0x07000601], "deg")
         self.assertEqual(stage.getparam(0x0E000200), 5e-5)
-        self.assertEqual(stage.getparam(0x16000201), 0)
+        self.assertEqual(stage.getparam(0x16000201), 2048)
         self.assertEqual(stage.getparam(0x19001900), 0)
         self.assertIsNone(stage.getparam(0x3C))
         stage.SPA(1, 0x54500100, 150)
@@ -222,6 +226,174 @@ class Drive:
         stage.SPA(1, 0x54500100, 200)
         self.assert_refused(gcserror.E64_PI_CNTR_READ_ONLY_PARAMETER, stage.SPA, 1, 0x0E000200, 1)
         self.assertGreater(len(stage.qSPA()), 1)
+
+    def test_work_and_tool_frames(self):
+        stage = self.stage
+        stage.KSW("TABLE", {"X": 10, "Y": 20, "W": 90})
+        stage.KSW("SAMPLE", ["X", "Y"], [1, 2])
+        stage.KLN("SAMPLE", "TABLE")
+        stage.KST("PROBE", "X", 5)
+        stage.KEN("SAMPLE")
+        stage.KEN("PROBE")
+        try:
+            self.assertEqual(stage.qKEN(), {"SAMPLE": "KSW", "PROBE": "KST"})
+            self.assertEqual(stage.qKET(["KSW"]), {"KSW": "SAMPLE"})
+            self.assertEqual(stage.qKLN()["SAMPLE"], ["TABLE", "ZERO"])
+            self.assertIn("SAMPLE PARENT=TABLE", stage.qKLS("SAMPLE"))
+            # A quarter of a turn: the table's y is the base frame's -x.
+            self.assertIn("SAMPLE X=8", stage.qKLT("SAMPLE"))
+            self.assertIn("SAMPLE Y=21", stage.qKLT("SAMPLE"))
+            # The probe is at (5, 0) in the base frame.
+            self.assert_at(X=-21, Y=3, W=-90)
+            pitools.moveandwait(stage, {"X": -10, "Y": 0, "W": -90})
+            self.assert_at(X=-10, Y=0, W=-90)
+            stage.MRT({"X": 2})
+            pitools.waitontarget(stage)
+            self.assert_at(X=-10, Y=-2, W=-90)
+            stage.MRW({"X": 1, "Y": 2})
+            pitools.waitontarget(stage)
+            self.assert_at(X=-9, Y=0, W=-90)
+            self.assert_refused(gcserror.E34_PI_CNTR_CMD_NOT_ALLOWED_FOR_STAGE, stage.KRM, "TABLE")
+        finally:
+            stage.KEN("ZERO")
+        self.assertEqual(stage.qKEN(), {"ZERO": "KSD"})
+        # Base frame: TABLE turns (-9, 0) + (1, 2) into (-2, -8), and the probe is 5 ahead.
+        self.assert_at(X=3, Y=12, W=0)
+        for name in ("SAMPLE", "TABLE", "PROBE"):
+            stage.KRM(name)
+
+    def test_frame_at_the_current_position(self):
+        pitools.moveandwait(self.stage, {"X": 5, "Y": 6, "W": 30})
+        self.stage.KSF("HERE")
+        self.stage.KEN("HERE")
+        self.assert_at(X=0, Y=0, W=0)
+        self.stage.KEN(0)
+        self.stage.KRM("HERE")
+        self.assert_at(X=5, Y=6, W=30)
+
+    def test_centre_of_rotation(self):
+        self.stage.SPI({"R": 20, "S": 10})
+        self.assertEqual(self.stage.qSPI(), {"R": 20, "S": 10, "T": 0})
+        pitools.moveandwait(self.stage, "W", 90)
+        self.assert_at(X=0, Y=0, W=90)
+        self.assert_refused(gcserror.E9_PI_CNTR_SET_PIVOT_NOT_POSSIBLE, self.stage.SPI, "R", 0)
+        pitools.moveandwait(self.stage, "W", 0)
+        self.stage.SPI(["R", "S"], [0, 0])
+
+    def test_jog(self):
+        self.stage.JOG("W", 90)
+        self.assertEqual(self.stage.qJOG("W"), {"W": 90})
+        time.sleep(0.5)
+        self.stage.JOG({"X": 5, "W": -90})
+        start = time.monotonic()
+        while self.stage.qPOS("X")["X"] < 0.6 and time.monotonic() < start + 30:
+            time.sleep(0.05)
+        self.assertTrue(self.stage.IsMoving("W")["W"])
+        self.stage.JOG({"X": 0, "W": 0})
+        pitools.waitontarget(self.stage)
+        self.assertGreater(self.stage.qPOS("X")["X"], 0.5)
+        self.assert_refused(gcserror.E8_PI_CNTR_VEL_OUT_OF_LIMITS, self.stage.JOG, "X", 201)
+
+    def test_velocities_of_axes(self):
+        self.stage.VEL("X", 20)
+        self.assertEqual(self.stage.qVEL("X")["X"], 20)
+        start = time.monotonic()
+        pitools.moveandwait(self.stage, {"X": 20, "Y": 1})
+        self.assertGreater(time.monotonic() - start, 0.9)
+        self.stage.VEL("X", 200)
+
+    def test_waveforms(self):
+        stage = self.stage
+        self.assertEqual(stage.qTWG(), 6)
+        stage.WAV_SIN_P(1, firstpoint=0, numpoints=200, append="X", center=100, amplitude=4, offset=0, seglength=200)
+        stage.WAV_RAMP(2, firstpoint=0, numpoints=200, append="X", center=100, speedupdown=40, amplitude=20, offset=0, seglength=200)
+        pitools.writewavepoints(stage, 3, [0, 0.01, 0.02, 0.03], bunchsize=2)
+        self.assertEqual(stage.qWAV([1, 2, 3], [1, 1, 1]), {1: {1: 200}, 2: {1: 200}, 3: {1: 4}})
+        stage.WSL([1, 6], [1, 2])
+        self.assertEqual(stage.qWSL([1, 6]), {1: 1, 6: 2})
+        stage.WGC([1, 6], [3, 3])
+        self.assertEqual(stage.qWGC([1]), {1: 3})
+        stage.WTR(0, 40, 1)
+        stage.WGO([1, 6], [1, 1])
+        self.assertTrue(stage.IsGeneratorRunning(1)[1])
+        self.assert_refused(gcserror.E73_PI_CNTR_WAVE_GENERATOR_ACTIVE, stage.MOV, "X", 1)
+        pitools.waitonwavegen(stage)
+        pitools.waitontarget(stage)
+        self.assertLess(stage.qPOS("X")["X"], 0.01)
+        stage.WCL([1, 2, 3])
+        self.assert_refused(gcserror.E75_PI_CNTR_NO_WAVE_SELECTED, stage.WGO, 1, 1)
+
+    def test_streamed_targets(self):
+        if not self.KEEPS_TIME:
+            self.skipTest("targets come by the wall clock")
+        stage = self.stage
+        stage.SCT(50)
+        self.assertEqual(stage.qSCT(), 50)
+        stage.SPA(1, 0x19001900, 1)
+        try:
+            start = time.monotonic()
+            for i in range(60):
+                part = min(i / 40, 1)
+                stage.MOV("X", 5 * part**3 * (10 - 15 * part + 6 * part**2))
+                time.sleep(max(0, start + 0.05 * (i + 1) - time.monotonic()))
+            pitools.waitontarget(stage)
+            self.assert_at(X=5)
+        finally:
+            stage.SPA(1, 0x19001900, 0)
+            stage.SCT(10)
+
+    def test_data_recorder(self):
+        with datarectools.Datarecorder(self.stage) as recorder:
+            self.assertEqual(recorder.maxnumvalues, 2048)
+            self.assertEqual(recorder.servotime, 5e-5)
+            self.assertIn(datarectools.RecordOptions.ACTUAL_POSITION_2, recorder.recopts)
+            self.assertIn(datarectools.TriggerSources.NEXT_COMMAND_WITH_RESET_2, recorder.trigopts)
+            recorder.options = [1, 2, 3, 73]
+            recorder.sources = ["X", "X", "X", "2"]
+            recorder.numvalues = 1500
+            recorder.samplefreq = 5000
+            recorder.trigsources = datarectools.TriggerSources.NEXT_COMMAND_WITH_RESET_2
+            recorder.arm()
+            self.assertEqual(self.stage.qDRL(1)[1], 0)
+            self.stage.MOV("X", 8)
+            header, data = recorder.getdata(timeout=60)
+            self.assertEqual((header["DIM"], header["NDATA"], header["SAMPLE_TIME"]), (4, 1500, 2e-4))
+            self.assertEqual(header["NAME2"], "position error of X, mm")
+            self.assertEqual([len(column) for column in data], [1500] * 4)
+            commanded, real, error, duty = data
+            self.assertAlmostEqual(commanded[0], 0, delta=1e-6)
+            self.assertAlmostEqual(commanded[-1], 8, delta=1e-6)
+            for wanted, measured, difference in zip(commanded, real, error):
+                self.assertAlmostEqual(measured - wanted, difference, delta=3e-9)
+                self.assertAlmostEqual(difference, 0, delta=0.02)
+            self.assertGreater(max(duty), 0.001)
+            self.assertEqual(self.stage.qDRT(1)[1][0], 0)
+        pitools.waitontarget(self.stage)
+        self.stage.RTR(1)
+
+    def test_step_response(self):
+        self.stage.DRC([1, 2], ["X", "X"], [1, 2])
+        self.assertEqual(self.stage.qDRC([1, 2]), {1: ["X", 1], 2: ["X", 2]})
+        self.assertEqual(self.stage.qTNR(), 8)
+        self.stage.RTR(2)
+        self.assertEqual(self.stage.qRTR(), 2)
+        self.stage.STE("X", 0.5)
+        while self.stage.qDRL(1)[1] < 2000:
+            pass
+        header = self.stage.qDRR([1, 2], 1, 2000)
+        while self.stage.bufstate is not True:
+            time.sleep(0.01)
+        commanded, real = self.stage.bufdata
+        self.assertEqual(header["NAME0"], "commanded position of X, mm")
+        self.assertAlmostEqual(commanded[0], 0, delta=1e-6)
+        self.assertAlmostEqual(commanded[-1], 0.5, delta=1e-6)
+        self.assertAlmostEqual(real[-1], 0.5, delta=PLACE_MM)
+        self.assertTrue(all(later >= sooner for sooner, later in zip(commanded, commanded[1:])))
+        self.stage.RTR(1)
+        self.assert_refused(57, self.stage.DRC, 9, "X", 1)
+        self.assert_refused(58, self.stage.DRC, 1, "X", 99)
+        self.assert_refused(gcserror.E7_PI_CNTR_POS_OUT_OF_LIMITS, self.stage.STE, "X", 100)
+        pitools.waitontarget(self.stage)
 
     def test_travel_helpers(self):
         self.assertEqual(pitools.getmaxtravelrange(self.stage, "X")["X"], 80)
@@ -252,10 +424,22 @@ class OverTerminal(Drive, unittest.TestCase):
         return PISerial(port=ARGUMENTS.terminal, baudrate=115200)
 
 
+class OverChip(Drive, unittest.TestCase):
+    """Over the serial line of the emulated chip, which is several times slower than the real one."""
+
+    SERIAL = "0"
+    KEEPS_TIME = False
+
+    @classmethod
+    def open(cls):
+        return PISocket(host="127.0.0.1", port=ARGUMENTS.chip)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
-    parser.add_argument("--port", type=int, required=True)
-    parser.add_argument("--terminal", required=True)
+    parser.add_argument("--port", type=int)
+    parser.add_argument("--terminal")
+    parser.add_argument("--chip", type=int)
     parser.add_argument("--transcript", required=True)
     ARGUMENTS, rest = parser.parse_known_args()
     open(ARGUMENTS.transcript, "w", encoding="utf-8").close()

@@ -3,6 +3,9 @@
 //! [`Bench`] is the stage as a user has it, one command connection to a controller that runs the simulated machine through
 //! its own drivers, with a hand on every part that can be broken.
 
+pub mod fuzz;
+pub mod ideal;
+
 use firmware::controller::Outputs;
 use firmware::fault::{Fault, FaultKind};
 use firmware::link::{Link, Mode, PanelLink, TickLink};
@@ -102,6 +105,14 @@ impl Bench {
             self.tick();
         }
         panic!("{what}: not after {PATIENCE} ticks; {:?}", self.fault());
+    }
+
+    /// Sends lines, which the next ticks carry out.
+    ///
+    /// # Panics
+    /// When there is no room for them.
+    pub fn send(&mut self, text: &str) {
+        assert_eq!(self.session.receive(text.as_bytes()), text.len(), "no room");
     }
 
     /// Sends lines and runs until they are carried out; their answers.

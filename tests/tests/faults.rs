@@ -313,3 +313,25 @@ fn a_warning_is_no_fault() {
     bench.settle();
     assert_eq!(bench.fault(), None);
 }
+
+/// An encoder that was lost knows no turns afterwards: also when the fault that is latched is another one.
+#[test]
+fn an_encoder_lost_during_a_fault_takes_the_reference_and_one_that_is_bridged_does_not() {
+    for (frames, referenced) in [(BRIDGED, "1"), (BRIDGED + 1, "0")] {
+        let mut bench = Bench::ready();
+        // Past where a single turn of the encoders would put it.
+        assert_eq!(bench.error_after("MOV W 400"), "0");
+        bench.settle();
+        bench.host.emergency_stop = true;
+        bench.tick();
+        bench.host.emergency_stop = false;
+        assert_eq!(bench.fault_kind(), Some(FaultKind::EmergencyStop));
+        bad_frames(&mut bench, 0, BAD_CRC, frames);
+        bench.run(10);
+        bench.say("FLC\nERR?\n");
+        assert_eq!(bench.say("FRF? W\n"), format!("W={referenced}\n"));
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.run(2_000);
+        assert_eq!(bench.fault(), None);
+    }
+}

@@ -2,7 +2,7 @@
 
 use firmware::fault::FaultKind;
 use firmware::link::{Command, Link, Mode};
-use firmware::motion::{Plan, plan_line};
+use firmware::motion::{Ground, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;
@@ -36,8 +36,13 @@ fn lenient() -> Parameters {
 /// A line along x to `end_mm`, further than any planner would go.
 fn line(parameters: &Parameters, from: [i64; 3], end_mm: f64) -> Plan {
     let half = [(end_mm / 200.0 * 4_294_967_296.0) as i64, 0, 0];
-    let mut plan = plan_line(1, [0; 3], half, &parameters.limits, &parameters.geometry)
-        .expect("inside the disk");
+    let mut plan = plan_line(
+        1,
+        [0; 3],
+        half,
+        &Ground::new(parameters.limits, parameters.geometry),
+    )
+    .expect("inside the disk");
     for piece in &mut plan.pieces {
         piece.jerk = piece.jerk.map(|jerk| 2 * jerk);
     }
@@ -80,35 +85,6 @@ fn a_setpoint_beyond_the_track_is_a_fault() {
     );
     // The twin ends inside the mechanics.
     assert_eq!(fault_of_a_line_to(82.0), None);
-}
-
-/// With the servo on, pivots that turn into no pose are a fault, if nothing else has noticed before.
-#[test]
-fn pivots_that_stop_being_a_pose_are_a_fault() {
-    for (step_counts, expected) in [(1_000, Some(FaultKind::ImpossiblePose)), (1, None)] {
-        let mut host = Host::new(&StageParameters::REFERENCE, &lenient());
-        let mut link = Link::new();
-        let (mut tick_link, mut commands) = link.split();
-        for _ in 0..10 {
-            host.tick(&mut tick_link, &mut ());
-        }
-        commands.send(Command::Reference).expect("room");
-        // The first encoder slips, gently enough to be believed; the servo follows it until the guides end.
-        let mut slip = 0i32;
-        for _ in 0..40_000 {
-            slip = slip.wrapping_add(step_counts);
-            host.stage.encoders[0].set_fault(hal_sim::devices::EncoderFault::Jump { counts: slip });
-            host.tick(&mut tick_link, &mut ());
-            if host.fault().is_some() {
-                break;
-            }
-        }
-        assert_eq!(
-            host.fault().map(|fault| fault.kind),
-            expected,
-            "{step_counts}"
-        );
-    }
 }
 
 /// The tick refuses by itself what the command side would not send: nobody can go round it.

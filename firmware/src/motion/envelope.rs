@@ -1,176 +1,266 @@
-//! Whether a curved plan keeps to the workspace and to the limits that couple the axes, at every tick.
+//! Whether a plan keeps to the workspace and to the limits that couple the axes, at every tick.
 //!
-//! Over a stretch of a piece, bounds are taken that need its two ends only: position lies no further out than the further end
-//! plus `a T^2 / 8` (the most an arc of acceleration `a` rises over its chord), each speed is greatest at an end or where its
-//! acceleration passes zero, acceleration is greatest at an end. A stretch that fails is halved, down to one tick.
-//! Single precision is enough for that: it is off by less than 1e-7 track radii (10 nm).
+//! A plan is looked at in stretches. Between the two ends of one, a quantity rises above the greater of its ends by no more
+//! than an eighth of the square of the duration times its second derivative: for position that is the acceleration, for
+//! velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are first bounded for any
+//! orientation; where that is not enough they are computed at both ends, and rise by what the products of velocity,
+//! acceleration and jerk can make of them in between. A stretch that fails is halved, a few times.
+//!
+//! | checked | for |
+//! |---|---|
+//! | speed, acceleration, jerk | translation along the path and rotation; not of a stop, which has its own |
+//! | rate and acceleration of each pivot | the platform's motion about the centre of rotation |
+//! | disk | the platform's centre, and where a stop from here would end |
+//! | bounds | x, y and theta of the moved point, and where a stop from here would end |
 
 use super::axis::Axis;
-use super::limits::Limits;
+use super::brake::Brake;
+use super::float::{float, hypot};
+use super::ground::Ground;
 use super::plan::{Piece, Plan};
-use kinematics::{Geometry, worst_rate_per_rotation, worst_rate_per_speed};
-
-/// Smallest and largest x, and y, 2^-32 track radii.
-pub type Bounds = [[i64; 2]; 2];
+use super::platform::greatest;
+use super::reach::Reach;
+use super::sample::{Arc, Sample};
+use super::sizes::Sizes;
+use super::swing::Bound;
+use super::units::UnitLimits;
 
 /// What a plan is held against.
 pub(super) struct Envelope {
-    radius: f32,
-    bounds: [[f32; 2]; 2],
-    /// Of translation, track radii per second (squared, cubed), and of rotation, turns.
+    /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
+    own: Option<Own>,
+    /// Rate and acceleration, rad/s and rad/s^2.
+    pivots: [f32; 2],
+    reach: Reach,
+    hz: f32,
+}
+
+/// Limits of translation and rotation.
+struct Own {
     speed: [f32; 2],
     acceleration: [f32; 2],
     jerk: [f32; 2],
-    /// Turns per second.
-    pivots: f32,
-    hz: f32,
+    /// With which a stop brakes.
+    stop: UnitLimits,
+}
+
+/// What a plan breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Broken {
+    /// Disk or bounds, on the way or in a stop.
+    Reach,
+    /// Speed, by this factor.
+    Speed(f32),
+    /// Acceleration or jerk, by this factor.
+    Force(f32),
+    /// The pivots' rate, by this factor.
+    Rate(f32),
+    /// The pivots' acceleration, by this factor.
+    Acceleration(f32),
+}
+
+impl Broken {
+    /// This, or what was seen of the same before, when that was worse.
+    fn or_worse(self, before: Option<Self>) -> Self {
+        match (self, before) {
+            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.max(over)),
+            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.max(over)),
+            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.max(over)),
+            (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
+                Self::Acceleration(now.max(over))
+            }
+            _ => self,
+        }
+    }
 }
 
 /// Slack of single precision.
 const SLACK: f32 = 1.0 + 1e-4;
-/// 0.02 um on the reference stage.
-const RIM: f32 = 2e-7;
 /// Stretches that may be looked at, failed ones included.
-const MOST_STRETCHES: usize = 2_000;
-
-/// Position in track radii, velocity and acceleration per second, of x, y and theta (turns; its position is not needed).
-struct State {
-    p: [f32; 2],
-    v: [f32; 3],
-    a: [f32; 3],
-}
+const MOST_STRETCHES: usize = 160;
+/// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
+const SHORTEST: u64 = 4;
 
 impl Envelope {
-    /// The envelope of `limits`, or of the state at the start where that lies outside: it may have been planned with other
-    /// limits, and can only be left.
-    pub fn new(limits: &Limits, geometry: &Geometry, bounds: &Bounds, start: &[Axis; 3]) -> Self {
-        let mm = geometry.radius_mm;
+    /// The envelope of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
+    /// with other limits, and can only be left.
+    pub fn new(ground: &Ground, stop: UnitLimits, start: &[Axis; 3]) -> Self {
+        let limits = &ground.limits;
+        let mm = ground.geometry.radius_mm as f32;
         let pair = |translation: f64, rotation_deg: f64| {
-            [(translation / mm) as f32, (rotation_deg / 360.0) as f32]
+            [
+                translation as f32 / mm,
+                rotation_deg as f32 * (core::f32::consts::PI / 180.0),
+            ]
         };
         let hz = limits.rate_hz as f32;
-        let state = State::new(start, hz);
+        let Sample { v, a, .. } = Arc::new(start, &Piece::default(), hz).start;
         let wider = |limit: [f32; 2], now: [f32; 3]| {
             [
                 limit[0].max(hypot(now[0], now[1])),
                 limit[1].max(now[2].abs()),
             ]
         };
-        let speed = wider(pair(limits.speed_mm_s, limits.turn_speed_deg_s), state.v);
-        let acceleration = pair(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2);
-        Self {
-            radius: geometry.usable_radius() as f32,
-            bounds: [0, 1].map(|i| bounds[i].map(|units| units as f32 / UNITS)),
-            speed,
-            acceleration: wider(acceleration, state.a),
+        let own = Own {
+            speed: wider(pair(limits.speed_mm_s, limits.turn_speed_deg_s), v),
+            acceleration: wider(
+                pair(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
+                a,
+            ),
             jerk: pair(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
-            pivots: limits.pivot_rate_rad_s as f32,
-            hz,
+            stop,
+        };
+        Self {
+            own: Some(own),
+            ..Self::of_stop(ground)
+        }
+    }
+
+    /// The envelope of a stop: pivots, disk and bounds.
+    pub fn of_stop(ground: &Ground) -> Self {
+        let limits = &ground.limits;
+        Self {
+            own: None,
+            pivots: [
+                limits.pivot_rate_rad_s as f32,
+                limits.pivot_acceleration_rad_s2 as f32,
+            ],
+            reach: Reach::new(ground),
+            hz: limits.rate_hz as f32,
         }
     }
 
     /// Whether `plan`, from `start`, stays inside.
-    pub fn holds(&self, plan: &Plan, start: &[Axis; 3]) -> bool {
+    pub fn check(&self, plan: &Plan, start: &[Axis; 3]) -> Result<(), Broken> {
         let mut axes = *start;
-        let mut looked = 0;
+        let (mut looked, mut worst) = (0, None);
         for piece in &plan.pieces {
-            if !self.jerk_holds(piece) {
-                return false;
-            }
-            let mut left = piece.ticks;
-            let mut ticks = left;
-            while left > 0 {
-                ticks = ticks.min(left);
-                let end = after(&axes, ticks, piece, plan);
+            let arc = Arc::new(&axes, piece, self.hz);
+            let rooms = self.reach.rooms(&axes);
+            self.check_jerk(&arc)?;
+            let (mut done, mut ticks) = (0, piece.ticks);
+            let mut from = arc.start;
+            while done < piece.ticks {
+                ticks = ticks.min(piece.ticks - done);
+                let to = arc.at(float(done + ticks) / self.hz);
                 looked += 1;
-                if self.stretch_holds(&axes, &end, ticks) {
-                    axes = end;
-                    left -= ticks;
-                    ticks *= 2;
-                } else if ticks == 1 || looked > MOST_STRETCHES {
-                    return false;
-                } else {
-                    ticks /= 2;
+                match self.stretch(&arc, &rooms, [&from, &to], float(ticks) / self.hz) {
+                    Ok(()) => {
+                        from = to;
+                        done += ticks;
+                        ticks *= 2;
+                    }
+                    Err(broken) => {
+                        // Stretches close in on where a limit is met; how far it is passed was seen before.
+                        worst = Some(broken.or_worse(worst));
+                        if ticks <= SHORTEST || looked > MOST_STRETCHES {
+                            return worst.map_or(Ok(()), Err);
+                        }
+                        ticks = ticks.div_ceil(2);
+                    }
                 }
             }
+            axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
         }
-        true
+        Ok(())
     }
 
-    fn jerk_holds(&self, piece: &Piece) -> bool {
-        let per_second = self.hz * self.hz * self.hz * PER_UNIT;
-        let [x, y, theta] = piece.jerk.map(|jerk| jerk as f32 * per_second);
-        hypot(x, y) <= self.jerk[0] * SLACK && theta.abs() <= self.jerk[1] * SLACK
+    fn check_jerk(&self, arc: &Arc) -> Result<(), Broken> {
+        let Some(own) = &self.own else { return Ok(()) };
+        let [x, y, theta] = arc.jerk;
+        within(
+            (hypot(x, y) / own.jerk[0]).max(theta.abs() / own.jerk[1]),
+            Broken::Force,
+        )
     }
 
-    fn stretch_holds(&self, from: &[Axis; 3], to: &[Axis; 3], ticks: u64) -> bool {
-        let (from, to) = (State::new(from, self.hz), State::new(to, self.hz));
-        let force = from.force().max(to.force());
-        let turn_force = from.a[2].abs().max(to.a[2].abs());
-        if force > self.acceleration[0] * SLACK || turn_force > self.acceleration[1] * SLACK {
-            return false;
+    fn stretch(
+        &self,
+        arc: &Arc,
+        rooms: &[[f32; 2]; 3],
+        [from, to]: [&Sample; 2],
+        t: f32,
+    ) -> Result<(), Broken> {
+        let sizes = Sizes::new(arc, from, to, t);
+        if let Some(own) = &self.own {
+            let [v, turn] = sizes.v;
+            within((v / own.speed[0]).max(turn / own.speed[1]), Broken::Speed)?;
+            let [a, spin] = sizes.a;
+            within(
+                (a / own.acceleration[0]).max(spin / own.acceleration[1]),
+                Broken::Force,
+            )?;
         }
-        let seconds = ticks as f32 / self.hz;
-        let rise = force * seconds * seconds / 8.0;
-        let furthest = hypot(from.p[0], from.p[1]).max(hypot(to.p[0], to.p[1])) + rise;
-        if furthest > self.radius + RIM {
-            return false;
+        let rise = [sizes.a[0] * t * t / 8.0, sizes.a[1] * t * t / 8.0];
+        self.reach.check_way(rooms, from, to, rise)?;
+        let radius = self.reach.radius(arc, from, to, &sizes, t)?;
+        if let Some(own) = &self.own {
+            self.check_stop(arc, rooms, to, &own.stop)?;
         }
-        for i in 0..2 {
-            let [low, high] = self.bounds[i];
-            if from.p[i].min(to.p[i]) - rise < low - RIM
-                || from.p[i].max(to.p[i]) + rise > high + RIM
-            {
-                return false;
-            }
+        self.check_pivots(arc, [from, to], t, &sizes, radius)
+    }
+
+    /// A stop from here.
+    fn check_stop(
+        &self,
+        arc: &Arc,
+        rooms: &[[f32; 2]; 3],
+        at: &Sample,
+        limits: &UnitLimits,
+    ) -> Result<(), Broken> {
+        if self.reach.far_inside(arc, rooms, at, limits, self.hz) {
+            return Ok(());
         }
-        let [x, y, turn] = [0, 1, 2].map(|i| fastest(&from, &to, i, seconds));
-        let speed = hypot(x, y);
-        if speed > self.speed[0] * SLACK || turn > self.speed[1] * SLACK {
-            return false;
+        let brake = Brake::in_seconds(at, limits, self.hz);
+        self.reach.check_stop(arc, rooms, at, &brake, self.hz)
+    }
+
+    fn check_pivots(
+        &self,
+        arc: &Arc,
+        ends: [&Sample; 2],
+        t: f32,
+        sizes: &Sizes,
+        radius: f32,
+    ) -> Result<(), Broken> {
+        let bound = Bound::new(radius);
+        let moving = sizes.at_arm(self.reach.arm);
+        let [rate, acceleration] = moving.pivots(&bound);
+        let [rate_limit, acceleration_limit] = self.pivots;
+        if rate <= rate_limit && acceleration <= acceleration_limit {
+            return Ok(());
         }
-        let furthest = f64::from(furthest);
-        let pivots = speed * worst_rate_per_speed(furthest) as f32
-            + turn * core::f32::consts::TAU * worst_rate_per_rotation(furthest) as f32;
-        pivots <= self.pivots * SLACK
+        let [mut rates, mut accelerations] = [0.0_f32; 2];
+        for end in ends {
+            let [rate, acceleration] = arc.platform(end, self.reach.centre).pivots();
+            rates = rates.max(greatest(&rate));
+            accelerations = accelerations.max(greatest(&acceleration));
+        }
+        let rises = moving.rises(rate, acceleration, &bound, t);
+        rise_within(rates, rises[0], rate_limit, Broken::Rate)?;
+        rise_within(
+            accelerations,
+            rises[1],
+            acceleration_limit,
+            Broken::Acceleration,
+        )
     }
 }
 
-fn after(axes: &[Axis; 3], ticks: u64, piece: &Piece, plan: &Plan) -> [Axis; 3] {
-    [0, 1, 2].map(|i| axes[i].after(ticks, piece.jerk[i], plan.nudge[i]))
-}
-
-/// Largest speed of an axis between two states of the same jerk.
-fn fastest(from: &State, to: &State, i: usize, seconds: f32) -> f32 {
-    let ends = from.v[i].abs().max(to.v[i].abs());
-    let (a, b) = (from.a[i], to.a[i]);
-    if a * b >= 0.0 {
-        return ends;
-    }
-    // Acceleration passes zero after this part of the stretch.
-    let part = a / (a - b);
-    ends.max((from.v[i] + a * part * seconds / 2.0).abs())
-}
-
-/// 2^32 and 2^-72.
-const UNITS: f32 = 4_294_967_296.0;
-const PER_UNIT: f32 = 1.0 / 4_722_366_482_869_645_213_696.0;
-
-impl State {
-    fn new(axes: &[Axis; 3], hz: f32) -> Self {
-        let position = |axis: &Axis| axis.rounded() as f32 / UNITS;
-        Self {
-            p: [position(&axes[0]), position(&axes[1])],
-            v: axes.map(|axis| axis.velocity as f32 * (PER_UNIT * hz)),
-            a: axes.map(|axis| axis.acceleration as f32 * (PER_UNIT * hz * hz)),
-        }
-    }
-
-    fn force(&self) -> f32 {
-        hypot(self.a[0], self.a[1])
+/// The same for a value at the ends of a stretch that may rise in between; what is told is what is sure.
+fn rise_within(value: f32, rise: f32, limit: f32, broken: fn(f32) -> Broken) -> Result<(), Broken> {
+    if value + rise <= limit * SLACK {
+        Ok(())
+    } else {
+        Err(broken((value / limit).max(1.0)))
     }
 }
 
-fn hypot(x: f32, y: f32) -> f32 {
-    libm::sqrtf(x * x + y * y)
+/// The part of a limit that is used is not over one.
+fn within(part: f32, broken: fn(f32) -> Broken) -> Result<(), Broken> {
+    if part <= SLACK {
+        Ok(())
+    } else {
+        Err(broken(part))
+    }
 }

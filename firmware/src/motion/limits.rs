@@ -1,7 +1,6 @@
-//! Limits of motion, as a user states them and as a line between two positions meets them.
+//! Limits of motion, as a user states them and as a line meets them.
 
 use super::Position;
-use kinematics::{Geometry, worst_rate_per_rotation, worst_rate_per_speed};
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,30 +21,21 @@ pub struct Limits {
     pub turn_jerk_deg_s3: f64,
     /// Rate of any pivot.
     pub pivot_rate_rad_s: f64,
-    /// How much harder than this an urgent stop may brake (acceleration; jerk by the same factor squared).
+    /// Acceleration of any pivot.
+    pub pivot_acceleration_rad_s2: f64,
+    /// An urgent stop brakes as hard as the pivots can follow, with jerk this factor squared times the limit of jerk.
     pub stop_factor: f64,
 }
 
-/// A straight line from rest to rest, seen as a path parameter from 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
-    /// Length of the way of the platform centre, track radii.
-    pub length: f64,
-    /// Angle turned through, rad, not negative.
-    pub turn_rad: f64,
-    /// Largest distance of the platform centre from the track's on the way, track radii.
-    pub furthest: f64,
-}
-
-/// Limits on the path parameter, per tick, tick squared and tick cubed.
+/// Limits on a path parameter that goes from 0 to 1, per second, second squared and second cubed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathLimits {
     /// Rate.
-    pub rate: f64,
+    pub rate: f32,
     /// Acceleration.
-    pub acceleration: f64,
+    pub acceleration: f32,
     /// Jerk.
-    pub jerk: f64,
+    pub jerk: f32,
 }
 
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
@@ -53,19 +43,6 @@ const UNIT: f64 = 1.0 / 4_294_967_296.0;
 /// x and y of a position in track radii.
 pub(super) fn centre(position: &Position) -> [f64; 2] {
     [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
-}
-
-impl Line {
-    /// The line between two positions.
-    pub fn new(from: &Position, to: &Position) -> Self {
-        let (a, b) = (centre(from), centre(to));
-        Self {
-            length: libm::hypot(b[0] - a[0], b[1] - a[1]),
-            turn_rad: (to[2].wrapping_sub(from[2]) as f64 * UNIT).abs() * core::f64::consts::TAU,
-            // The distance from a point is convex along a line: largest at an end.
-            furthest: libm::hypot(a[0], a[1]).max(libm::hypot(b[0], b[1])),
-        }
-    }
 }
 
 impl Limits {
@@ -80,34 +57,29 @@ impl Limits {
             turn_acceleration_deg_s2,
             turn_jerk_deg_s3,
             pivot_rate_rad_s,
+            pivot_acceleration_rad_s2,
             stop_factor,
         } = *self;
         let translation = [speed_mm_s, acceleration_mm_s2, jerk_mm_s3];
         let rotation = [turn_speed_deg_s, turn_acceleration_deg_s2, turn_jerk_deg_s3];
-        let others = [rate_hz, pivot_rate_rad_s, stop_factor];
-        [translation, rotation, others]
+        let pivots = [pivot_rate_rad_s, pivot_acceleration_rad_s2];
+        [translation, rotation]
             .as_flattened()
             .iter()
+            .chain(&pivots)
+            .chain(&[rate_hz, stop_factor])
             .all(|&limit| limit > 0.0)
     }
 
-    /// The limits along `line`.
-    ///
-    /// The pivots' rate is kept by a bound that holds anywhere on the line at any orientation (DESIGN section 3): speed over
-    /// sqrt(1 - r^2) plus rotation times 1 + r, with r the furthest point of the line.
-    pub fn along(&self, line: &Line, geometry: &Geometry) -> PathLimits {
-        let mm = geometry.radius_mm;
-        let least = |translation: f64, rotation_deg: f64| {
-            (translation / mm / line.length).min(rotation_deg.to_radians() / line.turn_rad)
+    /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
+    pub fn along(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
+        let least = |translation: f64, rotation: f64| {
+            (translation as f32 / length_mm).min(rotation as f32 / turn_deg.abs())
         };
-        let pivot = line.length * worst_rate_per_speed(line.furthest)
-            + line.turn_rad * worst_rate_per_rotation(line.furthest);
-        let rate = least(self.speed_mm_s, self.turn_speed_deg_s).min(self.pivot_rate_rad_s / pivot);
-        let hz = self.rate_hz;
         PathLimits {
-            rate: rate / hz,
-            acceleration: least(self.acceleration_mm_s2, self.turn_acceleration_deg_s2) / (hz * hz),
-            jerk: least(self.jerk_mm_s3, self.turn_jerk_deg_s3) / (hz * hz * hz),
+            rate: least(self.speed_mm_s, self.turn_speed_deg_s),
+            acceleration: least(self.acceleration_mm_s2, self.turn_acceleration_deg_s2),
+            jerk: least(self.jerk_mm_s3, self.turn_jerk_deg_s3),
         }
     }
 }

@@ -1,113 +1,165 @@
 //! Planning a straight line from rest to rest.
+//!
+//! First the fastest motion under the limits of the line alone, in closed form ([`Profile`]). If the pivots can follow it, as
+//! most short and slow lines, that is it. Otherwise the demands on the pivots are laid out along the line ([`Grid`]), the
+//! fastest speed that they allow at every place is found ([`fastest`]), replaced by a few stretches of constant acceleration
+//! ([`under`]) and limited in jerk ([`pace`]). What roundings and corners still leave over a limit is taken off the whole
+//! motion. The profile, slowed down until the pivots follow, competes: the shorter of the two is taken.
 
-use super::axis::{JERK_STEP, SUB_BITS};
-use super::limits::{Limits, Line, centre};
-use super::plan::{Piece, Plan, Position, Start};
+use super::check::check;
+pub use super::check::{check_line, check_target};
+use super::grid::{Grid, Moment};
+use super::ground::Ground;
+use super::limits::PathLimits;
+use super::pace::Pace;
+use super::path::Path;
+use super::plan::{Plan, Position, Start};
+use super::polygon::{thinned, under};
 use super::profile::Profile;
-use core::fmt;
+use super::ramps::pace;
+use super::refusal::Refusal;
+use super::speed::fastest;
+use crate::number::cbrt_f32;
 use heapless::Vec;
-use kinematics::Geometry;
-
-/// Why a move is refused. Nothing has moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Refusal {
-    /// The target lies outside the disk that is usable at every orientation.
-    OutsideDisk {
-        /// Distance of the target from the track's centre.
-        radius_mm: f64,
-        /// Radius of the usable disk.
-        usable_mm: f64,
-    },
-    /// Theta would pass what [`Position`] is meant to hold.
-    TooManyTurns,
-    /// The limits leave no finite duration.
-    Limits,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OutsideDisk {
-                radius_mm,
-                usable_mm,
-            } => write!(
-                f,
-                "target {radius_mm:.6} mm from the centre, the usable disk ends at {usable_mm:.6} mm"
-            ),
-            Self::TooManyTurns => f.write_str("more turns than can be counted"),
-            Self::Limits => {
-                f.write_str("the limits of speed, acceleration and jerk allow no motion")
-            }
-        }
-    }
-}
-
-/// A thousand million turns, in units of a position.
-const MOST_TURNS: i64 = 1_000_000_000 << 32;
-
-/// Slack for a target on the rim itself: its coordinates are rounded to 2^-32 track radii.
-const RIM: f64 = 1e-9;
-
-/// Whether `target` can be moved to, at any orientation.
-pub fn check_target(target: &Position, geometry: &Geometry) -> Result<(), Refusal> {
-    let [x, y] = centre(target);
-    let radius = libm::hypot(x, y);
-    if radius > geometry.usable_radius() + RIM {
-        return Err(Refusal::OutsideDisk {
-            radius_mm: radius * geometry.radius_mm,
-            usable_mm: geometry.usable_radius() * geometry.radius_mm,
-        });
-    }
-    if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
-        return Err(Refusal::TooManyTurns);
-    }
-    Ok(())
-}
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
-pub fn plan_line(
-    id: u32,
-    from: Position,
-    to: Position,
-    limits: &Limits,
-    geometry: &Geometry,
-) -> Result<Plan, Refusal> {
-    check_target(&to, geometry)?;
-    if !limits.all_positive() {
-        return Err(Refusal::Limits);
-    }
-    let mut plan = Plan {
-        id,
-        start: Start::Rest(from),
-        pieces: Vec::new(),
-        nudge: [0; 3],
-        end: to,
-    };
+pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Result<Plan, Refusal> {
+    let usable = ground.geometry.usable_radius();
+    check(&from, &to, ground, usable)?;
     if from == to {
-        return Ok(plan);
+        return Ok(Plan {
+            id,
+            start: Start::Rest(from),
+            pieces: Vec::new(),
+            nudge: [0; 3],
+            end: to,
+        });
     }
-    let line = Line::new(&from, &to);
-    let profile = Profile::new(&limits.along(&line, geometry)).ok_or(Refusal::Limits)?;
-    let volume = profile.volume();
-    let duration = i128::from(profile.jerk + profile.ramp + profile.way);
-    let mut jerk = [0i64; 3];
-    for i in 0..3 {
-        let way = (i128::from(to[i]) - i128::from(from[i])) << SUB_BITS;
-        let steps = way / (volume * i128::from(JERK_STEP));
-        // Fits: a jerk that large would be 2^-9 turns a tick cubed.
-        jerk[i] = i64::try_from(steps * i128::from(JERK_STEP)).map_err(|_| Refusal::Limits)?;
-        let rest = way - i128::from(jerk[i]) * volume;
-        plan.nudge[i] = i64::try_from(rest / duration).map_err(|_| Refusal::Limits)?;
+    // Planned in the same direction whichever way it is gone: backwards is forwards backwards.
+    let turned_round = from > to;
+    let [first, last] = if turned_round { [to, from] } else { [from, to] };
+    let path = Path::new(&first, &last, ground, usable as f32);
+    let mut pace = Way::new(&path, ground).pace().ok_or(Refusal::Limits)?;
+    if turned_round {
+        pace.beats.reverse();
     }
-    for (ticks, sign) in profile.segments() {
-        if ticks > 0 {
-            let piece = Piece {
-                ticks,
-                jerk: jerk.map(|j| j * sign),
-            };
-            // Seven segments, room for seven.
-            let _ = plan.pieces.push(piece);
+    pace.plan(id, from, to).ok_or(Refusal::Limits)
+}
+
+/// A line and what limits motion along it.
+struct Way<'a> {
+    path: &'a Path,
+    limits: PathLimits,
+    pivot_rate: f32,
+    pivot_acceleration: f32,
+    hz: f32,
+}
+
+/// How often a motion is slowed down because a limit is passed: what is left then is far below a thousandth.
+const ROUNDS: usize = 4;
+/// Room that a motion gets for roundings when it is slowed down.
+const SPARE: f32 = 1.000_5;
+
+impl<'a> Way<'a> {
+    fn new(path: &'a Path, ground: &Ground) -> Self {
+        let limits = &ground.limits;
+        let length_mm = path.length * ground.geometry.radius_mm as f32;
+        Self {
+            path,
+            limits: limits.along(length_mm, path.turn.to_degrees()),
+            pivot_rate: limits.pivot_rate_rad_s as f32,
+            pivot_acceleration: limits.pivot_acceleration_rad_s2 as f32,
+            hz: limits.rate_hz as f32,
         }
     }
-    Ok(plan)
+
+    /// The fastest motion found.
+    fn pace(&self) -> Option<Pace> {
+        let profile = Profile::new(&self.limits, self.hz)?;
+        let plain = profile.pace();
+        if self.pivots_follow_anywhere(&profile) {
+            return Some(plain);
+        }
+        let grid = Grid::new(
+            self.path,
+            self.limits,
+            self.pivot_rate,
+            self.pivot_acceleration,
+        );
+        let excess = self.excess(&plain, &grid);
+        if excess <= 1.0 {
+            return Some(plain);
+        }
+        let slowed = profile.slowed(excess)?;
+        match self.shaped(&grid) {
+            Some(shaped) if shaped.ticks() < slowed.ticks() => Some(shaped),
+            _ => Some(slowed.pace()),
+        }
+    }
+
+    /// The motion that follows the pivots' limits.
+    fn shaped(&self, grid: &Grid) -> Option<Pace> {
+        let z = fastest(grid);
+        let polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
+        let polygon = thinned(polygon, &self.limits);
+        let mut slower = SPARE;
+        for _ in 0..ROUNDS {
+            let pace = pace(&polygon, slower, &self.limits, self.hz)?;
+            let excess = self.excess(&pace, grid);
+            if excess <= 1.0 {
+                return Some(pace);
+            }
+            slower *= excess * SPARE;
+        }
+        None
+    }
+
+    /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.
+    fn pivots_follow_anywhere(&self, profile: &Profile) -> bool {
+        let rate = self.hz / profile.way as f32;
+        let acceleration = rate * self.hz / profile.ramp as f32;
+        let (first, second) = self.path.worst();
+        first * rate <= self.pivot_rate
+            && first * acceleration + second * rate * rate <= self.pivot_acceleration
+    }
+
+    /// The largest excess of a motion over its limits (see [`Grid::excess`]), jerk included.
+    fn excess(&self, pace: &Pace, grid: &Grid) -> f32 {
+        let places = grid.stretches() as f32;
+        let unit = pace.unit() * self.hz * self.hz * self.hz;
+        let mut now = Moment::default();
+        let mut worst = 0.0_f32;
+        let mut jerk = 0.0_f32;
+        for beat in &pace.beats {
+            let seconds = beat.ticks as f32 / self.hz;
+            let push = beat.jerk as f32 * unit;
+            jerk = jerk.max(push.abs());
+            let way = now.after(seconds, push).s - now.s;
+            let steps = 2 + (way.abs() * places) as u32;
+            let step = seconds / steps as f32;
+            for _ in 0..steps {
+                now = now.after(step, push);
+                worst = worst.max(grid.excess(&now));
+            }
+        }
+        let jerk = jerk / self.limits.jerk;
+        if jerk > 1.0 {
+            worst = worst.max(cbrt_f32(jerk));
+        }
+        worst
+    }
+}
+
+impl Moment {
+    /// `seconds` later under a constant jerk.
+    fn after(&self, seconds: f32, jerk: f32) -> Self {
+        let half = 0.5 * seconds;
+        let acceleration = self.acceleration + jerk * seconds;
+        let third = self.acceleration + jerk * seconds * (1.0 / 3.0);
+        Self {
+            s: self.s + seconds * (self.rate + half * third),
+            rate: self.rate + half * (self.acceleration + acceleration),
+            acceleration,
+        }
+    }
 }

@@ -9,9 +9,13 @@
 //! ```
 //!
 //! The time-optimal lengths follow from the limits by cases. Rounding each up to whole ticks lengthens a move by three
-//! ticks at most and can only lower speed, acceleration and jerk: the limits hold exactly.
+//! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
+//! themselves, a millionth.
 
 use super::limits::PathLimits;
+use super::pace::{Beat, Pace};
+use crate::number::{cbrt_f32, sqrt_f32};
+use heapless::Vec;
 
 /// Lengths of the three moving averages in ticks: `jerk <= ramp`, `way >= jerk + ramp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +29,9 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The shortest profile over a path parameter of 1 within `limits`; `None` when a limit is not a positive number or
-    /// the move would last longer than 2^52 ticks.
-    pub fn new(limits: &PathLimits) -> Option<Self> {
+    /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is not a
+    /// positive number or the move would last longer than 2^52 ticks.
+    pub fn new(limits: &PathLimits, hz: f32) -> Option<Self> {
         let PathLimits {
             rate,
             acceleration,
@@ -37,15 +41,28 @@ impl Profile {
         if !(rate > 0.0 && acceleration > 0.0 && jerk > 0.0) {
             return None;
         }
-        let [b1, b2, b3] = shortest(limits);
+        Self::lasting(shortest(limits).map(|seconds| seconds * hz))
+    }
+
+    /// The same motion, `slower` (1 or more).
+    pub(super) fn slowed(&self, slower: f32) -> Option<Self> {
+        Self::lasting([self.jerk, self.ramp, self.way].map(|ticks| ticks as f32 * slower))
+    }
+
+    fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
         let jerk = ticks(b1)?;
         let ramp = ticks(b2)?.max(jerk);
         let way = ticks(b3)?.max(jerk + ramp);
         Some(Self { jerk, ramp, way })
     }
 
+    /// Duration in ticks.
+    pub fn ticks(&self) -> u64 {
+        self.jerk + self.ramp + self.way
+    }
+
     /// Durations and jerk signs of the seven segments.
-    pub fn segments(&self) -> [(u64, i64); 7] {
+    pub fn segments(&self) -> [(u64, i32); 7] {
         let flat = self.ramp - self.jerk;
         let cruise = self.way - self.ramp - self.jerk;
         let j = self.jerk;
@@ -62,18 +79,34 @@ impl Profile {
 
     /// Jerk times this is the way: b1 b2 b3.
     pub fn volume(&self) -> i128 {
-        i128::from(self.jerk) * i128::from(self.ramp) * i128::from(self.way)
+        i128::from(self.jerk * self.ramp) * i128::from(self.way)
+    }
+
+    /// As a pace: its jerks are 1 and -1.
+    pub(super) fn pace(&self) -> Pace {
+        let mut beats = Vec::new();
+        for (ticks, jerk) in self.segments() {
+            if ticks > 0 {
+                // Seven segments, room for more.
+                let _ = beats.push(Beat { ticks, jerk });
+            }
+        }
+        Pace {
+            beats,
+            sixfold: 6 * self.volume(),
+            bits: 0,
+        }
     }
 }
 
-fn shortest(limits: &PathLimits) -> [f64; 3] {
+fn shortest(limits: &PathLimits) -> [f32; 3] {
     let PathLimits {
         rate,
         acceleration,
         jerk,
     } = *limits;
     // Reaching full speed: with full acceleration, or by jerk alone.
-    let b1 = (acceleration / jerk).min(libm::sqrt(rate / jerk));
+    let b1 = (acceleration / jerk).min(sqrt_f32(rate / jerk));
     let b2 = (rate / acceleration).max(b1);
     if rate * (b1 + b2) <= 1.0 {
         return [b1, b2, 1.0 / rate];
@@ -81,16 +114,17 @@ fn shortest(limits: &PathLimits) -> [f64; 3] {
     // Full speed is not reached; full acceleration is if its way at b2 = b1 fits.
     let b1 = acceleration / jerk;
     if 2.0 * acceleration * b1 * b1 <= 1.0 {
-        let b2 = (libm::sqrt(b1 * b1 + 4.0 / acceleration) - b1) / 2.0;
+        // Not as a difference, where that would cost digits.
+        let b2 = 2.0 / acceleration / (sqrt_f32(b1 * b1 + 4.0 / acceleration) + b1);
         return [b1, b2, b1 + b2];
     }
-    let b1 = libm::cbrt(0.5 / jerk);
+    let b1 = cbrt_f32(0.5 / jerk);
     [b1, b1, 2.0 * b1]
 }
 
-fn ticks(duration: f64) -> Option<u64> {
-    const LONGEST: f64 = 4_503_599_627_370_496.0;
+fn ticks(duration: f32) -> Option<u64> {
+    const LONGEST: f32 = 4_503_599_627_370_496.0;
     // A duration that is whole but for its rounding errors is not rounded up.
-    let whole = libm::ceil(duration * (1.0 - 1e-12)).max(1.0);
+    let whole = libm::ceilf(duration * (1.0 - 1e-6)).max(1.0);
     (whole <= LONGEST).then_some(whole as u64)
 }

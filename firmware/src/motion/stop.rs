@@ -1,123 +1,141 @@
-//! Planning a stop: along the path under way, jerk-limited, from any tick of a plan.
+//! Planning a stop from any tick of any plan: all axes brake together (`brake`).
+//!
+//! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration point; a
+//! curve is only planned where such a stop ends inside the workspace.
 
-use super::axis::{Axis, JERK_STEP};
-use super::limits::Limits;
+use super::axis::Axis;
+use super::brake::Brake;
+use super::envelope::{Broken, Envelope};
+use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
+use super::sample::Arc;
+use super::units::UnitLimits;
 use heapless::Vec;
-use kinematics::Geometry;
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// Within the limits of ordinary motion.
     Smooth,
-    /// Harder, by [`Limits::stop_factor`].
+    /// As hard as the pivots can follow; jerk within the limits times the square of
+    /// [`Limits::stop_factor`](super::Limits::stop_factor).
     Urgent,
 }
 
-const PER_UNIT: f64 = 1.0 / 4_722_366_482_869_645_213_696.0; // 2^-72
+/// How often a stop is planned again, as what was broken asks for.
+const ATTEMPTS: usize = 6;
+/// Hardest brake, in limits of acceleration: jerk alone ends at less.
+const HARDEST: f32 = 30.0;
+/// Gentlest.
+const GENTLEST: f32 = 0.1;
 
 /// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself comes to
 /// rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor at its start,
 /// where nothing moves yet.
 ///
-/// The velocity and the acceleration of a straight move are parallel, so one brake profile of three segments serves all
-/// axes: acceleration to -a, held, back to zero. From its durations, rounded up to whole ticks, each axis' own jerks follow
-/// exactly: with n1, n2, n3 ticks, start velocity v and acceleration a0,
-/// `a = -(v + a0 n1 / 2) / (n1 / 2 + n2 + n3 / 2)`.
+/// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the workspace
+/// asks for.
 pub fn plan_stop(
     id: u32,
     of: &Plan,
     axes: &[Axis; 3],
     at: u64,
-    limits: &Limits,
-    geometry: &Geometry,
+    ground: &Ground,
     stop: Stop,
 ) -> Option<Plan> {
+    let whole = of.ticks();
     let last = of.pieces.last().map_or(0, |piece| piece.ticks);
-    if at + last >= of.ticks() {
+    if at + last >= whole {
         return None;
     }
     let state = of.state_after(axes, at);
-    let times = brake_ticks(&state, limits, geometry, stop)?;
-    // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it.
-    if at + times.iter().sum::<u64>() >= of.ticks() {
+    if state
+        .iter()
+        .all(|axis| axis.velocity == 0 && axis.acceleration == 0)
+    {
         return None;
     }
-    let mut pieces = [Piece::default(); 3];
-    let mut end = state;
-    for (piece, ticks) in pieces.iter_mut().zip(times) {
-        piece.ticks = ticks;
-    }
-    for (i, axis) in end.iter_mut().enumerate() {
-        let [first, last] = jerks(axis, times);
-        pieces[0].jerk[i] = first;
-        pieces[2].jerk[i] = last;
-        for piece in &pieces {
-            *axis = axis.after(piece.ticks, piece.jerk[i], of.nudge[i]);
+    let limits = UnitLimits::new(ground);
+    let envelope = Envelope::of_stop(ground);
+    let factor = ground.limits.stop_factor as f32;
+    let start = Start::Splice {
+        plan: of.id,
+        tick: at,
+    };
+    let mut hardness = match stop {
+        Stop::Smooth => [1.0, 1.0],
+        Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
+    };
+    let mut plan = None;
+    for _ in 0..ATTEMPTS {
+        let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
+        let pieces = brake.pieces(&state);
+        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it.
+        let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
+        if at + ticks >= whole {
+            return plan;
+        }
+        let stopped = stopped(id, of, start, &state, &pieces);
+        let checked = envelope.check(&stopped, &state);
+        plan = Some(stopped);
+        match checked {
+            Ok(()) => break,
+            Err(Broken::Reach) => {
+                hardness = [hardness[0] * 1.3, factor * factor];
+            }
+            Err(
+                Broken::Rate(over)
+                | Broken::Acceleration(over)
+                | Broken::Speed(over)
+                | Broken::Force(over),
+            ) => {
+                hardness[0] = (hardness[0] * (0.98 / over).max(0.5)).max(GENTLEST);
+            }
         }
     }
+    plan
+}
+
+fn stopped(id: u32, of: &Plan, start: Start, state: &[Axis; 3], pieces: &[Piece; 3]) -> Plan {
+    let mut end = *state;
     let mut plan = Plan {
         id,
-        start: Start::Splice {
-            plan: of.id,
-            tick: at,
-        },
+        start,
         pieces: Vec::new(),
         nudge: of.nudge,
-        end: end.map(|axis| axis.rounded()),
+        end: of.end,
     };
-    for piece in pieces.into_iter().filter(|piece| piece.ticks > 0) {
-        let _ = plan.pieces.push(piece);
+    for piece in pieces.iter().filter(|piece| piece.ticks > 0) {
+        for (i, axis) in end.iter_mut().enumerate() {
+            *axis = axis.after(piece.ticks, piece.jerk[i], of.nudge[i]);
+        }
+        let _ = plan.pieces.push(*piece);
     }
-    Some(plan)
+    plan.end = end.map(|axis| axis.rounded());
+    plan
 }
 
-/// Durations of the three segments, for the whole motion.
-fn brake_ticks(
-    state: &[Axis; 3],
-    limits: &Limits,
-    geometry: &Geometry,
-    stop: Stop,
-) -> Option<[u64; 3]> {
-    let hz = limits.rate_hz;
-    let velocity = state.map(|axis| axis.velocity as f64 * PER_UNIT * hz);
-    let along = libm::hypot(velocity[0], velocity[1]) * geometry.radius_mm;
-    let turning_deg = velocity[2].abs() * 360.0;
-    let factor = match stop {
-        Stop::Smooth => 1.0,
-        Stop::Urgent => limits.stop_factor,
-    };
-    // Everything below is relative to the velocity: it is 1, and per second.
-    let most = (limits.acceleration_mm_s2 / along)
-        .min(limits.turn_acceleration_deg_s2 / turning_deg)
-        * factor;
-    let jerk =
-        (limits.jerk_mm_s3 / along).min(limits.turn_jerk_deg_s3 / turning_deg) * factor * factor;
-    let fastest = (0..3).max_by_key(|&i| state[i].velocity.unsigned_abs())?;
-    let now = state[fastest].acceleration as f64 / state[fastest].velocity as f64 * hz;
-    if !(most.is_finite() && jerk.is_finite() && now.is_finite()) {
-        return None;
+/// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of
+/// the motion itself is taken off.
+fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> f32 {
+    let hz = ground.limits.rate_hz as f32;
+    let centre = ground.centre.map(|value| value as f32);
+    let most = ground.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
+    let arc = Arc::new(state, &Piece::default(), hz);
+    let peak = Brake::new(state, limits, 1.0, 1.0).peak_per_second(limits, hz);
+    let mut drifting = arc.start;
+    drifting.a = [0.0; 3];
+    let mut braking = drifting;
+    braking.a = peak;
+    let [_, drift] = arc.platform(&drifting, centre).pivots();
+    let [_, braked] = arc.platform(&braking, centre).pivots();
+    let mut hardest = HARDEST;
+    for i in 0..3 {
+        let part = braked[i] - drift[i];
+        let left = most - drift[i].abs();
+        if part != 0.0 && left < hardest * part.abs() {
+            hardest = left / part.abs();
+        }
     }
-    let peak = libm::sqrt((jerk + now * now / 2.0).max(0.0))
-        .min(most)
-        .max(-now);
-    let hold = ((1.0 + now * now / (2.0 * jerk) - peak * peak / jerk) / peak).max(0.0);
-    let ticks = |seconds: f64| libm::ceil(seconds * hz) as u64;
-    Some([
-        ticks((now + peak) / jerk).max(1),
-        ticks(hold),
-        ticks(peak / jerk).max(1),
-    ])
-}
-
-/// Jerks of the first and the last segment that bring one axis to rest in `times`.
-pub(super) fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
-    let (v, a0) = (i128::from(axis.velocity), i128::from(axis.acceleration));
-    let (n1, n2, n3) = (i128::from(n1), i128::from(n2), i128::from(n3));
-    let peak = -(2 * v + a0 * n1) / (n1 + 2 * n2 + n3);
-    let step = i128::from(JERK_STEP);
-    let first = (peak - a0) / n1 / step * step;
-    let last = -(a0 + first * n1) / n3 / step * step;
-    [first as i64, last as i64]
+    hardest.max(GENTLEST)
 }

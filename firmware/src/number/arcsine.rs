@@ -3,8 +3,9 @@
 //! For d^2 <= 1/2, asin(d) = d P(d^2); beyond, asin(d) = +-(90 deg - c P(c^2)) with c = sqrt(1 - d^2), which the
 //! velocity equations need anyway. P gives turns; it is a minimax polynomial of degree 9 on [0, 1/2], found with the Remez
 //! exchange in 50-digit arithmetic (largest error of P 5.2e-11 turns).
+//!
+//! Three at a time: a coefficient takes two instructions to load and one to use.
 
-use super::trigonometric::horner;
 use super::{Fixed, multiply, root};
 use kinematics::Angle;
 
@@ -28,27 +29,72 @@ const ONE_SQUARED: i64 = 1 << 58;
 const ROOT_OF_HALF: u32 = 379_625_062;
 const QUARTER_TURN: i32 = 1 << 30;
 
-/// asin(d) and sqrt(1 - d^2); `None` unless |d| < 1. Error of the angle under 4e-9 rad, the conditioning of the second form
-/// near |d| = 1 aside.
+/// asin(d) and sqrt(1 - d^2) of three; `None` unless every |d| < 1. Error of the angles under 4e-9 rad, the conditioning of the
+/// second form near |d| = 1 aside.
 #[inline]
-pub(super) fn asin_cos(d: Fixed) -> Option<(Angle, Fixed)> {
-    let size = d.bits().unsigned_abs();
-    if size >= ONE {
+pub(super) fn asin_cos(d: [Fixed; 3]) -> Option<[(Angle, Fixed); 3]> {
+    let [Some(one), Some(two), Some(three)] = d.map(Argument::new) else {
         return None;
-    }
-    let square = Fixed::add_product(0, d, d);
-    let rest = ONE_SQUARED - square;
-    let cosine = root::sqrt_fixed(rest);
-    let steep = size > ROOT_OF_HALF;
-    let (s, square) = if steep { (cosine, rest) } else { (d, square) };
-    let turns = horner(&TURNS, (square >> 26) as i32);
-    let angle = (multiply::add_product(1 << 29, s.bits(), turns) >> 30) as i32;
-    let angle = match (steep, d.bits() < 0) {
-        (false, _) => angle,
-        (true, false) => QUARTER_TURN - angle,
-        (true, true) => angle - QUARTER_TURN,
     };
-    Some((Angle::from_units(i64::from(angle)), cosine))
+    let arguments = [one, two, three];
+    let turns = horner(arguments.map(|argument| argument.square));
+    Some([0, 1, 2].map(|i| {
+        let Argument { s, offset, .. } = arguments[i];
+        // With the sign of `s` in the second form, 90 deg less the angle for one and more for the other is one difference.
+        let angle = (multiply::add_product(1 << 29, s, turns[i]) >> 30) as i32;
+        let angle = offset.wrapping_add(angle);
+        (Angle::from_units(i64::from(angle)), arguments[i].cosine)
+    }))
+}
+
+/// What one arcsine is computed from.
+#[derive(Clone, Copy)]
+struct Argument {
+    /// What the polynomial is multiplied by, and what is added to the product.
+    s: i32,
+    offset: i32,
+    /// Argument of the polynomial, 32 fraction bits.
+    square: i32,
+    cosine: Fixed,
+}
+
+impl Argument {
+    #[inline]
+    fn new(d: Fixed) -> Option<Self> {
+        let size = d.bits().unsigned_abs();
+        if size >= ONE {
+            return None;
+        }
+        let square = Fixed::add_product(0, d, d);
+        let rest = ONE_SQUARED - square;
+        let cosine = root::sqrt_fixed(rest);
+        let (s, offset, square) = if size <= ROOT_OF_HALF {
+            (d.bits(), 0, square)
+        } else if d.bits() < 0 {
+            (cosine.bits(), -QUARTER_TURN, rest)
+        } else {
+            (-cosine.bits(), QUARTER_TURN, rest)
+        };
+        let square = (square >> 26) as i32;
+        Some(Self {
+            s,
+            offset,
+            square,
+            cosine,
+        })
+    }
+}
+
+/// P of three arguments, step by step.
+#[inline]
+fn horner(z: [i32; 3]) -> [i32; 3] {
+    let mut sums = [TURNS[TURNS.len() - 1]; 3];
+    let mut k = TURNS.len() - 1;
+    while k > 0 {
+        k -= 1;
+        sums = [0, 1, 2].map(|i| multiply::add_high(TURNS[k], sums[i], z[i]));
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -62,7 +108,7 @@ mod tests {
         let mut bits = -(one as f64 * 0.96) as i64;
         while bits < (one as f64 * 0.96) as i64 {
             let d = Fixed::from_bits(bits as i32);
-            let (angle, cosine) = asin_cos(d).unwrap();
+            let [(angle, cosine), ..] = asin_cos([d; 3]).unwrap();
             let exact = d.to_f64();
             worst.0 = worst.0.max((angle.radians() - exact.asin()).abs());
             worst.1 = worst
@@ -76,8 +122,12 @@ mod tests {
     #[test]
     fn has_no_answer_at_one_and_beyond() {
         for bits in [1 << 29, -(1 << 29), (1 << 29) + 1, i32::MAX, i32::MIN] {
-            assert_eq!(asin_cos(Fixed::from_bits(bits)), None, "{bits}");
+            for place in 0..3 {
+                let mut d = [Fixed::from_bits(0); 3];
+                d[place] = Fixed::from_bits(bits);
+                assert_eq!(asin_cos(d), None, "{bits}");
+            }
         }
-        assert!(asin_cos(Fixed::from_bits((1 << 29) - 1)).is_some());
+        assert!(asin_cos([Fixed::from_bits((1 << 29) - 1); 3]).is_some());
     }
 }

@@ -63,6 +63,13 @@ impl Fixed {
         Self((product >> Self::FRACTION_BITS) as i32)
     }
 
+    /// `a b + c d` as a length in 2^-32 track radii, rounded to nearest.
+    #[inline]
+    pub(crate) fn products_as_position((a, b): (Self, Self), (c, d): (Self, Self)) -> i64 {
+        const CUT: u32 = 2 * Fixed::FRACTION_BITS - 32;
+        Self::add_product(Self::add_product(1 << (CUT - 1), a, b), c, d) >> CUT
+    }
+
     /// As a float, rounded to its 24 bits.
     #[inline]
     pub fn to_f32(self) -> f32 {
@@ -139,8 +146,8 @@ impl Scalar for Fixed {
     }
 
     #[inline]
-    fn asin_cos(self) -> Option<(Angle, Self)> {
-        arcsine::asin_cos(self)
+    fn asin_cos(sines: [Self; 3]) -> Option<[(Angle, Self); 3]> {
+        arcsine::asin_cos(sines)
     }
 
     #[inline]

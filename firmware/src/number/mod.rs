@@ -17,4 +17,4 @@ mod trigonometric;
 
 pub use fixed::Fixed;
 pub(crate) use root::round;
-pub use root::sqrt_f32;
+pub use root::{cbrt_f32, sqrt_f32};

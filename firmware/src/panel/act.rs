@@ -1,17 +1,14 @@
 //! Carrying out what changes something.
 
-use super::Panel;
 use super::axis::{Axis, AxisValues};
 use super::error::ErrorCode;
-use super::parameter::{Parameter, Settings};
+use super::events::Event;
 use super::request::Action;
 use super::session::{Awaited, Session, Wait};
 use super::soft::SoftLimits;
+use super::{LONGEST_MS, Panel};
 use crate::link::PanelLink;
 use crate::motion::Stop;
-
-/// Longest `DEL`: a day.
-const LONGEST_DELAY_MS: f64 = 86_400_000.0;
 
 impl Panel {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
@@ -35,25 +32,44 @@ impl Panel {
                 Ok(())
             }
             Action::Move(values) => self.stage.move_to(&values, link),
-            Action::MoveRelative(values) => self.stage.move_by(&values, link),
+            Action::MoveRelative(values) | Action::Step(values) => {
+                self.stage.move_by(&values, link)
+            }
+            Action::Record(action) => {
+                (self.desk).change(&action, &mut self.parameters, &link.recorder)
+            }
+            Action::MoveInTool(values) => self.stage.move_in_tool(&values, link),
+            Action::CycleTime(ms) => self.stage.set_cycle_time(ms),
+            Action::Jog(values) => self.stage.jog(&values, link),
+            Action::AxisVelocity(values) => self.stage.set_axis_velocity(&values),
+            Action::Wave(action) => self.stage.change_waves(&action, link),
+            Action::Frame(action) => self.stage.change_frames(&action, link),
             Action::SoftLowest(values) => self.stage.set_soft(SoftLimits::set_lowest, &values),
             Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
             Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
-            Action::Set(settings) => self.set(&settings),
+            Action::Set(settings) => self.set(&settings, session, link),
+            Action::Level(level, password) => Self::set_level(session, level, password),
             Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
             Action::Stop => {
-                self.stops = self.stops.wrapping_add(1);
-                self.stage.stop(Stop::Urgent, link);
+                self.events.add(self.stage.tick(), Event::Stop);
+                self.stop_all(Stop::Urgent, link);
                 Err(ErrorCode::Stopped)
             }
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => {
+                self.events.add(self.stage.tick(), Event::Halt);
                 self.stage.stop(Stop::Smooth, link);
                 Err(ErrorCode::Stopped)
             }
+            Action::Heartbeat(ms) => self.set_heartbeat(ms),
+            Action::RestartStatistics => {
+                self.restart_statistics();
+                Ok(())
+            }
+            Action::Restart => self.restart(),
             Action::Acknowledge => self.stage.acknowledge(link),
             Action::Delay(ms) => {
-                if !(0.0..=LONGEST_DELAY_MS).contains(&ms) {
+                if !(0.0..=LONGEST_MS).contains(&ms) {
                     return Err(ErrorCode::OutOfRange);
                 }
                 let until = self.stage.tick() + self.stage.ticks(ms);
@@ -64,23 +80,24 @@ impl Panel {
                 self.wait(session, Awaited::Condition(condition));
                 Ok(())
             }
+            Action::Jump(by, condition) => self.jump_if(Some(by), &condition, session),
+            Action::Leave(condition) => self.jump_if(None, &condition, session),
         }
     }
 
-    /// All settings or, when one is out of range, none. A motion under way was planned with other limits: not then.
-    fn set(&mut self, settings: &Settings) -> Result<(), ErrorCode> {
-        if !self.stage.moving().is_empty() {
+    /// Stops the motion, and with it every macro and every wait.
+    pub(super) fn stop_all(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+        self.stops = self.stops.wrapping_add(1);
+        self.macros.stop();
+        self.stage.stop(stop, link);
+    }
+
+    /// `RBT`: a stage in motion would be let go.
+    fn restart(&mut self) -> Result<(), ErrorCode> {
+        if self.stage.is_under_way() {
             return Err(ErrorCode::InMotion);
         }
-        let mut limits = self.parameters.limits;
-        for (address, value) in settings.iter().flatten() {
-            let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
-            if !parameter.set(*value, &mut limits, &self.rated) {
-                return Err(ErrorCode::OutOfRange);
-            }
-        }
-        self.parameters.limits = limits;
-        self.stage.set_limits(limits);
+        self.wants_restart = true;
         Ok(())
     }
 

@@ -19,7 +19,7 @@ const STATUS_REFERENCED: u32 = 1 << 16;
 impl Panel {
     /// Answers a query about the controller as a whole.
     pub(super) fn answer<W: Write>(
-        &self,
+        &mut self,
         query: Query,
         session: &mut Session,
         out: &mut W,
@@ -41,13 +41,21 @@ impl Panel {
                 let error = core::mem::take(&mut session.error);
                 one_line(out, format_args!("{}", error.number()))
             }
+            Query::CycleTime => one_line(out, format_args!("T={}", self.stage.cycle_time_ms())),
             Query::Velocity => one_line(out, format_args!("{}", self.stage.velocity_mm_s())),
             Query::ParameterHelp => parameter_help(out),
-            // There is nothing that a higher level would allow.
-            Query::Level => one_line(out, format_args!("0")),
+            Query::Level => one_line(out, format_args!("{}", session.level)),
+            Query::Heartbeat => one_line(out, format_args!("{}", self.heartbeat.ms)),
+            Query::Events => self.tell_events(out),
+            Query::Statistics => self.tell_statistics(out),
             Query::Fault => self.fault(out),
+            Query::Monitor => self.monitor(session, out),
             Query::Status => one_line(out, format_args!("{}", self.status())),
             Query::Moving => one_line(out, format_args!("{:x}", self.stage.moving().mask())),
+            Query::Changed => {
+                let changed = self.stage.changed_since(session.told);
+                one_line(out, format_args!("{:x}", changed.mask()))
+            }
             Query::Ready => {
                 let ready = session.wait.is_none() && !self.stage.is_referencing();
                 out.write_all(&[if ready { 0xB1 } else { 0xB0 }, b'\n'])

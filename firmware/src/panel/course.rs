@@ -1,58 +1,106 @@
-//! A plan as the command side knows it: with the state it starts from, so that it can be stopped from outside the tick.
+//! A plan as the command side knows it: with the state it starts from, so that it can be left from outside the tick.
 
+use super::error::ErrorCode;
 use crate::motion::{
-    Axis, Bounds, Limits, NoTransition, Plan, Position, Refusal, Start, Stop, plan_curved_stop,
-    plan_line, plan_stop, plan_transition,
+    Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, plan_jog, plan_line,
+    plan_stop, plan_transition,
 };
-use kinematics::Geometry;
+
+/// What a motion is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Goal {
+    /// Rest at a position.
+    Place(Position),
+    /// A velocity, kept as long as it can be: of x and y in the base frame (mm/s) and of theta (deg/s).
+    Velocity([f64; 3]),
+    /// What a stream's targets say.
+    Stream,
+}
 
 /// A plan that was sent to the tick.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     /// The plan.
     pub plan: Plan,
-    /// The three axes at its first tick.
-    start: [Axis; 3],
-    /// Whether it leaves the straight line: velocity and acceleration point anywhere.
-    curved: bool,
+    /// What it is for; of a stop, what the motion before it was for.
+    pub goal: Goal,
     /// Of a stop, how it brakes.
     pub stop: Option<Stop>,
+    /// The three axes at its first tick.
+    start: [Axis; 3],
 }
 
 impl Course {
-    /// The straight line between two positions.
-    pub fn line(
+    /// From rest at `from`.
+    pub fn from_rest(
         id: u32,
         from: Position,
-        to: Position,
-        limits: &Limits,
-        geometry: &Geometry,
-    ) -> Result<Self, Refusal> {
+        goal: Goal,
+        ground: &Ground,
+    ) -> Result<Self, ErrorCode> {
+        let start = from.map(Axis::at_rest);
+        let plan = match goal {
+            // It makes its plans itself.
+            Goal::Stream => Err(ErrorCode::Busy),
+            Goal::Place(to) => plan_line(id, from, to, ground).map_err(|refusal| code(&refusal)),
+            Goal::Velocity(velocity) => {
+                plan_jog(id, Start::Rest(from), &start, &velocity, ground).map_err(|no| match no {
+                    NoTransition::Refused(refusal) => code(&refusal),
+                    // At rest there is nothing to stop.
+                    NoTransition::NeedsStop => ErrorCode::PositionLimit,
+                })
+            }
+        };
         Ok(Self {
-            plan: plan_line(id, from, to, limits, geometry)?,
-            start: from.map(Axis::at_rest),
-            curved: false,
+            plan: plan?,
+            goal,
             stop: None,
+            start,
         })
     }
 
-    /// The way to another target that leaves this course at its tick `at`.
-    pub fn retargeted(
+    /// A plan of a stream, from these axes.
+    pub const fn streamed(plan: Plan, start: [Axis; 3]) -> Self {
+        Self {
+            plan,
+            goal: Goal::Stream,
+            stop: None,
+            start,
+        }
+    }
+
+    /// The way to another goal that leaves this course at its tick `at`; `Ok(None)` when there is none without a stop before.
+    pub fn left_for(
         &self,
+        goal: Goal,
         id: u32,
         at: u64,
-        to: Position,
-        limits: &Limits,
-        geometry: &Geometry,
-        bounds: &Bounds,
-    ) -> Result<Self, NoTransition> {
-        let (plan, start) = (&self.plan, &self.start);
-        Ok(Self {
-            plan: plan_transition(id, plan, start, at, to, limits, geometry, bounds)?,
-            start: plan.state_after(start, at),
-            curved: true,
-            stop: None,
-        })
+        ground: &Ground,
+    ) -> Result<Option<Self>, ErrorCode> {
+        let start = self.plan.state_after(&self.start, at);
+        let planned = match goal {
+            Goal::Stream => return Err(ErrorCode::Busy),
+            Goal::Place(to) => plan_transition(id, &self.plan, &self.start, at, to, ground),
+            // A plan that has ended by then leaves nothing to leave.
+            Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
+            Goal::Velocity(velocity) => {
+                let splice = Start::Splice {
+                    plan: self.plan.id,
+                    tick: at,
+                };
+                plan_jog(id, splice, &start, &velocity, ground)
+            }
+        };
+        match planned {
+            Ok(plan) => Ok(Some(Self {
+                plan,
+                goal,
+                stop: None,
+                start,
+            })),
+            Err(NoTransition::Refused(refusal)) => Err(code(&refusal)),
+            Err(NoTransition::NeedsStop) => Ok(None),
+        }
     }
 
     /// Whether it takes over from another one in motion.
@@ -61,24 +109,25 @@ impl Course {
     }
 
     /// The stop that leaves this course at its tick `at`; `None` when it comes to rest by itself as soon.
-    pub fn stopped(
-        &self,
-        id: u32,
-        at: u64,
-        limits: &Limits,
-        geometry: &Geometry,
-        stop: Stop,
-    ) -> Option<Self> {
-        let plan_it = if self.curved {
-            plan_curved_stop
-        } else {
-            plan_stop
-        };
+    pub fn stopped(&self, id: u32, at: u64, ground: &Ground, stop: Stop) -> Option<Self> {
         Some(Self {
-            plan: plan_it(id, &self.plan, &self.start, at, limits, geometry, stop)?,
+            plan: plan_stop(id, &self.plan, &self.start, at, ground, stop)?,
             start: self.plan.state_after(&self.start, at),
-            curved: self.curved,
             stop: Some(stop),
+            goal: self.goal,
         })
+    }
+}
+
+/// What a connection is told of a refusal.
+pub(super) const fn code(refusal: &Refusal) -> ErrorCode {
+    match refusal {
+        Refusal::Velocity
+        | Refusal::PivotRate { .. }
+        | Refusal::Limits
+        | Refusal::Acceleration
+        | Refusal::Jerk
+        | Refusal::Pivots => ErrorCode::VelocityLimit,
+        _ => ErrorCode::PositionLimit,
     }
 }

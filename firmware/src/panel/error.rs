@@ -19,12 +19,18 @@ pub enum ErrorCode {
     PositionLimit = 7,
     /// The velocity is out of its limits.
     VelocityLimit = 8,
+    /// The centre of rotation can not be set: W is not a multiple of 360 deg, or a tool frame gives the centre.
+    PivotNotSettable = 9,
     /// Stopped by command.
     Stopped = 10,
     /// No such axis.
     InvalidAxis = 15,
     /// A parameter is out of range.
     OutOfRange = 17,
+    /// No name for a macro.
+    MacroName = 18,
+    /// No such macro.
+    MacroNotFound = 20,
     /// An axis is named twice.
     AxisTwice = 22,
     /// Too few or too many parameters.
@@ -33,18 +39,60 @@ pub enum ErrorCode {
     InvalidNumber = 25,
     /// A soft limit is out of the travel, crosses the other one, or leaves out where the stage is.
     SoftLimit = 27,
+    /// Not for this stage, or not for a frame that is in use.
+    NotForStage = 34,
     /// An encoder does not answer, or the pivots are no pose.
     ReferencingFailed = 45,
     /// Not while something moves.
     InMotion = 53,
     /// No such parameter.
     UnknownParameter = 54,
+    /// The password of the command level is wrong or missing.
+    Password = 56,
+    /// No such table of the recorder.
+    NoSuchTable = 57,
+    /// No such option of the recorder, or not of this source.
+    UnknownOption = 58,
+    /// The command level of the connection is too low.
+    LevelTooLow = 60,
     /// The parameter can only be read.
     ReadOnly = 64,
+    /// So many points have not been recorded.
+    NotRecorded = 77,
+    /// The table records nothing.
+    TableOff = 78,
+    /// Not with the servo on, or not outside a macro.
+    NotAllowed = 89,
+    /// There is no memory left for that waveform.
+    WaveTooLarge = 67,
+    /// Not while a generator runs: `WGO` ends it.
+    GeneratorActive = 73,
+    /// A generator has no table, or an empty one.
+    NoWave = 75,
+    /// Not while the axes that it affects move.
+    WhileMoving = 93,
+    /// Streamed targets did not come in time: the stage has stopped.
+    StreamDry = 220,
+    /// Streamed targets came faster than their cycle time: this one was not taken.
+    StreamFull = 221,
     /// A pivot was too far from its setpoint; the motors are off.
     FollowingError = 504,
+    /// No room for another macro or variable.
+    NoMemory = 601,
+    /// Macros start macros too deeply.
+    TooDeeplyNested = 1000,
+    /// No macro is being recorded.
+    NotRecording = 1002,
+    /// No keyword of `MAC`, or one that a macro can not have.
+    MacroParameter = 1003,
     /// The command can not be taken now; nothing of it was done.
     Busy = 1005,
+    /// No name for a variable.
+    InvalidIdentifier = 1006,
+    /// No such variable.
+    UnknownVariable = 1007,
+    /// Not while a macro runs.
+    MacroRunning = 1008,
     /// A fault is latched, the motors are off.
     MotionError = 1024,
 }

@@ -16,7 +16,14 @@
 //! | `session` | input, line, error and wait of a connection |
 //! | `stage` | what is known of the stage, in flight to it, wanted of it |
 //! | `answer`, `act` | what a request does |
+//! | `monitor` | what `MON?` tells, for clients that draw the stage while it moves |
+//! | `frames` | coordinate systems of the user's own, and the centre of rotation |
 //! | `parameter` | what parameters there are |
+//! | `record` | the data recorder: what it records, when, and reading it |
+//! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
+//! | `macros` | lines that are kept and carried out later |
+//! | `variables`, `short` | names and values in lines |
+//! | `wave` | waveforms: tables and generators |
 //! | `soft`, `reach` | limits of targets, and how far one can go |
 //!
 //! Lines are handled in order. While a command is on its way to the tick (one tick) lines that depend on it stay where they
@@ -29,24 +36,45 @@ mod answer;
 mod axis;
 mod course;
 mod error;
+mod events;
+mod frames;
+mod heartbeat;
+mod macros;
+mod monitor;
 mod parameter;
 mod parse;
 mod reach;
+mod record;
 mod reply;
 mod request;
 mod scan;
 mod session;
+mod short;
 mod soft;
 mod stage;
+mod statistics;
 mod table;
 mod target;
+mod variables;
+mod wave;
 
 pub use axis::{Axis, AxisSet, AxisValues};
 pub use error::ErrorCode;
-pub use parameter::{ADDRESSES, Address, Addresses, Item, Settings};
+pub use macros::{DEPTH, LINES, MACRO_BYTES, MACROS, MacroRequest};
+pub use parameter::{
+    ADDRESSES, Address, Addresses, Item, Kind, PARAMETERS, Parameter, Settings, When,
+};
+
+pub use frames::{
+    FrameAction, FrameName, FrameQuery, Kind as FrameKind, ListItem, NAME_BYTES as FRAME_NAME_BYTES,
+};
 pub use parse::{ParseError, parse};
-pub use request::{Action, Condition, Operator, Property, Quantity, Query, Request};
+pub use record::{Channel, RecordAction, RecordQuery, Source, TableList, Trigger};
+pub use request::{Action, Condition, Operand, Operator, Property, Quantity, Query, Request};
 pub use session::{LINE_BYTES, Session};
+pub use short::{NAME_BYTES, Name, Short, TEXT_BYTES, Text};
+pub use variables::{NAMED, VARIABLES, VariableRequest};
+pub use wave::{Curve, Join, Shape, WaveAction, WavePoints, WaveQuery};
 
 use crate::fault::FaultKind;
 use crate::link::PanelLink;
@@ -54,9 +82,18 @@ use crate::motion::Limits;
 use crate::parameters::Parameters;
 use answer::tell_reach;
 use embedded_io::Write;
+use events::Events;
+use heartbeat::Heartbeat;
+use macros::{Macros, Recorded};
+use record::Desk;
 use session::{Awaited, Event};
 use stage::{Referencing, Stage};
+use statistics::Statistics;
 use table::find_byte;
+use variables::Variables;
+
+/// Longest time that a line can ask for: a day.
+const LONGEST_MS: f64 = 86_400_000.0;
 
 /// Who answers `*IDN?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,13 +108,22 @@ pub struct Identity {
 pub struct Panel {
     identity: Identity,
     parameters: Parameters,
-    /// Limits of motion that the stage was set up for.
+    /// Those before they were set last, in case the tick refuses.
+    parameters_before: Parameters,
+    /// Limits of motion that the stage was set up for, and those that level 1 has set over them.
     rated: Limits,
     stage: Stage,
     /// Why the controller started, if that is worth telling.
     start: Option<&'static str>,
-    /// Times `STP` or `#24` was given.
+    /// Times everything was stopped.
     stops: u32,
+    desk: Desk,
+    events: Events,
+    statistics: Statistics,
+    heartbeat: Heartbeat,
+    wants_restart: bool,
+    macros: Macros,
+    variables: Variables,
 }
 
 impl Panel {
@@ -86,16 +132,30 @@ impl Panel {
         Self {
             identity,
             parameters: parameters.clone(),
+            parameters_before: parameters.clone(),
             rated: parameters.limits,
             stage: Stage::new(parameters),
             stops: 0,
+            desk: Desk::new(),
+            events: Events::new(),
+            statistics: Statistics::default(),
+            heartbeat: Heartbeat::default(),
+            wants_restart: false,
+            macros: Macros::default(),
+            variables: Variables::default(),
             start: None,
         }
     }
 
-    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault.
+    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`.
     pub fn note_start(&mut self, cause: &'static str) {
         self.start = Some(cause);
+        self.events.note_start(cause);
+    }
+
+    /// Whether `RBT` has been given: the board is to start the controller again.
+    pub const fn wants_restart(&self) -> bool {
+        self.wants_restart
     }
 
     /// Takes new snapshots, carries on what is pending, handles what `session` has received and writes the replies to `out`.
@@ -109,14 +169,29 @@ impl Panel {
         link: &mut PanelLink<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
-        while let Some(snapshot) = link.snapshot() {
-            self.stage.take(snapshot);
+        self.listen(session);
+        self.advance(link);
+        if let Some(snapshot) = self.stage.snapshot() {
+            session.monitor.look(snapshot);
         }
-        self.stage.carry_on(link);
         self.tell_bad_news(session);
         let result = self.handle(session, link, out);
         self.stage.carry_on(link);
+        self.desk.carry_on(&self.parameters, &mut link.recorder);
         result
+    }
+
+    /// What goes on with and without connections: takes new snapshots, carries on what is pending, a macro too.
+    pub fn advance(&mut self, link: &mut PanelLink<'_>) {
+        while let Some(snapshot) = link.snapshot() {
+            self.events.take(&snapshot);
+            self.statistics.take(&snapshot);
+            self.stage.take(snapshot);
+        }
+        self.take_back_if_refused();
+        self.stage.carry_on(link);
+        self.watch_heartbeat(link);
+        self.run_macro(link);
     }
 
     /// A fault sets the error of every connection, once.
@@ -147,7 +222,7 @@ impl Panel {
         out: &mut W,
     ) -> Result<(), W::Error> {
         loop {
-            while self.is_waiting(session, link) {
+            while self.carry_dump(session, link, out)? || self.is_waiting(session, link) {
                 let Some(byte) = session.take_single() else {
                     return Ok(());
                 };
@@ -157,7 +232,7 @@ impl Panel {
                 None => return Ok(()),
                 Some(Event::Byte(byte)) => self.obey_byte(byte, session, link, out)?,
                 Some(Event::TooLong) => session.error = ErrorCode::LineTooLong,
-                Some(Event::Line) => match parse(session.line()) {
+                Some(Event::Line) => match self.understand(session) {
                     Ok(request) if request.needs_present() && self.stage.present().is_none() => {
                         return Ok(());
                     }
@@ -165,13 +240,31 @@ impl Panel {
                         session.finish_line();
                         self.obey(request, session, link, out)?;
                     }
-                    Err(error) => {
+                    Err(code) => {
                         session.finish_line();
-                        session.error = error.code;
+                        session.error = code;
                     }
                 },
             }
         }
+    }
+
+    /// What the line of a connection asks for; nothing when it has become part of a macro.
+    fn understand(&mut self, session: &Session) -> Result<Request, ErrorCode> {
+        let line = session.line();
+        if let Some(number) = session.recording {
+            let tick = self.stage.tick();
+            if let Recorded::Kept = self.macros.record(number, line, tick)? {
+                return Ok(Request::Nothing);
+            }
+        }
+        let request = if line.contains(&b'$') {
+            let locals = self.macros.locals(session);
+            parse(&self.variables.expand(line, locals)?)
+        } else {
+            parse(line)
+        };
+        request.map_err(|error| error.code)
     }
 
     fn obey_byte<W: Write>(
@@ -198,7 +291,12 @@ impl Panel {
         match request {
             Request::Nothing => {}
             Request::Ask(query) => self.answer(query, session, out)?,
-            Request::Read(quantity, axes) => self.read(quantity, axes, out)?,
+            Request::Read(quantity, axes) => {
+                if quantity == Quantity::Position {
+                    session.told = self.stage.pivots();
+                }
+                self.read(quantity, axes, out)?;
+            }
             Request::Tell(property, axes) => self.tell(property, axes, out)?,
             Request::Parameters(addresses) => self.tell_parameters(&addresses, out)?,
             Request::Reachable(values) => self.tell_reachable(&values, out)?,
@@ -206,13 +304,52 @@ impl Panel {
                 Some(end) => tell_reach(&values, &end, out)?,
                 None => session.error = ErrorCode::OutOfRange,
             },
+            Request::Macro(request) => self.obey_macro(&request, session, out)?,
+            Request::Variables(request) => self.obey_variables(&request, session, out)?,
+            Request::Record(query) => self.tell_record(query, session, link, out)?,
+            Request::Frames(query) => {
+                if let Err(code) = self.stage.frames().answer(query, out)? {
+                    session.error = code;
+                }
+            }
+            Request::Waves(query) => {
+                let going = self.stage.generators_going();
+                self.stage.waves().answer(query, &going, out)?;
+            }
             Request::Act(action) => {
-                if let Err(code) = self.act(action, session, link) {
+                if let Err(code) = self.act_announced(action, session, link) {
                     session.error = code;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Carries out an action; one that moves is announced to the recorder, for which it may be the trigger.
+    fn act_announced(
+        &mut self,
+        action: Action,
+        session: &mut Session,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        if !action.moves() {
+            return self.act(action, session, link);
+        }
+        let step = matches!(action, Action::Step(_));
+        let (sent, parameters) = (self.stage.sent(), &self.parameters);
+        let recorder = &mut link.recorder;
+        let announced = (self.desk).announce(step, sent.wrapping_add(1), parameters, recorder)?;
+        let result = self.act(action, session, link);
+        let recorder = &mut link.recorder;
+        match result {
+            // Already there: nothing had to be sent.
+            Ok(()) if self.stage.sent() == sent && !self.stage.motion_is_due() => {
+                self.desk.confirm(announced, Some(sent), recorder);
+            }
+            Ok(()) => self.desk.confirm(announced, None, recorder),
+            Err(_) => self.desk.take_back(announced, recorder),
+        }
+        result
     }
 
     /// Whether the lines of the connection have to wait; ends the wait when it is over.
@@ -229,8 +366,11 @@ impl Panel {
             Awaited::Tick(tick) => self.stage.tick() >= tick,
             // A fault ends it too: the condition may never come about, and the error has been set.
             Awaited::Condition(condition) => {
-                self.stage.present().is_some()
-                    && (self.stage.is_faulted() || self.holds(&condition))
+                let holds = self.holds(&condition, session);
+                if let Err(code) = holds {
+                    session.error = code;
+                }
+                self.stage.present().is_some() && (self.stage.is_faulted() || holds.unwrap_or(true))
             }
             Awaited::Reference => match self.stage.reference(link) {
                 Referencing::Waiting => false,
@@ -247,8 +387,14 @@ impl Panel {
         !over
     }
 
-    fn holds(&self, condition: &Condition) -> bool {
-        let value = self.stage.value(condition.quantity, condition.axis);
-        condition.operator.holds(value, condition.value)
+    fn holds(&self, condition: &Condition, session: &Session) -> Result<bool, ErrorCode> {
+        let left = match &condition.left {
+            Operand::Axis(quantity, axis) => self.stage.value(*quantity, *axis),
+            Operand::Variable(name) => {
+                let locals = self.macros.locals(session);
+                self.variables.number(name, locals)?
+            }
+        };
+        Ok(condition.operator.holds(left, condition.value))
     }
 }

@@ -2,10 +2,11 @@
 
 use super::axis::{Axis, AxisSet, AxisValues};
 use super::error::ErrorCode;
-use super::parameter::{Address, Addresses, Item, Parameter, Settings};
-use super::request::{Condition, Operator, Quantity, Request};
+use super::macros;
+use super::parameter::{Address, Addresses, Item, PASSWORD, Parameter, Settings};
+use super::request::{Action, Condition, Operand, Operator, Query, Request};
 use super::scan::{Scanner, Word};
-use super::table::{Syntax, find};
+use super::table::{Entry, Syntax, find, has_keywords};
 use core::fmt;
 
 /// What is wrong with a line.
@@ -44,8 +45,10 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
     if name.text.is_empty() {
         return Ok(Request::Nothing);
     }
-    let entry = find(name.text)
-        .ok_or_else(|| name.unfit(ErrorCode::UnknownCommand, "a command of those HLP? lists"))?;
+    let entry = match find(name.text, b"") {
+        Some(entry) => entry,
+        None => two_words(&name, scanner.word())?,
+    };
     let request = match entry.syntax {
         // `find` finds no such entry.
         Syntax::Byte(_, request) | Syntax::Plain(request) => request,
@@ -53,11 +56,21 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
             all(&mut scanner)?;
             request
         }
+        Syntax::Own(parse) => parse(&mut scanner)?,
         Syntax::Read(quantity) => Request::Read(quantity, axes(&mut scanner)?),
         Syntax::Tell(property) => Request::Tell(property, axes(&mut scanner)?),
         Syntax::AskValues(request) => request(values(&mut scanner)?),
         Syntax::Parameters => Request::Parameters(addresses(&mut scanner)?),
         Syntax::Settings(action) => Request::Act(action(settings(&mut scanner)?)),
+        Syntax::Macro(syntax) => Request::Macro(macros::macro_request(syntax, &mut scanner)?),
+        Syntax::SetVariable => Request::Variables(macros::set(&mut scanner)?),
+        Syntax::AddVariable => Request::Variables(macros::add(&mut scanner)?),
+        Syntax::Variables => Request::Variables(macros::tell(&mut scanner)?),
+        Syntax::Jump => {
+            let by = macros::jump(&mut scanner)?;
+            Request::Act(Action::Jump(by, condition(&mut scanner)?))
+        }
+        Syntax::Level => Request::Act(level(&mut scanner)?),
         Syntax::Axes(action) => Request::Act(action(axes(&mut scanner)?)),
         Syntax::Values(action) => Request::Act(action(values(&mut scanner)?)),
         Syntax::Number(action) => Request::Act(action(number(scanner.next())?)),
@@ -67,8 +80,24 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
     Ok(request)
 }
 
+/// The command of a name and a keyword.
+fn two_words(name: &Word<'_>, keyword: Word<'_>) -> Result<&'static Entry, ParseError> {
+    if let Some(entry) = find(name.text, keyword.text) {
+        return Ok(entry);
+    }
+    if !has_keywords(name.text) {
+        return Err(name.unfit(ErrorCode::UnknownCommand, "a command of those HLP? lists"));
+    }
+    let code = if keyword.text.is_empty() {
+        ErrorCode::ParameterCount
+    } else {
+        ErrorCode::MacroParameter
+    };
+    Err(keyword.unfit(code, "a keyword, as HLP? lists them"))
+}
+
 impl Word<'_> {
-    const fn unfit(&self, code: ErrorCode, expected: &'static str) -> ParseError {
+    pub(super) const fn unfit(&self, code: ErrorCode, expected: &'static str) -> ParseError {
         ParseError {
             code,
             column: self.column,
@@ -83,6 +112,29 @@ fn end(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
         return Ok(());
     }
     Err(extra.unfit(ErrorCode::ParameterCount, "the end of the line"))
+}
+
+/// `SCT`: T and ms.
+pub(super) fn cycle_time(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
+    let word = scanner.next();
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, "T"));
+    }
+    if !word.text.eq_ignore_ascii_case(b"T") {
+        return Err(word.unfit(ErrorCode::OutOfRange, "T"));
+    }
+    Ok(Request::Act(Action::CycleTime(number(scanner.next())?)))
+}
+
+/// `SCT?`: nothing or T.
+pub(super) fn cycle_time_query(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
+    if !scanner.is_at_end() {
+        let word = scanner.next();
+        if !word.text.eq_ignore_ascii_case(b"T") {
+            return Err(word.unfit(ErrorCode::OutOfRange, "T"));
+        }
+    }
+    Ok(Request::Ask(Query::CycleTime))
 }
 
 fn all(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
@@ -103,7 +155,7 @@ fn axes(scanner: &mut Scanner<'_>) -> Result<AxisSet, ParseError> {
 }
 
 /// Pairs of axis and number up to the end of the line, at least one.
-fn values(scanner: &mut Scanner<'_>) -> Result<AxisValues, ParseError> {
+pub(super) fn values(scanner: &mut Scanner<'_>) -> Result<AxisValues, ParseError> {
     let mut named = AxisSet::EMPTY;
     let mut values = AxisValues::default();
     loop {
@@ -116,7 +168,7 @@ fn values(scanner: &mut Scanner<'_>) -> Result<AxisValues, ParseError> {
 }
 
 /// One axis, which `named` must not hold yet.
-fn axis(word: Word<'_>, named: &mut AxisSet) -> Result<Axis, ParseError> {
+pub(super) fn axis(word: Word<'_>, named: &mut AxisSet) -> Result<Axis, ParseError> {
     if word.text.is_empty() {
         return Err(word.unfit(ErrorCode::ParameterCount, "an axis"));
     }
@@ -185,6 +237,16 @@ fn address<'a>(scanner: &mut Scanner<'a>) -> Result<(Address, Word<'a>), ParseEr
     Ok((Address { item, id: number }, id))
 }
 
+/// A level and perhaps a password, of which only whether it is right goes further.
+fn level(scanner: &mut Scanner<'_>) -> Result<Action, ParseError> {
+    let level = number(scanner.next())?;
+    let password = scanner.word();
+    Ok(Action::Level(
+        level,
+        password.text.eq_ignore_ascii_case(PASSWORD),
+    ))
+}
+
 /// Decimal, or hexadecimal after 0x.
 fn parameter_id(text: &[u8]) -> Option<u32> {
     let text = core::str::from_utf8(text).ok()?;
@@ -194,7 +256,7 @@ fn parameter_id(text: &[u8]) -> Option<u32> {
     }
 }
 
-fn number(word: Word<'_>) -> Result<f64, ParseError> {
+pub(super) fn number(word: Word<'_>) -> Result<f64, ParseError> {
     if word.text.is_empty() {
         return Err(word.unfit(ErrorCode::ParameterCount, "a number"));
     }
@@ -209,27 +271,33 @@ fn number(word: Word<'_>) -> Result<f64, ParseError> {
 }
 
 fn condition(scanner: &mut Scanner<'_>) -> Result<Condition, ParseError> {
-    let quantity = quantity(scanner.next())?;
-    let axis = axis(scanner.next(), &mut AxisSet::default())?;
+    let left = operand(scanner)?;
     let operator = scanner.next();
     if operator.text.is_empty() {
         return Err(operator.unfit(ErrorCode::ParameterCount, "an operator"));
     }
     Ok(Condition {
-        quantity,
-        axis,
+        left,
         operator: Operator::named(operator.text)
             .ok_or_else(|| operator.unfit(ErrorCode::Syntax, "an operator: = != < <= > >="))?,
         value: number(scanner.next())?,
     })
 }
 
-fn quantity(word: Word<'_>) -> Result<Quantity, ParseError> {
+fn operand(scanner: &mut Scanner<'_>) -> Result<Operand, ParseError> {
+    let word = scanner.next();
     if word.text.is_empty() {
         return Err(word.unfit(ErrorCode::ParameterCount, "a query"));
     }
-    match find(word.text).map(|entry| &entry.syntax) {
-        Some(Syntax::Read(quantity)) => Ok(*quantity),
-        _ => Err(word.unfit(ErrorCode::OutOfRange, "a query of an axis, such as ONT?")),
+    match find(word.text, b"").map(|entry| &entry.syntax) {
+        Some(Syntax::Read(quantity)) => {
+            let axis = axis(scanner.next(), &mut AxisSet::default())?;
+            Ok(Operand::Axis(*quantity, axis))
+        }
+        Some(Syntax::Variables) => Ok(Operand::Variable(macros::variable(scanner)?)),
+        _ => Err(word.unfit(
+            ErrorCode::OutOfRange,
+            "a query of an axis or a variable, such as ONT?",
+        )),
     }
 }

@@ -23,6 +23,11 @@ impl<'w, W: Write> Reply<'w, W> {
             self.out.write_all(b" \n")?;
         }
         self.started = true;
+        self.more(text)
+    }
+
+    /// More of the last line.
+    pub fn more(&mut self, text: fmt::Arguments<'_>) -> Result<(), W::Error> {
         match self.out.write_fmt(text) {
             Err(WriteFmtError::Other(error)) => Err(error),
             // Nothing that is formatted here fails by itself.

@@ -1,7 +1,13 @@
 //! What a line or a single byte asks for.
 
 use super::axis::{Axis, AxisSet, AxisValues};
+use super::frames::{FrameAction, FrameQuery};
+use super::macros::MacroRequest;
 use super::parameter::{Addresses, Settings};
+use super::record::{RecordAction, RecordQuery};
+use super::short::Name;
+use super::variables::VariableRequest;
+use super::wave::{WaveAction, WaveQuery};
 
 /// A command, understood but not yet carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +26,16 @@ pub enum Request {
     Reachable(AxisValues),
     /// `TRA?`: how far one can go in this direction.
     Reach(AxisValues),
+    /// Something about macros.
+    Macro(MacroRequest),
+    /// Something about variables.
+    Variables(VariableRequest),
+    /// A question about the data recorder.
+    Record(RecordQuery),
+    /// A question about frames.
+    Frames(FrameQuery),
+    /// A question about waveforms.
+    Waves(WaveQuery),
     /// Something to be done; no answer.
     Act(Action),
 }
@@ -41,6 +57,8 @@ pub enum Query {
     Axes,
     /// `ERR?`: answers and clears.
     Error,
+    /// `SCT?`
+    CycleTime,
     /// `VLS?`
     Velocity,
     /// `HPA?`
@@ -49,10 +67,20 @@ pub enum Query {
     Level,
     /// `FLT?`
     Fault,
+    /// `MON?`
+    Monitor,
+    /// `HBT?`
+    Heartbeat,
+    /// `EVT?`
+    Events,
+    /// `LST?`
+    Statistics,
     /// `#4`
     Status,
     /// `#5`
     Moving,
+    /// `#6`: axes whose position has changed since it was asked for.
+    Changed,
     /// `#7`
     Ready,
 }
@@ -78,6 +106,10 @@ pub enum Quantity {
     SoftLowest,
     /// `PLM?`: mm and deg.
     SoftHighest,
+    /// `JOG?`: velocities that are kept, mm/s and deg/s.
+    Jog,
+    /// `VEL?`: mm/s and deg/s.
+    Velocity,
     /// `SSL?`: 1 when soft limits count.
     SoftActive,
     /// `LIM?`: 0, there are no limit switches.
@@ -104,8 +136,24 @@ pub enum Action {
     Reference(AxisSet),
     /// `MOV`
     Move(AxisValues),
-    /// `MVR`
+    /// `MVR`, `MRW`
     MoveRelative(AxisValues),
+    /// `STE`: relative to the last target, recorded from its start.
+    Step(AxisValues),
+    /// About the data recorder.
+    Record(RecordAction),
+    /// `MRT`: along the axes of the tool as it is turned.
+    MoveInTool(AxisValues),
+    /// `JOG`: mm/s and deg/s.
+    Jog(AxisValues),
+    /// `SCT`, ms.
+    CycleTime(f64),
+    /// `VEL`: mm/s and deg/s.
+    AxisVelocity(AxisValues),
+    /// Tables and generators of waveforms.
+    Wave(WaveAction),
+    /// Frames and the centre of rotation.
+    Frame(FrameAction),
     /// `NLM`: mm and deg.
     SoftLowest(AxisValues),
     /// `PLM`: mm and deg.
@@ -114,6 +162,8 @@ pub enum Action {
     SoftActive(AxisValues),
     /// `SPA`
     Set(Settings),
+    /// `CCL`: level, and whether the password is right.
+    Level(f64, bool),
     /// `VLS`, mm/s.
     Velocity(f64),
     /// `STP`, `#24`: stop at the highest deceleration, and every script with it.
@@ -122,23 +172,40 @@ pub enum Action {
     Halt(AxisSet),
     /// `FLC`
     Acknowledge,
+    /// `HBT`, ms.
+    Heartbeat(f64),
+    /// `LST`
+    RestartStatistics,
+    /// `RBT`
+    Restart,
     /// `DEL`, ms.
     Delay(f64),
     /// `WAC`
     Wait(Condition),
+    /// `JRC`: so many lines on in the macro, if the condition holds.
+    Jump(i32, Condition),
+    /// `MEX`: the macro ends, if the condition holds.
+    Leave(Condition),
 }
 
-/// What `WAC` waits for: `quantity` of `axis`, compared with `value`.
+/// What `WAC` waits for, and `JRC` and `MEX` ask: two values compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Left of the operator.
-    pub quantity: Quantity,
-    /// Of this axis.
-    pub axis: Axis,
+    pub left: Operand,
     /// How they compare.
     pub operator: Operator,
     /// Right of the operator.
     pub value: f64,
+}
+
+/// A value that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    /// Of an axis.
+    Axis(Quantity, Axis),
+    /// `VAR?`: of a variable that is a number.
+    Variable(Name),
 }
 
 /// A comparison.
@@ -185,15 +252,32 @@ impl Operator {
     }
 }
 
+impl Action {
+    /// Whether it begins a motion, or another one: what the recorder's triggers mean by a command that moves.
+    pub(super) const fn moves(&self) -> bool {
+        matches!(
+            self,
+            Self::Move(_)
+                | Self::MoveRelative(_)
+                | Self::MoveInTool(_)
+                | Self::Step(_)
+                | Self::Jog(_)
+                | Self::Wave(WaveAction::Go(_))
+        )
+    }
+}
+
 impl Request {
     /// Whether carrying it out needs to know what became of the command that the tick has not taken yet. Stopping never
     /// does, and what is constant does not either.
     pub(super) const fn needs_present(&self) -> bool {
         match self {
             Self::Nothing | Self::Tell(..) | Self::Parameters(_) => false,
-            Self::Read(Quantity::Lowest | Quantity::Highest, _) => false,
+            Self::Macro(_) | Self::Variables(_) | Self::Record(_) => false,
+            Self::Waves(query) => matches!(query, WaveQuery::Going(_) | WaveQuery::Mask),
+            Self::Frames(_) => true,
             Self::Read(..) | Self::Reachable(_) | Self::Reach(_) => true,
-            Self::Ask(query) => matches!(query, Query::Error | Query::Fault),
+            Self::Ask(query) => matches!(query, Query::Error | Query::Fault | Query::Monitor),
             Self::Act(action) => {
                 !matches!(action, Action::Stop | Action::Halt(_) | Action::Velocity(_))
             }

@@ -23,6 +23,12 @@ impl<'a> Scanner<'a> {
         self.run(|byte| byte != b' ')
     }
 
+    /// What [`word`](Self::word) comes to next.
+    pub fn word_ahead(&self) -> Word<'a> {
+        let Self { line, at } = *self;
+        Self { line, at }.word()
+    }
+
     /// The next name, operator or number. They need no space between them (`X1`, `W>=2.5`) where one can tell them apart,
     /// and one can: a name starts with a letter, a number never does. Empty at the end of the line.
     pub fn next(&mut self) -> Word<'a> {

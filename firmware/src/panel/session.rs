@@ -1,8 +1,11 @@
 //! One connection: the bytes it has received, its error, and what it waits for.
 
 use super::error::ErrorCode;
+use super::monitor::Monitor;
+use super::record::Dump;
 use super::request::Condition;
 use heapless::{Deque, Vec};
+use kinematics::Angle;
 
 /// Longest line, without its LF.
 pub const LINE_BYTES: usize = 256;
@@ -20,8 +23,24 @@ pub struct Session {
     state: LineState,
     pub(super) error: ErrorCode,
     pub(super) wait: Option<Wait>,
+    /// An answer that is written as the output has room.
+    pub(super) dump: Option<Dump>,
+    /// Bytes of it that the output takes now; any number where nobody has said.
+    pub(super) room: Option<usize>,
+    /// Bytes have come since it was last looked at.
+    pub(super) heard: bool,
+    /// The pivots when its position was last asked for.
+    pub(super) told: Option<[Angle; 3]>,
+    /// Command level, `CCL`.
+    pub(super) level: u8,
+    /// The recording of a macro that its lines belong to.
+    pub(super) recording: Option<u32>,
+    /// Its lines are those of a macro that runs.
+    pub(super) is_macro: bool,
     /// The tick of the last fault this connection was told of.
     pub(super) fault_tick: Option<u64>,
+    /// What `MON?` has to tell it.
+    pub(super) monitor: Monitor,
     /// How much bad news this connection has been told; `None` before its first service.
     pub(super) news: Option<u32>,
 }
@@ -77,11 +96,37 @@ impl Session {
         Self::default()
     }
 
+    /// Says how many bytes of a long answer (`DRR?`) the output takes at the next services without keeping anybody waiting; any
+    /// number of them before this is called. Other answers are short and are written whatever the room.
+    pub const fn set_room(&mut self, bytes: usize) {
+        self.room = Some(bytes);
+    }
+
+    /// The controller starts again: as a new connection, but what has been received is still to be carried out.
+    pub fn start_again(&mut self) {
+        *self = Self {
+            input: core::mem::take(&mut self.input),
+            line: core::mem::take(&mut self.line),
+            state: self.state,
+            ..Self::default()
+        };
+    }
+
+    /// The connection of a macro.
+    pub(super) fn for_macro(level: u8) -> Self {
+        Self {
+            level,
+            is_macro: true,
+            ..Self::default()
+        }
+    }
+
     /// Takes bytes as far as there is room and says how many; the rest is to be offered again after a
     /// [`service`](super::Panel::service). A line has to be handled before the bytes far behind it can be taken, so while
     /// a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only by another
     /// connection.
     pub fn receive(&mut self, bytes: &[u8]) -> usize {
+        self.heard |= !bytes.is_empty();
         for (taken, &byte) in bytes.iter().enumerate() {
             if self.input.push_back(byte).is_err() {
                 return taken;
@@ -90,9 +135,9 @@ impl Session {
         bytes.len()
     }
 
-    /// Whether everything received has been carried out: no line, whole or begun, and no wait is left.
+    /// Whether everything received has been carried out: no line, whole or begun, no wait and no answer is left.
     pub fn is_idle(&self) -> bool {
-        self.input.is_empty() && self.line.is_empty() && self.wait.is_none()
+        self.input.is_empty() && self.line.is_empty() && self.wait.is_none() && self.dump.is_none()
     }
 
     /// The error that `ERR?` would answer.

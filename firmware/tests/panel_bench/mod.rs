@@ -2,11 +2,15 @@
 #![allow(dead_code)] // Each test file uses its part.
 
 use core::convert::Infallible;
+use firmware::config::Config;
+use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
+use firmware::interval::Interval;
 use firmware::link::{Command, Link, Mode, PanelLink, Snapshot, TickLink};
-use firmware::motion::{Motion, Scale};
+use firmware::motion::{Motion, Scale, Setpoint};
 use firmware::panel::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::recorder::Sample;
 use kinematics::{Angle, Pose, inverse};
 
 /// Ticks that a stage at rest takes to settle.
@@ -44,6 +48,10 @@ pub struct FakeTick {
     /// Largest change of velocity between two ticks, track radii (turns) per second: continuity.
     pub worst_jump: f32,
     last_twist: [f32; 3],
+    /// What the tick computes with, as it was told.
+    pub config: Config,
+    /// Takes no settings.
+    pub refuses_settings: bool,
 }
 
 impl FakeTick {
@@ -72,9 +80,35 @@ impl FakeTick {
         self.now.settled = self.at_rest > DWELL;
         self.now.setpoint = setpoint.position;
         (self.now.plan, self.now.plan_tick) = self.motion.progress();
-        self.now.pivots = pivots(&setpoint.position);
+        self.now.centre = self.motion.centre();
+        let platform = self.now.centre.to_platform(&setpoint.position);
+        self.now.pivots = pivots(&platform);
+        self.now.interval.ticks += 1;
+        if self.link.recorder.is_wanted() {
+            self.link.recorder.record(&self.sample(setpoint));
+        }
         if self.link.snapshots.ready() {
             let _ = self.link.snapshots.enqueue(self.now.clone());
+            self.now.interval = Interval::default();
+        }
+    }
+
+    /// What the recorder sees of this tick.
+    fn sample(&self, setpoint: Setpoint) -> Sample {
+        Sample {
+            tick: self.now.tick,
+            mode: self.now.mode,
+            fault: self.now.fault.map(|fault| fault.kind),
+            setpoint,
+            point: setpoint,
+            pivot_setpoints: self.now.pivots,
+            pivot_rates: [0.0; 3],
+            pivots: self.now.pivots,
+            duty: [Duty(420), Duty(-420), Duty(0)],
+            current_counts: [0; 3],
+            supply_counts: 0,
+            tick_cycles: 3000,
+            commands: self.now.commands,
         }
     }
 
@@ -99,6 +133,12 @@ impl FakeTick {
                 self.log.push("off");
                 self.now.mode = Mode::Off;
             }
+            Command::Centre(centre) => {
+                self.log.push("centre");
+                if self.motion.set_centre(centre).is_err() {
+                    self.now.refused += 1;
+                }
+            }
             Command::Move(plan) => {
                 let accepted = self.motion.accept(plan).is_ok();
                 self.log.push(if accepted { "move" } else { "refused" });
@@ -107,6 +147,14 @@ impl FakeTick {
                 } else {
                     self.now.refused += 1;
                 }
+            }
+            Command::Configure(_) if self.refuses_settings => {
+                self.log.push("settings refused");
+                self.now.refused += 1;
+            }
+            Command::Configure(config) => {
+                self.log.push("configure");
+                self.config = config;
             }
             Command::Acknowledge => {
                 self.log.push("acknowledge");
@@ -127,7 +175,9 @@ impl FakeTick {
     pub fn place(&mut self, x_mm: f64, y_mm: f64, theta_deg: f64) {
         let units = |mm: f64| (mm / 100.0 * 4_294_967_296.0).round() as i64;
         let theta = Angle::from_degrees(theta_deg).unwrap().units();
-        self.motion.rest_at([units(x_mm), units(y_mm), theta]);
+        let platform = [units(x_mm), units(y_mm), theta];
+        let point = self.motion.centre().of_platform(&platform);
+        self.motion.rest_at(point);
     }
 
     pub fn fail(&mut self, kind: FaultKind, pivot: Option<u8>) {
@@ -168,14 +218,19 @@ pub struct Bench {
 impl Bench {
     /// One connection, nothing has run yet.
     pub fn cold() -> Self {
-        let parameters = Parameters::REFERENCE;
-        let (tick, link) = Box::leak(Box::new(Link::new())).split();
         let identity = Identity {
             serial: "4711",
             version: "0.1.0",
         };
+        Self::with(Panel::new(&Parameters::REFERENCE, identity))
+    }
+
+    /// The same with this panel.
+    pub fn with(panel: Panel) -> Self {
+        let parameters = Parameters::REFERENCE;
+        let (tick, link) = Box::leak(Box::new(Link::new())).split();
         Self {
-            panel: Panel::new(&parameters, identity),
+            panel,
             sessions: vec![(Session::new(), Written::default())],
             link,
             tick: FakeTick {
@@ -187,6 +242,8 @@ impl Bench {
                 log: Vec::new(),
                 worst_jump: 0.0,
                 last_twist: [0.0; 3],
+                config: Config::new(&parameters),
+                refuses_settings: false,
             },
         }
     }
@@ -266,6 +323,10 @@ impl Bench {
             }
         }
         panic!("never at rest");
+    }
+
+    pub fn panel(&self) -> &Panel {
+        &self.panel
     }
 
     /// What a connection has been answered since the last time.

@@ -22,6 +22,8 @@ const SUPPLY_MV: u32 = 3300;
 /// Instructions in a second: one a cycle.
 pub const CORE_HZ: u64 = 168_000_000;
 
+const STAGE_RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
+
 const ADC1: usize = 0;
 const TIM1: usize = 0;
 const USART1: usize = 0;
@@ -43,6 +45,7 @@ const ADC_REFERENCE: u32 = 4095;
 pub struct ChipBoard {
     mcu: Stm32f427,
     emergency_stop: Level,
+    instructions_per_second: NonZeroU64,
 }
 
 impl ChipBoard {
@@ -59,9 +62,18 @@ impl ChipBoard {
         let mut board = Self {
             mcu,
             emergency_stop: Level::High,
+            instructions_per_second: STAGE_RATE,
         };
         board.drive_again(VirtualNanos(0), [false; 3]);
         Ok(board)
+    }
+
+    /// The same with other instructions in a second of virtual time.
+    pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
+        Self {
+            instructions_per_second,
+            ..self
+        }
     }
 
     /// Drives every input as the board has it: the chip's restart lets go of them.
@@ -178,15 +190,14 @@ impl Board for ChipBoard {
     }
 
     fn targets(&mut self) -> Vec<Target<'_>> {
-        const RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
         let lines = u32::from(Operate::cpu(&self.mcu).interrupt_lines);
         let core = Core {
             variant: Variant::M4,
-            clock_hz: RATE,
+            clock_hz: STAGE_RATE,
             interrupt_lines: NonZeroU32::new(lines).unwrap_or(NonZeroU32::MIN),
             priority_bits: 4,
             refclk_divider: const { NonZeroU32::new(8).unwrap() },
-            instructions_per_second: RATE,
+            instructions_per_second: self.instructions_per_second,
             boot: "flash",
         };
         let windows = armv7m::windows(Mcu::bus(&self.mcu));

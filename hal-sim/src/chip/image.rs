@@ -1,23 +1,29 @@
-//! Where the image lies.
+//! Where the images lie.
 
 use std::env;
 use std::path::PathBuf;
 
-/// Names a built image, instead of the one in this build's target folder.
+/// Names a built image `stage`, instead of the one in this build's target folder.
 pub const IMAGE_VARIABLE: &str = "TRIPIVOT_IMAGE";
 
-const IN_TARGET_FOLDER: &str = "thumbv7em-none-eabihf/stage/stage";
+const IN_TARGET_FOLDER: &str = "thumbv7em-none-eabihf/stage";
 
-/// The image named by [`IMAGE_VARIABLE`], or else the one that `cargo stage` left in the target folder in which this
+/// The image `stage` named by [`IMAGE_VARIABLE`], or else the one that `cargo stage` left in the target folder in which this
 /// program lies; `None` when there is none.
 #[must_use]
 pub fn find() -> Option<PathBuf> {
-    if let Some(path) = env::var_os(IMAGE_VARIABLE) {
-        return Some(PathBuf::from(path));
+    match env::var_os(IMAGE_VARIABLE) {
+        Some(path) => Some(PathBuf::from(path)),
+        None => built("stage"),
     }
+}
+
+/// The image of this name in the target folder in which this program lies.
+#[must_use]
+pub fn built(name: &str) -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     program
         .ancestors()
-        .map(|folder| folder.join(IN_TARGET_FOLDER))
+        .map(|folder| folder.join(IN_TARGET_FOLDER).join(name))
         .find(|path| path.is_file())
 }

@@ -18,15 +18,16 @@
 //! [`Stage::advance_period`]: crate::devices::Stage::advance_period
 
 mod bench;
-mod board;
+pub(crate) mod board;
 mod cost;
 mod driver;
 mod encoder;
-mod gaps;
+pub(crate) mod gaps;
 pub mod image;
 mod line;
 mod period;
 mod run;
+mod serve;
 mod twin;
 
 pub use bench::{Bench, BenchError, Outcome};
@@ -35,4 +36,5 @@ pub use gaps::{Allowed, GAPS};
 pub use period::{Action, Period, Reset, Trace};
 pub use rigless::device::ResetCause;
 pub use run::{ChipError, ChipOutcome, run};
+pub use serve::{LineNotice, LineServer};
 pub use twin::{Divergence, Twin};

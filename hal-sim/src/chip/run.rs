@@ -141,6 +141,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
         run: Run {
             name: format!("{} on the emulated chip", runner.script.name),
             geometry: parameters.geometry,
+            limits: parameters.limits,
             trace: runner.observer.trace,
             moves: runner.observer.moves,
             wall_s: runner.progress.finish(),

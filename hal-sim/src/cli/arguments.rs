@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 
+#[cfg(unix)]
+use crate::record::Trigger;
 use crate::report::DEFAULT_EVERY;
 
 /// Tripivot: a simulated planar XY-Theta stage under its real controller.
@@ -30,9 +32,21 @@ pub(super) enum Command {
     /// Run the simulated stage in real time and let GCS clients drive it, over TCP and a pseudo-terminal.
     #[cfg(unix)]
     Serve(Serve),
+    /// Watch and drive a controller that runs already, on a serial line or at a TCP address, in a browser.
+    #[cfg(unix)]
+    View(View),
+    /// Record signals of a controller that runs already, every tick or less often: a table and a picture.
+    #[cfg(unix)]
+    Record(RecordRun),
     /// Run a script on the image for the controller's chip, emulated, and compare it with the host to the bit.
     #[cfg(feature = "chip")]
     Chip(ChipRun),
+    /// Let GCS clients drive the emulated chip over its serial line, one at a time, over TCP.
+    #[cfg(all(feature = "chip", unix))]
+    ChipServe(ChipServe),
+    /// Count the instructions that parts of the library take on the emulated chip, over random states.
+    #[cfg(feature = "chip")]
+    Cost(CostRun),
     /// Pivot angles (deg) of a pose (mm, mm, deg).
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
@@ -92,8 +106,78 @@ pub(super) struct Serve {
     /// A pseudo-terminal besides, in place of the controller's serial line.
     #[arg(long)]
     pub(super) pty: bool,
+    /// Address and port of the page to watch and drive the stage in a browser; `off` for none [default: 127.0.0.1:8080, or a
+    /// free port if that is taken].
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) web: Option<String>,
     #[command(flatten)]
     pub(super) stage: SimulatedStage,
+}
+
+/// A page for a controller that runs already.
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+#[group(id = "controller", required = true, multiple = false, args = ["port", "connect"])]
+pub(super) struct View {
+    /// The serial line that the controller is at, or a pseudo-terminal.
+    #[arg(long, value_name = "DEVICE")]
+    pub(super) port: Option<PathBuf>,
+    /// Host and port that the controller is at.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) connect: Option<String>,
+    /// Bits a second on the serial line.
+    #[arg(long, value_name = "N", default_value_t = 921_600)]
+    pub(super) baud: u32,
+    /// Address and port of the page [default: 127.0.0.1:8080, or a free port if that is taken].
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) web: Option<String>,
+}
+
+/// A record of a controller that runs already.
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+pub(super) struct RecordRun {
+    /// Host and port that the controller is at.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        default_value = "127.0.0.1:50000",
+        conflicts_with = "port"
+    )]
+    pub(super) connect: String,
+    /// The serial line that the controller is at, or a pseudo-terminal.
+    #[arg(long, value_name = "DEVICE")]
+    pub(super) port: Option<PathBuf>,
+    /// Bits a second on the serial line.
+    #[arg(long, value_name = "N", default_value_t = 921_600)]
+    pub(super) baud: u32,
+    /// What to record, up to eight: source (X, Y, W; 1 to 3 for a pivot; 0 for the controller) and option, as HDR? lists them.
+    #[arg(long, value_name = "SOURCE:OPTION", value_delimiter = ',', default_value = "X:1,X:3,Y:1,Y:3,W:1,W:3,1:73", value_parser = recorded)]
+    pub(super) tables: Vec<String>,
+    /// Ticks from point to point.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
+    pub(super) every: u32,
+    /// Points of the record [default: as the controller has it].
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..))]
+    pub(super) points: Option<u32>,
+    /// How many of them are from before the trigger.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) before: u32,
+    /// What begins it: now, move, fault, rises:TABLE:VALUE or falls:TABLE:VALUE [default: move with --send, now without].
+    #[arg(long, value_name = "TRIGGER", value_parser = trigger)]
+    pub(super) trigger: Option<Trigger>,
+    /// A line to send once the recorder is armed, such as "MOV X 10".
+    #[arg(long, value_name = "LINE")]
+    pub(super) send: Option<String>,
+    /// Seconds that the record may take.
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    pub(super) patience: f64,
+    /// Folder for table and picture.
+    #[arg(long, value_name = "DIR", default_value = "target/tripivot/record")]
+    pub(super) out: PathBuf,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
 }
 
 /// A run on the emulated chip.
@@ -104,6 +188,49 @@ pub(super) struct ChipRun {
     pub(super) file: Option<PathBuf>,
     #[command(flatten)]
     pub(super) simulation: Simulation,
+}
+
+/// The emulated chip, served.
+#[cfg(all(feature = "chip", unix))]
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipServe {
+    /// Address and port to listen at; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50001")]
+    pub(super) listen: String,
+    #[command(flatten)]
+    pub(super) stage: SimulatedStage,
+}
+
+/// Where the repository keeps the figures, for a program that is run where it was built.
+#[cfg(feature = "chip")]
+const FIGURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../firmware/figures.csv");
+
+/// Counting on the emulated chip.
+#[cfg(feature = "chip")]
+#[derive(Args, Clone, Debug)]
+pub(super) struct CostRun {
+    /// Random states: each is a call of every part, or ten and more where calls are short [default: 300; with --check as many as
+    /// the figures are of].
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub(super) states: Option<u32>,
+    /// Seed of the random states.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u32,
+    /// Only parts with this in their name, as "motion".
+    #[arg(long, value_name = "NAME", default_value = "")]
+    pub(super) only: String,
+    /// Compare with the figures that the repository keeps: exit code 1 when a part has grown by more than 3 %.
+    #[arg(long, conflicts_with_all = ["states", "seed", "only"])]
+    pub(super) check: bool,
+    /// Write the figures.
+    #[arg(long, conflicts_with_all = ["check", "seed", "only"])]
+    pub(super) write: bool,
+    /// The figures.
+    #[arg(long, value_name = "FILE", default_value = FIGURES)]
+    pub(super) figures: PathBuf,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
 }
 
 /// What a simulated stage can do without.
@@ -227,5 +354,47 @@ fn speed(text: &str) -> Result<f64, String> {
         Ok(speed)
     } else {
         Err(format!("not from {} to {}", SPEEDS.start(), SPEEDS.end()))
+    }
+}
+
+/// Source and option as the controller takes them.
+#[cfg(unix)]
+fn recorded(text: &str) -> Result<String, String> {
+    match text.split_once(':') {
+        Some((source, option)) if !source.is_empty() && option.parse::<u16>().is_ok() => {
+            Ok(format!("{source} {option}"))
+        }
+        _ => Err("not a source and an option's number, such as X:1".to_owned()),
+    }
+}
+
+#[cfg(unix)]
+fn trigger(text: &str) -> Result<Trigger, String> {
+    let expected = || "not now, move, fault, rises:TABLE:VALUE or falls:TABLE:VALUE".to_owned();
+    let words: Vec<&str> = text.split(':').collect();
+    match words[..] {
+        ["now"] => Ok(Trigger::Now),
+        ["move"] => Ok(Trigger::Move),
+        ["fault"] => Ok(Trigger::Fault),
+        [way @ ("rises" | "falls"), table, value] => Ok(Trigger::Crosses {
+            table: table.parse().map_err(|_| expected())?,
+            value: value.parse().map_err(|_| expected())?,
+            rising: way == "rises",
+        }),
+        _ => Err(expected()),
+    }
+}
+
+/// A day.
+#[cfg(unix)]
+const LONGEST_S: f64 = 86_400.0;
+
+#[cfg(unix)]
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=LONGEST_S).contains(&seconds) {
+        Ok(seconds)
+    } else {
+        Err(format!("not from 0 to {LONGEST_S}"))
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
     print!("{}", on_chip.run.summary());
     beside(&on_chip, &on_host);
     on_chip.run.write(&options.out)?;
-    println!("{:<22}{}", "trace and picture in", options.out.display());
+    println!("{:<22}{}", "trace and report in", options.out.display());
     match on_chip.fault {
         Some(fault) => Err(CliError::Fault(fault)),
         None => Ok(ExitCode::SUCCESS),

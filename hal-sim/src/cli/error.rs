@@ -38,9 +38,25 @@ pub(super) enum CliError {
     #[cfg(unix)]
     #[error(transparent)]
     Serve(#[from] crate::serve::ServeError),
+    #[cfg(unix)]
+    #[error(transparent)]
+    Record(#[from] crate::record::RecordError),
+    #[cfg(unix)]
+    #[error(transparent)]
+    Page(#[from] crate::web::PageError),
     #[cfg(feature = "chip")]
     #[error(transparent)]
     Chip(#[from] crate::chip::ChipError),
+    #[cfg(feature = "chip")]
+    #[error(transparent)]
+    Cost(#[from] crate::cost::CostError),
+    #[cfg(feature = "chip")]
+    #[error(transparent)]
+    Figures(#[from] crate::cost::FiguresError),
+    /// A part costs more than it did.
+    #[cfg(feature = "chip")]
+    #[error("{0}")]
+    Grown(String),
     /// The stage faulted in a run, or refused a line.
     #[error("{0}")]
     Fault(String),
@@ -50,6 +66,10 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) => FAILED,
+            #[cfg(unix)]
+            Self::Record(error) if error.is_failure() => FAILED,
+            #[cfg(feature = "chip")]
+            Self::Grown(_) => FAILED,
             _ => BAD_REQUEST,
         }
     }

@@ -6,15 +6,23 @@ mod arguments;
 mod check;
 #[cfg(feature = "chip")]
 mod chip;
+#[cfg(all(feature = "chip", unix))]
+mod chip_serve;
+#[cfg(feature = "chip")]
+mod cost;
 mod direct;
 mod error;
 mod inverse;
 mod map;
+#[cfg(unix)]
+mod record;
 mod rows;
 #[cfg(unix)]
 mod serve;
 mod simulate;
 mod units;
+#[cfg(unix)]
+mod view;
 
 use std::process::ExitCode;
 
@@ -67,8 +75,16 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Run { file, simulation }) => simulate::script(&file, &simulation),
         #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
+        #[cfg(unix)]
+        Some(Command::View(arguments)) => view::run(&arguments),
         #[cfg(feature = "chip")]
         Some(Command::Chip(chip)) => chip::run(&chip),
+        #[cfg(all(feature = "chip", unix))]
+        Some(Command::ChipServe(arguments)) => chip_serve::run(&arguments),
+        #[cfg(feature = "chip")]
+        Some(Command::Cost(arguments)) => cost::run(&arguments),
+        #[cfg(unix)]
+        Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

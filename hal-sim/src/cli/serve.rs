@@ -1,6 +1,7 @@
-//! `tripivot serve`: the simulated stage in real time, until Ctrl-C.
+//! `tripivot serve`: the simulated stage in real time, and its page, until Ctrl-C.
 
 use std::io::{self, Write};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -10,16 +11,23 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use super::arguments::Serve;
 use super::error::CliError;
 use super::simulate::imperfections;
+use super::view::page;
 use crate::run::{RunOptions, controller_parameters, stage_parameters};
 use crate::serve::{Printer, ServeError, ServeOptions, Server};
+use crate::web::{Endpoint, Page};
+
+/// In place of the page's address: no page.
+const OFF: &str = "off";
 
 pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     let server = Server::bind(options(arguments))?;
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(ServeError::Signals)?;
-    }
-    announce(&server).map_err(CliError::output)?;
+    let stop = until_signal()?;
+    let own = server.address().map_err(CliError::output)?;
+    let page = match arguments.web.as_deref() {
+        Some(OFF) => None,
+        web => Some(page(web, Endpoint::Tcp(reached_at(own).to_string()))?),
+    };
+    announce(&server, page.as_ref()).map_err(CliError::output)?;
     let mut printer = Printer::start();
     let result = server.run(&stop, &mut |notice| printer.print(&notice));
     printer.finish();
@@ -45,9 +53,31 @@ fn options(arguments: &Serve) -> ServeOptions {
     }
 }
 
-fn announce(server: &Server) -> io::Result<()> {
+/// Set once Ctrl-C is pressed or the process is asked to end.
+pub(super) fn until_signal() -> Result<Arc<AtomicBool>, CliError> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(ServeError::Signals)?;
+    }
+    Ok(stop)
+}
+
+/// Where this machine itself reaches a server that listens at `address`.
+fn reached_at(address: SocketAddr) -> SocketAddr {
+    let ip = match address.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
+        IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
+        ip => ip,
+    };
+    SocketAddr::new(ip, address.port())
+}
+
+fn announce(server: &Server, page: Option<&Page>) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "listening at {}", server.address()?)?;
+    if let Some(page) = page {
+        writeln!(out, "page at http://{}/", page.address())?;
+    }
     if let Some(path) = server.terminal() {
         writeln!(out, "terminal at {}", path.display())?;
     }

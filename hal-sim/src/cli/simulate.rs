@@ -42,7 +42,7 @@ fn simulate(name: &str, arguments: &Simulation, script: &Script) -> Result<ExitC
     text += &format!(
         "{}{:<22}{}\n",
         outcome.run.summary(),
-        "trace and picture in",
+        "trace and report in",
         options.out.display()
     );
     (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;

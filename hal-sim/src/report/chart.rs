@@ -29,6 +29,8 @@ pub(super) struct Chart<'a, const N: usize> {
     pub(super) steps: Steps,
     /// Whether the axis has to include zero.
     pub(super) from_zero: bool,
+    /// Values to be marked by a dashed line: limits.
+    pub(super) marks: &'a [f64],
 }
 
 /// The time axis and the stretches in which the stage moves.
@@ -50,6 +52,11 @@ impl<const N: usize> Chart<'_, N> {
             for series in self.series {
                 self.draw_series(svg, series, time, &values);
             }
+            for &mark in self.marks {
+                let y = values.pixel(mark);
+                let line = Stroke::new(colour::INK, 1.2).dashed();
+                svg.line([frame.left, y], [frame.right(), y], &line);
+            }
         });
         svg.rect(frame, "none", Some(&Stroke::new(colour::STEEL, 1.0)));
     }
@@ -63,8 +70,11 @@ impl<const N: usize> Chart<'_, N> {
         let values = (self.series.iter()).flat_map(|series| {
             (self.bins.iter()).map(|bin| (bin.min[series.channel], bin.max[series.channel]))
         });
-        values.fold(start, |(low, high), (min, max)| {
+        let (low, high) = values.fold(start, |(low, high), (min, max)| {
             (low.min(min * self.factor), high.max(max * self.factor))
+        });
+        (self.marks.iter()).fold((low, high), |(low, high), &mark| {
+            (low.min(mark), high.max(mark))
         })
     }
 

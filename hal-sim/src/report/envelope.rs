@@ -1,7 +1,7 @@
 //! Decimation that hides nothing: the smallest and largest value of every channel in each stretch of ticks.
 
-/// Stretches kept at most: more than a chart has columns of pixels to show.
-const CAPACITY: usize = 2048;
+/// Stretches kept at most: in a minute of motion one every few milliseconds, to be zoomed into.
+const CAPACITY: usize = 16_384;
 
 /// The extremes of `N` channels over one stretch of ticks.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -77,13 +77,26 @@ impl<const N: usize> Envelope<N> {
         &self.bins
     }
 
+    /// The same in at most `most` bins.
+    pub fn reduced(&self, most: usize) -> Self {
+        let mut reduced = self.clone();
+        while reduced.bins.len() > most.max(1) {
+            reduced.merge_neighbours();
+        }
+        reduced
+    }
+
+    /// An odd one at the end stays by itself.
     fn merge_neighbours(&mut self) {
-        for pair in 0..self.bins.len() / 2 {
+        let count = self.bins.len().div_ceil(2);
+        for pair in 0..count {
             let mut merged = self.bins[2 * pair];
-            merged.absorb(&self.bins[2 * pair + 1]);
+            if let Some(second) = self.bins.get(2 * pair + 1) {
+                merged.absorb(second);
+            }
             self.bins[pair] = merged;
         }
-        self.bins.truncate(self.bins.len() / 2);
+        self.bins.truncate(count);
         self.ticks_per_bin *= 2;
     }
 }
@@ -95,23 +108,27 @@ mod tests {
     #[test]
     fn no_spike_is_lost() {
         let ticks = 100_003;
-        for spike in [0, 1, 2_047, 2_048, 54_321, ticks - 1] {
+        for spike in [0, 1, 16_383, 16_384, 54_321, ticks - 1] {
             let mut envelope = Envelope::<2>::default();
             for tick in 0..ticks {
                 let value = if tick == spike { 7.0 } else { 0.25 };
                 envelope.add(tick as f64, &[value, -value]);
             }
-            let hit: Vec<_> = (envelope.bins().iter())
-                .filter(|bin| bin.max[0] == 7.0 && bin.min[1] == -7.0)
-                .collect();
-            assert_eq!(hit.len(), 1, "spike at tick {spike}");
-            assert!((hit[0].start_s..=hit[0].end_s).contains(&(spike as f64)));
+            for most in [CAPACITY, 2_048, 3, 1, 0] {
+                let reduced = envelope.reduced(most);
+                assert!(reduced.bins().len() <= most.max(1));
+                let hit: Vec<_> = (reduced.bins().iter())
+                    .filter(|bin| bin.max[0] == 7.0 && bin.min[1] == -7.0)
+                    .collect();
+                assert_eq!(hit.len(), 1, "spike at tick {spike}");
+                assert!((hit[0].start_s..=hit[0].end_s).contains(&(spike as f64)));
+            }
         }
     }
 
     #[test]
     fn bins_cover_every_tick_once() {
-        for ticks in [1, 2, 2_048, 2_049, 4_097, 10_000] {
+        for ticks in [1, 2, 16_384, 16_385, 32_769, 80_001] {
             let mut envelope = Envelope::<1>::default();
             for tick in 0..ticks {
                 envelope.add(f64::from(tick), &[0.0]);

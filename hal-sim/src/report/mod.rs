@@ -1,4 +1,5 @@
-//! What a run leaves behind: statistics, a summary for the terminal, a trace as CSV and a picture as SVG and PNG.
+//! What a run leaves behind: statistics, a summary for the terminal, a trace as CSV, a picture as SVG and PNG, and a
+//! document in HTML that plays it back.
 //!
 //! A run loop calls [`Trace::record`] every tick, collects its [`Move`]s, and puts both into a [`Run`], which prints
 //! ([`Run::summary`]) and writes ([`Run::write`]) itself.
@@ -7,12 +8,15 @@ mod chart;
 mod colour;
 mod contour;
 mod csv;
+mod document;
 mod envelope;
 mod mechanism;
+mod motion;
 mod path;
 mod picture;
 mod png;
 mod progress;
+mod record;
 mod sample;
 mod scale;
 mod statistics;
@@ -24,11 +28,13 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use firmware::motion::Limits;
 use kinematics::Geometry;
 
 pub use contour::{ContourMap, contour_map};
 pub use progress::Progress;
-pub use sample::{Move, Sample};
+pub use record::Record;
+pub use sample::{MotionSample, Move, Sample};
 pub use statistics::{Spread, Statistics};
 pub use summary::Summary;
 pub use trace::{DEFAULT_EVERY, Trace};
@@ -40,6 +46,8 @@ pub struct Run {
     pub name: String,
     /// The stage it ran on.
     pub geometry: Geometry,
+    /// Its limits of motion.
+    pub limits: Limits,
     /// What was recorded.
     pub trace: Trace,
     /// The moves in the order of time.
@@ -80,7 +88,18 @@ impl Run {
         picture::draw(self)
     }
 
-    /// Writes `trace.csv`, `moves.csv`, `picture.svg` and `picture.png` into `folder`, which is made if it is not there.
+    /// The picture of its setpoints' rates beside their limits, as an SVG document.
+    pub fn motion_picture(&self) -> String {
+        motion::draw(self)
+    }
+
+    /// The document that shows it in a browser, without a network.
+    pub fn document(&self) -> String {
+        document::write(self)
+    }
+
+    /// Writes `trace.csv`, `moves.csv`, `picture` and `motion` as SVG and PNG, and `report.html` into `folder`, which is made
+    /// if it is not there.
     ///
     /// # Errors
     /// [`ReportError`] names the file that could not be written.
@@ -88,9 +107,14 @@ impl Run {
         make_folder(folder)?;
         csv::write_trace(&folder.join("trace.csv"), &self.trace)?;
         csv::write_moves(&folder.join("moves.csv"), &self.moves)?;
-        let picture = self.picture();
-        write_file(&folder.join("picture.svg"), picture.as_bytes())?;
-        write_png(&folder.join("picture.png"), &picture)
+        for (name, picture) in [
+            ("picture", self.picture()),
+            ("motion", self.motion_picture()),
+        ] {
+            write_file(&folder.join(format!("{name}.svg")), picture.as_bytes())?;
+            write_png(&folder.join(format!("{name}.png")), &picture)?;
+        }
+        write_file(&folder.join("report.html"), self.document().as_bytes())
     }
 }
 

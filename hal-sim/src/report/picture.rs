@@ -8,6 +8,7 @@ use super::sample::Move;
 use super::scale::{Scale, Steps, Ticks};
 use super::statistics::Spread;
 use super::svg::{Anchor, Font, Rect, Stroke, Svg};
+use super::trace::Plots;
 
 const WIDTH: f64 = 1600.0;
 const HEIGHT: f64 = 1000.0;
@@ -17,11 +18,13 @@ const VIEW_LEFT: f64 = 70.0;
 const PATH_TOP: f64 = 110.0;
 const MECHANISM_TOP: f64 = 582.0;
 /// The stack of charts at the right.
-const CHART_LEFT: f64 = 580.0;
-const CHART_WIDTH: f64 = 990.0;
+pub(super) const CHART_LEFT: f64 = 580.0;
+pub(super) const CHART_WIDTH: f64 = 990.0;
 const CHART_TOP: f64 = 110.0;
 const CHART_HEIGHT: f64 = 107.0;
 const CHART_PITCH: f64 = 142.0;
+/// Bins of a chart at most: more than it has columns of pixels.
+pub(super) const COLUMNS: usize = 2048;
 
 /// The whole picture.
 pub(super) fn draw(run: &Run) -> String {
@@ -145,8 +148,8 @@ fn draw_last_pose(svg: &mut Svg, run: &Run) {
     svg.text([frame.right(), frame.top - 8.0], &text, &font);
 }
 
-fn time_axis(run: &Run) -> TimeAxis {
-    let bins = run.trace.plots().error.bins();
+pub(super) fn time_axis(plots: &Plots) -> TimeAxis {
+    let bins = plots.error.bins();
     let start_s = bins.first().map_or(0.0, |bin| bin.start_s);
     let end_s = bins.last().map_or(1.0, |bin| bin.end_s);
     let mut ticks = Ticks::covering((start_s, end_s), 10.0, Steps::Decimal);
@@ -162,15 +165,15 @@ fn time_axis(run: &Run) -> TimeAxis {
     TimeAxis {
         scale: Scale::new((start_s, end_s), pixels),
         ticks,
-        moving: moving_stretches(run),
+        moving: moving_stretches(plots),
     }
 }
 
 /// Bins in which the stage moves, joined.
-fn moving_stretches(run: &Run) -> Vec<(f64, f64)> {
+fn moving_stretches(plots: &Plots) -> Vec<(f64, f64)> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     let mut moved = false;
-    for bin in run.trace.plots().error.bins() {
+    for bin in plots.error.bins() {
         let moves = bin.max[2] > 0.0;
         match stretches.last_mut() {
             Some(stretch) if moves && moved => stretch.1 = bin.end_s,
@@ -183,7 +186,8 @@ fn moving_stretches(run: &Run) -> Vec<(f64, f64)> {
 }
 
 fn draw_charts(svg: &mut Svg, run: &Run) {
-    let time = time_axis(run);
+    let plots = &run.trace.plots().reduced(COLUMNS);
+    let time = time_axis(plots);
     let frames: [Rect; 6] = std::array::from_fn(|index| Rect {
         left: CHART_LEFT,
         top: CHART_TOP + CHART_PITCH * index as f64,
@@ -191,13 +195,13 @@ fn draw_charts(svg: &mut Svg, run: &Run) {
         height: CHART_HEIGHT,
     });
     let [centre, theta, centre_error, theta_error, pivots, duty] = &frames;
-    draw_pose(svg, run, &time, centre, theta);
-    draw_errors(svg, run, &time, centre_error, theta_error);
-    draw_drives(svg, run, &time, pivots, duty);
+    draw_pose(svg, plots, &time, centre, theta);
+    draw_errors(svg, run, plots, &time, centre_error, theta_error);
+    draw_drives(svg, run, plots, &time, pivots, duty);
     draw_time_labels(svg, duty, &time);
 }
 
-fn series<'a>(name: &'a str, colour: &'a str, channel: usize) -> Series<'a> {
+pub(super) fn series<'a>(name: &'a str, colour: &'a str, channel: usize) -> Series<'a> {
     Series {
         name,
         colour,
@@ -205,15 +209,16 @@ fn series<'a>(name: &'a str, colour: &'a str, channel: usize) -> Series<'a> {
     }
 }
 
-fn draw_pose(svg: &mut Svg, run: &Run, time: &TimeAxis, centre: &Rect, theta: &Rect) {
+fn draw_pose(svg: &mut Svg, plots: &Plots, time: &TimeAxis, centre: &Rect, theta: &Rect) {
     let chart = Chart {
         title: "Centre, mm",
         note: "shaded: setpoint moving".to_owned(),
-        bins: run.trace.plots().pose.bins(),
+        bins: plots.pose.bins(),
         factor: 1.0,
         series: &[series("x", colour::X, 0), series("y", colour::Y, 1)],
         steps: Steps::Decimal,
         from_zero: true,
+        marks: &[],
     };
     chart.draw(svg, centre, time);
     let chart = Chart {
@@ -237,17 +242,25 @@ fn digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn draw_errors(svg: &mut Svg, run: &Run, time: &TimeAxis, centre: &Rect, theta: &Rect) {
+fn draw_errors(
+    svg: &mut Svg,
+    run: &Run,
+    plots: &Plots,
+    time: &TimeAxis,
+    centre: &Rect,
+    theta: &Rect,
+) {
     let statistics = run.trace.statistics();
     let errors = &statistics.error_xy_um;
     let chart = Chart {
         title: "Following error of the centre, \u{b5}m",
         note: spread_note(errors),
-        bins: run.trace.plots().error.bins(),
+        bins: plots.error.bins(),
         factor: 1.0,
         series: &[series("distance", colour::CENTRE, 0)],
         steps: Steps::Decimal,
         from_zero: true,
+        marks: &[],
     };
     chart.draw(svg, centre, time);
     let errors = &statistics.error_theta_urad;
@@ -260,7 +273,14 @@ fn draw_errors(svg: &mut Svg, run: &Run, time: &TimeAxis, centre: &Rect, theta: 
     chart.draw(svg, theta, time);
 }
 
-fn draw_drives(svg: &mut Svg, run: &Run, time: &TimeAxis, pivots: &Rect, duty: &Rect) {
+fn draw_drives(
+    svg: &mut Svg,
+    run: &Run,
+    plots: &Plots,
+    time: &TimeAxis,
+    pivots: &Rect,
+    duty: &Rect,
+) {
     let statistics = run.trace.statistics();
     let [first, second, third] = colour::PIVOTS;
     let series = [
@@ -271,17 +291,18 @@ fn draw_drives(svg: &mut Svg, run: &Run, time: &TimeAxis, pivots: &Rect, duty: &
     let chart = Chart {
         title: "Pivots on the track, deg",
         note: format!("closest two: {:.1}\u{b0}", statistics.separation_deg),
-        bins: run.trace.plots().pivots.bins(),
+        bins: plots.pivots.bins(),
         factor: 1.0,
         series: &series,
         steps: Steps::Degrees,
         from_zero: false,
+        marks: &[],
     };
     chart.draw(svg, pivots, time);
     let chart = Chart {
         title: "Duty of the motors, %",
         note: format!("peak {:.1} %", 100.0 * statistics.peak_duty),
-        bins: run.trace.plots().duty.bins(),
+        bins: plots.duty.bins(),
         factor: 100.0,
         steps: Steps::Decimal,
         from_zero: true,

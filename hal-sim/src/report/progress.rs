@@ -27,6 +27,12 @@ impl Progress {
         }
     }
 
+    /// `steps` steps are done; what is being done.
+    pub fn tell(&self, steps: u64, what: &'static str) {
+        self.bar.set_position(steps);
+        self.bar.set_message(what);
+    }
+
     /// `steps` steps are done and `simulated_s` seconds simulated. Cheap, yet meant for every so many ticks, not each.
     pub fn update(&self, steps: u64, simulated_s: f64) {
         let speed = simulated_s / self.begun.elapsed().as_secs_f64();

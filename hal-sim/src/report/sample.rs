@@ -19,12 +19,25 @@ pub struct Sample {
     pub pivot_setpoint_deg: [f64; 3],
     /// Rates of the pivots' setpoints, rad/s.
     pub pivot_rate_rad_s: [f64; 3],
+    /// How the setpoint of the moved point moves.
+    pub motion: MotionSample,
     /// Measured minus setpoint at the pivots, in encoder LSB.
     pub pivot_error_lsb: [f64; 3],
     /// Duty of the three bridges, -1 to 1.
     pub duty: [f64; 3],
     /// Smallest angle between two neighbouring pivots, deg.
     pub separation_deg: f64,
+}
+
+/// What the limits of motion are about: rates of the setpoint of the point that is moved, and of the pivots' setpoints.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct MotionSample {
+    /// Along the path: speed (mm/s), size of the acceleration (mm/s^2) and of the jerk (mm/s^3).
+    pub translation: [f64; 3],
+    /// Of theta: rate (deg/s), acceleration (deg/s^2), jerk (deg/s^3).
+    pub rotation: [f64; 3],
+    /// Of the pivots, rad/s^2.
+    pub pivots_rad_s2: [f64; 3],
 }
 
 impl Sample {

@@ -30,6 +30,26 @@ pub(crate) struct Plots {
     pub(crate) pivots: Envelope<3>,
     /// -1 to 1.
     pub(crate) duty: Envelope<3>,
+    /// Rate, acceleration and jerk of the moved point: along the path, then of theta; as in [`MotionSample`].
+    ///
+    /// [`MotionSample`]: super::MotionSample
+    pub(crate) motion: Envelope<6>,
+    /// Of the pivots: rad/s, then rad/s^2.
+    pub(crate) pivot_rates: Envelope<6>,
+}
+
+impl Plots {
+    /// The same in at most `most` bins.
+    pub(crate) fn reduced(&self, most: usize) -> Self {
+        Self {
+            pose: self.pose.reduced(most),
+            error: self.error.reduced(most),
+            pivots: self.pivots.reduced(most),
+            duty: self.duty.reduced(most),
+            motion: self.motion.reduced(most),
+            pivot_rates: self.pivot_rates.reduced(most),
+        }
+    }
 }
 
 impl Trace {
@@ -57,6 +77,11 @@ impl Trace {
         (self.plots.error).add(time_s, &[sample.error_xy_um(), sample.error[2], moving]);
         self.plots.pivots.add(time_s, &sample.pivot_setpoint_deg);
         self.plots.duty.add(time_s, &sample.duty);
+        let [v, a, j] = sample.motion.translation;
+        let [w, alpha, turn_jerk] = sample.motion.rotation;
+        (self.plots.motion).add(time_s, &[v, a, j, w, alpha, turn_jerk]);
+        let ([r1, r2, r3], [a1, a2, a3]) = (sample.pivot_rate_rad_s, sample.motion.pivots_rad_s2);
+        (self.plots.pivot_rates).add(time_s, &[r1, r2, r3, a1, a2, a3]);
         self.path.add([sample.pose[0], sample.pose[1]]);
         self.last = Some(*sample);
     }
@@ -89,6 +114,7 @@ impl Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::MotionSample;
 
     fn sample(tick: u32) -> Sample {
         Sample {
@@ -100,6 +126,7 @@ mod tests {
             error: [3.0, 4.0, -f64::from(tick)],
             pivot_setpoint_deg: [0.0; 3],
             pivot_rate_rad_s: [0.0; 3],
+            motion: MotionSample::default(),
             pivot_error_lsb: [1.0, -2.0, 0.0],
             duty: [0.1, -0.01 * f64::from(tick), 0.0],
             separation_deg: 100.0 - f64::from(tick % 7),

@@ -69,6 +69,12 @@ impl Connection {
         }
     }
 
+    /// The controller starts again, the connection stays.
+    pub fn controller_restarts(&mut self) {
+        self.session.start_again();
+        self.error = 0;
+    }
+
     /// The file to wait at.
     pub fn port(&self) -> BorrowedFd<'_> {
         self.port.as_fd()
@@ -107,6 +113,8 @@ impl Connection {
     ) {
         loop {
             let taken = self.feed();
+            let waiting = self.output.len();
+            (self.session).set_room(WAITING_BYTES.saturating_sub(waiting));
             if let Err(Overflow) = panel.service(&mut self.session, link, &mut self.output) {
                 self.state = ClientState::Unread;
                 return;

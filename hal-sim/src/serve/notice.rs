@@ -28,6 +28,8 @@ pub enum Notice {
     NotAccepted(String),
     /// The stage faulted.
     Fault(Fault),
+    /// The controller was started again by command.
+    Restarted,
     /// The simulation is slower than asked: so many seconds of the wall clock were lost, all in all.
     Behind(f64),
 }
@@ -45,6 +47,7 @@ impl fmt::Display for Notice {
             Self::Unread(name) => write!(f, "{name}: does not read its replies, cut off"),
             Self::NotAccepted(reason) => write!(f, "a connection was not accepted: {reason}"),
             Self::Fault(fault) => write!(f, "fault: {fault}"),
+            Self::Restarted => write!(f, "the controller starts again"),
             Self::Behind(lost_s) => {
                 write!(
                     f,

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use firmware::link::{Link, PanelLink, TickLink};
 use firmware::panel::Panel;
+use firmware::parameters::Parameters;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
@@ -85,6 +86,7 @@ impl Server {
         let (terminal, _client) = self.terminal.map(|t| (t.controller, t.client)).unzip();
         let connections = terminal.map(|port| Connection::new("terminal".into(), port, true, now));
         let mut service = Service {
+            parameters: parameters.clone(),
             host: Host::new(&self.options.stage, parameters),
             panel: Panel::new(parameters, IDENTITY),
             tick_link,
@@ -113,6 +115,7 @@ fn listen(address: &str) -> io::Result<TcpListener> {
 
 /// A stage that runs and is served.
 struct Service<'a> {
+    parameters: Parameters,
     host: Host,
     panel: Panel,
     tick_link: TickLink<'a>,
@@ -135,6 +138,9 @@ impl Service<'_> {
         for _ in 0..self.pace.take(Instant::now()) {
             self.host.tick(&mut self.tick_link, &mut ());
             self.service();
+            if self.panel.wants_restart() {
+                self.restart();
+            }
         }
         self.tell_fault();
         self.tell_lost(Instant::now());
@@ -143,7 +149,21 @@ impl Service<'_> {
         Ok(())
     }
 
+    /// What `RBT` asks for: the controller starts again, its clients stay connected.
+    fn restart(&mut self) {
+        self.host.restart(&self.parameters);
+        self.panel = Panel::new(&self.parameters, IDENTITY);
+        self.tick_link.clear();
+        self.panel_link.clear();
+        for connection in &mut self.connections {
+            connection.controller_restarts();
+        }
+        (self.say)(Notice::Restarted);
+    }
+
     fn service(&mut self) {
+        // Also with nobody there: a macro goes on.
+        self.panel.advance(&mut self.panel_link);
         for connection in &mut self.connections {
             connection.service(&mut self.panel, &mut self.panel_link, self.say);
         }

@@ -12,6 +12,8 @@ use stm32f4xx_hal::{
     time::Hertz,
 };
 
+/// Cycles of the core in a second.
+pub const CORE_HZ: u32 = 168_000_000;
 /// Counts of TIM1 in a second.
 pub const TIM1_HZ: u32 = 168_000_000;
 /// Counts of TIM3 in a second.

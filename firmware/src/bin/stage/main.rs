@@ -50,7 +50,9 @@ mod encoders;
 mod latch;
 mod panic;
 mod pwm;
+mod restart;
 mod serial;
+mod stopwatch;
 mod trace;
 mod watchdog;
 
@@ -61,10 +63,13 @@ use defmt_rtt as _;
 mod app {
     use crate::{
         board::{Board, Loop},
+        restart,
         serial::{Receiver, Transmitter},
+        stopwatch::Stopwatch,
         trace::{self, TRACE, Tracer},
         watchdog,
     };
+    use core::mem::MaybeUninit;
     use firmware::{
         config::Config,
         controller::{Inputs, State, tick},
@@ -89,17 +94,24 @@ mod app {
     #[local]
     struct Local {
         config: Config,
-        state: State,
+        state: &'static mut State,
         tracer: Tracer,
+        stopwatch: Stopwatch,
         tick_link: TickLink<'static>,
-        panel: Panel,
-        session: Session,
+        panel: &'static mut Panel,
+        session: &'static mut Session,
         panel_link: PanelLink<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
     }
 
-    #[init(local = [link: Link = Link::new()])]
+    // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
+    #[init(local = [
+        link: Link = Link::new(),
+        panel_place: MaybeUninit<Panel> = MaybeUninit::uninit(),
+        session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
+        state_place: MaybeUninit<State> = MaybeUninit::uninit(),
+    ])]
     fn init(context: init::Context) -> (Shared, Local) {
         let Board {
             mut control,
@@ -109,18 +121,23 @@ mod app {
         } = Board::new(context.device);
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
+        let mut core = context.core;
         let (tick_link, panel_link) = context.local.link.split();
-        let mut panel = Panel::new(&PARAMETERS, IDENTITY);
+        let panel = context
+            .local
+            .panel_place
+            .write(Panel::new(&PARAMETERS, IDENTITY));
         if let Some(cause) = reset_cause.unasked() {
             panel.note_start(cause);
         }
         let local = Local {
             config: Config::new(&PARAMETERS),
-            state: State::new(),
+            state: context.local.state_place.write(State::new()),
             tracer: Tracer::default(),
+            stopwatch: Stopwatch::new(&mut core.DCB, &mut core.DWT),
             tick_link,
             panel,
-            session: Session::new(),
+            session: context.local.session_place.write(Session::new()),
             panel_link,
             receiver,
             transmitter,
@@ -142,10 +159,11 @@ mod app {
 
     /// The control task, every 50 us. If it takes longer than 35 us, the next latch and with it the next frames are
     /// late, and the library takes them for missing; if it never ends, the watchdog resets the chip.
-    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_link, tracer])]
+    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_link, tracer, stopwatch])]
     fn control(context: control::Context) {
         let control = context.shared.control;
         control.pwm.disarm_tick();
+        let (tick_cycles, late) = context.local.stopwatch.begin();
         let counts = control.analog.counts();
         let inputs = Inputs {
             frames: control.encoders.frames().map(RawFrame),
@@ -153,6 +171,8 @@ mod app {
             emergency_stop: control.pwm.take_break(),
             current_counts: counts.current,
             supply_counts: counts.supply,
+            tick_cycles,
+            late,
         };
         let outputs = tick(
             context.local.config,
@@ -163,6 +183,7 @@ mod app {
         );
         control.bridges.set(outputs.duty, outputs.awake);
         control.pwm.connect(outputs.awake);
+        context.local.stopwatch.end();
         trace::mark_end_of_tick();
     }
 
@@ -172,10 +193,14 @@ mod app {
         let local = context.local;
         loop {
             local.receiver.pass_to(|bytes| local.session.receive(bytes));
+            local.session.set_room(local.transmitter.room());
             let Ok(()) = local
                 .panel
                 .service(local.session, local.panel_link, local.transmitter);
             local.transmitter.send();
+            if local.panel.wants_restart() {
+                restart::now();
+            }
             watchdog::feed();
             cortex_m::asm::wfi();
         }

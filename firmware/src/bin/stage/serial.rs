@@ -137,6 +137,15 @@ impl Transmitter {
         self.filled = 0;
     }
 
+    /// Bytes that can be written without waiting.
+    pub fn room(&self) -> usize {
+        if self.stream.is_running() {
+            0
+        } else {
+            BYTES - self.filled
+        }
+    }
+
     /// Waits until nothing is being sent: 11 ms at most.
     fn wait(&mut self) {
         while self.stream.is_running() {

@@ -1,6 +1,6 @@
 //! The independent watchdog, fed only while the control loop ticks, and the cause of the last reset.
 
-use crate::trace::TRACE;
+use crate::{restart, trace::TRACE};
 use core::sync::atomic::{AtomicU32, Ordering};
 use stm32f4xx_hal::{pac, prelude::*, watchdog::IndependentWatchdog};
 
@@ -44,6 +44,8 @@ pub enum ResetCause {
     Watchdog = 5,
     /// A flag this image does not expect.
     Other = 6,
+    /// `RBT`.
+    Command = 7,
 }
 
 impl ResetCause {
@@ -63,7 +65,11 @@ impl ResetCause {
         let cause = if flags.wdgrstf().bit_is_set() {
             Self::Watchdog
         } else if flags.sftrstf().bit_is_set() {
-            Self::Software
+            if restart::was_asked_for() {
+                Self::Command
+            } else {
+                Self::Software
+            }
         } else if flags.porrstf().bit_is_set() {
             Self::PowerOn
         } else if flags.borrstf().bit_is_set() {

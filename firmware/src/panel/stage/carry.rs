@@ -1,80 +1,112 @@
 //! Wishes whose time has come: a stop or another target for the motion under way, a move for the stage at rest.
 
-use super::super::course::Course;
+use super::super::axis::Axis;
+use super::super::course::{Course, Goal};
 use super::super::error::ErrorCode;
+use super::super::target::UNITS;
 use super::{Flight, Stage};
 use crate::link::{Command, Mode, PanelLink};
-use crate::motion::{Bounds, Position, Stop};
+use crate::motion::{Ground, Stop};
 
-/// 2^32: units of a [`Position`] in a track radius.
-const UNITS: f64 = 4_294_967_296.0;
+const DEGREES_A_TURN: f64 = 360.0;
 
 impl Stage {
     /// Takes the next step of what is still wanted, if its time has come.
     pub fn carry_on(&mut self, link: &mut PanelLink<'_>) {
-        let Some(snapshot) = self.present() else {
+        if self.present().is_none() {
             return;
-        };
-        let (mode, plan, plan_tick, from) = (
-            snapshot.mode,
-            snapshot.plan,
-            snapshot.plan_tick,
-            snapshot.setpoint,
-        );
-        match (mode, self.stop_wanted, self.move_wanted) {
-            (Mode::Moving, Some(stop), _) => self.send_stop(stop, plan, plan_tick, link),
-            (Mode::Moving, None, Some(to)) if !self.rest_first => {
-                self.send_retarget(to, plan, plan_tick, link);
+        }
+        self.carry_flow_on(link);
+        let result = match (self.mode(), self.stop_wanted, self.wanted) {
+            (Mode::Moving, Some(stop), _) => {
+                self.send_stop(stop, link);
+                return;
             }
-            (Mode::Holding, _, Some(to)) => match self.start(from, to, link) {
-                Ok(()) => self.move_wanted = None,
-                Err(ErrorCode::Busy) => {}
-                // Every connection is told: the one that asked has had its silence, which means yes, long since.
-                Err(code) => {
-                    self.move_wanted = None;
-                    self.target_is_rest = true;
-                    self.news = (self.news.0.wrapping_add(1), code);
-                }
-            },
-            _ => {}
+            (Mode::Moving, None, Some(goal)) if !self.rest_first => self.leave_for(goal, link),
+            (Mode::Holding, _, Some(goal)) => self.start(goal, link),
+            _ => return,
+        };
+        match result {
+            // A full queue: again at the next snapshot.
+            Ok(()) | Err(ErrorCode::Busy) => {}
+            // Every connection is told: the one that asked has had its silence, which means yes, long since.
+            Err(code) => {
+                self.wanted = None;
+                self.flow = None;
+                self.target_is_rest = true;
+                self.tell(code);
+            }
         }
     }
 
-    /// Sends the line from rest at `from`; nothing is sent when it has no length.
-    pub(super) fn start(
-        &mut self,
-        from: Position,
-        to: Position,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
-        if from == to {
+    /// Makes `goal` what is wanted, at once as far as that can be; with an error everything is as it was.
+    pub(super) fn want(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        let before = (self.wanted, self.rest_first, self.stop_wanted);
+        (self.wanted, self.rest_first) = (Some(goal), false);
+        let result = match (self.mode(), self.stop_wanted) {
+            (Mode::Holding, _) => self.start(goal, link),
+            (Mode::Moving, None) => self.leave_for(goal, link),
+            _ => Ok(()),
+        };
+        if result.is_err() {
+            (self.wanted, self.rest_first, self.stop_wanted) = before;
+        }
+        result
+    }
+
+    /// Sends the motion from rest; nothing is sent when there is none to be made.
+    fn start(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        let from = self.setpoint();
+        let ground = match goal {
+            Goal::Place(to) => self.ground_of_line(&from, &to),
+            _ => self.ground(),
+        };
+        let id = self.next_id();
+        let course = Course::from_rest(id, from, goal, &ground)?;
+        if course.plan.ticks() > 0 {
+            self.send_course(course, link)?;
+        }
+        self.wanted = None;
+        Ok(())
+    }
+
+    /// Sends the way to another goal; where there is none the stage stops first.
+    fn leave_for(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        let ground = match goal {
+            Goal::Place(_) => self.ground_of_curve(),
+            _ => self.ground(),
+        };
+        let id = self.next_id();
+        // What takes over soon is what will be left, and is not known to be under way yet.
+        let Some((course, at)) = self.under_way().filter(|_| self.next.is_none()) else {
             return Ok(());
+        };
+        match course.left_for(goal, id, at, &ground)? {
+            Some(left) => {
+                self.send_course(left, link)?;
+                self.wanted = None;
+            }
+            None => {
+                let stops = course.stop.is_some();
+                self.rest_first = true;
+                if !stops {
+                    self.stop_wanted = Some(Stop::Smooth);
+                }
+            }
         }
-        let id = self.next_id();
-        let course = Course::line(id, from, to, &self.limits, &self.geometry)
-            .map_err(|_| ErrorCode::PositionLimit)?;
-        self.send(
-            Command::Move(course.plan.clone()),
-            Flight::Move(course),
-            link,
-        )
+        Ok(())
     }
 
-    fn send_stop(&mut self, stop: Stop, plan: u32, plan_tick: u64, link: &mut PanelLink<'_>) {
+    fn send_stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
         let id = self.next_id();
-        // A plan that is not the one sent last is about to be: `next`, or what the next snapshot tells.
-        let Some(course) = self.course.as_ref().filter(|course| course.plan.id == plan) else {
+        let ground = self.ground();
+        let Some((course, at)) = self.under_way() else {
             return;
         };
-        let at = plan_tick + self.look_ahead;
-        match course.stopped(id, at, &self.limits, &self.geometry, stop) {
+        match course.stopped(id, at, &ground, stop) {
             // A full queue: again at the next snapshot.
             Some(stopped) => {
-                let _ = self.send(
-                    Command::Move(stopped.plan.clone()),
-                    Flight::Move(stopped),
-                    link,
-                );
+                let _ = self.send_course(stopped, link);
             }
             // Not by itself, when another target takes over before: that motion is what has to be stopped.
             None if self.next.is_some() => {}
@@ -87,51 +119,54 @@ impl Stage {
         }
     }
 
-    /// Sends the transition to another target; where there is none the stage stops first.
-    fn send_retarget(&mut self, to: Position, plan: u32, plan_tick: u64, link: &mut PanelLink<'_>) {
-        // What takes over soon is what will be left, and is not known to be under way yet.
-        if self.next.is_some() {
-            return;
-        }
-        let id = self.next_id();
-        let bounds = self.bounds();
-        let Some(course) = self.course.as_ref().filter(|course| course.plan.id == plan) else {
-            return;
-        };
-        let at = plan_tick + self.look_ahead;
-        match course.retargeted(id, at, to, &self.limits, &self.geometry, &bounds) {
-            Ok(course) => {
-                let command = Command::Move(course.plan.clone());
-                // A full queue: again at the next snapshot.
-                if self.send(command, Flight::Move(course), link).is_ok() {
-                    self.move_wanted = None;
-                }
-            }
-            Err(_) => {
-                self.rest_first = true;
-                if course.stop.is_none() {
-                    self.stop_wanted = Some(Stop::Smooth);
-                }
-            }
-        }
+    /// The course under way, and the tick of it at which another one can take over. A plan that is not the one sent last is
+    /// about to be: `next`, or what the next snapshot tells.
+    pub(super) fn under_way(&self) -> Option<(&Course, u64)> {
+        let snapshot = self.snapshot()?;
+        let course = self.course.as_ref()?;
+        (course.plan.id == snapshot.plan).then_some((course, snapshot.plan_tick + self.look_ahead))
     }
 
-    /// Where x and y may go, 2^-32 track radii.
-    fn bounds(&self) -> Bounds {
-        [0, 1].map(|i| {
-            let units = |mm: f64| libm::rint(mm / self.geometry.radius_mm * UNITS) as i64;
-            if self.soft.active[i] {
-                [units(self.soft.lowest[i]), units(self.soft.highest[i])]
-            } else {
-                [
-                    units(-self.geometry.radius_mm),
-                    units(self.geometry.radius_mm),
-                ]
-            }
-        })
+    /// Tells every connection.
+    pub(super) const fn tell(&mut self, code: ErrorCode) {
+        self.news = (self.news.0.wrapping_add(1), code);
     }
 
-    const fn next_id(&mut self) -> u32 {
+    pub(super) fn send_course(
+        &mut self,
+        course: Course,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let command = Command::Move(course.plan.clone());
+        self.send(command, Flight::Move(course), link)
+    }
+
+    /// What plans keep to now.
+    pub(super) fn ground(&self) -> Ground {
+        let radius_mm = self.geometry.radius_mm;
+        let mut ground = Ground::new(self.limits, self.geometry);
+        ground.centre = self.radii(self.view.tool.origin());
+        let [x, y] = self.view.zero;
+        for (bounds, (axis, zero, per_unit)) in (ground.bounds.iter_mut()).zip([
+            (Axis::X, x, radius_mm),
+            (Axis::Y, y, radius_mm),
+            (Axis::W, 0.0, DEGREES_A_TURN),
+        ]) {
+            for (bound, set) in bounds.iter_mut().zip(self.soft.set_range(axis)) {
+                if let Some(value) = set {
+                    *bound = libm::rint((value + zero) / per_unit * UNITS) as i64;
+                }
+            }
+        }
+        ground
+    }
+
+    /// mm to track radii.
+    pub(super) fn radii(&self, mm: [f64; 2]) -> [f64; 2] {
+        mm.map(|mm| mm / self.geometry.radius_mm)
+    }
+
+    pub(super) const fn next_id(&mut self) -> u32 {
         self.ids = self.ids.wrapping_add(1);
         self.ids
     }

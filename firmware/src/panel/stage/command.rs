@@ -2,16 +2,18 @@
 //! are to be called only when [`Stage::present`] is known.
 
 use super::super::axis::{Axis, AxisValues};
+use super::super::course::Goal;
 use super::super::error::ErrorCode;
+use super::super::frames::Transform;
 use super::super::soft::SoftLimits;
-use super::super::target::{Coordinates, position, replaced};
+use super::super::target::{Coordinates, Travel, replaced, travel};
 use super::{Flight, Stage};
-use crate::link::{Command, Mode, PanelLink};
-use crate::motion::{Limits, Stop};
-use kinematics::Geometry;
+use crate::link::{Command, Mode, PanelLink, Snapshot};
+use crate::motion::Stop;
+use kinematics::Angle;
 
 /// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
-const SLOWEST_MM_S: f64 = 1e-3;
+pub(super) const SLOWEST_MM_S: f64 = 1e-3;
 
 impl Stage {
     /// `MOV`: everything is checked before anything changes.
@@ -20,7 +22,28 @@ impl Stage {
         values: &AxisValues,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        self.aim(replaced(&self.target, values), link)
+        self.aim(self.meant_by(&self.base_target(), values), link)
+    }
+
+    /// The target that `MOV` means when `last` is the one before.
+    pub(super) fn meant_by(&self, last: &Coordinates, values: &AxisValues) -> Coordinates {
+        let mut target = replaced(last, values);
+        if values[Axis::W.index()].is_some() {
+            self.turn_as_meant(last, &mut target);
+        }
+        target
+    }
+
+    /// Changes W of a target by whole turns, as the parameter asks for: it may be the orientation only that is meant.
+    fn turn_as_meant(&self, last: &Coordinates, target: &mut Coordinates) {
+        let w = Axis::W.index();
+        let units = |deg: f64| Angle::from_degrees(deg).map(Angle::units);
+        // What is no angle is refused later.
+        let (Some(from), Some(to)) = (units(last[w]), units(target[w])) else {
+            return;
+        };
+        let turns = (self.targets.way.target(from, to) - to) >> 32;
+        target[w] += turns as f64 * 360.0;
     }
 
     /// `MVR`: relative to the last target.
@@ -29,34 +52,38 @@ impl Stage {
         values: &AxisValues,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        let mut target = self.target;
+        let mut target = self.base_target();
         for (coordinate, value) in target.iter_mut().zip(values) {
             *coordinate += value.unwrap_or(0.0);
         }
         self.aim(target, link)
     }
 
-    fn aim(&mut self, target: Coordinates, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        if self.is_faulted() {
-            return Err(ErrorCode::MotionError);
-        }
-        let Some(snapshot) = self
-            .present()
-            .filter(|s| s.referenced && matches!(s.mode, Mode::Holding | Mode::Moving))
-        else {
-            return Err(ErrorCode::NotReady);
+    /// `MRT`: relative to the last target, along the axes of the tool as it is turned there.
+    pub fn move_in_tool(
+        &mut self,
+        values: &AxisValues,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let (x, y) = (Axis::X.index(), Axis::Y.index());
+        let turned = Transform {
+            w_deg: self.base_target()[Axis::W.index()],
+            ..Transform::IDENTITY
         };
-        if !self.soft.allow(&target) {
-            return Err(ErrorCode::PositionLimit);
+        let [along, across] = turned.turned([x, y].map(|i| values[i].unwrap_or(0.0)));
+        let mut values = *values;
+        (values[x], values[y]) = (Some(along), Some(across));
+        self.move_by(&values, link)
+    }
+
+    fn aim(&mut self, target: Coordinates, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        self.check_ready()?;
+        let from = self.setpoint();
+        let to = self.place_of(&target)?;
+        if self.targets.streamed {
+            return self.stream(target, to);
         }
-        let to = position(&target, &self.geometry)?;
-        let (mode, from) = (snapshot.mode, snapshot.setpoint);
-        if mode == Mode::Holding {
-            self.start(from, to, link)?;
-        } else {
-            self.move_wanted = Some(to);
-            self.rest_first = false;
-        }
+        self.want(Goal::Place(to), link)?;
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
                 self.moving.insert(axis);
@@ -64,7 +91,25 @@ impl Stage {
         }
         self.target = target;
         self.target_is_rest = false;
+        self.jog = [0.0; 6];
         Ok(())
+    }
+
+    /// Whether motion can be commanded.
+    pub(super) fn check_ready(&self) -> Result<(), ErrorCode> {
+        if self.is_faulted() {
+            return Err(ErrorCode::MotionError);
+        }
+        if self.generators_going() != [false; 6] {
+            return Err(ErrorCode::GeneratorActive);
+        }
+        let held = matches!(self.mode(), Mode::Holding | Mode::Moving);
+        let ready = |snapshot: &Snapshot| snapshot.referenced && held;
+        if self.present().is_some_and(ready) {
+            Ok(())
+        } else {
+            Err(ErrorCode::NotReady)
+        }
     }
 
     /// `STP`, `#24`, `HLT`.
@@ -72,7 +117,9 @@ impl Stage {
         if self.mode() != Mode::Moving && !self.motion_is_due() {
             return;
         }
-        self.move_wanted = None;
+        self.wanted = None;
+        self.flow = None;
+        self.jog = [0.0; 6];
         self.target_is_rest = true;
         if self.stop_wanted != Some(Stop::Urgent) {
             self.stop_wanted = Some(stop);
@@ -109,19 +156,12 @@ impl Stage {
     /// Changes the soft limits; only by ones that leave the target inside.
     pub fn set_soft(
         &mut self,
-        change: fn(&mut SoftLimits, &AxisValues, &Coordinates, &Geometry) -> Result<(), ErrorCode>,
+        change: fn(&mut SoftLimits, &AxisValues, &Coordinates, &Travel) -> Result<(), ErrorCode>,
         values: &AxisValues,
     ) -> Result<(), ErrorCode> {
-        change(&mut self.soft, values, &self.target, &self.geometry)
-    }
-
-    /// Other limits of motion, for the plans to come. `VLS` stays, as far as they allow it.
-    pub fn set_limits(&mut self, limits: Limits) {
-        let mm_s = self.limits.speed_mm_s.min(limits.speed_mm_s);
-        self.full = limits;
-        self.limits = limits;
-        // Not refused: it is inside the new limits, which are far over the slowest.
-        let _ = self.set_velocity(mm_s);
+        let limited = self.view.limited(&self.target);
+        let travel = travel(&self.view, &self.geometry);
+        change(&mut self.soft, values, &limited, &travel)
     }
 
     /// `VLS`: speed of the platform centre; rotation goes down with it in proportion, so that a slow move is slow in W too.

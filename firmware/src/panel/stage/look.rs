@@ -1,11 +1,20 @@
 //! What queries ask of the stage.
 
 use super::super::axis::{Axis, AxisSet, AxisValues};
+use super::super::error::ErrorCode;
+use super::super::frames::View;
 use super::super::reach::furthest;
 use super::super::request::Quantity;
-use super::super::target::{Coordinates, coordinates, measured, position, replaced, travel};
+use super::super::target::{
+    Coordinates, coordinates, furthest_mm, measured, position, travel, travel_of_targets,
+};
 use super::{Flight, Stage};
 use crate::link::Mode;
+use crate::motion::{Position, check_line};
+use kinematics::Angle;
+
+/// What counts as a change of position, mm and deg: well over what an encoder's noise makes.
+const CHANGE: f64 = 1e-4;
 
 impl Stage {
     /// The value that the query of `quantity` answers, mm and deg or 0 and 1.
@@ -15,39 +24,106 @@ impl Stage {
         let referenced = self.snapshot.as_ref().is_some_and(|s| s.referenced);
         match quantity {
             Quantity::Position => self.measured()[index],
-            Quantity::Target => self.target[index],
+            Quantity::Target => self.commanded()[index],
+            Quantity::Jog => self.jog[index],
             Quantity::OnTarget => flag(self.is_settled() || axis.component().is_none()),
             Quantity::Servo => flag(servo),
             Quantity::Referenced => flag(referenced),
-            // Adding 0 turns -0 into 0.
-            Quantity::Lowest => -travel(axis, &self.geometry) + 0.0,
-            Quantity::Highest => travel(axis, &self.geometry),
-            Quantity::SoftLowest => self.soft.lowest[index],
-            Quantity::SoftHighest => self.soft.highest[index],
+            Quantity::Lowest => travel_of_targets(&self.view, &self.geometry)[index][0],
+            Quantity::Highest => travel_of_targets(&self.view, &self.geometry)[index][1],
+            Quantity::SoftLowest => self.soft_range(axis)[0],
+            Quantity::SoftHighest => self.soft_range(axis)[1],
             Quantity::SoftActive => flag(self.soft.active[index]),
+            Quantity::Velocity => self.axis_velocity(axis),
             Quantity::LimitSwitch | Quantity::ReferenceSwitch => 0.0,
         }
     }
 
-    /// Whether `MOV` would take this target, once referenced and with the servo on.
+    /// Whether `MOV` would take this target and go there, from where the stage is commanded to be, once referenced and with
+    /// the servo on.
     pub fn is_reachable(&self, values: &AxisValues) -> bool {
-        let target = replaced(&self.target, values);
-        self.soft.allow(&target) && position(&target, &self.geometry).is_ok()
+        let last = self.base_target();
+        let target = self.meant_by(&last, values);
+        self.has_way(&self.start_of_way(&last), &target)
+    }
+
+    /// Where a way begins that leaves `last`: exactly, when the stage stands there.
+    fn start_of_way(&self, last: &Coordinates) -> Option<Position> {
+        if self.mode() == Mode::Holding {
+            Some(self.setpoint())
+        } else {
+            self.place_of(last).ok()
+        }
+    }
+
+    /// Whether a target, and all of the straight line to it, can be moved to. Without a start the target alone counts.
+    fn has_way(&self, from: &Option<Position>, target: &Coordinates) -> bool {
+        let Ok(to) = self.place_of(target) else {
+            return false;
+        };
+        from.is_none_or(|from| check_line(&from, &to, &self.ground()).is_ok())
+    }
+
+    /// The position of a target that `MOV` would take.
+    pub(super) fn place_of(&self, target: &Coordinates) -> Result<Position, ErrorCode> {
+        if !self.soft.allow(&self.view.limited(target)) {
+            return Err(ErrorCode::PositionLimit);
+        }
+        position(target, &self.target, &self.view, &self.ground())
+    }
+
+    fn soft_range(&self, axis: Axis) -> [f64; 2] {
+        self.soft.range(axis, &travel(&self.view, &self.geometry))
     }
 
     /// The furthest target in this direction from the last one; `None` when it is no direction.
     pub fn reach(&self, values: &AxisValues) -> Option<Coordinates> {
         let direction = values.map(|value| value.unwrap_or(0.0));
-        furthest(&self.target, &direction, &self.soft, &self.geometry)
+        let last = self.base_target();
+        let from = self.start_of_way(&last);
+        let most = furthest_mm(&self.view, &self.geometry);
+        let soft = |axis| self.soft_range(axis);
+        let allowed = |target: &Coordinates| self.has_way(&from, target);
+        furthest(&last, &direction, &self.view, most, soft, allowed)
     }
 
-    /// Measured pose. Without a reference there is none: 0. With pivots that are no pose (a fault) the setpoint stands for it.
+    /// Measured pose, in the frames in force. Without a reference there is none: 0. With pivots that are no pose (a fault) the
+    /// setpoint stands for it.
     pub fn measured(&self) -> Coordinates {
         let Some(snapshot) = self.snapshot.as_ref().filter(|s| s.referenced) else {
             return Coordinates::default();
         };
-        measured(&snapshot.pivots, &self.geometry)
-            .unwrap_or_else(|| coordinates(&snapshot.setpoint, &self.geometry))
+        measured(&snapshot.pivots, &self.view, &self.geometry)
+            .unwrap_or_else(|| coordinates(&snapshot.setpoint, &self.view, &self.geometry))
+    }
+
+    /// Measured pose of the platform in the base frame, whatever frames are in force.
+    pub fn platform(&self) -> Coordinates {
+        View::BASE.target_at(&self.view.pose_at(&self.measured()))
+    }
+
+    /// The pivots measured last.
+    pub fn pivots(&self) -> Option<[Angle; 3]> {
+        self.snapshot.as_ref().map(|snapshot| snapshot.pivots)
+    }
+
+    /// The axes whose measured position has changed since the pivots were there; all when that is not known.
+    pub fn changed_since(&self, pivots: Option<[Angle; 3]>) -> AxisSet {
+        let then = pivots.and_then(|pivots| measured(&pivots, &self.view, &self.geometry));
+        let now = self
+            .pivots()
+            .and_then(|pivots| measured(&pivots, &self.view, &self.geometry));
+        let (Some(then), Some(now)) = (then, now) else {
+            return AxisSet::MOVABLE;
+        };
+        let mut changed = AxisSet::EMPTY;
+        for axis in Axis::ALL {
+            let i = axis.index();
+            if (now[i] - then[i]).abs() > CHANGE {
+                changed.insert(axis);
+            }
+        }
+        changed
     }
 
     /// The axes that move or have not settled yet.
@@ -69,8 +145,18 @@ impl Stage {
         self.mode() == Mode::Fault
     }
 
+    /// Commands sent to the tick so far.
+    pub const fn sent(&self) -> u32 {
+        self.sent
+    }
+
     pub const fn velocity_mm_s(&self) -> f64 {
         self.limits.speed_mm_s
+    }
+
+    /// The pose that is commanded now.
+    pub(super) fn setpoint(&self) -> Position {
+        self.snapshot.as_ref().map_or([0; 3], |s| s.setpoint)
     }
 
     pub(super) fn mode(&self) -> Mode {
@@ -92,9 +178,14 @@ impl Stage {
             }
     }
 
+    /// The setpoint moves, or is about to. At rest it does not, whether the stage has settled there or not.
+    pub fn is_under_way(&self) -> bool {
+        self.is_referencing() || self.motion_is_due() || self.mode() == Mode::Moving
+    }
+
     /// A motion is wanted or in flight that the snapshot does not show yet.
-    pub(super) const fn motion_is_due(&self) -> bool {
-        self.move_wanted.is_some() || matches!(self.flight, Some(Flight::Move(_)))
+    pub const fn motion_is_due(&self) -> bool {
+        self.wanted.is_some() || self.flow.is_some() || matches!(self.flight, Some(Flight::Move(_)))
     }
 }
 

@@ -9,24 +9,39 @@
 //! | here | the state, and how snapshots change it |
 //! | `look` | what queries ask |
 //! | `command` | what is commanded: checked, then sent or kept as a wish |
+//! | `configure` | other parameters |
+//! | `flow` | streamed targets and running waveforms |
+//! | `frame` | frames and the centre of rotation |
+//! | `jog` | constant velocities |
+//! | `pace` | velocities of axes |
+//! | `wave` | waveforms |
 //! | `reference` | referencing |
 //! | `carry` | wishes whose time has come |
 
 mod carry;
 mod command;
+mod configure;
+mod flow;
+mod frame;
+mod jog;
 mod look;
+mod pace;
 mod reference;
+mod wave;
 
+use flow::{CYCLE_MS, Flow};
 pub(super) use reference::Referencing;
 
-use super::axis::AxisSet;
-use super::course::Course;
+use super::axis::{AxisSet, AxisValues};
+use super::course::{Course, Goal};
 use super::error::ErrorCode;
+use super::frames::{Choice, Frames, View};
 use super::soft::SoftLimits;
 use super::target::{Coordinates, coordinates};
+use super::wave::Waves;
 use crate::link::{Command, Mode, PanelLink, Snapshot};
 use crate::motion::{Limits, Position, Stop};
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Targets};
 use kinematics::Geometry;
 
 /// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for planning.
@@ -41,6 +56,17 @@ pub(super) struct Stage {
     /// Limits of the parameters: those of full system velocity.
     full: Limits,
     soft: SoftLimits,
+    waves: Waves,
+    /// Velocities that `VEL` has set, mm/s and deg/s.
+    velocities: AxisValues,
+    targets: Targets,
+    /// Targets that follow one another, and who makes them.
+    flow: Option<Flow>,
+    /// Time between streamed targets, ms.
+    cycle_ms: f64,
+    frames: Frames,
+    /// What targets mean, with the frames in force.
+    view: View,
     snapshot: Option<Snapshot>,
     sent: u32,
     /// Plans refused by the tick when the command in flight was sent.
@@ -53,15 +79,19 @@ pub(super) struct Stage {
     ids: u32,
     look_ahead: u64,
     stop_wanted: Option<Stop>,
-    move_wanted: Option<Position>,
-    /// The move that is wanted can not be had without a stop before.
+    wanted: Option<Goal>,
+    /// What is wanted can not be had without a stop before.
     rest_first: bool,
+    /// Velocities that `JOG` has set and that are kept, mm/s and deg/s in the frames in force.
+    jog: Coordinates,
     target: Coordinates,
     /// The target is where the stage comes to rest, not where it was sent.
     target_is_rest: bool,
     moving: AxisSet,
     /// Tick at which referencing is given up; over when it is past.
     reference_until: u64,
+    /// The tick has refused the parameters that were set last.
+    settings_refused: bool,
     /// Bad news for every connection: how many so far, and the latest.
     news: (u32, ErrorCode),
 }
@@ -72,6 +102,9 @@ pub(super) struct Stage {
 enum Flight {
     Move(Course),
     Reference,
+    Configure,
+    /// Frames with another centre of rotation.
+    Frames(Choice, View),
     /// Nothing that is looked at when it lands.
     Other,
 }
@@ -82,7 +115,14 @@ impl Stage {
             geometry: parameters.geometry,
             limits: parameters.limits,
             full: parameters.limits,
-            soft: SoftLimits::new(&parameters.geometry),
+            soft: SoftLimits::new(),
+            waves: Waves::new(),
+            velocities: AxisValues::default(),
+            targets: parameters.targets,
+            flow: None,
+            cycle_ms: CYCLE_MS,
+            frames: Frames::new(),
+            view: View::BASE,
             snapshot: None,
             sent: 0,
             refused: 0,
@@ -92,12 +132,14 @@ impl Stage {
             ids: 0,
             look_ahead: LOOK_AHEAD,
             stop_wanted: None,
-            move_wanted: None,
+            wanted: None,
+            jog: [0.0; 6],
             rest_first: false,
             target: Coordinates::default(),
             target_is_rest: true,
             moving: AxisSet::EMPTY,
             reference_until: 0,
+            settings_refused: false,
             news: (0, ErrorCode::None),
         }
     }
@@ -112,6 +154,11 @@ impl Stage {
         self.snapshot
             .as_ref()
             .filter(|snapshot| snapshot.commands == self.sent)
+    }
+
+    /// Sets the error of every connection.
+    pub fn tell_all(&mut self, code: ErrorCode) {
+        self.news = (self.news.0.wrapping_add(1), code);
     }
 
     pub const fn news(&self) -> (u32, ErrorCode) {
@@ -153,11 +200,22 @@ impl Stage {
 
     /// The tick has taken what was in flight, or refused it.
     fn land(&mut self, flight: Flight, refused: bool) {
-        let Flight::Move(course) = flight else { return };
+        if refused && matches!(flight, Flight::Configure) {
+            self.settings_refused = true;
+            self.news = (self.news.0.wrapping_add(1), ErrorCode::Busy);
+        }
+        let course = match flight {
+            Flight::Move(course) => course,
+            Flight::Frames(choice, view) if !refused => return self.take_frames(choice, view),
+            _ => return,
+        };
         match (refused, course.is_splice()) {
             (true, true) => self.look_ahead = (self.look_ahead * 2).min(LOOK_AHEAD_MOST),
             (false, true) => self.look_ahead = LOOK_AHEAD,
             _ => {}
+        }
+        if !refused && course.goal == Goal::Velocity([0.0; 3]) {
+            self.will_rest_at(&course.plan.end);
         }
         match (course.stop, refused) {
             (Some(_), true) => {}
@@ -172,8 +230,9 @@ impl Stage {
             (None, false) if course.is_splice() => self.next = Some(course),
             (None, false) => self.course = Some(course),
             // The setpoint was not where the snapshot said: tried again from where it is, unless stopped meanwhile.
-            (None, true) if self.stop_wanted.is_none() && self.move_wanted.is_none() => {
-                self.move_wanted = Some(course.plan.end);
+            (None, true) if course.goal == Goal::Stream => self.lose_flow(),
+            (None, true) if self.stop_wanted.is_none() && self.wanted.is_none() => {
+                self.wanted = Some(course.goal);
             }
             (None, true) => {}
         }
@@ -182,7 +241,7 @@ impl Stage {
     /// After a stop by command the target is where it ends; known as soon as the stop is, so that `MVR` can go on from there.
     fn will_rest_at(&mut self, end: &Position) {
         if self.target_is_rest {
-            self.target = coordinates(end, &self.geometry);
+            self.target = coordinates(end, &self.view, &self.geometry);
         }
     }
 
@@ -194,8 +253,9 @@ impl Stage {
                 self.course = None;
                 self.next = None;
                 self.stop_wanted = None;
-                if self.target_is_rest && self.move_wanted.is_none() {
-                    self.target = coordinates(&snapshot.setpoint, &self.geometry);
+                if self.target_is_rest && self.wanted.is_none() && self.flow.is_none() {
+                    self.jog = [0.0; 6];
+                    self.target = coordinates(&snapshot.setpoint, &self.view, &self.geometry);
                     self.target_is_rest = false;
                 }
             }
@@ -203,7 +263,9 @@ impl Stage {
                 self.course = None;
                 self.next = None;
                 self.stop_wanted = None;
-                self.move_wanted = None;
+                self.wanted = None;
+                self.flow = None;
+                self.jog = [0.0; 6];
                 self.target_is_rest = true;
             }
         }

@@ -1,41 +1,6 @@
-//! The recorder's hook: what a tick knows, offered at its end.
+//! A running hash over every tick.
 
-use crate::drivers::bridge::Duty;
-use crate::link::Mode;
-use crate::motion::Setpoint;
-use kinematics::Angle;
-
-/// All that a tick computed.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// The tick.
-    pub tick: u64,
-    /// State of the supervisor.
-    pub mode: Mode,
-    /// Setpoint of the pose.
-    pub setpoint: Setpoint,
-    /// Setpoint of the pivots; the measured angles while the servo is off.
-    pub pivot_setpoints: [Angle; 3],
-    /// Their rates, rad/s.
-    pub pivot_rates: [f32; 3],
-    /// Measured pivots.
-    pub pivots: [Angle; 3],
-    /// Duties.
-    pub duty: [Duty; 3],
-    /// Commands taken so far.
-    pub commands: u32,
-}
-
-/// Somebody who looks at every tick. Runs inside it: no allocation, no blocking, no unbounded work.
-pub trait Record {
-    /// Takes the sample of one tick.
-    fn record(&mut self, sample: &Sample);
-}
-
-impl Record for () {
-    #[inline]
-    fn record(&mut self, _: &Sample) {}
-}
+use super::{Record, Sample};
 
 /// A running hash over state, setpoints, measured pivots and duties of every tick: two runs that agree in it agreed at
 /// every tick. FNV-1a over 32-bit words.

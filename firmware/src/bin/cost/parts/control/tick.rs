@@ -1,0 +1,231 @@
+//! The tick as a whole: referenced, then led from target to target, every pivot where it should be but for a little. Now and
+//! then a frame is missing.
+
+use super::super::states::{ground, position};
+use super::SUPPLY_COUNTS;
+use super::frames::frames;
+use crate::bench::Bench;
+use crate::random::Random;
+use crate::table::Came;
+use firmware::config::Config;
+use firmware::controller::{Inputs, State, tick};
+use firmware::drivers::biss::RawFrame;
+use firmware::link::{Command, Link, Mode, PanelLink, TickLink};
+use firmware::motion::{Axis, Centre, Ground, Plan, plan_line, plan_transition};
+use firmware::number::Fixed;
+use firmware::recorder::{Record, RunningHash, Sample, Setup, Word};
+use kinematics::{Angle, Pose, inverse};
+
+/// Of the pivots while nothing moves them.
+const AT_START: Pose<Fixed> = Pose {
+    x: Fixed::from_f64(0.1),
+    y: Fixed::from_f64(-0.2),
+    theta: Angle::DEG_30,
+};
+/// Ticks before the encoders are referenced: they take some to be ready.
+const REFERENCED: u64 = 10;
+/// A tick in so many is given a new target while a plan is under way, or has a frame missing.
+const RETARGETS: u64 = 500;
+const MISSES: u64 = 300;
+/// Ticks from planning to the change of plans.
+const AHEAD: u64 = 5;
+
+/// A point to turn about, off the platform's own.
+const OFF_CENTRE: [f64; 2] = [0.3, -0.2];
+/// What is recorded at every tick.
+const RECORDED: [Word; 8] = [
+    Word::Centre(0),
+    Word::Centre(1),
+    Word::Theta,
+    Word::Pivot(0),
+    Word::Pivot(1),
+    Word::Pivot(2),
+    Word::PivotError(0),
+    Word::PivotError(1),
+];
+
+/// Counts the tick: about the platform's centre, about another point, and while signals are recorded.
+pub fn run(bench: &mut Bench, config: &Config) {
+    // Once, and far too large for the stack.
+    let Some(link) = cortex_m::singleton!(: Link = Link::new()) else {
+        return;
+    };
+    let other = Centre::new(OFF_CENTRE).unwrap_or_default();
+    for (name, centre, records) in [
+        ("tick as a whole", Centre::PLATFORM, false),
+        ("tick as a whole, centre of rotation", other, false),
+        ("tick as a whole, recording 8 signals", other, true),
+    ] {
+        led(bench, config, link, name, centre, records);
+    }
+}
+
+#[inline(never)]
+fn led(
+    bench: &mut Bench,
+    config: &Config,
+    link: &mut Link,
+    name: &'static str,
+    centre: Centre,
+    records: bool,
+) {
+    let (tick_link, mut panel) = link.split();
+    // What the last loop has left.
+    let _ = panel.snapshot();
+    let mut control = Control {
+        config: config.clone(),
+        state: State::new(),
+        link: tick_link,
+        recorder: Recorder::default(),
+        panel,
+        plan: Plan::default(),
+        start: [Axis::default(); 3],
+        centre,
+        records,
+        ground: Ground {
+            centre: centre.point(),
+            ..*ground()
+        },
+        ticks: 0,
+    };
+    bench.part_with(
+        name,
+        Bench::SHORT * Bench::SHORT,
+        &mut control,
+        Control::inputs,
+        |control, inputs| {
+            let Control {
+                config,
+                state,
+                link,
+                recorder,
+                ..
+            } = control;
+            tick(config, state, inputs, link, recorder)
+        },
+        // Off, or at fault: a tick that drives no motor.
+        |_, outputs| Came {
+            refused: !outputs.awake,
+            ticks: 0,
+        },
+    );
+}
+
+/// The loop, and what leads it.
+struct Control<'a> {
+    config: Config,
+    state: State,
+    link: TickLink<'a>,
+    recorder: Recorder,
+    panel: PanelLink<'a>,
+    /// The plan under way, or on its way to the tick, and where it starts.
+    plan: Plan,
+    start: [Axis; 3],
+    centre: Centre,
+    records: bool,
+    ground: Ground,
+    ticks: u64,
+}
+
+/// The image's recorder, and the last sample.
+#[derive(Default)]
+struct Recorder {
+    hash: RunningHash,
+    last: Option<Sample>,
+}
+
+impl Record for Recorder {
+    #[inline]
+    fn record(&mut self, sample: &Sample) {
+        self.hash.record(sample);
+        self.last = Some(sample.clone());
+    }
+}
+
+impl Control<'_> {
+    /// The next tick's inputs; leads the loop on by its command queue.
+    fn inputs(&mut self, random: &mut Random) -> Inputs {
+        self.ticks += 1;
+        let mut pivots = inverse(&AT_START).map_or([Angle::ZERO; 3], |inverse| inverse.pivots);
+        if self.ticks == REFERENCED {
+            // The queue is empty.
+            let _ = self.panel.send(Command::Reference);
+            let _ = self.panel.send(Command::Centre(self.centre));
+        } else if let Some(sample) = self.recorder.last.take() {
+            if matches!(sample.mode, Mode::Holding | Mode::Moving) {
+                pivots = reached(&sample, random);
+            }
+            self.lead(&sample, random);
+        }
+        let mut frames = frames(&pivots);
+        if self.ticks > REFERENCED && random.once_in(MISSES) {
+            frames[random.up_to(3) as usize - 1] = RawFrame::MISSING;
+        }
+        Inputs {
+            frames,
+            bridge_fault: [false; 3],
+            emergency_stop: false,
+            current_counts: [100; 3],
+            supply_counts: SUPPLY_COUNTS,
+            tick_cycles: 0,
+            late: false,
+        }
+    }
+
+    /// Begins another record.
+    fn record(&mut self) {
+        if self.records {
+            let setup = Setup {
+                number: self.plan.id,
+                words: RECORDED.into_iter().collect(),
+                every: 1,
+                rows: (self.panel.recorder.capacity() / RECORDED.len()) as u32,
+                now: true,
+                ..Setup::default()
+            };
+            // The tick takes an order as soon as it comes.
+            let _ = self.panel.recorder.record(&setup);
+        }
+    }
+
+    /// A line from where the stage rests, or now and then another target in motion.
+    fn lead(&mut self, sample: &Sample, random: &mut Random) {
+        let Some(snapshot) = self.panel.snapshot() else {
+            return;
+        };
+        let from = sample.point.position;
+        let to = self.centre.of_platform(&position(random));
+        let id = self.plan.id + 1;
+        let planned = match sample.mode {
+            Mode::Holding => {
+                self.record();
+                let start = from.map(Axis::at_rest);
+                plan_line(id, from, to, &self.ground).ok().zip(Some(start))
+            }
+            Mode::Moving if snapshot.plan == self.plan.id && random.once_in(RETARGETS) => {
+                let (plan, at) = (&self.plan, snapshot.plan_tick + AHEAD);
+                let next = plan_transition(id, plan, &self.start, at, to, &self.ground);
+                next.ok()
+                    .map(|next| (next, plan.state_after(&self.start, at)))
+            }
+            _ => None,
+        };
+        if let Some((plan, start)) = planned {
+            self.start = start;
+            self.plan = plan.clone();
+            // The tick has emptied the queue, or nearly.
+            let _ = self.panel.send(Command::Move(plan));
+        }
+    }
+}
+
+/// Where the pivots are when they have followed the sample, a few counts off.
+fn reached(sample: &Sample, random: &mut Random) -> [Angle; 3] {
+    const UNITS_PER_RAD_TICK: f32 = 4_294_967_296.0 / core::f32::consts::TAU / 20_000.0;
+    let mut pivots = sample.pivot_setpoints;
+    for (pivot, rate) in pivots.iter_mut().zip(sample.pivot_rates) {
+        let way = (rate * UNITS_PER_RAD_TICK) as i64 + random.within(-500.0, 500.0) as i64;
+        *pivot += Angle::from_units(way);
+    }
+    pivots
+}

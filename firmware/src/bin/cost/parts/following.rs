@@ -1,0 +1,65 @@
+//! Following a plan: the motion generator's share of a tick.
+
+use super::states::{Moving, ground};
+use crate::bench::{Bench, plain};
+use crate::random::Random;
+use crate::table::Came;
+use firmware::motion::{Motion, Plan, Position, Scale, Start};
+
+/// Counts taking a plan, and a tick of it.
+#[inline(never)]
+pub fn run(bench: &mut Bench) {
+    let mut motion = Motion::default();
+    bench.part_with(
+        "tick: a plan is taken",
+        1,
+        &mut motion,
+        |motion, random| {
+            let (plan, from) = from_rest(random);
+            motion.rest_at(from);
+            plan
+        },
+        |motion, plan| motion.accept(plan),
+        |_, taken| Came {
+            refused: taken.is_err(),
+            ticks: 0,
+        },
+    );
+    let scale = Scale::new(ground().limits.rate_hz);
+    bench.part_with(
+        "tick: next setpoint",
+        Bench::SHORT,
+        &mut motion,
+        |motion, random| {
+            if !motion.moving() {
+                begin_one_of_short_pieces(motion, random);
+            }
+        },
+        |motion, ()| {
+            motion.advance();
+            motion.setpoint(&scale)
+        },
+        plain,
+    );
+}
+
+/// Pieces of two ticks or fewer, so that many change.
+fn begin_one_of_short_pieces(motion: &mut Motion, random: &mut Random) {
+    let (mut plan, from) = from_rest(random);
+    for piece in &mut plan.pieces {
+        piece.ticks = piece.ticks.min(2);
+    }
+    motion.rest_at(from);
+    // It starts where the motion rests, so it is taken.
+    let _ = motion.accept(plan);
+}
+
+/// A plan as if it began at rest, and where: following it takes the same.
+fn from_rest(random: &mut Random) -> (Plan, Position) {
+    let Moving {
+        mut plan, start, ..
+    } = Moving::new(random);
+    let from = start.map(|axis| axis.rounded());
+    plan.start = Start::Rest(from);
+    (plan, from)
+}

@@ -1,0 +1,132 @@
+//! Planning: what the command side computes for a new target or a stop.
+
+use super::states::{Moving, ground, position, way};
+use super::streaming::Streaming;
+use crate::bench::Bench;
+use crate::random::Random;
+use crate::table::Came;
+use firmware::motion::{
+    Axis, Next, NoTransition, Plan, Position, Start, Stop, plan_jog, plan_line, plan_stop,
+    plan_transition,
+};
+
+/// Counts the planners.
+#[inline(never)]
+pub fn run(bench: &mut Bench) {
+    bench.part(
+        "motion: line from rest",
+        1,
+        way,
+        |(from, to)| plan_line(3, *from, *to, ground()),
+        |_, plan| of_plan(plan.as_ref().ok()),
+    );
+    bench.part(
+        "motion: new target in motion",
+        1,
+        |random| (Moving::new(random), position(random)),
+        |(now, to)| retarget(now, *to),
+        |_, plan| of_plan(plan.as_ref()),
+    );
+    bench.part(
+        "motion: jog from rest",
+        1,
+        |random| (position(random), velocity(random)),
+        |(from, velocity)| {
+            let state = from.map(Axis::at_rest);
+            plan_jog(3, Start::Rest(*from), &state, velocity, ground())
+        },
+        |_, plan| of_plan(plan.as_ref().ok()),
+    );
+    bench.part(
+        "motion: jog in motion",
+        1,
+        |random| (Moving::new(random), velocity(random)),
+        |(now, velocity)| jog(now, velocity),
+        |_, plan| of_plan(plan.as_ref()),
+    );
+    for (name, stop) in [
+        ("motion: smooth stop", Stop::Smooth),
+        ("motion: urgent stop", Stop::Urgent),
+    ] {
+        bench.part(
+            name,
+            1,
+            Moving::new,
+            |now| stopped(now, stop),
+            |_, plan| of_plan(plan.as_ref()),
+        );
+    }
+}
+
+/// On at another velocity, or to a stop where that is no way.
+fn jog(now: &Moving, velocity: &[f64; 3]) -> Option<Plan> {
+    let state = now.plan.state_after(&now.start, now.at);
+    let start = Start::Splice {
+        plan: now.plan.id,
+        tick: now.at,
+    };
+    match plan_jog(3, start, &state, velocity, ground()) {
+        Ok(plan) => Some(plan),
+        Err(NoTransition::NeedsStop) => stopped(now, Stop::Smooth),
+        Err(NoTransition::Refused(_)) => None,
+    }
+}
+
+/// mm/s, mm/s and deg/s of a jog; some axes have none.
+fn velocity(random: &mut Random) -> [f64; 3] {
+    let limits = &ground().limits;
+    [
+        limits.speed_mm_s / 2.0,
+        limits.speed_mm_s / 2.0,
+        limits.turn_speed_deg_s / 2.0,
+    ]
+    .map(|most| {
+        if random.once_in(3) {
+            0.0
+        } else {
+            random.within(-most, most)
+        }
+    })
+}
+
+/// Counts targets that come one after the other.
+#[inline(never)]
+pub fn run_stream(bench: &mut Bench) {
+    // One plan a target at up to 333 Hz; faster ones share plans, six at 2 kHz.
+    for (name, periods) in [
+        ("motion: streamed target", [60, 100, 200]),
+        ("motion: plan of six streamed targets", [10, 11, 11]),
+    ] {
+        bench.part_with(
+            name,
+            1,
+            &mut Streaming::default(),
+            |streaming, random| streaming.prepare(random, periods),
+            |streaming, target| streaming.take(*target),
+            |_, next| match next {
+                Some(Next::Send(plan, _)) => of_plan(Some(plan)),
+                _ => of_plan(None),
+            },
+        );
+    }
+}
+
+/// To a new target, or to a stop where there is no way to it without one.
+fn retarget(now: &Moving, to: Position) -> Option<Plan> {
+    match plan_transition(3, &now.plan, &now.start, now.at, to, ground()) {
+        Ok(plan) => Some(plan),
+        Err(NoTransition::NeedsStop) => stopped(now, Stop::Smooth),
+        Err(NoTransition::Refused(_)) => None,
+    }
+}
+
+fn stopped(now: &Moving, stop: Stop) -> Option<Plan> {
+    plan_stop(3, &now.plan, &now.start, now.at, ground(), stop)
+}
+
+fn of_plan(plan: Option<&Plan>) -> Came {
+    Came {
+        refused: plan.is_none(),
+        ticks: plan.map_or(0, Plan::ticks),
+    }
+}

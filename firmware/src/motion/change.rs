@@ -1,0 +1,115 @@
+//! A change of velocity: how long it takes, and its pieces, with no acceleration left at all.
+//!
+//! ```text
+//! acceleration        ________              An acceleration at the start is released first, in n0 ticks; what rounding leaves
+//!  \                 /        \             of it is taken up in one tick. Then velocity changes by
+//!   \_______________/          \____        j n1 (n1 + n2), the same way for all axes: up for n1 ticks, held for n2, down for
+//!     n0      1       n1  n2  n1            n1 with the very jerk of the first, so that nothing is left.
+//! ```
+//!
+//! A jog lasts: a single unit of acceleration left would be a velocity after a year.
+
+use super::axis::{Axis, JERK_STEP};
+use super::plan::Piece;
+use super::swing::Pace;
+use heapless::Vec;
+
+/// Release, what it leaves, and the ramp.
+pub(super) type Pieces = Vec<Piece, 5>;
+
+/// Limits of acceleration and jerk in units per second.
+#[derive(Clone, Copy)]
+pub(super) struct Force {
+    pub acceleration: Pace,
+    pub jerk: Pace,
+}
+
+/// Ticks of the parts of a ramp: `n1` and `n2` above.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ramp {
+    pub rise: u64,
+    pub hold: u64,
+}
+
+impl Ramp {
+    /// The shortest ramp in which velocity changes by `change` within `force`, both per second; of `hz` ticks a second.
+    pub fn new(change: Pace, force: &Force, hz: f32) -> Self {
+        let way = times(change.way, force.acceleration.way, force.jerk.way);
+        let turn = times(change.turn, force.acceleration.turn, force.jerk.turn);
+        // The longer of both, part by part: neither acceleration nor jerk is over its limit then.
+        let rise = ticks_up(way[0].max(turn[0]) * hz).max(1);
+        let whole = ticks_up(way[1].max(turn[1]) * hz).max(rise);
+        Self {
+            rise,
+            hold: whole - rise,
+        }
+    }
+
+    /// Ticks of the whole ramp.
+    pub fn ticks(self) -> u64 {
+        2 * self.rise + self.hold
+    }
+
+    /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk rounded down
+    /// leaves.
+    pub fn pieces(self, change: [i64; 3]) -> [Piece; 3] {
+        let steps = (self.rise as i64)
+            .saturating_mul((self.rise + self.hold) as i64)
+            .saturating_mul(JERK_STEP);
+        let jerk = change.map(|change| change / steps * JERK_STEP);
+        [
+            Piece {
+                ticks: self.rise,
+                jerk,
+            },
+            Piece {
+                ticks: self.hold,
+                jerk: [0; 3],
+            },
+            Piece {
+                ticks: self.rise,
+                jerk: jerk.map(|jerk| -jerk),
+            },
+        ]
+    }
+}
+
+/// Seconds of the jerk, and from its start to that of the jerk back, in the fastest change of a velocity by `change`.
+fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
+    if change * jerk <= acceleration * acceleration {
+        let rise = crate::number::sqrt_f32(change / jerk);
+        [rise, rise]
+    } else {
+        [acceleration / jerk, change / acceleration]
+    }
+}
+
+/// The pieces that bring the acceleration of `state` to exactly zero, within the jerks `most` (2^-72 units).
+pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pieces {
+    let mut pieces = Pieces::new();
+    if state.iter().all(|axis| axis.acceleration == 0) {
+        return pieces;
+    }
+    let seconds = (force.way / jerk.way).max(force.turn / jerk.turn);
+    let ticks = ticks_up(seconds * hz).max(1);
+    let steps = (ticks as i64).saturating_mul(JERK_STEP);
+    let jerk = [0, 1, 2].map(|i| -state[i].acceleration / steps * JERK_STEP);
+    let rest = [0, 1, 2].map(|i| -(state[i].acceleration + jerk[i] * ticks as i64));
+    // Both fit.
+    let _ = pieces.push(Piece { ticks, jerk });
+    let _ = pieces.push(Piece {
+        ticks: 1,
+        jerk: rest,
+    });
+    pieces
+}
+
+/// Longest stretch that is counted: a hundred thousand years.
+const LONGEST: f32 = 36_028_797_018_963_968.0;
+
+/// Rounded up to whole ticks.
+fn ticks_up(ticks: f32) -> u64 {
+    let ticks = ticks.min(LONGEST);
+    let down = ticks as u64;
+    down + u64::from(down as f32 * (1.0 + 1e-6) < ticks)
+}

@@ -1,0 +1,77 @@
+//! Whether a target can be moved to, and along a straight line.
+
+use super::disk;
+use super::ground::Ground;
+use super::limits::centre;
+use super::plan::Position;
+use super::refusal::Refusal;
+use crate::number::Fixed;
+use kinematics::{Angle, Scalar};
+
+/// A thousand million turns, in units of a position.
+const MOST_TURNS: i64 = 1_000_000_000 << 32;
+
+/// Slack for a target on the rim itself, track radii: its coordinates are rounded to 2^-32.
+const RIM: f64 = 1e-9;
+/// The same where the platform centre follows from another point by sines that are good to 2^-29.
+const RIM_TURNED: f64 = 1e-8;
+
+/// Whether `target` can be moved to, from anywhere.
+pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
+    check_end(target, ground, ground.geometry.usable_radius())
+}
+
+/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](super::plan_line).
+pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
+    check(from, to, ground, ground.geometry.usable_radius())
+}
+
+/// The same, with the disk's radius at hand.
+pub(super) fn check(
+    from: &Position,
+    to: &Position,
+    ground: &Ground,
+    usable: f64,
+) -> Result<(), Refusal> {
+    check_end(to, ground, usable)?;
+    if !ground.limits.all_positive() {
+        return Err(Refusal::Limits);
+    }
+    match disk::exit(from, to, ground, usable as f32) {
+        Some(exit) => Err(Refusal::LeavesDisk {
+            radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
+            usable_mm: usable * ground.geometry.radius_mm,
+            share: f64::from(exit.share),
+        }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn check_end(target: &Position, ground: &Ground, usable: f64) -> Result<(), Refusal> {
+    if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
+        return Err(Refusal::TooManyTurns);
+    }
+    let [mut x, mut y] = centre(target);
+    let mut rim = RIM;
+    if ground.centre != [0.0; 2] {
+        let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
+        let (sin, cos) = (sin.to_f64(), cos.to_f64());
+        let [p, q] = ground.centre;
+        x -= cos * p - sin * q;
+        y -= sin * p + cos * q;
+        rim = RIM_TURNED;
+    }
+    let most = usable + rim;
+    let square = x * x + y * y;
+    if square > most * most {
+        return Err(Refusal::OutsideDisk {
+            radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
+            usable_mm: usable * ground.geometry.radius_mm,
+        });
+    }
+    let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
+    if let Some(axis) = (0..3).find(|&i| !inside(i)) {
+        return Err(Refusal::OutOfBounds { axis });
+    }
+    Ok(())
+}

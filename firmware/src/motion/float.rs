@@ -1,0 +1,170 @@
+//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with references.
+
+use crate::number::sqrt_f32;
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// What a profile asks of its numbers. All of it is correctly rounded, or the same integer arithmetic everywhere: the chip
+/// and a desktop get the same bits.
+pub trait Float:
+    Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// Distance of the next number after 1.
+    const EPSILON: Self;
+    /// Whether differences of large numbers are worth more digits than this float has.
+    const COARSE: bool;
+
+    /// The nearest number. Free for a constant.
+    fn of(value: f64) -> Self;
+
+    /// The same number.
+    fn exact(self) -> f64;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Cube root of a number that is not negative, right to some percent at least: a first guess.
+    fn rough_cbrt(self) -> Self;
+
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> bool;
+
+    /// Size.
+    fn abs(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
+
+    /// The greater of two numbers.
+    fn max(self, other: Self) -> Self {
+        if self < other { other } else { self }
+    }
+
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+
+    /// Half of it.
+    fn half(self) -> Self {
+        self * Self::of(0.5)
+    }
+
+    /// Its square.
+    fn square(self) -> Self {
+        self * self
+    }
+}
+
+impl Float for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = f32::EPSILON;
+    const COARSE: bool = true;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn exact(self) -> f64 {
+        f64::from(self)
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        sqrt_f32(self)
+    }
+
+    /// A third of the exponent, and so of the logarithm (off by 3.5 %), and one step of Newton's method.
+    #[inline]
+    fn rough_cbrt(self) -> Self {
+        let guess = Self::from_bits(self.to_bits() / 3 + 0x2A51_37A0);
+        (2.0 * guess + self / (guess * guess)) / 3.0
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        Self::is_finite(self)
+    }
+}
+
+impl Float for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = f64::EPSILON;
+    const COARSE: bool = false;
+
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn exact(self) -> f64 {
+        self
+    }
+
+    fn sqrt(self) -> Self {
+        libm::sqrt(self)
+    }
+
+    fn rough_cbrt(self) -> Self {
+        libm::cbrt(self)
+    }
+
+    fn is_finite(self) -> bool {
+        Self::is_finite(self)
+    }
+}
+
+/// 2^32.
+const UPPER: f32 = 4_294_967_296.0;
+
+/// A count of ticks as a float: hardware, unless it is longer than 32 bits.
+#[inline]
+pub(super) fn float(ticks: u64) -> f32 {
+    match u32::try_from(ticks) {
+        Ok(ticks) => ticks as f32,
+        Err(_) => ticks as f32,
+    }
+}
+
+/// A float rounded up to a count of ticks; zero for what is not positive.
+#[inline]
+pub(super) fn ticks_up(duration: f32) -> u64 {
+    if duration < UPPER {
+        let down = duration as u32;
+        u64::from(down) + u64::from(duration > down as f32)
+    } else {
+        duration as u64
+    }
+}
+
+/// A float rounded to nearest; it has to be within 63 bits.
+#[inline]
+pub(super) fn nearest(value: f32) -> i64 {
+    let size = Float::abs(value);
+    if size < 8_388_608.0 {
+        // Half is a number here.
+        let rounded = (size + 0.5) as i32;
+        i64::from(if value < 0.0 { -rounded } else { rounded })
+    } else {
+        value as i64
+    }
+}
+
+/// Length of a vector.
+#[inline]
+pub(super) fn hypot(x: f32, y: f32) -> f32 {
+    sqrt_f32(x * x + y * y)
+}

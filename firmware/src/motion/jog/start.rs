@@ -1,0 +1,229 @@
+//! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
+
+use super::super::axis::{Axis, SUB_BITS};
+use super::super::change::{Force, Ramp};
+use super::super::float::hypot;
+use super::super::ground::Ground;
+use super::super::plan::Piece;
+use super::super::refusal::Refusal;
+use super::super::swing::{Pace, Swing, per_second};
+use super::super::transition::NoTransition;
+use super::super::units::{AXIS_UNITS, PER_UNIT};
+use super::reach::Steady;
+use crate::number::Fixed;
+use kinematics::{Angle, Scalar};
+
+/// Slack of single precision.
+const SLACK: f32 = 1.0 + 1e-5;
+/// 0.2 um on the reference stage.
+const RIM: f32 = 2e-6;
+/// A thousand million turns.
+const MOST_TURNS: i64 = 1_000_000_000 << 32;
+/// Parts of a piece that are looked at.
+const PARTS: u64 = 4;
+/// Least part of the ordinary acceleration with which a jog is begun.
+const LEAST_FORCE: f32 = 0.05;
+
+/// Everything that does not depend on the state.
+pub(super) struct Setting<'a> {
+    pub ground: &'a Ground,
+    pub hz: f32,
+    swing: Swing,
+    usable: f32,
+    /// Wanted, 2^-72 units a tick.
+    pub velocity: [i64; 3],
+    force: Force,
+}
+
+/// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
+pub(super) struct State {
+    pub point: [f32; 2],
+    pub platform: [f32; 2],
+    pub velocity: [f32; 3],
+    pub acceleration: [f32; 3],
+}
+
+impl<'a> Setting<'a> {
+    pub fn new(velocity: &[f64; 3], ground: &'a Ground) -> Result<Self, Refusal> {
+        let limits = &ground.limits;
+        if !limits.all_positive() {
+            return Err(Refusal::Limits);
+        }
+        let [x, y, turning] = *velocity;
+        let speed = libm::hypot(x, y);
+        // NaN is not within a limit either.
+        if !(speed <= limits.speed_mm_s && turning.abs() <= limits.turn_speed_deg_s) {
+            return Err(Refusal::Velocity);
+        }
+        let mm = ground.geometry.radius_mm;
+        let units = f64::from(AXIS_UNITS) / limits.rate_hz;
+        let pace = |mm_s: f64, deg_s: f64| Pace {
+            way: (mm_s / mm) as f32,
+            turn: deg_s.to_radians() as f32,
+        };
+        Ok(Self {
+            ground,
+            hz: limits.rate_hz as f32,
+            swing: Swing::new(ground),
+            usable: ground.geometry.usable_radius() as f32,
+            velocity: [x / mm, y / mm, turning / 360.0].map(|rate| (rate * units) as i64),
+            force: Force {
+                acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
+                jerk: pace(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
+            },
+        })
+    }
+
+    /// How far out the jog to `target` may go, and how hard it may be begun and ended there.
+    pub fn force(&self, now: &State, target: &[f32; 3]) -> Result<(f32, Force), NoTransition> {
+        let swing = &self.swing;
+        let pace = Pace::of(target);
+        let most = swing
+            .radius(pace, self.usable)
+            .ok_or(NoTransition::Refused(Refusal::PivotRate { radius_mm: 0.0 }))?;
+        let out = hypot(now.platform[0], now.platform[1]);
+        if out > most + RIM {
+            let radius_mm = f64::from(most) * self.ground.geometry.radius_mm;
+            return Err(NoTransition::Refused(Refusal::PivotRate { radius_mm }));
+        }
+        let travels = |pace: Pace| pace.way > 0.0 || pace.turn * swing.arm() > 0.0;
+        let (speed, force) = (Pace::of(&now.velocity), Pace::of(&now.acceleration));
+        let radius = if travels(pace) || travels(speed) || travels(force) {
+            most
+        } else {
+            out
+        };
+        // An acceleration under way adds to the velocity while it is released.
+        let gained = Pace {
+            way: speed.way + force.way * force.way / (2.0 * self.force.jerk.way),
+            turn: speed.turn + force.turn * force.turn / (2.0 * self.force.jerk.turn),
+        };
+        let room = swing.room(radius, pace.max(gained));
+        let part = room / swing.need(radius, self.force.acceleration);
+        if part < LEAST_FORCE
+            || !swing.rate_holds(radius, gained)
+            || swing.need(radius, force) > room * SLACK
+        {
+            return Err(NoTransition::NeedsStop);
+        }
+        let part = part.min(1.0);
+        let acceleration = Pace {
+            way: self.force.acceleration.way * part,
+            turn: self.force.acceleration.turn * part,
+        };
+        Ok((
+            radius,
+            Force {
+                acceleration,
+                ..self.force
+            },
+        ))
+    }
+
+    /// Seconds of steady motion until theta meets its bounds.
+    pub fn turn_seconds(&self, theta: &Axis, wanted: i64) -> f32 {
+        let [low, high] = self.ground.bounds[2];
+        let now = theta.rounded();
+        let (way, velocity) = match wanted {
+            0 => return f32::INFINITY,
+            1.. => (high.min(MOST_TURNS).saturating_sub(now), wanted),
+            _ => (now.saturating_sub(low.max(-MOST_TURNS)), -wanted),
+        };
+        let units = (1_i64 << SUB_BITS) as f32;
+        way.max(0) as f32 * (1.0 - 4.0 * f32::EPSILON) / (velocity as f32 / units * self.hz)
+    }
+
+    /// The steady motion at `velocity` from a position.
+    pub fn steady(&self, axes: &[Axis; 3], velocity: &[f32; 3]) -> Steady {
+        let [x, y, turning] = *velocity;
+        Steady {
+            point: [0, 1].map(|i| axes[i].rounded() as f32 * PER_UNIT),
+            theta: axes[2].rounded(),
+            velocity: [x, y],
+            turning,
+            centre: self.centre(),
+        }
+    }
+
+    /// Whether the way of `pieces` keeps to the disk and the bounds, and a stop from anywhere on it does too.
+    pub fn way_holds(
+        &self,
+        axes: &[Axis; 3],
+        pieces: &[Piece],
+        radius: f32,
+        force: &Force,
+    ) -> bool {
+        let mut axes = *axes;
+        for piece in pieces {
+            let mut left = piece.ticks;
+            let part = piece.ticks.div_ceil(PARTS).max(1);
+            while left > 0 {
+                let ticks = part.min(left);
+                for (i, axis) in axes.iter_mut().enumerate() {
+                    *axis = axis.after(ticks, piece.jerk[i], 0);
+                }
+                left -= ticks;
+                if !self.can_stop(&axes, ticks, radius, force) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether a stop from here, or from up to `ticks` before, ends inside.
+    fn can_stop(&self, axes: &[Axis; 3], ticks: u64, radius: f32, force: &Force) -> bool {
+        let state = State::new(axes, self);
+        let (speed, now) = (Pace::of(&state.velocity), Pace::of(&state.acceleration));
+        let arm = self.swing.arm();
+        let seconds = ticks as f32 / self.hz;
+        // Its way: the release of what acceleration there is, the braking; and the arc over the chord before.
+        let brake = Ramp::new(speed, force, self.hz).ticks() as f32 / (2.0 * self.hz)
+            + (now.way / force.jerk.way).max(now.turn / force.jerk.turn);
+        let whole = speed.way + speed.turn * arm;
+        let bend = now.way + now.turn * arm + speed.turn * speed.turn * arm;
+        let arc = bend * seconds * seconds / 8.0;
+        let out = hypot(state.platform[0], state.platform[1]);
+        let [x, y] = [0, 1].map(|i| state.point[i] + state.velocity[i] * brake);
+        // The moved point goes straight; with the arm besides every orientation is inside.
+        let straight = hypot(state.point[0], state.point[1]).max(hypot(x, y)) + arm;
+        if straight.min(out + whole * brake) + arc > radius {
+            return false;
+        }
+        (0..3).all(|i| {
+            let [low, high] = self.ground.bounds[i];
+            let way = (state.velocity[i] * brake).abs() + now.way.max(now.turn) * seconds * seconds;
+            let per_unit = if i < 2 {
+                PER_UNIT
+            } else {
+                PER_UNIT * core::f32::consts::TAU
+            };
+            let here = axes[i].rounded();
+            here.saturating_sub(low) as f32 * per_unit >= way
+                && high.saturating_sub(here) as f32 * per_unit >= way
+        })
+    }
+
+    fn centre(&self) -> [f32; 2] {
+        self.ground.centre.map(|radii| radii as f32)
+    }
+}
+
+impl State {
+    pub fn new(axes: &[Axis; 3], setting: &Setting) -> Self {
+        let acceleration = per_second(&axes.map(|axis| axis.acceleration), setting.hz);
+        let point = [0, 1].map(|i| axes[i].rounded() as f32 * PER_UNIT);
+        let (sin, cos) = Fixed::sin_cos(Angle::from_units(axes[2].rounded()));
+        let (sin, cos) = (sin.to_f32(), cos.to_f32());
+        let [a, b] = setting.centre();
+        Self {
+            point,
+            platform: [
+                point[0] - (a * cos - b * sin),
+                point[1] - (a * sin + b * cos),
+            ],
+            velocity: per_second(&axes.map(|axis| axis.velocity), setting.hz),
+            acceleration: acceleration.map(|rate| rate * setting.hz),
+        }
+    }
+}

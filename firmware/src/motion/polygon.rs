@@ -1,0 +1,119 @@
+//! From the fastest speed along a line to a few stretches of constant acceleration.
+//!
+//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is one
+//! already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it stays
+//! between z and a share of z: from where the line before ended, the range of slopes that do narrows from place to place,
+//! and the line ends where none is left. A share that leaves too many lines is lowered.
+
+use super::limits::PathLimits;
+use super::speed::Squares;
+use crate::number::sqrt_f32;
+use heapless::Vec;
+
+/// Most stretches: each corner takes two pieces of a plan.
+pub(super) const STRETCHES: usize = 12;
+
+/// A corner: where, and the speed there (per second).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub s: f32,
+    pub rate: f32,
+}
+
+/// Corners of a motion from rest to rest.
+pub(super) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
+
+/// Shares of z that are given away, one after the other.
+const LOSSES: [f32; 11] = [
+    0.01, 0.015, 0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.22, 0.3,
+];
+
+/// Slopes that differ by less than this part of the steepest are the same but for roundings.
+const ALIKE: f32 = 1e-5;
+
+/// The polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to `acceleration`.
+/// `None` where it takes too many stretches.
+pub(super) fn under(z: &Squares, stretches: usize, acceleration: f32) -> Option<Polygon> {
+    LOSSES
+        .iter()
+        .find_map(|&loss| lay(z.get(..=stretches)?, acceleration, 1.0 - loss))
+}
+
+/// Without the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
+/// which the acceleration falls: without them the speed is lower.
+pub(super) fn thinned(mut polygon: Polygon, limits: &PathLimits) -> Polygon {
+    let mut k = 1;
+    while k + 2 < polygon.len() {
+        let stretch = |k: usize| Stretch::new(&polygon[k], &polygon[k + 1]);
+        let (before, here, after) = (stretch(k - 1), stretch(k), stretch(k + 1));
+        let [first, second] = [
+            before.acceleration - here.acceleration,
+            here.acceleration - after.acceleration,
+        ];
+        let ramps = (first + second) / (2.0 * limits.jerk);
+        if first > 0.0 && second > 0.0 && here.seconds < ramps {
+            // The one that stands out less.
+            polygon.remove(if first < second { k } else { k + 1 });
+            k = k.saturating_sub(1).max(1);
+        } else {
+            k += 1;
+        }
+    }
+    polygon
+}
+
+/// What happens between two corners.
+struct Stretch {
+    seconds: f32,
+    acceleration: f32,
+}
+
+impl Stretch {
+    fn new(from: &Corner, to: &Corner) -> Self {
+        let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
+        Self {
+            seconds,
+            acceleration: (to.rate - from.rate) / seconds,
+        }
+    }
+}
+
+fn lay(z: &[f32], acceleration: f32, share: f32) -> Option<Polygon> {
+    let last = z.len() - 1;
+    let spacing = 1.0 / last as f32;
+    let steepest = 2.0 * acceleration * spacing;
+    let mut polygon = Polygon::new();
+    let (mut from, mut start) = (0, 0.0);
+    polygon.push(Corner { s: 0.0, rate: 0.0 }).ok()?;
+    while from < last {
+        let (mut low, mut high) = (-steepest, steepest);
+        let mut to = from + 1;
+        // The first stretch is taken in any case: at its end a line can be as low as it likes.
+        high = high.min(z[to] - start);
+        low = low.max(z[to] * share - start).min(high);
+        while to < last {
+            let steps = (to + 1 - from) as f32;
+            let over = 1.0 / steps;
+            let highest = high.min((z[to + 1] - start) * over);
+            let lowest = low.max((z[to + 1] * share - start) * over);
+            if lowest > highest + steepest * ALIKE {
+                break;
+            }
+            (low, high) = (lowest.min(highest), highest);
+            to += 1;
+        }
+        start = (start + high * (to - from) as f32).max(0.0);
+        from = to;
+        polygon
+            .push(Corner {
+                s: from as f32 * spacing,
+                rate: sqrt_f32(start),
+            })
+            .ok()?;
+    }
+    // At the end z is 0, and so is the polygon but for roundings.
+    if let Some(corner) = polygon.last_mut() {
+        corner.rate = 0.0;
+    }
+    Some(polygon)
+}

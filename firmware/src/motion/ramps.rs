@@ -1,0 +1,101 @@
+//! From stretches of constant acceleration to a pace of limited jerk.
+//!
+//! Where the acceleration steps, at a corner of the [`Polygon`], it gets a ramp instead, as long as the limit of jerk asks for
+//! and centred on the corner:
+//!
+//! ```text
+//! acceleration   ____                      _____
+//!                    |         becomes          \             The speed before and after the ramp is the same, and so
+//!                    |____                       \____        the motion ends at rest; it lasts half a ramp longer at
+//!                                                             its start and at its end, and the corners are rounded.
+//! ```
+//!
+//! Ramps may overlap: they add up. Of two of the same sign that do, each is made as long as their sum asks for.
+//!
+//! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by it.
+
+use super::limits::PathLimits;
+use super::pace::Pace;
+use super::polygon::{Polygon, STRETCHES};
+use super::score::Score;
+use heapless::Vec;
+
+/// A ramp of the acceleration.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ramp {
+    /// Where its middle is, ticks.
+    pub middle: i64,
+    /// How long it is, ticks: even.
+    pub ticks: i64,
+    /// How much the acceleration changes, s per tick squared.
+    pub change: f32,
+}
+
+/// Ramps that make a motion.
+pub(super) type Ramps = Vec<Ramp, { STRETCHES + 1 }>;
+
+/// Longest duration in ticks: the integers below hold it, and the roundings of the axes' jerks do not yet show in the line.
+const LONGEST: i64 = 262_144;
+
+/// The pace along `polygon`, with everything `slower` than it is there (1 or more). `None` where it would last too long.
+pub(super) fn pace(polygon: &Polygon, slower: f32, limits: &PathLimits, hz: f32) -> Option<Pace> {
+    let mut ramps = corners(polygon, slower, hz)?;
+    let most = limits.jerk / (hz * hz * hz);
+    widen(&mut ramps, most);
+    Score::new(&ramps)?.pace()
+}
+
+/// The corners, with ramps of no length yet.
+fn corners(polygon: &Polygon, slower: f32, hz: f32) -> Option<Ramps> {
+    let mut ramps = Ramps::new();
+    let (mut middle, mut before) = (0, 0.0);
+    for pair in polygon.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let ticks = libm::ceilf(2.0 * (b.s - a.s) / (a.rate + b.rate) * hz * slower * SHORT);
+        // Nor is a NaN in it.
+        if !(0.0..LONGEST as f32).contains(&ticks) {
+            return None;
+        }
+        let ticks = ticks.max(1.0);
+        let acceleration = (b.rate - a.rate) / (hz * slower * ticks);
+        let change = acceleration - before;
+        ramps
+            .push(Ramp {
+                middle,
+                ticks: 0,
+                change,
+            })
+            .ok()?;
+        middle += ticks as i64;
+        before = acceleration;
+    }
+    let change = -before;
+    ramps
+        .push(Ramp {
+            middle,
+            ticks: 0,
+            change,
+        })
+        .ok()?;
+    (middle < LONGEST).then_some(ramps)
+}
+
+/// A duration that is whole but for its roundings is not rounded up.
+const SHORT: f32 = 1.0 - 1e-6;
+
+/// Gives the ramps their lengths.
+fn widen(ramps: &mut Ramps, most: f32) {
+    let even = |change: f32| 2 * libm::ceilf(change / (2.0 * most) * SHORT).max(1.0) as i64;
+    for ramp in ramps.iter_mut() {
+        ramp.ticks = even(ramp.change.abs());
+    }
+    for k in 1..ramps.len() {
+        let (a, b) = (ramps[k - 1], ramps[k]);
+        let meet = b.middle - a.middle < (a.ticks + b.ticks) / 2;
+        if meet && a.change * b.change > 0.0 {
+            let ticks = even((a.change + b.change).abs());
+            ramps[k - 1].ticks = a.ticks.max(ticks);
+            ramps[k].ticks = b.ticks.max(ticks);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
+
+use super::axis::Axis;
+use super::brake::Brake;
+use super::envelope::Broken;
+use super::float::hypot;
+use super::ground::{Bounds, Ground};
+use super::sample::{Arc, Sample};
+use super::sizes::Sizes;
+use super::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
+use core::f32::consts::TAU;
+
+/// See the module.
+pub(super) struct Reach {
+    radius: f32,
+    bounds: Bounds,
+    /// The moved point in the platform's axes, and its distance from the platform's centre.
+    pub centre: [f32; 2],
+    pub arm: f32,
+}
+
+/// Slack of single precision: 0.02 um on the reference stage.
+const RIM: f32 = 2e-7;
+
+impl Reach {
+    pub fn new(ground: &Ground) -> Self {
+        let centre = ground.centre.map(|value| value as f32);
+        Self {
+            radius: ground.geometry.usable_radius() as f32,
+            bounds: ground.bounds,
+            centre,
+            arm: hypot(centre[0], centre[1]),
+        }
+    }
+
+    /// How far each axis may go down and up from here, track radii and rad.
+    pub fn rooms(&self, axes: &[Axis; 3]) -> [[f32; 2]; 3] {
+        let unit = [PER_UNIT, PER_UNIT, TAU * PER_UNIT];
+        [0, 1, 2].map(|i| {
+            let here = axes[i].rounded();
+            self.bounds[i].map(|bound| bound.saturating_sub(here) as f32 * unit[i])
+        })
+    }
+
+    /// Holds a stretch against the bounds; `rise` is how far translation and rotation can rise between its ends.
+    pub fn check_way(
+        &self,
+        rooms: &[[f32; 2]; 3],
+        from: &Sample,
+        to: &Sample,
+        rise: [f32; 2],
+    ) -> Result<(), Broken> {
+        for i in 0..3 {
+            let rise = rise[i / 2];
+            let (low, high) = (
+                from.way[i].min(to.way[i]) - rise,
+                from.way[i].max(to.way[i]) + rise,
+            );
+            if !(rooms[i][0] - RIM <= low && high <= rooms[i][1] + RIM) {
+                return Err(Broken::Reach);
+            }
+        }
+        Ok(())
+    }
+
+    /// The greatest distance of the platform's centre from the track's over a stretch, inside the disk.
+    pub fn radius(
+        &self,
+        arc: &Arc,
+        from: &Sample,
+        to: &Sample,
+        sizes: &Sizes,
+        t: f32,
+    ) -> Result<f32, Broken> {
+        let ends = self.distance(arc, from).max(self.distance(arc, to));
+        let furthest = ends + sizes.at_arm(self.arm).a[0] * t * t / 8.0;
+        if furthest <= self.radius + RIM {
+            Ok(furthest)
+        } else {
+            Err(Broken::Reach)
+        }
+    }
+
+    fn distance(&self, arc: &Arc, sample: &Sample) -> f32 {
+        if self.arm > 0.0 {
+            arc.platform(sample, self.centre).radius()
+        } else {
+            let [x, y] = arc.place(sample);
+            hypot(x, y)
+        }
+    }
+
+    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few operations.
+    pub fn far_inside(
+        &self,
+        arc: &Arc,
+        rooms: &[[f32; 2]; 3],
+        at: &Sample,
+        limits: &UnitLimits,
+        hz: f32,
+    ) -> bool {
+        let speed = [hypot(at.v[0], at.v[1]), at.v[2].abs()];
+        let force = [hypot(at.a[0], at.a[1]), at.a[2].abs()];
+        let (mut seconds, mut gained) = (0.0_f32, [0.0; 2]);
+        for (i, limits) in [&limits.translation, &limits.rotation]
+            .into_iter()
+            .enumerate()
+        {
+            let unit = if i == 0 {
+                PER_AXIS_UNIT
+            } else {
+                PER_AXIS_UNIT * TAU
+            };
+            let most = limits.acceleration * unit * hz * hz;
+            let release = (force[i] + most) / (limits.jerk * unit * hz * hz * hz);
+            gained[i] = speed[i] + force[i] * release;
+            seconds = seconds.max(2.0 * release + gained[i] / most);
+        }
+        let [way, turn] = gained.map(|speed| speed * seconds);
+        let ways = [way, way, turn];
+        let [x, y] = arc.place(at);
+        let clear =
+            |i: usize| rooms[i][0] <= at.way[i] - ways[i] && at.way[i] + ways[i] <= rooms[i][1];
+        hypot(x, y) + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
+    }
+
+    /// Holds a stop from a state against disk and bounds: at the ends of its three segments.
+    pub fn check_stop(
+        &self,
+        arc: &Arc,
+        rooms: &[[f32; 2]; 3],
+        at: &Sample,
+        brake: &Brake,
+        hz: f32,
+    ) -> Result<(), Broken> {
+        let [t1, t2, t3] = brake.times().map(|ticks| ticks / hz);
+        let mut spots = [*at; 3];
+        for i in 0..3 {
+            let (v, a) = (at.v[i], at.a[i]);
+            let whole = t1 / 2.0 + t2 + t3 / 2.0;
+            if !(whole > 0.0) {
+                continue;
+            }
+            let peak = -(v + a * t1 / 2.0) / whole;
+            let v1 = v + (a + peak) * t1 / 2.0;
+            let v2 = v1 + peak * t2;
+            spots[0].way[i] = at.way[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
+            spots[1].way[i] = spots[0].way[i] + t2 * (v1 + peak * t2 / 2.0);
+            spots[2].way[i] = spots[1].way[i] + t3 * (v2 + peak * t3 / 3.0);
+        }
+        for spot in &spots {
+            self.check_way(rooms, spot, spot, [0.0; 2])?;
+            if !(self.distance(arc, spot) <= self.radius + RIM) {
+                return Err(Broken::Reach);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,153 @@
+//! Ramps of the acceleration in whole numbers: the pieces of a pace.
+//!
+//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
+//! a few units, and two ticks more take those: the motion ends at rest to the bit.
+
+use super::pace::{Beat, Pace};
+use super::plan::MAX_PIECES;
+use super::polygon::STRETCHES;
+use super::ramps::{Ramp, Ramps};
+use heapless::Vec;
+
+/// The ramps in integers.
+pub(super) struct Score {
+    /// Start and end of each, and its jerk.
+    ramps: Vec<(i64, i64, i32), { STRETCHES + 1 }>,
+    start: i64,
+    end: i64,
+    /// Bits of the largest jerk.
+    bits: u32,
+}
+
+/// Bits of the largest jerk, and of it times the square of the duration: what the integers below hold. For most lines it is
+/// the first that counts.
+const MOST_BITS: u32 = 30;
+const BITS_IN_ALL: u32 = 56;
+
+impl Score {
+    pub fn new(ramps: &Ramps) -> Option<Self> {
+        let jerk = |ramp: &Ramp| ramp.change / ramp.ticks as f32;
+        let largest = ramps
+            .iter()
+            .fold(0.0_f32, |most, r| most.max(jerk(r).abs()));
+        let mut score = Self {
+            ramps: Vec::new(),
+            start: i64::MAX,
+            end: i64::MIN,
+            bits: 0,
+        };
+        let length = |ramps: &Ramps| Some(ramps.last()?.middle - ramps.first()?.middle);
+        let duration_bits = u64::BITS - length(ramps)?.unsigned_abs().leading_zeros();
+        score.bits = (BITS_IN_ALL - 2 * duration_bits).min(MOST_BITS);
+        let scale = (1u32 << score.bits) as f32 / largest;
+        for ramp in ramps {
+            let half = ramp.ticks / 2;
+            let (start, end) = (ramp.middle - half, ramp.middle + half);
+            score.start = score.start.min(start);
+            score.end = score.end.max(end);
+            let whole = libm::rintf(jerk(ramp) * scale) as i32;
+            score.ramps.push((start, end, whole)).ok()?;
+        }
+        score.close()?;
+        Some(score)
+    }
+
+    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
+    fn left(&self) -> (i64, i64) {
+        self.ramps
+            .iter()
+            .fold((0, 0), |(force, speed), (start, end, jerk)| {
+                let step = i64::from(*jerk) * (end - start);
+                let lever = 2 * self.end - start - end;
+                (force + step, speed + step * lever)
+            })
+    }
+
+    /// Lets the last two ramps take up what is left.
+    fn close(&mut self) -> Option<()> {
+        let n = self.ramps.len();
+        let [.., (a_start, a_end, _), (b_start, b_end, _)] = self.ramps[..] else {
+            return None;
+        };
+        let (force, speed) = self.left();
+        let lever = |start: i64, end: i64| 2 * self.end - start - end;
+        let (a, b) = (lever(a_start, a_end), lever(b_start, b_end));
+        let a_step = -(speed - force * b) as f32 / (a - b) as f32;
+        let a_jerk = libm::rintf(a_step / (a_end - a_start) as f32) as i32;
+        self.ramps[n - 2].2 += a_jerk;
+        let force = force + i64::from(a_jerk) * (a_end - a_start);
+        self.ramps[n - 1].2 -= libm::rintf(force as f32 / (b_end - b_start) as f32) as i32;
+        Some(())
+    }
+
+    /// The pieces between all starts and ends.
+    pub fn pace(&self) -> Option<Pace> {
+        let mut times: Vec<(i64, i32), { 2 * (STRETCHES + 1) }> = Vec::new();
+        for &(start, end, jerk) in &self.ramps {
+            insert(&mut times, (start, jerk))?;
+            insert(&mut times, (end, -jerk))?;
+        }
+        let mut sum = Sum::default();
+        let mut jerk = 0;
+        for pair in times.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            jerk += from.1;
+            if to.0 > from.0 {
+                sum.push(to.0 - from.0, jerk)?;
+            }
+        }
+        sum.close()?;
+        (sum.sixfold > 0).then_some(Pace {
+            beats: sum.beats,
+            sixfold: sum.sixfold,
+            bits: self.bits,
+        })
+    }
+}
+
+/// Beats, and the state they lead to.
+#[derive(Default)]
+struct Sum {
+    beats: Vec<Beat, MAX_PIECES>,
+    /// Acceleration.
+    force: i64,
+    /// Twice the speed.
+    speed: i64,
+    /// Six times the way.
+    sixfold: i128,
+}
+
+impl Sum {
+    fn push(&mut self, ticks: i64, jerk: i32) -> Option<()> {
+        let bent = i64::from(jerk) * ticks;
+        let way = 3 * (self.speed + self.force * ticks) + bent * ticks;
+        self.sixfold += i128::from(way) * i128::from(ticks);
+        self.speed += (2 * self.force + bent) * ticks;
+        self.force += bent;
+        let ticks = ticks as u64;
+        self.beats.push(Beat { ticks, jerk }).ok()
+    }
+
+    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the acceleration is.
+    fn close(&mut self) -> Option<()> {
+        if self.force == 0 && self.speed == 0 {
+            return Some(());
+        }
+        let first = -(self.speed + 3 * self.force) / 2;
+        let second = -self.force - first;
+        self.push(1, i32::try_from(first).ok()?)?;
+        self.push(1, i32::try_from(second).ok()?)
+    }
+}
+
+/// Inserts in order of time; nearly always at the end.
+fn insert<const N: usize>(times: &mut Vec<(i64, i32), N>, event: (i64, i32)) -> Option<()> {
+    times.push(event).ok()?;
+    let mut k = times.len() - 1;
+    while k > 0 && times[k - 1].0 > event.0 {
+        times[k] = times[k - 1];
+        k -= 1;
+    }
+    times[k] = event;
+    Some(())
+}

@@ -1,0 +1,141 @@
+//! What has happened to the controller: a ring of typed events, each with its tick. `EVT?` tells them, the oldest first; when
+//! it is full the oldest goes. They are numbered from 1 on, so that one sees how many have gone.
+
+use super::Panel;
+use super::reply::Reply;
+use crate::fault::Fault;
+use crate::link::{Mode, Snapshot};
+use core::fmt;
+use embedded_io::Write;
+use heapless::Deque;
+
+/// Events that are kept.
+pub const EVENTS: usize = 64;
+
+/// Something that happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Event {
+    /// The controller started; by what, if that is worth telling.
+    Start(Option<&'static str>),
+    Fault(Fault),
+    Acknowledged,
+    Referenced,
+    ReferenceLost,
+    ServoOn,
+    ServoOff,
+    /// A parameter was set.
+    Set(u32, f64),
+    /// `STP` or `#24`.
+    Stop,
+    /// `HLT`
+    Halt,
+    /// The tick has refused commands: how many.
+    Refused(u32),
+    /// No host was heard for so many milliseconds.
+    Silent(f64),
+}
+
+/// See the module.
+pub(super) struct Events {
+    kept: Deque<(u64, Event), EVENTS>,
+    count: u32,
+    last: Seen,
+}
+
+/// What of the latest snapshot can be an event.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Seen {
+    fault: Option<Fault>,
+    referenced: bool,
+    on: bool,
+    refused: u32,
+}
+
+impl Events {
+    /// The controller has started.
+    pub fn new() -> Self {
+        let mut events = Self {
+            kept: Deque::new(),
+            count: 0,
+            last: Seen::default(),
+        };
+        events.add(0, Event::Start(None));
+        events
+    }
+
+    /// Tells by what it started.
+    pub fn note_start(&mut self, cause: &'static str) {
+        if let Some((_, Event::Start(by))) = self.kept.front_mut() {
+            *by = Some(cause);
+        }
+    }
+
+    pub fn add(&mut self, tick: u64, event: Event) {
+        if self.kept.is_full() {
+            self.kept.pop_front();
+        }
+        // There is room now.
+        let _ = self.kept.push_back((tick, event));
+        self.count = self.count.wrapping_add(1);
+    }
+
+    /// Finds out what has happened up to a snapshot.
+    pub fn take(&mut self, snapshot: &Snapshot) {
+        let now = Seen {
+            fault: snapshot.fault,
+            referenced: snapshot.referenced,
+            on: matches!(snapshot.mode, Mode::Holding | Mode::Moving),
+            refused: snapshot.refused,
+        };
+        let last = core::mem::replace(&mut self.last, now);
+        let tick = snapshot.tick;
+        let refused = now.refused.wrapping_sub(last.refused);
+        let happened = [
+            (refused != 0).then_some(Event::Refused(refused)),
+            (last.fault.is_some() && now.fault.is_none()).then_some(Event::Acknowledged),
+            (now.referenced && !last.referenced).then_some(Event::Referenced),
+            (!now.referenced && last.referenced).then_some(Event::ReferenceLost),
+            (now.on && !last.on).then_some(Event::ServoOn),
+            // A fault says so itself.
+            (!now.on && last.on && now.fault.is_none()).then_some(Event::ServoOff),
+        ];
+        for event in happened.into_iter().flatten() {
+            self.add(tick, event);
+        }
+        if let Some(fault) = now.fault.filter(|_| now.fault != last.fault) {
+            self.add(fault.tick, Event::Fault(fault));
+        }
+    }
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Start(None) => f.write_str("start"),
+            Self::Start(Some(cause)) => write!(f, "start by {cause}"),
+            Self::Fault(fault) => write!(f, "fault: {fault}"),
+            Self::Acknowledged => f.write_str("fault acknowledged"),
+            Self::Referenced => f.write_str("referenced"),
+            Self::ReferenceLost => f.write_str("reference lost"),
+            Self::ServoOn => f.write_str("servo on"),
+            Self::ServoOff => f.write_str("servo off"),
+            Self::Set(id, value) => write!(f, "parameter 0x{id:X} set to {value}"),
+            Self::Stop => f.write_str("stopped by command"),
+            Self::Halt => f.write_str("halted by command"),
+            Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
+            Self::Silent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
+        }
+    }
+}
+
+impl Panel {
+    /// Answers `EVT?`: number, tick and what has happened.
+    pub(super) fn tell_events<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+        let mut reply = Reply::new(out);
+        let gone = self.events.count - self.events.kept.len() as u32;
+        for (number, (tick, event)) in (gone + 1..).zip(&self.events.kept) {
+            reply.line(format_args!("{number} {tick} {event}"))?;
+        }
+        reply.end()
+    }
+}

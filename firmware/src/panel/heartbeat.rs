@@ -1,0 +1,65 @@
+//! The host's heartbeat: when one is asked for with `HBT`, a host that is not heard for longer is taken for gone.
+//!
+//! Heard is any byte on any connection. What follows is what `STP` does: the motion ends at the highest deceleration, on its
+//! path, the macro and all waits end, every connection gets error 10, and the event is kept. It is no fault: a stage that
+//! stands still under its servo is safer than one whose motors are off, and whoever comes back finds it where it stopped.
+
+use super::error::ErrorCode;
+use super::events::Event;
+use super::session::Session;
+use super::{LONGEST_MS, Panel};
+use crate::link::PanelLink;
+use crate::motion::Stop;
+
+/// Shortest heartbeat that can be asked for: what an operating system keeps with ease.
+const SHORTEST_MS: f64 = 10.0;
+
+/// See the module.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Heartbeat {
+    /// Longest silence, ms; 0 when any is allowed.
+    pub ms: f64,
+    heard: u64,
+    /// It has been silent for too long, and not heard since.
+    is_silent: bool,
+}
+
+impl Panel {
+    /// `HBT`: longest silence, or 0 for none.
+    pub(super) fn set_heartbeat(&mut self, ms: f64) -> Result<(), ErrorCode> {
+        if ms != 0.0 && !(SHORTEST_MS..=LONGEST_MS).contains(&ms) {
+            return Err(ErrorCode::OutOfRange);
+        }
+        self.heartbeat = Heartbeat {
+            ms,
+            heard: self.stage.tick(),
+            is_silent: false,
+        };
+        Ok(())
+    }
+
+    /// Notes whether a connection has been heard.
+    pub(super) fn listen(&mut self, session: &mut Session) {
+        if core::mem::take(&mut session.heard) {
+            self.heartbeat.heard = self.stage.tick();
+            self.heartbeat.is_silent = false;
+        }
+    }
+
+    /// Stops when the host has been silent for too long.
+    pub(super) fn watch_heartbeat(&mut self, link: &mut PanelLink<'_>) {
+        let Heartbeat {
+            ms,
+            heard,
+            is_silent,
+        } = self.heartbeat;
+        let tick = self.stage.tick();
+        if ms == 0.0 || is_silent || tick <= heard + self.stage.ticks(ms) {
+            return;
+        }
+        self.heartbeat.is_silent = true;
+        self.events.add(tick, Event::Silent(ms));
+        self.stop_all(Stop::Urgent, link);
+        self.stage.tell_all(ErrorCode::Stopped);
+    }
+}

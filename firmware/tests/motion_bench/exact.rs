@@ -1,0 +1,164 @@
+//! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
+
+use super::{AXIS_UNIT, UNIT};
+use firmware::motion::{Axis, Ground, Plan};
+use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
+use std::f64::consts::TAU;
+
+/// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    pub speed: f64,
+    pub acceleration: f64,
+    pub jerk: f64,
+    pub pivot_rate: f64,
+    pub pivot_acceleration: f64,
+    pub outside: f64,
+    pub out_of_bounds: f64,
+}
+
+impl Worst {
+    /// Takes another state.
+    pub fn look(&mut self, axes: &[Axis; 3], ground: &Ground) {
+        let limits = &ground.limits;
+        let (mm, hz) = (ground.geometry.radius_mm, limits.rate_hz);
+        let rate = |i: usize| axes[i].velocity as f64 / AXIS_UNIT * hz;
+        let force = |i: usize| axes[i].acceleration as f64 / AXIS_UNIT * hz * hz;
+        let at = [0, 1].map(|i| axes[i].position as f64 / AXIS_UNIT);
+        // Whole turns change nothing.
+        let theta = (axes[2].position >> 40) as i32 as f64 / UNIT * TAU;
+        let (v, a) = (
+            [rate(0), rate(1), rate(2) * TAU],
+            [force(0), force(1), force(2) * TAU],
+        );
+        let share = |value: f64, limit: f64, worst: &mut f64| *worst = worst.max(value / limit);
+        share(v[0].hypot(v[1]) * mm, limits.speed_mm_s, &mut self.speed);
+        share(
+            v[2].abs().to_degrees(),
+            limits.turn_speed_deg_s,
+            &mut self.speed,
+        );
+        share(
+            a[0].hypot(a[1]) * mm,
+            limits.acceleration_mm_s2,
+            &mut self.acceleration,
+        );
+        share(
+            a[2].abs().to_degrees(),
+            limits.turn_acceleration_deg_s2,
+            &mut self.acceleration,
+        );
+
+        let (sin, cos) = theta.sin_cos();
+        let [p, q] = ground.centre;
+        let arm = [p * cos - q * sin, p * sin + q * cos];
+        let pose = Pose {
+            x: at[0] - arm[0],
+            y: at[1] - arm[1],
+            theta,
+        };
+        let twist = Twist {
+            x: v[0] + v[2] * arm[1],
+            y: v[1] - v[2] * arm[0],
+            theta: v[2],
+        };
+        let acceleration = Acceleration {
+            x: a[0] + a[2] * arm[1] + v[2] * v[2] * arm[0],
+            y: a[1] - a[2] * arm[0] + v[2] * v[2] * arm[1],
+            theta: a[2],
+        };
+        self.outside = self
+            .outside
+            .max(pose.x.hypot(pose.y) - ground.geometry.usable_radius());
+        let guides = inverse(&pose).expect("inside the track").guides;
+        let pivots = pivot_motion(&guides, &twist, &acceleration);
+        for i in 0..3 {
+            share(
+                pivots.rates[i].abs(),
+                limits.pivot_rate_rad_s,
+                &mut self.pivot_rate,
+            );
+            share(
+                pivots.accelerations[i].abs(),
+                limits.pivot_acceleration_rad_s2,
+                &mut self.pivot_acceleration,
+            );
+        }
+        for (axis, &[low, high]) in axes.iter().zip(&ground.bounds) {
+            let here = axis.rounded();
+            let beyond = low.saturating_sub(here).max(here.saturating_sub(high));
+            self.out_of_bounds = self.out_of_bounds.max(beyond as f64 / UNIT);
+        }
+    }
+
+    /// Takes every tick of a plan from `start`; of a piece longer than a second the first half of one and the last.
+    pub fn walk(&mut self, plan: &Plan, start: &[Axis; 3], ground: &Ground) -> [Axis; 3] {
+        let hz = ground.limits.rate_hz;
+        let mut axes = *start;
+        self.look(&axes, ground);
+        for piece in &plan.pieces {
+            let jerk = piece.jerk.map(|jerk| jerk as f64 / AXIS_UNIT * hz.powi(3));
+            let path =
+                jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / ground.limits.jerk_mm_s3;
+            self.jerk = self
+                .jerk
+                .max(path)
+                .max(jerk[2].abs() * 360.0 / ground.limits.turn_jerk_deg_s3);
+            let half = hz as u64 / 2;
+            let skipped = piece.ticks.saturating_sub(2 * half);
+            for tick in 0..piece.ticks - skipped {
+                for (i, axis) in axes.iter_mut().enumerate() {
+                    if skipped > 0 && tick == half {
+                        *axis = axis.after(skipped, piece.jerk[i], plan.nudge[i]);
+                    }
+                    axis.advance(piece.jerk[i], plan.nudge[i]);
+                }
+                self.look(&axes, ground);
+            }
+        }
+        axes
+    }
+
+    /// Whether everything is kept, to within roundings.
+    pub fn is_kept(&self) -> bool {
+        const SLACK: f64 = 1.0 + 1e-6;
+        [
+            self.speed,
+            self.acceleration,
+            self.jerk,
+            self.pivot_rate,
+            self.pivot_acceleration,
+        ]
+        .iter()
+        .all(|&share| share <= SLACK)
+            && self.outside <= 1e-8
+            && self.out_of_bounds == 0.0
+    }
+
+    /// Whether everything but the jerk is kept, to a thousandth: what streamed targets are granted.
+    pub fn is_kept_but_for_jerk(&self) -> bool {
+        const SLACK: f64 = 1.0 + 2e-3;
+        let shares = [
+            self.speed,
+            self.acceleration,
+            self.pivot_rate,
+            self.pivot_acceleration,
+        ];
+        shares.iter().all(|&share| share <= SLACK)
+            && self.outside <= 1e-6
+            && self.out_of_bounds == 0.0
+    }
+
+    /// The worse of both, thing by thing.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            speed: self.speed.max(other.speed),
+            acceleration: self.acceleration.max(other.acceleration),
+            jerk: self.jerk.max(other.jerk),
+            pivot_rate: self.pivot_rate.max(other.pivot_rate),
+            pivot_acceleration: self.pivot_acceleration.max(other.pivot_acceleration),
+            outside: self.outside.max(other.outside),
+            out_of_bounds: self.out_of_bounds.max(other.out_of_bounds),
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Jogging: constant velocities from any state, smooth stops before the edge, theta without end.
+
+mod motion_bench;
+
+use firmware::motion::{
+    Axis, Centre, Ground, Motion, NoTransition, Plan, Refusal, Start, plan_jog,
+};
+use motion_bench::exact::Worst;
+use motion_bench::*;
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+type Velocity = [f64; 3];
+
+/// mm/s and deg/s within the limits; each axis may have none.
+fn velocities() -> impl Strategy<Value = Velocity> {
+    let still = || proptest::bool::weighted(0.3);
+    (
+        0.0..=1.0_f64,
+        -PI..PI,
+        -1.0..=1.0_f64,
+        still(),
+        still(),
+        still(),
+    )
+        .prop_map(|(speed, direction, turning, a, b, c)| {
+            let speed = LIMITS.speed_mm_s * speed;
+            let part = |still: bool, value: f64| if still { 0.0 } else { value };
+            [
+                part(a, speed * direction.cos()),
+                part(b, speed * direction.sin()),
+                part(c, turning * LIMITS.turn_speed_deg_s),
+            ]
+        })
+}
+
+/// Grounds with and without a centre of rotation beside the platform's, with and without bounds, with strong and weak drives.
+fn grounds() -> impl Strategy<Value = Ground> {
+    (
+        0.0..0.8_f64,
+        -PI..PI,
+        any::<bool>(),
+        0.5..0.9_f64,
+        any::<bool>(),
+        0.0..=1.0_f64,
+    )
+        .prop_map(|(r, d, beside, bound, bounded, strength)| {
+            let mut ground = GROUND;
+            ground.limits.pivot_acceleration_rad_s2 *= 0.2 + 0.8 * strength;
+            ground.limits.pivot_rate_rad_s *= 0.4 + 0.6 * strength;
+            if beside {
+                let centre = Centre::new([r * d.cos(), r * d.sin()]).expect("near");
+                ground.centre = centre.point();
+            }
+            if bounded {
+                let units = (bound * UNIT) as i64;
+                ground.bounds = [[-units, units], [-units / 2, units], [-units, 3 * units]];
+            }
+            ground
+        })
+}
+
+/// Where the moved point is when the platform is at `platform`, as far as the bounds allow it.
+fn rest(platform: firmware::motion::Position, ground: &Ground) -> Option<[Axis; 3]> {
+    let centre = Centre::new(ground.centre).expect("near");
+    let point = centre.of_platform(&platform);
+    let inside = (point.iter().zip(&ground.bounds)).all(|(at, b)| (b[0]..=b[1]).contains(at));
+    inside.then(|| at_rest(point))
+}
+
+fn start(axes: &[Axis; 3]) -> Start {
+    Start::Rest(axes.map(|axis| axis.rounded()))
+}
+
+/// The velocity of a state in mm/s and deg/s.
+fn speeds(axes: &[Axis; 3]) -> Velocity {
+    let [x, y, turns] = velocity(axes);
+    [x * 100.0, y * 100.0, turns * 360.0]
+}
+
+fn is_near(a: &Velocity, b: &Velocity) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4)
+}
+
+/// That the tick gets the same positions from it, and that it ends where it says.
+fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
+    end.map(|axis| axis.rounded()) == plan.end
+        // What a velocity in a setpoint is cut to.
+        && end.iter().all(|axis| axis.velocity.abs() < 1 << 32 && axis.acceleration == 0)
+}
+
+proptest! {
+    #![proptest_config(settings(150))]
+
+    #[test]
+    fn from_rest_everything_is_kept_to_the_end(
+        platform in positions(0.1), ground in grounds(), velocity in velocities(),
+    ) {
+        let axes = rest(platform, &ground);
+        prop_assume!(axes.is_some());
+        let axes = axes.unwrap();
+        match plan_jog(3, start(&axes), &axes, &velocity, &ground) {
+            Ok(plan) => {
+                let mut worst = Worst::default();
+                let end = worst.walk(&plan, &axes, &ground);
+                prop_assert!(worst.is_kept(), "{worst:?}");
+                prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
+            }
+            Err(NoTransition::Refused(Refusal::NoWay)) => {}
+            Err(NoTransition::Refused(Refusal::PivotRate { radius_mm })) => {
+                let at = (platform[0] as f64).hypot(platform[1] as f64) / UNIT * 100.0;
+                prop_assert!(at > radius_mm - 1e-3, "{at} {radius_mm}");
+            }
+            Err(other) => prop_assert!(false, "{other:?}"),
+        }
+    }
+
+    #[test]
+    fn from_a_jog_to_another_everything_is_kept(
+        platform in positions(0.1), ground in grounds(), one in velocities(), other in velocities(), part in 0.0..1.0_f64,
+    ) {
+        let axes = rest(platform, &ground);
+        prop_assume!(axes.is_some());
+        let axes = axes.unwrap();
+        let first = plan_jog(3, start(&axes), &axes, &one, &ground);
+        prop_assume!(first.is_ok());
+        let first = first.unwrap();
+        let tick = (part * first.ticks().min(6_000) as f64) as u64;
+        let state = first.state_after(&axes, tick);
+        let splice = Start::Splice { plan: 3, tick };
+        if let Ok(plan) = plan_jog(4, splice, &state, &other, &ground) {
+            let mut worst = Worst::default();
+            let end = worst.walk(&plan, &state, &ground);
+            prop_assert!(worst.is_kept(), "{worst:?}");
+            prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
+        }
+    }
+}
+
+#[test]
+fn the_velocity_is_reached_and_kept() {
+    let axes = at_rest(at(-20.0, 10.0, 0.3));
+    for velocity in [[100.0, 0.0, 0.0], [30.0, -40.0, 90.0], [0.0, 0.0, -360.0]] {
+        let plan = plan_jog(1, start(&axes), &axes, &velocity, &GROUND).expect("room");
+        let state = plan.state_after(&axes, 3_000);
+        assert!(is_near(&speeds(&state), &velocity), "{:?}", speeds(&state));
+        assert!(state.iter().all(|axis| axis.acceleration == 0));
+    }
+}
+
+#[test]
+fn the_point_stops_just_before_the_edge_and_theta_goes_on() {
+    let axes = at_rest(at(-20.0, 10.0, 0.3));
+    let velocity = [150.0, 0.0, 45.0];
+    let plan = plan_jog(1, start(&axes), &axes, &velocity, &GROUND).expect("room");
+    let state = plan.state_after(&axes, 40_000);
+    assert!(
+        is_near(&speeds(&state), &[0.0, 0.0, 45.0]),
+        "{:?}",
+        speeds(&state)
+    );
+    let [x, y] = [0, 1].map(|i| state[i].position as f64 / AXIS_UNIT * 100.0);
+    // A tick's way at most is given away, and what single precision costs.
+    let edge = 80.0_f64.hypot(0.0) - x.hypot(y);
+    assert!((0.0..0.01).contains(&edge), "{edge} mm");
+    assert!((y - 10.0).abs() < 1e-6);
+    // A day later it is where it was, to the bit, and theta has turned all the time.
+    let later = plan.state_after(&axes, 20_000 * 86_400);
+    assert_eq!(later[0].position, state[0].position);
+    assert_eq!(later[1].position, state[1].position);
+    assert_eq!(later[2].velocity, state[2].velocity);
+    let turns = (later[2].position - state[2].position) as f64 / AXIS_UNIT;
+    assert!((turns - 86_398.0 / 8.0).abs() < 1e-3, "{turns}");
+}
+
+#[test]
+fn theta_turns_without_end_and_without_a_step() {
+    const MOST: i64 = 1_000_000_000 << 32;
+    for (from, turning) in [
+        (0, 360.0),
+        (0, -0.01),
+        (MOST - (1 << 36), -360.0),
+        (-MOST + (1 << 36), 1.0),
+    ] {
+        let axes = at_rest([0, 0, from]);
+        let plan = plan_jog(1, start(&axes), &axes, &[0.0, 0.0, turning], &GROUND).expect("room");
+        // Thirty years.
+        let lifetime = 30 * 365 * 86_400 * 20_000;
+        assert!(plan.ticks() > lifetime, "{} ticks", plan.ticks());
+        // The tick's own steps, beginning wherever: the same as the plan's, and all of one size.
+        let mut motion = Motion::default();
+        motion.rest_at([0, 0, from]);
+        motion.accept(&plan).expect("at rest");
+        for _ in 0..4_000 {
+            motion.advance();
+        }
+        let mut last = motion.position()[2];
+        let step = turning / 360.0 / 20_000.0 * UNIT;
+        for tick in 4_001..=8_000 {
+            motion.advance();
+            let now = motion.position()[2];
+            assert!(((now - last) as f64 - step).abs() < 1.0 + step.abs() * 1e-6);
+            assert_eq!(now, plan.state_after(&axes, tick)[2].rounded());
+            last = now;
+        }
+        let late = plan.state_after(&axes, lifetime);
+        assert_eq!(late[2].acceleration, 0);
+        assert_eq!(late[2].velocity, plan.state_after(&axes, 8_000)[2].velocity);
+    }
+}
+
+#[test]
+fn at_the_largest_count_theta_stops_smoothly() {
+    const MOST: i64 = 1_000_000_000 << 32;
+    for sign in [1, -1] {
+        let axes = at_rest([0, 0, sign * (MOST - (3 << 32))]);
+        let velocity = [0.0, 0.0, sign as f64 * 360.0];
+        let plan = plan_jog(1, start(&axes), &axes, &velocity, &GROUND).expect("room");
+        let mut worst = Worst::default();
+        let end = worst.walk(&plan, &axes, &GROUND);
+        assert!(worst.is_kept(), "{worst:?}");
+        let left = MOST - plan.end[2] * sign;
+        assert!((0..1 << 24).contains(&left), "{left}");
+        assert!(ends_at_rest(&plan, &end));
+    }
+}
+
+#[test]
+fn near_the_edge_a_lower_velocity_is_taken_and_at_it_none() {
+    let axes = at_rest(at(79.0, 0.0, 0.0));
+    let plan = plan_jog(1, start(&axes), &axes, &[200.0, 0.0, 0.0], &GROUND).expect("1 mm");
+    let end = plan.end[0] as f64 / UNIT * 100.0;
+    assert!((79.7..80.0).contains(&end), "{end}");
+    let axes = at_rest(at(80.0, 0.0, 0.0));
+    let jog = |velocity: Velocity| plan_jog(1, start(&axes), &axes, &velocity, &GROUND);
+    assert_eq!(
+        jog([200.0, 0.0, 0.0]).err(),
+        Some(NoTransition::Refused(Refusal::NoWay))
+    );
+    assert!(
+        jog([-200.0, 0.0, 0.0]).is_ok(),
+        "inwards there is all the way"
+    );
+    let turning = jog([200.0, 0.0, 90.0]).expect("theta can");
+    assert_eq!(turning.state_after(&axes, 100_000)[0], axes[0]);
+}
+
+#[test]
+fn no_velocity_at_rest_is_no_motion() {
+    let axes = at_rest(at(79.0, 0.0, 0.0));
+    let plan = plan_jog(1, start(&axes), &axes, &[0.0; 3], &GROUND).expect("nothing to do");
+    assert_eq!(
+        (plan.ticks(), plan.state_after(&axes, 5)),
+        (plan.ticks(), axes)
+    );
+    assert_eq!(plan.end, axes.map(|axis| axis.rounded()));
+}
+
+#[test]
+fn velocities_that_can_not_be_are_refused() {
+    let axes = at_rest(at(70.0, 0.0, 0.0));
+    let refusal = |velocity: Velocity| plan_jog(1, start(&axes), &axes, &velocity, &GROUND).err();
+    let velocity = Some(NoTransition::Refused(Refusal::Velocity));
+    assert_eq!(refusal([200.1, 0.0, 0.0]), velocity);
+    assert_eq!(refusal([150.0, 150.0, 0.0]), velocity);
+    assert_eq!(refusal([0.0, 0.0, -361.0]), velocity);
+    assert_eq!(refusal([0.0, f64::NAN, 0.0]), velocity);
+    // At 70 mm a turn a second takes a pivot to 2 pi (1 + 0.7) = 10.7 rad/s.
+    let Some(NoTransition::Refused(Refusal::PivotRate { radius_mm })) = refusal([0.0, 0.0, 360.0])
+    else {
+        panic!("the pivots can not");
+    };
+    assert!((radius_mm - 59.15).abs() < 0.1, "{radius_mm}");
+    assert!(refusal([0.0, 0.0, 300.0]).is_none());
+}

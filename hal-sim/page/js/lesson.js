@@ -1,0 +1,52 @@
+// How three pivots make x, y and theta, shown by movements that the server computed with the stage's own kinematics.
+
+import { byId, make, setText } from "./dom.js";
+import { drawMechanism, drawTrack } from "./mechanism.js";
+import { fit, inSight, Plane } from "./view.js";
+
+const SECONDS = 5;
+const GEOMETRY = { radius: 100, start: 20, end: 180, disk: 80 };
+
+export class Lesson {
+  #movements = [];
+  #chosen = 0;
+  #begun = 0;
+
+  constructor() {
+    this.canvas = byId("lesson-scene");
+    this.still = matchMedia("(prefers-reduced-motion: reduce)");
+    this.#load();
+  }
+
+  async #load() {
+    const response = await fetch("/lesson.json");
+    this.#movements = await response.json();
+    const choice = byId("lesson-choice");
+    this.buttons = this.#movements.map(({ name }, index) => {
+      const button = make("button", { type: "button", textContent: name, "aria-pressed": "false" });
+      button.addEventListener("click", () => this.#choose(index));
+      return button;
+    });
+    choice.append(...this.buttons);
+    this.#choose(0);
+  }
+
+  #choose(index) {
+    this.#chosen = index;
+    this.#begun = performance.now();
+    this.buttons.forEach((button, i) => button.setAttribute("aria-pressed", String(i === index)));
+    setText(byId("lesson-caption"), this.#movements[index].caption);
+  }
+
+  draw() {
+    const movement = this.#movements[this.#chosen];
+    if (!movement || !inSight(this.canvas)) return;
+    const { context, width, height } = fit(this.canvas);
+    const plane = new Plane(width, height, 1.75 * GEOMETRY.radius);
+    context.clearRect(0, 0, width, height);
+    drawTrack(context, plane, GEOMETRY);
+    const share = this.still.matches ? 0.25 : ((performance.now() - this.#begun) / 1000 / SECONDS) % 1;
+    const { pose: [x, y, deg], pivots } = movement.frames[Math.floor(share * movement.frames.length)];
+    drawMechanism(context, plane, GEOMETRY, { centre: [x, y], deg, pivots });
+  }
+}

@@ -1,0 +1,43 @@
+// What the control loop says of itself.
+
+import { byId, make, report } from "./dom.js";
+import { fields, shown } from "./gcs.js";
+import { facts } from "./table.js";
+
+/** Cycles of the processor in a microsecond. */
+const CYCLES_PER_US = 168;
+
+const us = (cycles) => (Number(cycles) ? `${shown(cycles / CYCLES_PER_US, 2)} µs` : "not measured here");
+const NAMES = {
+  TICKS: ["ticks", (value) => Number(value).toLocaleString("en")],
+  CYCLES_LAST: ["last tick took", us],
+  CYCLES_MEAN: ["mean", us],
+  CYCLES_WORST: ["worst", us],
+  LATE: ["late ticks", String],
+  PEAK_ERROR_RAD: ["largest following error of a pivot since last looked", (value) => `${shown(value * 1e6, 2)} µrad`],
+  COMMANDS: ["commands taken by the loop", String],
+  REFUSED: ["of them refused", String],
+};
+
+export function statistics(stage) {
+  const [box, body] = [byId("statistics"), byId("statistics-body")];
+  const numbers = make("div");
+  const said = make("p", { className: "said", role: "status" });
+  const again = make("button", { type: "button", className: "quiet", textContent: "Start again" });
+  again.addEventListener("click", () => report(said, () => stage.link.ask("LST"), "started again"));
+  const events = make("pre", { className: "console" });
+  body.append(numbers, again, said, make("h3", { textContent: "Events" }), events);
+  stage.addEventListener("link", () => { box.hidden = !stage.knows("LST?"); });
+  stage.addEventListener("slow", () => {
+    const reply = stage.replies["LST?"];
+    if (!box.open || !reply) return;
+    const rows = Object.entries(fields(reply)).map(([name, value]) => {
+      const [text, show] = NAMES[name] ?? [name, String];
+      return [text, show(value)];
+    });
+    numbers.replaceChildren(facts(rows));
+  });
+  box.addEventListener("toggle", async () => {
+    if (box.open && stage.knows("EVT?")) events.textContent = await stage.link.ask("EVT?").catch((error) => error.message);
+  });
+}

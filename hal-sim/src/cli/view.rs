@@ -1,0 +1,67 @@
+//! `tripivot view`: the page for a controller that runs already, until Ctrl-C.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::Duration;
+
+use super::arguments::View;
+use super::error::CliError;
+use super::serve::until_signal;
+use crate::web::{Endpoint, Page, PageError};
+
+/// Where the page is unless it is told otherwise.
+const ADDRESS: &str = "127.0.0.1:8080";
+/// Where it is when that is taken.
+const FREE_ADDRESS: &str = "127.0.0.1:0";
+/// How often Ctrl-C is looked for.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
+    let endpoint = match (&arguments.port, &arguments.connect) {
+        (Some(device), _) => Endpoint::Serial {
+            device: existing(device)?.to_owned(),
+            baud: arguments.baud,
+        },
+        (None, address) => Endpoint::Tcp(address.clone().unwrap_or_default()),
+    };
+    let stop = until_signal()?;
+    let place = endpoint.to_string();
+    let page = page(arguments.web.as_deref(), endpoint)?;
+    let text = format!(
+        "page at http://{}/ for the controller at {place}\nCtrl-C ends it\n",
+        page.address()
+    );
+    (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
+    while !stop.load(Ordering::Relaxed) {
+        thread::sleep(LOOK_EVERY);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A device that is not there is more likely misspelt than unplugged.
+pub(super) fn existing(device: &Path) -> Result<&Path, CliError> {
+    if device.exists() {
+        Ok(device)
+    } else {
+        let device = device.display();
+        Err(CliError::Value(format!(
+            "{device}: there is no such device"
+        )))
+    }
+}
+
+/// The page where it was asked for, or at its usual place or a free port.
+pub(super) fn page(address: Option<&str>, endpoint: Endpoint) -> Result<Page, PageError> {
+    match address {
+        Some(address) => Page::start(address, endpoint),
+        None => match Page::start(ADDRESS, endpoint.clone()) {
+            Err(PageError::Listen { error, .. }) if error.kind() == io::ErrorKind::AddrInUse => {
+                Page::start(FREE_ADDRESS, endpoint)
+            }
+            result => result,
+        },
+    }
+}

@@ -1,0 +1,119 @@
+//! One browser: status and answers go out, requests come in.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::ws::{Message, WebSocket};
+use serde::Serialize;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::{Semaphore, mpsc};
+use tokio::time::timeout;
+
+use super::bridge::{Bridge, json};
+use super::guard::Guard;
+use super::line::Answer;
+use super::request::{self, Refusal, Request};
+
+/// Requests of a viewer that may be under way at once.
+const AT_ONCE: usize = 16;
+/// How long a viewer may take to read a message.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// What a request came to.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Reply {
+    /// It went to the controller.
+    Answer {
+        id: u64,
+        reply: Option<String>,
+        /// What `ERR?` said; 0 is no error.
+        error: u16,
+    },
+    /// It did not.
+    Refused { id: Option<u64>, reason: String },
+    /// So many status messages were lost, because they were not read in time.
+    Lost { messages: u64 },
+}
+
+/// Serves a viewer until it is gone.
+pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guard>) {
+    let mut status = bridge.status();
+    let mut hello = bridge.hello();
+    hello.mark_changed();
+    let (answers, mut answered) = mpsc::channel::<Arc<str>>(AT_ONCE);
+    let slots = Arc::new(Semaphore::new(AT_ONCE));
+    loop {
+        let text = tokio::select! {
+            // Requests first: a stop must not wait for the status.
+            biased;
+            message = socket.recv() => {
+                let Some(Ok(message)) = message else { return };
+                match take(message, &bridge, &guard, &slots, &answers) {
+                    Some(reply) => json(&reply),
+                    None => continue,
+                }
+            }
+            Some(answer) = answered.recv() => answer,
+            Ok(()) = hello.changed() => Arc::clone(&hello.borrow_and_update()),
+            message = status.recv() => match message {
+                Ok(message) => message,
+                Err(RecvError::Lagged(messages)) => json(&Reply::Lost { messages }),
+                Err(RecvError::Closed) => return,
+            },
+        };
+        let message = Message::Text(text.as_ref().into());
+        if !matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(()))) {
+            return;
+        }
+    }
+}
+
+/// Takes a message; the reply, where one can be given at once.
+fn take(
+    message: Message,
+    bridge: &Bridge,
+    guard: &Guard,
+    slots: &Arc<Semaphore>,
+    answers: &mpsc::Sender<Arc<str>>,
+) -> Option<Reply> {
+    let text = match message {
+        Message::Text(text) => text,
+        Message::Ping(_) | Message::Pong(_) | Message::Close(_) => return None,
+        Message::Binary(_) => {
+            return Some(refused(None, &Refusal::Malformed("binary".to_owned())));
+        }
+    };
+    let Request { id, token, line } = match request::read(&text) {
+        Ok(request) => request,
+        Err(refusal) => return Some(refused(None, &refusal)),
+    };
+    if !guard.knows(&token) {
+        return Some(refused(Some(id), &Refusal::Token));
+    }
+    let wanted = match request::check(&line) {
+        Ok(wanted) => wanted,
+        Err(refusal) => return Some(refused(Some(id), &refusal)),
+    };
+    let Ok(slot) = Arc::clone(slots).try_acquire_owned() else {
+        return Some(refused(Some(id), &Refusal::TooMany));
+    };
+    let (bridge, answers) = (bridge.clone(), answers.clone());
+    tokio::spawn(async move {
+        let reply = match bridge.ask(wanted).await {
+            Ok(Answer { reply, error }) => Reply::Answer { id, reply, error },
+            Err(refusal) => refused(Some(id), &refusal),
+        };
+        // A viewer that is gone needs no answer.
+        let _ = answers.send(json(&reply)).await;
+        drop(slot);
+    });
+    None
+}
+
+fn refused(id: Option<u64>, refusal: &Refusal) -> Reply {
+    Reply::Refused {
+        id,
+        reason: refusal.to_string(),
+    }
+}

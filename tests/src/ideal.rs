@@ -1,0 +1,216 @@
+//! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
+//! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
+
+use firmware::config::Config;
+use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::drivers::biss::RawFrame;
+use firmware::link::{Command, Link, Mode, PanelLink, QueueFull, TickLink};
+use firmware::panel::{Panel, Session};
+use firmware::parameters::Parameters;
+use firmware::recorder::{Record, Sample};
+use hal_sim::devices::biss::{Preamble, encode};
+use hal_sim::run::IDENTITY;
+use kinematics::Angle;
+
+/// 48 V at the ADC.
+const SUPPLY_COUNTS: u16 = 2979;
+
+/// What is wrong with the hardware at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Trouble {
+    /// Emergency stop pressed.
+    pub emergency_stop: bool,
+    /// No frame of these encoders.
+    pub silent: [bool; 3],
+    /// Fault pin of the first bridge.
+    pub bridge: bool,
+    /// No supply.
+    pub no_supply: bool,
+}
+
+/// A connection: what it has to send, and what it was answered.
+#[derive(Default)]
+pub struct Connection {
+    /// The panel's side.
+    pub session: Session,
+    /// Sent, and not taken yet.
+    pub input: Vec<u8>,
+    /// Answers.
+    pub output: Vec<u8>,
+}
+
+/// Keeps the last tick's sample.
+#[derive(Default)]
+struct Last(Option<Sample>);
+
+impl Record for Last {
+    fn record(&mut self, sample: &Sample) {
+        self.0 = Some(sample.clone());
+    }
+}
+
+/// See the module.
+pub struct Ideal {
+    /// What the tick computes with.
+    pub config: Config,
+    state: State,
+    /// All that the connections share.
+    pub panel: Panel,
+    /// The connections.
+    pub connections: Vec<Connection>,
+    /// What is wrong with the hardware.
+    pub trouble: Trouble,
+    /// What the last tick put out.
+    pub outputs: Outputs,
+    tick_link: TickLink<'static>,
+    panel_link: PanelLink<'static>,
+    last: Last,
+    /// What the encoders show.
+    counts: [u32; 3],
+}
+
+impl Ideal {
+    /// Just switched on, at the origin, with so many connections.
+    #[must_use]
+    pub fn new(connections: usize) -> Self {
+        let parameters = Parameters::REFERENCE;
+        let config = Config::new(&parameters);
+        // The queues live as long as the process: some kilobytes for each stage.
+        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let third =
+            |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
+        let counts = [0, 1, 2].map(|i| config.encoders[i].counts_at(third(i)));
+        Self {
+            config,
+            state: State::new(),
+            panel: Panel::new(&parameters, IDENTITY),
+            connections: (0..connections).map(|_| Connection::default()).collect(),
+            trouble: Trouble::default(),
+            outputs: Outputs::default(),
+            tick_link,
+            panel_link,
+            last: Last::default(),
+            counts,
+        }
+    }
+
+    /// One tick, and a turn of the panel for every connection.
+    pub fn tick(&mut self) {
+        let before = self.last.0.take();
+        let inputs = self.inputs();
+        self.outputs = tick(
+            &mut self.config,
+            &mut self.state,
+            &inputs,
+            &mut self.tick_link,
+            &mut self.last,
+        );
+        self.follow(before.as_ref());
+        for number in 0..self.connections.len() {
+            self.serve(number);
+        }
+    }
+
+    /// So many ticks.
+    pub fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.tick();
+        }
+    }
+
+    /// Has a connection carry out what it has sent.
+    pub fn serve(&mut self, number: usize) {
+        let connection = &mut self.connections[number];
+        let taken = connection.session.receive(&connection.input);
+        connection.input.drain(..taken);
+        // Writing to a vector does not fail.
+        let _ = self.panel.service(
+            &mut connection.session,
+            &mut self.panel_link,
+            &mut connection.output,
+        );
+        if self.panel.wants_restart() {
+            self.restart();
+        }
+    }
+
+    /// Sends to a connection, lets a few ticks pass, and gives what it has been answered.
+    pub fn ask(&mut self, number: usize, line: &[u8]) -> Vec<u8> {
+        self.connections[number].output.clear();
+        self.connections[number].input.extend_from_slice(line);
+        self.run(4);
+        std::mem::take(&mut self.connections[number].output)
+    }
+
+    /// Sends a command past the panel.
+    ///
+    /// # Errors
+    /// [`QueueFull`]
+    pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
+        self.panel_link.send(command)
+    }
+
+    /// What the last tick computed, once one has run.
+    #[must_use]
+    pub fn sample(&self) -> Option<&Sample> {
+        self.last.0.as_ref()
+    }
+
+    /// What `RBT` asks for.
+    fn restart(&mut self) {
+        let parameters = Parameters::REFERENCE;
+        self.config = Config::new(&parameters);
+        self.state = State::new();
+        self.panel = Panel::new(&parameters, IDENTITY);
+        self.tick_link.clear();
+        self.panel_link.clear();
+        for connection in &mut self.connections {
+            connection.session.start_again();
+        }
+    }
+
+    fn inputs(&self) -> Inputs {
+        let frame = |i: usize| {
+            if self.trouble.silent[i] {
+                RawFrame::MISSING
+            } else {
+                let bits = encode(self.counts[i], false, false, Preamble::DEFAULT);
+                RawFrame(bits.to_be_bytes())
+            }
+        };
+        Inputs {
+            frames: [frame(0), frame(1), frame(2)],
+            bridge_fault: [self.trouble.bridge, false, false],
+            emergency_stop: self.trouble.emergency_stop,
+            current_counts: [0; 3],
+            supply_counts: if self.trouble.no_supply {
+                0
+            } else {
+                SUPPLY_COUNTS
+            },
+            tick_cycles: 0,
+            late: false,
+        }
+    }
+
+    /// The pivots go where they are sent; by the next latch they have gone on as fast as before.
+    fn follow(&mut self, before: Option<&Sample>) {
+        let Some(now) = self.last.0.as_ref().filter(|now| is_held(now)) else {
+            return;
+        };
+        for i in 0..3 {
+            let step = before
+                .filter(|before| is_held(before))
+                .map_or(Angle::ZERO, |before| {
+                    now.pivot_setpoints[i] - before.pivot_setpoints[i]
+                });
+            self.counts[i] = self.config.encoders[i].counts_at(now.pivot_setpoints[i] + step);
+        }
+    }
+}
+
+/// Whether the servo was on.
+#[must_use]
+pub fn is_held(sample: &Sample) -> bool {
+    matches!(sample.mode, Mode::Holding | Mode::Moving)
+}

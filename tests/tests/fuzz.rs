@@ -1,0 +1,9 @@
+//! The fuzz target for some seconds. Hours of it: `cargo run --release -p tests --bin fuzz -- --seconds 3600`.
+
+#[test]
+fn nothing_is_found_in_the_first_cases() {
+    for seed in 0..60 {
+        println!("seed {seed}");
+        tests::fuzz::run(seed);
+    }
+}
