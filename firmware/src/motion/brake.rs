@@ -15,7 +15,6 @@
 //! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 use super::axis::{Axis, JERK_STEP};
-use super::axis_profile::AxisLimits;
 use super::float::{float, hypot, ticks_up};
 use super::plan::Piece;
 use super::sample::Sample;
@@ -26,7 +25,7 @@ use crate::number::sqrt_f32;
 const ROUNDS: usize = 8;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
-const SLACK: f32 = 1.0 + 5e-7;
+pub(super) const SLACK: f32 = 1.0 + 5e-7;
 
 /// What is to be braked, over the limits of acceleration.
 pub(super) struct Brake {
@@ -55,20 +54,6 @@ impl Brake {
             times(at.v, each(once)),
             times(at.a, each(once / hz)),
             limits,
-            [1.0; 2],
-        )
-    }
-
-    /// Of one axis.
-    pub fn of_one(velocity: f32, acceleration: f32, limits: &AxisLimits<f32>) -> Self {
-        let limits = UnitLimits {
-            translation: *limits,
-            rotation: *limits,
-        };
-        Self::of(
-            [velocity, 0.0, 0.0],
-            [acceleration, 0.0, 0.0],
-            &limits,
             [1.0; 2],
         )
     }
@@ -128,22 +113,11 @@ impl Brake {
 
     /// The times in whole ticks.
     pub fn ticks(&self) -> [u64; 3] {
-        let [n1, n2, n3] = self.times().map(|ticks| ticks_up(ticks - 1e-3));
-        let mut n = [n1.max(1), n2, n3.max(1)];
-        for _ in 0..LENGTHENINGS {
-            let over = self.over(n);
-            if over == [false; 3] {
-                break;
-            }
-            for (n, over) in n.iter_mut().zip(over) {
-                *n += u64::from(over) * (1 + *n / 64);
-            }
-        }
-        n
+        whole(self.times(), |n| self.over(n))
     }
 
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
-    pub fn over(&self, n: [u64; 3]) -> [bool; 3] {
+    fn over(&self, n: [u64; 3]) -> [bool; 3] {
         let [n1, n2, n3] = n.map(float);
         let w = self.after(n1 / 2.0);
         let scale = -1.0 / (n1 / 2.0 + n2 + n3 / 2.0);
@@ -190,6 +164,22 @@ impl Brake {
     fn jerk_ticks(&self, change: &[f32; 3]) -> f32 {
         (hypot(change[0], change[1]) / self.jerk[0]).max(change[2].abs() / self.jerk[1])
     }
+}
+
+/// Times in whole ticks, with what is too short by then lengthened.
+pub(super) fn whole(times: [f32; 3], over: impl Fn([u64; 3]) -> [bool; 3]) -> [u64; 3] {
+    let [n1, n2, n3] = times.map(|ticks| ticks_up(ticks - 1e-3));
+    let mut n = [n1.max(1), n2, n3.max(1)];
+    for _ in 0..LENGTHENINGS {
+        let over = over(n);
+        if over == [false; 3] {
+            break;
+        }
+        for (n, over) in n.iter_mut().zip(over) {
+            *n += u64::from(over) * (1 + *n / 64);
+        }
+    }
+    n
 }
 
 /// The way of a stop that takes these ticks, by its start's velocity and by its acceleration.

@@ -1,6 +1,7 @@
 //! Shares, heading and speeds of a transition: a few are tried in floats, the soonest is planned.
 
 use super::axis::Axis;
+use super::axis_brake::AxisBrake;
 use super::axis_profile::{AxisLimits, AxisProfile, Task};
 use super::brake::{Brake, gains};
 use super::float::{float, hypot};
@@ -21,6 +22,8 @@ pub(super) struct Choice {
     pub across: [u64; 3],
     /// Ticks in which each axis can arrive.
     shortest: [f32; 3],
+    /// Acceleration across over that along.
+    ratio: f32,
 }
 
 /// Distance to the limits, for what rounding to ticks costs.
@@ -37,13 +40,14 @@ const LEAST_SPEED: f32 = 0.3;
 const COMMANDING: f32 = 40.0;
 
 impl Choice {
-    /// The soonest of some.
+    /// The soonest of some; or the one with the shares of `like`, as for a second attempt at what differs little.
     pub fn new(
         state: &[Axis; 3],
         to: &Position,
         plane: &Plane,
         limits: &UnitLimits,
         slower: &Slower,
+        like: Option<&Self>,
     ) -> Option<Self> {
         let translation = limits.translation.times(
             MARGIN * slower.path * slower.speed,
@@ -65,7 +69,10 @@ impl Choice {
             plane.way[1] - released[1] * translation.acceleration / translation.jerk,
         );
         let chord = chord(&ahead.seen(&released), translation.velocity);
-        for ratio in [chord].into_iter().chain(RATIOS) {
+        let [a, b, c] = RATIOS;
+        let all = [chord, a, b, c];
+        let one = like.map(|like| like.ratio);
+        for &ratio in one.as_ref().map_or(&all[..], core::slice::from_ref) {
             let Some(mut choice) = turned(plane, &released, ahead, &translation, ratio) else {
                 continue;
             };
@@ -94,7 +101,7 @@ impl Choice {
         ground: &Ground,
     ) -> Option<Self> {
         if slower.expect(state, to, &self, ground) {
-            Self::new(state, to, plane, limits, slower)
+            Self::new(state, to, plane, limits, slower, Some(&self))
         } else {
             Some(self)
         }
@@ -181,6 +188,7 @@ fn turned(
             across.into_iter().map(float).sum(),
             0.0,
         ],
+        ratio,
     })
 }
 
@@ -205,9 +213,9 @@ fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading
     let [v, a] = [&plane.v, &plane.a].map(|vector| hypot(vector[0], vector[1]));
     let of = |ticks: [u64; 3]| (Heading::after(plane, gains(ticks.map(float))), ticks);
     let brake = |heading: &Heading| {
-        Brake::of_one(heading.seen(&plane.v)[1], heading.seen(&plane.a)[1], limits)
+        AxisBrake::new(heading.seen(&plane.v)[1], heading.seen(&plane.a)[1], limits)
     };
-    let mut best = of(Brake::of_one(v, a, limits).ticks());
+    let mut best = of(AxisBrake::new(v, a, limits).ticks());
     let mut heading = guess;
     for _ in 0..TURNS {
         let next = of(brake(&heading).ticks());

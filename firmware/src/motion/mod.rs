@@ -6,6 +6,7 @@
 //! starts where the motion is.
 
 mod axis;
+mod axis_brake;
 mod axis_profile;
 mod brake;
 mod centre;

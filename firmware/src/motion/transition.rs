@@ -63,14 +63,16 @@ pub fn plan_transition(
     let plane = Plane::new(&state, &to);
     let envelope = Envelope::new(ground, limits, &state);
     let mut slower = Slower::NOT;
-    for attempt in 0..ATTEMPTS {
-        let choice = Choice::new(&state, &to, &plane, &limits, &slower)
-            .and_then(|choice| match attempt {
-                0 => choice.or_slower(&state, &to, &plane, &limits, &mut slower, ground),
-                _ => Some(choice),
+    let mut before = None;
+    for _ in 0..ATTEMPTS {
+        let choice = Choice::new(&state, &to, &plane, &limits, &slower, before.as_ref())
+            .and_then(|choice| match before {
+                None => choice.or_slower(&state, &to, &plane, &limits, &mut slower, ground),
+                Some(_) => Some(choice),
             })
             .filter(|choice| choice.is_sooner_than_a_stop(&state, &to, &limits, &slower))
             .ok_or(NoTransition::NeedsStop)?;
+        before = Some(choice);
         let plan = choice
             .pieces(&state, &to)
             .and_then(|pieces| {
