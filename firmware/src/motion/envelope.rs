@@ -4,7 +4,7 @@
 //! than an eighth of the square of the duration times its second derivative: for position that is the acceleration, for
 //! velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are first bounded for any
 //! orientation; where that is not enough they are computed at both ends, and rise by what the products of velocity,
-//! acceleration and jerk can make of them in between. A stretch that fails is halved, a few times.
+//! acceleration and jerk can make of them in between. A stretch that fails is taken in shorter ones.
 //!
 //! | checked | for |
 //! |---|---|
@@ -24,6 +24,7 @@ use super::sample::{Arc, Sample};
 use super::sizes::Sizes;
 use super::swing::Bound;
 use super::units::UnitLimits;
+use crate::number::sqrt_f32;
 
 /// What a plan is held against.
 pub(super) struct Envelope {
@@ -60,6 +61,10 @@ pub(super) enum Broken {
 }
 
 impl Broken {
+    fn is_of_pivots(&self) -> bool {
+        matches!(self, Self::Rate(_) | Self::Acceleration(_))
+    }
+
     /// This, or what was seen of the same before, when that was worse.
     fn or_worse(self, before: Option<Self>) -> Self {
         match (self, before) {
@@ -77,7 +82,7 @@ impl Broken {
 /// Slack of single precision.
 const SLACK: f32 = 1.0 + 1e-4;
 /// Stretches that may be looked at, failed ones included.
-const MOST_STRETCHES: usize = 160;
+const MOST_STRETCHES: usize = 80;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
@@ -133,36 +138,70 @@ impl Envelope {
     /// Whether `plan`, from `start`, stays inside.
     pub fn check(&self, plan: &Plan, start: &[Axis; 3]) -> Result<(), Broken> {
         let mut axes = *start;
-        let (mut looked, mut worst) = (0, None);
+        let (mut looked, mut worst, mut glanced) = (0, None, false);
         for piece in &plan.pieces {
             let arc = Arc::new(&axes, piece, self.hz);
             let rooms = self.reach.rooms(&axes);
             self.check_jerk(&arc)?;
             let (mut done, mut ticks) = (0, piece.ticks);
-            let mut from = arc.start;
+            let mut from = self.look(&arc, 0);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
-                let to = arc.at(float(done + ticks) / self.hz);
+                let mut to = self.look(&arc, done + ticks);
                 looked += 1;
-                match self.stretch(&arc, &rooms, [&from, &to], float(ticks) / self.hz) {
-                    Ok(()) => {
+                match self.stretch(&arc, &rooms, [&mut from, &mut to], float(ticks) / self.hz) {
+                    Ok(longer) => {
                         from = to;
                         done += ticks;
-                        ticks *= 2;
+                        ticks = (float(ticks) * longer) as u64;
                     }
-                    Err(broken) => {
+                    Err((broken, shorter)) => {
+                        if broken.is_of_pivots() && !glanced {
+                            // Where a limit is passed indeed, a glance tells by how much.
+                            self.glance(plan, start)?;
+                            glanced = true;
+                        }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
                         worst = Some(broken.or_worse(worst));
                         if ticks <= SHORTEST || looked > MOST_STRETCHES {
                             return worst.map_or(Ok(()), Err);
                         }
-                        ticks = ticks.div_ceil(2);
+                        ticks = (float(ticks) * shorter) as u64;
                     }
                 }
+                ticks = ticks.max(SHORTEST);
             }
             axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
         }
         Ok(())
+    }
+
+    fn look(&self, arc: &Arc, ticks: u64) -> Look {
+        let sample = arc.at(float(ticks) / self.hz);
+        Look {
+            out: self.reach.distance(arc, &sample),
+            sample,
+            pivots: None,
+        }
+    }
+
+    /// What the pivots do at the ends and in the middle of the pieces.
+    fn glance(&self, plan: &Plan, start: &[Axis; 3]) -> Result<(), Broken> {
+        let mut axes = *start;
+        let [mut rate, mut acceleration] = [0.0_f32; 2];
+        for piece in &plan.pieces {
+            let arc = Arc::new(&axes, piece, self.hz);
+            let seconds = float(piece.ticks) / self.hz;
+            for t in [seconds / 2.0, seconds] {
+                let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
+                rate = rate.max(greatest(&rates));
+                acceleration = acceleration.max(greatest(&accelerations));
+            }
+            axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
+        }
+        let [rate_limit, acceleration_limit] = self.pivots;
+        within(acceleration / acceleration_limit, Broken::Acceleration)?;
+        within(rate / rate_limit, Broken::Rate)
     }
 
     fn check_jerk(&self, arc: &Arc) -> Result<(), Broken> {
@@ -174,14 +213,32 @@ impl Envelope {
         )
     }
 
+    /// By how much the next stretch may be longer than this; or what is broken, and by how much shorter a stretch to try.
     fn stretch(
         &self,
         arc: &Arc,
         rooms: &[[f32; 2]; 3],
-        [from, to]: [&Sample; 2],
+        [from, to]: [&mut Look; 2],
         t: f32,
-    ) -> Result<(), Broken> {
-        let sizes = Sizes::new(arc, from, to, t);
+    ) -> Result<f32, (Broken, f32)> {
+        const HALF: f32 = 0.5;
+        let sizes = Sizes::new(arc, &from.sample, &to.sample, t);
+        let moving = sizes.at_arm(self.reach.arm);
+        let radius = self
+            .path(arc, rooms, [from, to], t, [&sizes, &moving])
+            .map_err(|broken| (broken, HALF))?;
+        self.check_pivots(arc, [from, to], t, &moving, radius)
+    }
+
+    /// All but the pivots; the greatest distance of the platform's centre from the track's.
+    fn path(
+        &self,
+        arc: &Arc,
+        rooms: &[[f32; 2]; 3],
+        [from, to]: [&Look; 2],
+        t: f32,
+        [sizes, moving]: [&Sizes; 2],
+    ) -> Result<f32, Broken> {
         if let Some(own) = &self.own {
             let [v, turn] = sizes.v;
             within((v / own.speed[0]).max(turn / own.speed[1]), Broken::Speed)?;
@@ -191,13 +248,15 @@ impl Envelope {
                 Broken::Force,
             )?;
         }
-        let rise = [sizes.a[0] * t * t / 8.0, sizes.a[1] * t * t / 8.0];
-        self.reach.check_way(rooms, from, to, rise)?;
-        let radius = self.reach.radius(arc, from, to, &sizes, t)?;
+        let eighth = t * t / 8.0;
+        let rise = sizes.a.map(|a| a * eighth);
+        (self.reach).check_way(rooms, &from.sample, &to.sample, rise)?;
+        let furthest = from.out.max(to.out) + moving.a[0] * eighth;
+        let radius = self.reach.inside(furthest)?;
         if let Some(own) = &self.own {
-            self.check_stop(arc, rooms, to, &own.stop)?;
+            self.check_stop(arc, rooms, &to.sample, &own.stop)?;
         }
-        self.check_pivots(arc, [from, to], t, &sizes, radius)
+        Ok(radius)
     }
 
     /// A stop from here.
@@ -218,42 +277,74 @@ impl Envelope {
     fn check_pivots(
         &self,
         arc: &Arc,
-        ends: [&Sample; 2],
+        ends: [&mut Look; 2],
         t: f32,
-        sizes: &Sizes,
+        moving: &Sizes,
         radius: f32,
-    ) -> Result<(), Broken> {
+    ) -> Result<f32, (Broken, f32)> {
+        const ALL: f32 = 4.0;
         let bound = Bound::new(radius);
-        let moving = sizes.at_arm(self.reach.arm);
         let [rate, acceleration] = moving.pivots(&bound);
         let [rate_limit, acceleration_limit] = self.pivots;
         if rate <= rate_limit && acceleration <= acceleration_limit {
-            return Ok(());
+            return Ok(ALL);
         }
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
-            let [rate, acceleration] = arc.platform(end, self.reach.centre).pivots();
-            rates = rates.max(greatest(&rate));
-            accelerations = accelerations.max(greatest(&acceleration));
+            let [rate, acceleration] = end.pivots(arc, self.reach.centre);
+            rates = rates.max(rate);
+            accelerations = accelerations.max(acceleration);
         }
         let rises = moving.rises(rate, acceleration, &bound, t);
-        rise_within(rates, rises[0], rate_limit, Broken::Rate)?;
-        rise_within(
+        let once = rise_within(rates, rises[0], rate_limit, Broken::Rate)?;
+        let twice = rise_within(
             accelerations,
             rises[1],
             acceleration_limit,
             Broken::Acceleration,
-        )
+        )?;
+        Ok(once.min(twice).min(ALL))
     }
 }
 
-/// The same for a value at the ends of a stretch that may rise in between; what is told is what is sure.
-fn rise_within(value: f32, rise: f32, limit: f32, broken: fn(f32) -> Broken) -> Result<(), Broken> {
-    if value + rise <= limit * SLACK {
-        Ok(())
-    } else {
-        Err(broken((value / limit).max(1.0)))
+/// One end of a stretch.
+#[derive(Clone, Copy)]
+struct Look {
+    sample: Sample,
+    /// Distance of the platform's centre from the track's.
+    out: f32,
+    /// The greatest rate and acceleration of a pivot, once they have been asked for.
+    pivots: Option<[f32; 2]>,
+}
+
+impl Look {
+    fn pivots(&mut self, arc: &Arc, centre: [f32; 2]) -> [f32; 2] {
+        *self.pivots.get_or_insert_with(|| {
+            let pivots = arc.platform(&self.sample, centre).pivots();
+            pivots.map(|three| greatest(&three))
+        })
     }
+}
+
+/// The same for a value at the ends of a stretch that may rise in between; what is told is what is sure. A rise goes with the
+/// square of the time: how much longer a stretch may be than this one, or how much shorter it has to be.
+fn rise_within(
+    value: f32,
+    rise: f32,
+    limit: f32,
+    broken: fn(f32) -> Broken,
+) -> Result<f32, (Broken, f32)> {
+    /// What is used of that, because the value changes too.
+    const PART: f32 = 0.9;
+    let room = limit * SLACK - value;
+    if rise <= room {
+        return Ok(PART * sqrt_f32(room / rise.max(f32::MIN_POSITIVE)));
+    }
+    let shorter = PART * sqrt_f32(room.max(0.0) / rise);
+    Err((
+        broken((value / limit).max(1.0)),
+        shorter.clamp(1.0 / 16.0, 0.5),
+    ))
 }
 
 /// The part of a limit that is used is not over one.

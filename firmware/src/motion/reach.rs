@@ -6,7 +6,6 @@ use super::envelope::Broken;
 use super::float::hypot;
 use super::ground::{Bounds, Ground};
 use super::sample::{Arc, Sample};
-use super::sizes::Sizes;
 use super::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
 use core::f32::consts::TAU;
 
@@ -63,25 +62,17 @@ impl Reach {
         Ok(())
     }
 
-    /// The greatest distance of the platform's centre from the track's over a stretch, inside the disk.
-    pub fn radius(
-        &self,
-        arc: &Arc,
-        from: &Sample,
-        to: &Sample,
-        sizes: &Sizes,
-        t: f32,
-    ) -> Result<f32, Broken> {
-        let ends = self.distance(arc, from).max(self.distance(arc, to));
-        let furthest = ends + sizes.at_arm(self.arm).a[0] * t * t / 8.0;
-        if furthest <= self.radius + RIM {
-            Ok(furthest)
+    /// A distance of the platform's centre from the track's, if that is inside the disk.
+    pub fn inside(&self, distance: f32) -> Result<f32, Broken> {
+        if distance <= self.radius + RIM {
+            Ok(distance)
         } else {
             Err(Broken::Reach)
         }
     }
 
-    fn distance(&self, arc: &Arc, sample: &Sample) -> f32 {
+    /// Of the platform's centre from the track's.
+    pub fn distance(&self, arc: &Arc, sample: &Sample) -> f32 {
         if self.arm > 0.0 {
             arc.platform(sample, self.centre).radius()
         } else {
@@ -150,9 +141,7 @@ impl Reach {
         }
         for spot in &spots {
             self.check_way(rooms, spot, spot, [0.0; 2])?;
-            if !(self.distance(arc, spot) <= self.radius + RIM) {
-                return Err(Broken::Reach);
-            }
+            self.inside(self.distance(arc, spot))?;
         }
         Ok(())
     }
