@@ -84,11 +84,8 @@ mod tests {
             let brake = AxisBrake::new(v, a, &LIMITS);
             let [n1, n2, n3] = brake.times();
             // What the first jerk, the peak and the last jerk change takes all velocity away.
-            let sign = if v + a * a.abs() / 0.5 > 0.0 {
-                -1.0
-            } else {
-                1.0
-            };
+            let released = v + a * a.abs() / 0.5;
+            let sign = -if released == 0.0 { a } else { released }.signum();
             let peak = a + sign * if a * sign > 2.0 { -0.25 } else { 0.25 } * n1;
             let end = v + (a + peak) / 2.0 * n1 + peak * (n2 + n3 / 2.0);
             assert!(end.abs() < 1e-4, "{v} {a}: {end}");

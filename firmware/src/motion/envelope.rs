@@ -81,8 +81,8 @@ impl Broken {
 
 /// Slack of single precision.
 const SLACK: f32 = 1.0 + 1e-4;
-/// Stretches that may be looked at, failed ones included.
-const MOST_STRETCHES: usize = 80;
+/// Stretches that may be looked at until there is a plan, failed ones included.
+pub(super) const MOST_LOOKS: usize = 60;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
@@ -135,10 +135,10 @@ impl Envelope {
         }
     }
 
-    /// Whether `plan`, from `start`, stays inside.
-    pub fn check(&self, plan: &Plan, start: &[Axis; 3]) -> Result<(), Broken> {
+    /// Whether `plan`, from `start`, stays inside. Of `looks`, the stretches that may be looked at, those looked at are taken.
+    pub fn check(&self, plan: &Plan, start: &[Axis; 3], looks: &mut usize) -> Result<(), Broken> {
         let mut axes = *start;
-        let (mut looked, mut worst, mut glanced) = (0, None, false);
+        let (mut worst, mut glanced) = (None, false);
         for piece in &plan.pieces {
             let arc = Arc::new(&axes, piece, self.hz);
             let rooms = self.reach.rooms(&axes);
@@ -148,7 +148,7 @@ impl Envelope {
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
                 let mut to = self.look(&arc, done + ticks);
-                looked += 1;
+                *looks = looks.saturating_sub(1);
                 match self.stretch(&arc, &rooms, [&mut from, &mut to], float(ticks) / self.hz) {
                     Ok(longer) => {
                         from = to;
@@ -163,7 +163,7 @@ impl Envelope {
                         }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
                         worst = Some(broken.or_worse(worst));
-                        if ticks <= SHORTEST || looked > MOST_STRETCHES {
+                        if ticks <= SHORTEST || *looks == 0 {
                             return worst.map_or(Ok(()), Err);
                         }
                         ticks = (float(ticks) * shorter) as u64;
@@ -283,6 +283,7 @@ impl Envelope {
         radius: f32,
     ) -> Result<f32, (Broken, f32)> {
         const ALL: f32 = 4.0;
+        const ROUNDS: usize = 3;
         let bound = Bound::new(radius);
         let [rate, acceleration] = moving.pivots(&bound);
         let [rate_limit, acceleration_limit] = self.pivots;
@@ -295,11 +296,19 @@ impl Envelope {
             rates = rates.max(rate);
             accelerations = accelerations.max(acceleration);
         }
-        let rises = moving.rises(rate, acceleration, &bound, t);
-        let once = rise_within(rates, rises[0], rate_limit, Broken::Rate)?;
+        // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
+        let mut most = [rate, acceleration];
+        for _ in 0..ROUNDS {
+            let rises = moving.rises(most, &bound, t);
+            most = [
+                most[0].min(rates + rises[0]),
+                most[1].min(accelerations + rises[1]),
+            ];
+        }
+        let once = rise_within(rates, most[0], rate_limit, Broken::Rate)?;
         let twice = rise_within(
             accelerations,
-            rises[1],
+            most[1],
             acceleration_limit,
             Broken::Acceleration,
         )?;
@@ -330,20 +339,21 @@ impl Look {
 /// square of the time: how much longer a stretch may be than this one, or how much shorter it has to be.
 fn rise_within(
     value: f32,
-    rise: f32,
+    most: f32,
     limit: f32,
     broken: fn(f32) -> Broken,
 ) -> Result<f32, (Broken, f32)> {
     /// What is used of that, because the value changes too.
-    const PART: f32 = 0.9;
+    const PART: f32 = 0.75;
     let room = limit * SLACK - value;
+    let rise = most - value;
     if rise <= room {
         return Ok(PART * sqrt_f32(room / rise.max(f32::MIN_POSITIVE)));
     }
     let shorter = PART * sqrt_f32(room.max(0.0) / rise);
     Err((
         broken((value / limit).max(1.0)),
-        shorter.clamp(1.0 / 16.0, 0.5),
+        shorter.clamp(1.0 / 16.0, 0.7),
     ))
 }
 

@@ -51,8 +51,7 @@ impl Sizes {
     /// How far rate and acceleration of a pivot can rise between the ends of a stretch, from the bounds of both: a pivot's
     /// third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds how fast
     /// `1 / c` changes.
-    pub fn rises(&self, rate: f32, acceleration: f32, bound: &Bound, t: f32) -> [f32; 2] {
-        let (u, w) = (rate, acceleration);
+    pub fn rises(&self, [u, w]: [f32; 2], bound: &Bound, t: f32) -> [f32; 2] {
         let k = bound.k;
         let jerk = k * (self.j[0] + 2.0 * self.j[1]);
         let ku = k * u;

@@ -5,7 +5,7 @@
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::envelope::{Broken, Envelope};
+use super::envelope::{Broken, Envelope, MOST_LOOKS};
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
 use super::sample::Arc;
@@ -66,7 +66,7 @@ pub fn plan_stop(
         Stop::Smooth => [1.0, 1.0],
         Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
     };
-    let mut plan = None;
+    let (mut plan, mut looks) = (None, MOST_LOOKS);
     for _ in 0..ATTEMPTS {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
         let pieces = brake.pieces(&state);
@@ -76,7 +76,7 @@ pub fn plan_stop(
             return plan;
         }
         let stopped = stopped(id, of, start, &state, &pieces);
-        let checked = envelope.check(&stopped, &state);
+        let checked = envelope.check(&stopped, &state, &mut looks);
         plan = Some(stopped);
         match checked {
             Ok(()) => break,

@@ -19,7 +19,7 @@
 
 use super::axis::Axis;
 use super::choice::Choice;
-use super::envelope::{Broken, Envelope};
+use super::envelope::{Broken, Envelope, MOST_LOOKS};
 use super::fit::fit;
 use super::ground::Ground;
 use super::heading::{Plane, target};
@@ -63,7 +63,7 @@ pub fn plan_transition(
     let plane = Plane::new(&state, &to);
     let envelope = Envelope::new(ground, limits, &state);
     let mut slower = Slower::NOT;
-    let mut before = None;
+    let (mut before, mut looks) = (None, MOST_LOOKS);
     for _ in 0..ATTEMPTS {
         let choice = Choice::new(&state, &to, &plane, &limits, &slower, before.as_ref())
             .and_then(|choice| match before {
@@ -90,7 +90,7 @@ pub fn plan_transition(
                 })
             })
             .ok_or(NoTransition::NeedsStop)?;
-        match envelope.check(&plan, &state) {
+        match envelope.check(&plan, &state, &mut looks) {
             Ok(()) => return Ok(plan),
             Err(Broken::Reach) => return Err(NoTransition::NeedsStop),
             Err(broken) => slower.by(&broken),
