@@ -12,6 +12,9 @@ const MOST: usize = 64;
 const KEPT: f32 = 0.002;
 const KEPT_OF_SQUARE: f32 = 0.1;
 
+/// With less than this of it on the whole line, half a turn, half of the places do.
+const FEW: f32 = 10.0;
+
 /// The demands along a line, and the limits.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
@@ -35,9 +38,13 @@ pub(super) struct Moment {
 
 impl Grid {
     pub fn new(path: &Path, limits: PathLimits, pivot_rate: f32, pivot_acceleration: f32) -> Self {
-        let bits = if path.is_wound() { 5 } else { 6 };
-        let spacing = 1.0 / (1u32 << bits) as f32;
         let square = path.turn * path.turn + path.length * path.length;
+        let bits = if path.is_wound() || square < FEW {
+            5
+        } else {
+            6
+        };
+        let spacing = 1.0 / (1u32 << bits) as f32;
         let kept = KEPT + KEPT_OF_SQUARE * square * (spacing * spacing);
         let granted = if path.is_wound() {
             1.0 - KEPT

@@ -56,7 +56,7 @@ struct Way<'a> {
 }
 
 /// How often a motion is slowed down because a limit is passed: what is left then is far below a thousandth.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 2;
 /// Room that a motion gets for roundings when it is slowed down.
 const SPARE: f32 = 1.000_5;
 

@@ -86,6 +86,8 @@ impl Pace {
             axis = axis.after(beat.ticks, jerk, 0);
             piece.jerk[i] = jerk;
         }
-        i64::try_from((way - axis.position) / i128::from(duration)).ok()
+        // In 64 bits a division is a tenth of one in 128.
+        let rest = i64::try_from(way - axis.position).ok()?;
+        Some(rest / duration as i64)
     }
 }

@@ -34,9 +34,27 @@ const ALIKE: f32 = 1e-5;
 /// The polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to `acceleration`.
 /// `None` where it takes too many stretches.
 pub(super) fn under(z: &Squares, stretches: usize, acceleration: f32) -> Option<Polygon> {
-    LOSSES
-        .iter()
-        .find_map(|&loss| lay(z.get(..=stretches)?, acceleration, 1.0 - loss))
+    let z = z.get(..=stretches)?;
+    let laid = |k: usize| lay(z, acceleration, 1.0 - LOSSES[k]);
+    if let Some(polygon) = laid(0) {
+        return Some(polygon);
+    }
+    // The smallest share that serves, if the largest does: halving takes four tries where one by one may take eleven.
+    let (mut low, mut high) = (0, LOSSES.len() - 1);
+    let mut best = None;
+    while high - low > 1 || best.is_none() {
+        let middle = if high - low > 1 {
+            (low + high) / 2
+        } else {
+            high
+        };
+        match laid(middle) {
+            Some(polygon) => (high, best) = (middle, Some(polygon)),
+            None if middle == high => return None,
+            None => low = middle,
+        }
+    }
+    best
 }
 
 /// Without the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at

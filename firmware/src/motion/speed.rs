@@ -39,13 +39,14 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
     // A slope of z over a stretch is this many times an acceleration.
     let double = 2.0 / n as f32;
     let mut z = [0.0; PLACES];
+    let mut nodes = [Node::NONE; PLACES];
     for k in (0..n).rev() {
-        let node = Node::new(grid, k);
-        z[k] = node.largest(z[k + 1], double);
+        nodes[k] = Node::new(grid, k);
+        z[k] = nodes[k].largest(z[k + 1], double);
     }
     z[0] = 0.0;
     for k in 0..n {
-        let node = Node::new(grid, k);
+        let node = &nodes[k];
         let up = node.highest(z[k]).at(z[k]);
         z[k + 1] = z[k + 1].min((z[k] + double * up).max(0.0));
     }
@@ -53,6 +54,7 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
 }
 
 /// The bounds of a place.
+#[derive(Clone, Copy)]
 struct Node {
     most: f32,
     acceleration: f32,
@@ -62,6 +64,13 @@ struct Node {
 }
 
 impl Node {
+    const NONE: Self = Self {
+        most: 0.0,
+        acceleration: 0.0,
+        widths: [0.0; 3],
+        slopes: [0.0; 3],
+    };
+
     fn new(grid: &Grid, place: usize) -> Self {
         let Demand { first, second } = grid.at(place);
         let mut rate = 0.0_f32;
