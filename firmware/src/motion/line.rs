@@ -55,10 +55,19 @@ struct Way<'a> {
     hz: f32,
 }
 
+/// How closely a motion is looked at.
+#[derive(Clone, Copy)]
+enum Looks {
+    /// At the ends of its stretches, and at a fourth of the places between.
+    Few,
+    /// At every place.
+    All,
+}
+
 /// How often a motion is slowed down because a limit is passed: what is left then is far below a thousandth.
 const ROUNDS: usize = 2;
 /// Room that a motion gets for roundings when it is slowed down.
-const SPARE: f32 = 1.000_5;
+const SPARE: f32 = 1.001_5;
 
 impl<'a> Way<'a> {
     fn new(path: &'a Path, ground: &Ground) -> Self {
@@ -86,12 +95,19 @@ impl<'a> Way<'a> {
             self.pivot_rate,
             self.pivot_acceleration,
         );
-        let excess = self.excess(&plain, &grid);
+        // As a rule a few places show that it is too fast, and no match when slowed down for those alone.
+        let seen = self.excess(&plain, &grid, Looks::Few);
+        let shaped = if seen > 1.0 { self.shaped(&grid) } else { None };
+        let shaped = match shaped {
+            Some(shaped) if shaped.ticks() <= profile.slowed(seen)?.ticks() => return Some(shaped),
+            shaped => shaped,
+        };
+        let excess = self.excess(&plain, &grid, Looks::All);
         if excess <= 1.0 {
             return Some(plain);
         }
         let slowed = profile.slowed(excess)?;
-        match self.shaped(&grid) {
+        match shaped.or_else(|| self.shaped(&grid)) {
             Some(shaped) if shaped.ticks() < slowed.ticks() => Some(shaped),
             _ => Some(slowed.pace()),
         }
@@ -105,7 +121,7 @@ impl<'a> Way<'a> {
         let mut slower = SPARE;
         for _ in 0..ROUNDS {
             let pace = pace(&polygon, slower, &self.limits, self.hz)?;
-            let excess = self.excess(&pace, grid);
+            let excess = self.excess(&pace, grid, Looks::All);
             if excess <= 1.0 {
                 return Some(pace);
             }
@@ -124,8 +140,11 @@ impl<'a> Way<'a> {
     }
 
     /// The largest excess of a motion over its limits (see [`Grid::excess`]), jerk included.
-    fn excess(&self, pace: &Pace, grid: &Grid) -> f32 {
-        let places = grid.stretches() as f32;
+    fn excess(&self, pace: &Pace, grid: &Grid, looks: Looks) -> f32 {
+        let (places, least) = match looks {
+            Looks::Few => (grid.stretches() as f32 / 4.0, 1),
+            Looks::All => (grid.stretches() as f32, 2),
+        };
         let unit = pace.unit() * self.hz * self.hz * self.hz;
         let mut now = Moment::default();
         let mut worst = 0.0_f32;
@@ -135,7 +154,7 @@ impl<'a> Way<'a> {
             let push = beat.jerk as f32 * unit;
             jerk = jerk.max(push.abs());
             let way = now.after(seconds, push).s - now.s;
-            let steps = 2 + (way.abs() * places) as u32;
+            let steps = least + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);
