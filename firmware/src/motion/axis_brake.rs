@@ -6,7 +6,7 @@
 
 use super::axis_profile::AxisLimits;
 use super::brake::{SLACK, whole};
-use super::float::float;
+use super::float::{Order, float};
 use crate::number::sqrt_f32;
 
 /// What is to be braked, over the limit of acceleration.
@@ -39,12 +39,12 @@ impl AxisBrake {
         let (v, a) = if released > 0.0 { (v, -a) } else { (-v, a) };
         let square = j * v + a * a / 2.0;
         if a > 1.0 {
-            [(a - 1.0) / j, (v - a * a / (2.0 * j)).max(0.0), 1.0 / j]
+            [(a - 1.0) / j, (v - a * a / (2.0 * j)).larger(0.0), 1.0 / j]
         } else if square > 1.0 {
             [(1.0 - a) / j, (square - 1.0) / j, 1.0 / j]
         } else {
-            let peak = sqrt_f32(square.max(0.0));
-            [(peak - a).max(0.0) / j, 0.0, peak / j]
+            let peak = sqrt_f32(square.larger(0.0));
+            [(peak - a).larger(0.0) / j, 0.0, peak / j]
         }
     }
 
@@ -58,7 +58,7 @@ impl AxisBrake {
         let [n1, n2, n3] = n.map(float);
         let left = self.velocity + self.acceleration * (n1 / 2.0);
         let peak = -left / (n1 / 2.0 + n2 + n3 / 2.0);
-        let hardest = self.acceleration.abs().max(1.0);
+        let hardest = self.acceleration.abs().larger(1.0);
         [
             (peak - self.acceleration).abs() > self.jerk * n1 * SLACK,
             peak.abs() > hardest * SLACK,

@@ -15,7 +15,7 @@
 //! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 use super::axis::{Axis, JERK_STEP};
-use super::float::{float, hypot, ticks_up};
+use super::float::{Order, float, hypot, ticks_up};
 use super::plan::Piece;
 use super::sample::Sample;
 use super::units::{AXIS_UNITS, UnitLimits};
@@ -100,7 +100,7 @@ impl Brake {
             let back = self.jerk_ticks(&w) / size;
             let peak = (sqrt_f32(half * half + 2.0 * size * back) - half) / back;
             let (peak, hold) = if peak > 1.0 {
-                (1.0, (size - half - back / 2.0).max(0.0))
+                (1.0, (size - half - back / 2.0).larger(0.0))
             } else {
                 (peak, 0.0)
             };
@@ -123,7 +123,7 @@ impl Brake {
         let scale = -1.0 / (n1 / 2.0 + n2 + n3 / 2.0);
         let peak = w.map(|w| w * scale);
         let change = [0, 1, 2].map(|i| peak[i] - self.acceleration[i]);
-        let hardest = size(&self.acceleration).max(1.0);
+        let hardest = size(&self.acceleration).larger(1.0);
         [
             self.jerk_ticks(&change) > n1 * SLACK,
             size(&peak) > hardest * SLACK,
@@ -151,7 +151,7 @@ impl Brake {
     /// The acceleration of size 1 that points against what is to be braked, track radii and rad per second squared.
     pub fn peak_per_second(&self, limits: &UnitLimits, hz: f32) -> [f32; 3] {
         let w = self.after(self.times()[0] / 2.0);
-        let scale = -hz * hz / (AXIS_UNITS * size(&w).max(f32::MIN_POSITIVE));
+        let scale = -hz * hz / (AXIS_UNITS * size(&w).larger(f32::MIN_POSITIVE));
         let [translation, rotation] =
             [limits.translation, limits.rotation].map(|limits| limits.acceleration * scale);
         times(
@@ -162,7 +162,7 @@ impl Brake {
 
     /// The time in which jerk makes an acceleration of this.
     fn jerk_ticks(&self, change: &[f32; 3]) -> f32 {
-        (hypot(change[0], change[1]) / self.jerk[0]).max(change[2].abs() / self.jerk[1])
+        (hypot(change[0], change[1]) / self.jerk[0]).larger(change[2].abs() / self.jerk[1])
     }
 }
 
@@ -200,7 +200,7 @@ pub(super) fn gains([t1, t2, t3]: [f32; 3]) -> [f32; 2] {
 
 /// The greater of translation and rotation.
 fn size(vector: &[f32; 3]) -> f32 {
-    hypot(vector[0], vector[1]).max(vector[2].abs())
+    hypot(vector[0], vector[1]).larger(vector[2].abs())
 }
 
 fn times(vector: [f32; 3], factors: [f32; 3]) -> [f32; 3] {

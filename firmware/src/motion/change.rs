@@ -10,6 +10,7 @@
 //! A jog lasts: a single unit of acceleration left would be a velocity after a year.
 
 use super::axis::{Axis, JERK_STEP};
+use super::float::Order;
 use super::plan::Piece;
 use super::swing::Pace;
 use heapless::Vec;
@@ -37,8 +38,8 @@ impl Ramp {
         let way = times(change.way, force.acceleration.way, force.jerk.way);
         let turn = times(change.turn, force.acceleration.turn, force.jerk.turn);
         // The longer of both, part by part: neither acceleration nor jerk is over its limit then.
-        let rise = ticks_up(way[0].max(turn[0]) * hz).max(1);
-        let whole = ticks_up(way[1].max(turn[1]) * hz).max(rise);
+        let rise = ticks_up(way[0].larger(turn[0]) * hz).max(1);
+        let whole = ticks_up(way[1].larger(turn[1]) * hz).max(rise);
         Self {
             rise,
             hold: whole - rise,
@@ -90,7 +91,7 @@ pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pi
     if state.iter().all(|axis| axis.acceleration == 0) {
         return pieces;
     }
-    let seconds = (force.way / jerk.way).max(force.turn / jerk.turn);
+    let seconds = (force.way / jerk.way).larger(force.turn / jerk.turn);
     let ticks = ticks_up(seconds * hz).max(1);
     let steps = (ticks as i64).saturating_mul(JERK_STEP);
     let jerk = [0, 1, 2].map(|i| -state[i].acceleration / steps * JERK_STEP);
@@ -109,7 +110,7 @@ const LONGEST: f32 = 36_028_797_018_963_968.0;
 
 /// Rounded up to whole ticks.
 fn ticks_up(ticks: f32) -> u64 {
-    let ticks = ticks.min(LONGEST);
+    let ticks = ticks.smaller(LONGEST);
     let down = ticks as u64;
     down + u64::from(down as f32 * (1.0 + 1e-6) < ticks)
 }

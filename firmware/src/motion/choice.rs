@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::axis_brake::AxisBrake;
 use super::axis_profile::{AxisLimits, AxisProfile, Task};
 use super::brake::{Brake, gains};
-use super::float::{float, hypot};
+use super::float::{Order, float, hypot};
 use super::ground::Ground;
 use super::heading::{Heading, Plane, SMALLER, target};
 use super::plan::Position;
@@ -87,7 +87,7 @@ impl Choice {
 
     /// Ticks of the whole.
     pub fn duration(&self) -> f32 {
-        self.shortest.into_iter().fold(0.0, f32::max)
+        self.shortest.into_iter().fold(0.0, Order::larger)
     }
 
     /// This, or a slower one where the pivots would pass their limits at the speeds to be expected.
@@ -138,7 +138,7 @@ impl Choice {
             };
             shortest(&task, limits).unwrap_or(0.0)
         })
-        .fold(0.0, f32::max);
+        .fold(0.0, Order::larger);
         let line = line * (1.0 + 1.0 / slower.speed) / 2.0;
         self.duration() <= times[0] + times[1] + times[2] + line + COMMANDING
     }
@@ -146,7 +146,7 @@ impl Choice {
 
 /// Shares in proportion to what is to change: the velocity across to nothing, that along to the limit.
 fn chord([along, across]: &[f32; 2], limit: f32) -> f32 {
-    (across.abs() / (limit - along).max(limit * 1e-3)).clamp(1.0 / MOST_UNEVEN, MOST_UNEVEN)
+    (across.abs() / (limit - along).larger(limit * 1e-3)).clamp(1.0 / MOST_UNEVEN, MOST_UNEVEN)
 }
 
 /// The choice with acceleration across `ratio` times that along.
@@ -195,15 +195,16 @@ fn turned(
 /// Where the acceleration now is over the share of one axis, it takes some time to come down to it: so long the other gets what
 /// is left of the whole.
 fn give_way(now: [f32; 2], whole: f32, along: &mut AxisLimits<f32>, aside: &mut AxisLimits<f32>) {
-    let left = |other: f32| sqrt_f32((whole * whole - other * other).max(0.0)).max(0.2 * whole);
+    let left =
+        |other: f32| sqrt_f32((whole * whole - other * other).larger(0.0)).larger(0.2 * whole);
     let [ahead, across] = now.map(f32::abs);
     if across > aside.acceleration {
-        along.acceleration = along.acceleration.min(left(across));
+        along.acceleration = along.acceleration.smaller(left(across));
     }
     // Across starts from nothing or from less than it may: by then this much of the acceleration along is gone.
     let later = ahead - along.jerk * aside.acceleration / aside.jerk;
     if later > along.acceleration {
-        aside.acceleration = aside.acceleration.min(left(later));
+        aside.acceleration = aside.acceleration.smaller(left(later));
     }
 }
 
@@ -236,9 +237,9 @@ fn top_speed(ahead: f32, aside: f32, ratio: f32) -> f32 {
     }
     let square = 1.0 + ratio * ratio;
     let half = ahead - ratio * aside;
-    let room = (1.0 - ahead * ahead - aside * aside).max(0.0);
+    let room = (1.0 - ahead * ahead - aside * aside).larger(0.0);
     let gained = (sqrt_f32(half * half + square * room) - half) / square;
-    (ahead + gained).min(1.0)
+    (ahead + gained).smaller(1.0)
 }
 
 fn shortest(task: &Task, limits: &AxisLimits<f32>) -> Option<f32> {

@@ -6,7 +6,7 @@
 //! orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f is below the limit
 //! by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
 
-use super::float::hypot;
+use super::float::{Order, hypot};
 use super::ground::Ground;
 use super::path::Path;
 use super::plan::Position;
@@ -40,7 +40,7 @@ pub(super) fn exit(from: &Position, to: &Position, ground: &Ground, usable: f32)
     let there = Walk::new(&path, from[2], ground, false);
     let back = Walk::new(&path, to[2], ground, true);
     let start = there.square(0.0).0;
-    let limit = start.max(usable * usable) + RIM;
+    let limit = start.larger(usable * usable) + RIM;
     let [first, second] = near_ends(&path, usable - there.arm + RIM / 2.0)?;
     let ends = [(there, first), (back, second)];
     ends.into_iter()
@@ -53,7 +53,7 @@ fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
     let [way_x, way_y] = path.way;
     let a = way_x * way_x + way_y * way_y;
     let b = x * way_x + y * way_y;
-    let c = x * x + y * y - radius * radius.max(0.0);
+    let c = x * x + y * y - radius * radius.larger(0.0);
     let root = b * b - a * c;
     // Never inside: one part, the whole.
     if radius <= 0.0 || root <= 0.0 || a == 0.0 {
@@ -86,7 +86,7 @@ impl Walk {
         let arm = hypot(centre[0], centre[1]);
         let furthest = [path.from, path.point(1.0)]
             .into_iter()
-            .fold(0.0_f32, |most, [x, y]| most.max(hypot(x, y)));
+            .fold(0.0_f32, |most, [x, y]| most.larger(hypot(x, y)));
         let turn = path.turn.abs();
         let (from, sign) = if backwards {
             (path.point(1.0), -1.0)
@@ -124,7 +124,7 @@ impl Walk {
     fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
         let turn = 1.01 * TAU / self.turn.abs();
-        let part = part.min(turn);
+        let part = part.smaller(turn);
         if part <= 0.0 || (part < turn && !self.leaves(part, limit)) {
             return None;
         }
@@ -160,7 +160,7 @@ impl Walk {
             } else {
                 (root - slope) / self.bend
             };
-            s = (s + step.max(LEAST_STEP)).min(part);
+            s = (s + step.larger(LEAST_STEP)).smaller(part);
         }
         true
     }

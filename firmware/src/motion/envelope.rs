@@ -15,7 +15,7 @@
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::float::{float, hypot};
+use super::float::{Order, float, hypot};
 use super::ground::Ground;
 use super::plan::{Piece, Plan};
 use super::platform::greatest;
@@ -68,11 +68,11 @@ impl Broken {
     /// This, or what was seen of the same before, when that was worse.
     fn or_worse(self, before: Option<Self>) -> Self {
         match (self, before) {
-            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.max(over)),
-            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.max(over)),
-            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.max(over)),
+            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.larger(over)),
+            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.larger(over)),
+            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.larger(over)),
             (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
-                Self::Acceleration(now.max(over))
+                Self::Acceleration(now.larger(over))
             }
             _ => self,
         }
@@ -102,8 +102,8 @@ impl Envelope {
         let Sample { v, a, .. } = Arc::new(start, &Piece::default(), hz).start;
         let wider = |limit: [f32; 2], now: [f32; 3]| {
             [
-                limit[0].max(hypot(now[0], now[1])),
-                limit[1].max(now[2].abs()),
+                limit[0].larger(hypot(now[0], now[1])),
+                limit[1].larger(now[2].abs()),
             ]
         };
         let own = Own {
@@ -194,8 +194,8 @@ impl Envelope {
             let seconds = float(piece.ticks) / self.hz;
             for t in [seconds / 2.0, seconds] {
                 let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
-                rate = rate.max(greatest(&rates));
-                acceleration = acceleration.max(greatest(&accelerations));
+                rate = rate.larger(greatest(&rates));
+                acceleration = acceleration.larger(greatest(&accelerations));
             }
             axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
         }
@@ -208,7 +208,7 @@ impl Envelope {
         let Some(own) = &self.own else { return Ok(()) };
         let [x, y, theta] = arc.jerk;
         within(
-            (hypot(x, y) / own.jerk[0]).max(theta.abs() / own.jerk[1]),
+            (hypot(x, y) / own.jerk[0]).larger(theta.abs() / own.jerk[1]),
             Broken::Force,
         )
     }
@@ -241,17 +241,20 @@ impl Envelope {
     ) -> Result<f32, Broken> {
         if let Some(own) = &self.own {
             let [v, turn] = sizes.v;
-            within((v / own.speed[0]).max(turn / own.speed[1]), Broken::Speed)?;
+            within(
+                (v / own.speed[0]).larger(turn / own.speed[1]),
+                Broken::Speed,
+            )?;
             let [a, spin] = sizes.a;
             within(
-                (a / own.acceleration[0]).max(spin / own.acceleration[1]),
+                (a / own.acceleration[0]).larger(spin / own.acceleration[1]),
                 Broken::Force,
             )?;
         }
         let eighth = t * t / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
         (self.reach).check_way(rooms, &from.sample, &to.sample, rise)?;
-        let furthest = from.out.max(to.out) + moving.a[0] * eighth;
+        let furthest = from.out.larger(to.out) + moving.a[0] * eighth;
         let radius = self.reach.inside(furthest)?;
         if let Some(own) = &self.own {
             self.check_stop(arc, rooms, &to.sample, &own.stop)?;
@@ -293,16 +296,16 @@ impl Envelope {
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
             let [rate, acceleration] = end.pivots(arc, self.reach.centre);
-            rates = rates.max(rate);
-            accelerations = accelerations.max(acceleration);
+            rates = rates.larger(rate);
+            accelerations = accelerations.larger(acceleration);
         }
         // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
         let mut most = [rate, acceleration];
         for _ in 0..ROUNDS {
             let rises = moving.rises(most, &bound, t);
             most = [
-                most[0].min(rates + rises[0]),
-                most[1].min(accelerations + rises[1]),
+                most[0].smaller(rates + rises[0]),
+                most[1].smaller(accelerations + rises[1]),
             ];
         }
         let once = rise_within(rates, most[0], rate_limit, Broken::Rate)?;
@@ -312,7 +315,7 @@ impl Envelope {
             acceleration_limit,
             Broken::Acceleration,
         )?;
-        Ok(once.min(twice).min(ALL))
+        Ok(once.smaller(twice).smaller(ALL))
     }
 }
 
@@ -348,11 +351,11 @@ fn rise_within(
     let room = limit * SLACK - value;
     let rise = most - value;
     if rise <= room {
-        return Ok(PART * sqrt_f32(room / rise.max(f32::MIN_POSITIVE)));
+        return Ok(PART * sqrt_f32(room / rise.larger(f32::MIN_POSITIVE)));
     }
-    let shorter = PART * sqrt_f32(room.max(0.0) / rise);
+    let shorter = PART * sqrt_f32(room.larger(0.0) / rise);
     Err((
-        broken((value / limit).max(1.0)),
+        broken((value / limit).larger(1.0)),
         shorter.clamp(1.0 / 16.0, 0.7),
     ))
 }

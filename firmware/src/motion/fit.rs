@@ -12,7 +12,7 @@
 use super::axis::Axis;
 use super::axis_profile::{AxisLimits, AxisProfile, SEGMENTS, Task};
 use super::brake::{jerks, stepped};
-use super::float::{float, nearest, ticks_up};
+use super::float::{Order, float, nearest, ticks_up};
 use super::hats::Hats;
 use heapless::Vec;
 
@@ -95,7 +95,7 @@ impl Shape {
         for (k, (ticks, duration)) in n.iter_mut().zip(&profile.durations[2..]).enumerate() {
             // A duration that is whole but for rounding errors is not rounded up. Jerks need a tick each to act in.
             let least = if k % 2 == 0 { 1 } else { 0 };
-            *ticks = ticks_up(duration - 1e-3_f32.min(duration * 1e-6)).max(least);
+            *ticks = ticks_up(duration - 1e-3_f32.smaller(duration * 1e-6)).max(least);
         }
         if profile.released_in_part {
             n[1..4].fill(0);
@@ -167,7 +167,7 @@ impl Shape {
                 longer = true;
             }
         }
-        let hardest = limits.acceleration.max(start.abs()) * SLACK;
+        let hardest = limits.acceleration.larger(start.abs()) * SLACK;
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
@@ -175,7 +175,7 @@ impl Shape {
             }
         }
         // The brake released in part leads to no speed in between.
-        let fastest = limits.velocity.max((task.velocity as f32).abs()) * SLACK;
+        let fastest = limits.velocity.larger((task.velocity as f32).abs()) * SLACK;
         if !part && top.abs() > fastest && !longer {
             let whole: u64 = self.n.iter().sum();
             let over = top.abs() / limits.velocity - 1.0;

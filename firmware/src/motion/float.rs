@@ -163,6 +163,22 @@ pub(super) fn nearest(value: f32) -> i64 {
     }
 }
 
+/// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no instruction for
+/// what the standard asks of it. What is not a number stays what it is on the left, and counts for nothing on the right.
+pub(super) trait Order: PartialOrd + Sized {
+    #[inline]
+    fn larger(self, other: Self) -> Self {
+        if self < other { other } else { self }
+    }
+
+    #[inline]
+    fn smaller(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+}
+
+impl Order for f32 {}
+
 /// Length of a vector.
 #[inline]
 pub(super) fn hypot(x: f32, y: f32) -> f32 {

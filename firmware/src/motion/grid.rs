@@ -1,5 +1,6 @@
 //! The pivots' demands along a line, at places evenly spaced on it, and what a motion makes of them.
 
+use super::float::Order;
 use super::limits::PathLimits;
 use super::path::{Demand, Path};
 use crate::number::sqrt_f32;
@@ -94,12 +95,13 @@ impl Grid {
         let mut rate = 0.0_f32;
         let mut acceleration = 0.0_f32;
         for (first, second) in demand.first.iter().zip(&demand.second) {
-            rate = rate.max(first.abs());
-            acceleration = acceleration.max((first * moment.acceleration + second * square).abs());
+            rate = rate.larger(first.abs());
+            acceleration =
+                acceleration.larger((first * moment.acceleration + second * square).abs());
         }
-        let rate = moment.rate.abs() * (rate / self.pivot_rate).max(1.0 / self.limits.rate);
+        let rate = moment.rate.abs() * (rate / self.pivot_rate).larger(1.0 / self.limits.rate);
         let force = (acceleration / self.pivot_acceleration)
-            .max(moment.acceleration.abs() / self.limits.acceleration);
+            .larger(moment.acceleration.abs() / self.limits.acceleration);
         if force > rate * rate {
             sqrt_f32(force)
         } else {

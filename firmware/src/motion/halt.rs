@@ -6,6 +6,7 @@
 
 use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
+use super::float::Order;
 use super::instant::{Instant, Limiter};
 use super::plan::Piece;
 use super::refusal::Refusal;
@@ -36,7 +37,7 @@ pub(super) fn halt(
         if worst <= 1.0 {
             return Ok((pieces, end));
         }
-        part *= (0.9 / worst).min(0.7);
+        part *= (0.9 / worst).smaller(0.7);
     }
     Err(Refusal::NoStop)
 }
@@ -91,7 +92,7 @@ fn walk(
             if !limiter.is_inside(&before, &now, ticks as f32 / limiter.hz) {
                 return None;
             }
-            worst = worst.max(now.pivots[0]).max(now.pivots[1]);
+            worst = worst.larger(now.pivots[0]).larger(now.pivots[1]);
             before = now;
         }
     }

@@ -1,6 +1,7 @@
 //! One instant of a motion against every limit, in single precision: for motions that others shape, sample by sample.
 
 use super::axis::Axis;
+use super::float::Order;
 use super::follow::{ACCELERATION_CUT, VELOCITY_CUT};
 use super::ground::Ground;
 use super::platform::{Platform, greatest};
@@ -122,15 +123,15 @@ impl<'a> Limiter<'a> {
             return Err(Refusal::Pivots);
         }
         if !self.is_inside(before, now, seconds) {
-            return Err(self.outside(before.out.max(now.out)));
+            return Err(self.outside(before.out.larger(now.out)));
         }
         Ok(())
     }
 
     /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at most.
     pub fn is_inside(&self, before: &Instant, now: &Instant, seconds: f32) -> bool {
-        let arc = before.bend.max(now.bend) * seconds * seconds / 8.0;
-        before.out.max(now.out) + arc <= self.usable + RIM
+        let arc = before.bend.larger(now.bend) * seconds * seconds / 8.0;
+        before.out.larger(now.out) + arc <= self.usable + RIM
     }
 
     fn outside(&self, out: f32) -> Refusal {

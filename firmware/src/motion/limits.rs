@@ -1,6 +1,7 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
 use super::Position;
+use super::float::Order;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +75,7 @@ impl Limits {
     /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
     pub fn along(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
         let least = |translation: f64, rotation: f64| {
-            (translation as f32 / length_mm).min(rotation as f32 / turn_deg.abs())
+            (translation as f32 / length_mm).smaller(rotation as f32 / turn_deg.abs())
         };
         PathLimits {
             rate: least(self.speed_mm_s, self.turn_speed_deg_s),

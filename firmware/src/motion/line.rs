@@ -8,6 +8,7 @@
 
 use super::check::check;
 pub use super::check::{check_line, check_target};
+use super::float::Order;
 use super::grid::{Grid, Moment};
 use super::ground::Ground;
 use super::limits::PathLimits;
@@ -152,18 +153,18 @@ impl<'a> Way<'a> {
         for beat in &pace.beats {
             let seconds = beat.ticks as f32 / self.hz;
             let push = beat.jerk as f32 * unit;
-            jerk = jerk.max(push.abs());
+            jerk = jerk.larger(push.abs());
             let way = now.after(seconds, push).s - now.s;
             let steps = least + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);
-                worst = worst.max(grid.excess(&now));
+                worst = worst.larger(grid.excess(&now));
             }
         }
         let jerk = jerk / self.limits.jerk;
         if jerk > 1.0 {
-            worst = worst.max(cbrt_f32(jerk));
+            worst = worst.larger(cbrt_f32(jerk));
         }
         worst
     }

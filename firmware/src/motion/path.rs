@@ -18,6 +18,7 @@
 //! `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a` solves
 //! `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
 
+use super::float::Order;
 use super::ground::Ground;
 use super::plan::Position;
 use super::units::PER_UNIT;
@@ -85,9 +86,9 @@ impl Path {
     /// Bounds of the first and the second derivative anywhere on a line of this kind: the place furthest out counts.
     pub fn worst(&self) -> (f32, f32) {
         let [from, to] = [self.from, self.point(1.0)].map(|[x, y]| sqrt_f32(x * x + y * y));
-        let furthest = from.max(to);
-        let r = (furthest + self.offset()).min(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - r * r).max(LEAST_COSINE));
+        let furthest = from.larger(to);
+        let r = (furthest + self.offset()).smaller(self.usable);
+        let over_c = 1.0 / sqrt_f32((1.0 - r * r).larger(LEAST_COSINE));
         let turn = self.turn.abs();
         let swing = if self.offset() > 0.0 {
             (self.length + turn * furthest) * over_c
@@ -102,7 +103,7 @@ impl Path {
     fn offset(&self) -> f32 {
         self.offsets
             .iter()
-            .fold(0.0, |k, offset| k.max(offset.abs()))
+            .fold(0.0, |k, offset| k.larger(offset.abs()))
     }
 
     /// P(s).
@@ -142,7 +143,7 @@ impl Path {
         let d = across - offset;
         let d_1 = way_y * cos - way_x * sin - turn * (x * cos + y * sin);
         let d_2 = -turn * (2.0 * (way_x * cos + way_y * sin) + turn * across);
-        let over_c = 1.0 / sqrt_f32((1.0 - d * d).max(LEAST_COSINE));
+        let over_c = 1.0 / sqrt_f32((1.0 - d * d).larger(LEAST_COSINE));
         let swing = d_1 * over_c;
         (turn + swing, (d_2 + swing * swing * d) * over_c)
     }
@@ -159,15 +160,16 @@ impl Path {
         let outwards = if r > 0.0 { outwards } else { self.length };
         let around = (way_y * x - way_x * y) * over_r - self.turn * r;
         let (rk, b) = (r * k, 1.0 - square - k * k);
-        let mut sine = 2.0 * rk / (b + sqrt_f32((b * b - 4.0 * rk * rk).max(0.0)));
+        let mut sine = 2.0 * rk / (b + sqrt_f32((b * b - 4.0 * rk * rk).larger(0.0)));
         if !(b > 0.0 && r * sine + k <= self.usable) {
             // Only orientations that keep to the disk are met here: the best of them is the last.
             sine = (self.usable - k) * over_r;
         }
         let d = r * sine + k;
-        let passed = sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).max(LEAST_COSINE)).max(0.0));
-        let furthest = (r + k).min(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).max(LEAST_COSINE));
+        let passed =
+            sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).larger(LEAST_COSINE)).larger(0.0));
+        let furthest = (r + k).smaller(self.usable);
+        let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).larger(LEAST_COSINE));
         let swing = around.abs() * passed + outwards.abs() * over_c;
         let turn = self.turn.abs();
         let drawn = turn * (2.0 * self.length + turn * r);
@@ -176,7 +178,7 @@ impl Path {
         let either = if k > 0.0 {
             drawn + thrown
         } else {
-            drawn.max(thrown)
+            drawn.larger(thrown)
         };
         let (first, second) = (turn + swing, either * over_c);
         Demand {

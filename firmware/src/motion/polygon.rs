@@ -5,6 +5,7 @@
 //! between z and a share of z: from where the line before ended, the range of slopes that do narrows from place to place,
 //! and the line ends where none is left. A share that leaves too many lines is lowered.
 
+use super::float::Order;
 use super::limits::PathLimits;
 use super::speed::Squares;
 use crate::number::sqrt_f32;
@@ -107,20 +108,20 @@ fn lay(z: &[f32], acceleration: f32, share: f32) -> Option<Polygon> {
         let (mut low, mut high) = (-steepest, steepest);
         let mut to = from + 1;
         // The first stretch is taken in any case: at its end a line can be as low as it likes.
-        high = high.min(z[to] - start);
-        low = low.max(z[to] * share - start).min(high);
+        high = high.smaller(z[to] - start);
+        low = low.larger(z[to] * share - start).smaller(high);
         while to < last {
             let steps = (to + 1 - from) as f32;
             let over = 1.0 / steps;
-            let highest = high.min((z[to + 1] - start) * over);
-            let lowest = low.max((z[to + 1] * share - start) * over);
+            let highest = high.smaller((z[to + 1] - start) * over);
+            let lowest = low.larger((z[to + 1] * share - start) * over);
             if lowest > highest + steepest * ALIKE {
                 break;
             }
-            (low, high) = (lowest.min(highest), highest);
+            (low, high) = (lowest.smaller(highest), highest);
             to += 1;
         }
-        start = (start + high * (to - from) as f32).max(0.0);
+        start = (start + high * (to - from) as f32).larger(0.0);
         from = to;
         polygon
             .push(Corner {

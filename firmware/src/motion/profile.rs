@@ -12,6 +12,7 @@
 //! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
 //! themselves, a millionth.
 
+use super::float::Order;
 use super::limits::PathLimits;
 use super::pace::{Beat, Pace};
 use crate::number::{cbrt_f32, sqrt_f32};
@@ -106,8 +107,8 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
         jerk,
     } = *limits;
     // Reaching full speed: with full acceleration, or by jerk alone.
-    let b1 = (acceleration / jerk).min(sqrt_f32(rate / jerk));
-    let b2 = (rate / acceleration).max(b1);
+    let b1 = (acceleration / jerk).smaller(sqrt_f32(rate / jerk));
+    let b2 = (rate / acceleration).larger(b1);
     if rate * (b1 + b2) <= 1.0 {
         return [b1, b2, 1.0 / rate];
     }
@@ -125,6 +126,6 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
 fn ticks(duration: f32) -> Option<u64> {
     const LONGEST: f32 = 4_503_599_627_370_496.0;
     // A duration that is whole but for its rounding errors is not rounded up.
-    let whole = libm::ceilf(duration * (1.0 - 1e-6)).max(1.0);
+    let whole = libm::ceilf(duration * (1.0 - 1e-6)).larger(1.0);
     (whole <= LONGEST).then_some(whole as u64)
 }

@@ -14,6 +14,7 @@
 //!
 //! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by it.
 
+use super::float::Order;
 use super::limits::PathLimits;
 use super::pace::Pace;
 use super::polygon::{Polygon, STRETCHES};
@@ -56,7 +57,7 @@ fn corners(polygon: &Polygon, slower: f32, hz: f32) -> Option<Ramps> {
         if !(0.0..LONGEST as f32).contains(&ticks) {
             return None;
         }
-        let ticks = ticks.max(1.0);
+        let ticks = ticks.larger(1.0);
         let acceleration = (b.rate - a.rate) / (hz * slower * ticks);
         let change = acceleration - before;
         ramps
@@ -85,7 +86,7 @@ const SHORT: f32 = 1.0 - 1e-6;
 
 /// Gives the ramps their lengths.
 fn widen(ramps: &mut Ramps, most: f32) {
-    let even = |change: f32| 2 * libm::ceilf(change / (2.0 * most) * SHORT).max(1.0) as i64;
+    let even = |change: f32| 2 * libm::ceilf(change / (2.0 * most) * SHORT).larger(1.0) as i64;
     for ramp in ramps.iter_mut() {
         ramp.ticks = even(ramp.change.abs());
     }

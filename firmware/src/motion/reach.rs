@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::brake::Brake;
 use super::envelope::Broken;
-use super::float::hypot;
+use super::float::{Order, hypot};
 use super::ground::{Bounds, Ground};
 use super::sample::{Arc, Sample};
 use super::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
@@ -52,8 +52,8 @@ impl Reach {
         for i in 0..3 {
             let rise = rise[i / 2];
             let (low, high) = (
-                from.way[i].min(to.way[i]) - rise,
-                from.way[i].max(to.way[i]) + rise,
+                from.way[i].smaller(to.way[i]) - rise,
+                from.way[i].larger(to.way[i]) + rise,
             );
             if !(rooms[i][0] - RIM <= low && high <= rooms[i][1] + RIM) {
                 return Err(Broken::Reach);
@@ -105,7 +105,7 @@ impl Reach {
             let most = limits.acceleration * unit * hz * hz;
             let release = (force[i] + most) / (limits.jerk * unit * hz * hz * hz);
             gained[i] = speed[i] + force[i] * release;
-            seconds = seconds.max(2.0 * release + gained[i] / most);
+            seconds = seconds.larger(2.0 * release + gained[i] / most);
         }
         let [way, turn] = gained.map(|speed| speed * seconds);
         let ways = [way, way, turn];

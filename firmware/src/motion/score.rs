@@ -3,6 +3,7 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
 //! a few units, and two ticks more take those: the motion ends at rest to the bit.
 
+use super::float::Order;
 use super::pace::{Beat, Pace};
 use super::plan::MAX_PIECES;
 use super::polygon::STRETCHES;
@@ -29,7 +30,7 @@ impl Score {
         let jerk = |ramp: &Ramp| ramp.change / ramp.ticks as f32;
         let largest = ramps
             .iter()
-            .fold(0.0_f32, |most, r| most.max(jerk(r).abs()));
+            .fold(0.0_f32, |most, r| most.larger(jerk(r).abs()));
         let mut score = Self {
             ramps: Vec::new(),
             start: i64::MAX,

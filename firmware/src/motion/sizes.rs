@@ -1,6 +1,6 @@
 //! How large velocity, acceleration and jerk are over a stretch, and what the pivots can make of them at most.
 
-use super::float::hypot;
+use super::float::{Order, hypot};
 use super::sample::{Arc, Sample};
 use super::swing::{Bound, Pace};
 
@@ -18,12 +18,12 @@ impl Sizes {
         let [x, y, theta] = [0, 1, 2].map(|i| fastest(from, to, i, t));
         let j = [hypot(arc.jerk[0], arc.jerk[1]), arc.jerk[2].abs()];
         // By its ends too: the greatest speeds of x and y need not come together.
-        let ends = hypot(from.v[0], from.v[1]).max(hypot(to.v[0], to.v[1]));
+        let ends = hypot(from.v[0], from.v[1]).larger(hypot(to.v[0], to.v[1]));
         Self {
-            v: [hypot(x, y).min(ends + j[0] * t * t / 8.0), theta],
+            v: [hypot(x, y).smaller(ends + j[0] * t * t / 8.0), theta],
             a: [
-                hypot(from.a[0], from.a[1]).max(hypot(to.a[0], to.a[1])),
-                from.a[2].abs().max(to.a[2].abs()),
+                hypot(from.a[0], from.a[1]).larger(hypot(to.a[0], to.a[1])),
+                from.a[2].abs().larger(to.a[2].abs()),
             ],
             j,
         }
@@ -64,12 +64,12 @@ impl Sizes {
 
 /// Largest speed of an axis between two states of the same jerk.
 fn fastest(from: &Sample, to: &Sample, i: usize, t: f32) -> f32 {
-    let ends = from.v[i].abs().max(to.v[i].abs());
+    let ends = from.v[i].abs().larger(to.v[i].abs());
     let (a, b) = (from.a[i], to.a[i]);
     if a * b >= 0.0 {
         return ends;
     }
     // Acceleration passes zero after this part of the stretch.
     let part = a / (a - b);
-    ends.max((from.v[i] + a * part * t / 2.0).abs())
+    ends.larger((from.v[i] + a * part * t / 2.0).abs())
 }

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::choice::Choice;
 use super::envelope::Broken;
-use super::float::hypot;
+use super::float::{Order, hypot};
 use super::ground::Ground;
 use super::plan::Position;
 use super::sizes::Sizes;
@@ -65,22 +65,22 @@ impl Slower {
         let place = |position: i64| position as f32 / UNITS;
         let way = [0, 1, 2].map(|i| place(to[i].wrapping_sub(state[i].rounded())));
         // Twice the mean speed at most, whatever the limit.
-        let mean = |way: f32| 2.0 * way * hz / ticks.max(1.0);
+        let mean = |way: f32| 2.0 * way * hz / ticks.larger(1.0);
         let once = |limit: f32| limit * PER_AXIS_UNIT * hz;
         let speeds = [
-            once(along.velocity).min(mean(hypot(way[0], way[1]))),
-            TAU * once(rotation.velocity).min(mean(way[2].abs())),
+            once(along.velocity).smaller(mean(hypot(way[0], way[1]))),
+            TAU * once(rotation.velocity).smaller(mean(way[2].abs())),
         ];
         let twice = |limit: f32| once(limit) * hz;
         let forces = [
             twice(along.acceleration)
-                .min(speeds[0] * twice(along.jerk) * hz / twice(along.acceleration)),
+                .smaller(speeds[0] * twice(along.jerk) * hz / twice(along.acceleration)),
             (TAU * twice(rotation.acceleration))
-                .min(speeds[1] * twice(rotation.jerk) * hz / twice(rotation.acceleration)),
+                .smaller(speeds[1] * twice(rotation.jerk) * hz / twice(rotation.acceleration)),
         ];
         let radius = hypot(place(state[0].rounded()), place(state[1].rounded()))
-            .max(hypot(place(to[0]), place(to[1])))
-            .min(ground.geometry.usable_radius() as f32);
+            .larger(hypot(place(to[0]), place(to[1])))
+            .smaller(ground.geometry.usable_radius() as f32);
         let bound = Bound::new(radius);
         let arm = hypot(ground.centre[0] as f32, ground.centre[1] as f32);
         let sizes = Sizes {
@@ -100,11 +100,11 @@ impl Slower {
             ground.limits.pivot_acceleration_rad_s2 as f32 / USUAL,
         ];
         if rate > limits[0] {
-            self.speed = (limits[0] / rate).max(LEAST);
+            self.speed = (limits[0] / rate).larger(LEAST);
         }
-        let left = (limits[1] - drift * self.speed * self.speed).max(LEAST * limits[1]);
+        let left = (limits[1] - drift * self.speed * self.speed).larger(LEAST * limits[1]);
         if acceleration - drift > left {
-            self.force = (left / (acceleration - drift)).max(LEAST);
+            self.force = (left / (acceleration - drift)).larger(LEAST);
         }
         self.speed < 1.0 || self.force < 1.0
     }

@@ -6,6 +6,7 @@
 //! as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal path parameterization
 //! based on reachability analysis").
 
+use super::float::Order;
 use super::grid::Grid;
 use super::path::Demand;
 
@@ -48,7 +49,7 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
     for k in 0..n {
         let node = &nodes[k];
         let up = node.highest(z[k]).at(z[k]);
-        z[k + 1] = z[k + 1].min((z[k] + double * up).max(0.0));
+        z[k + 1] = z[k + 1].smaller((z[k] + double * up).larger(0.0));
     }
     z
 }
@@ -78,8 +79,8 @@ impl Node {
         let mut slopes = [0.0; 3];
         for i in 0..3 {
             let size = first[i].abs();
-            rate = rate.max(size);
-            let over = 1.0 / size.max(STILL);
+            rate = rate.larger(size);
+            let over = 1.0 / size.larger(STILL);
             widths[i] = grid.pivot_acceleration * over;
             slopes[i] = if first[i] < 0.0 {
                 second[i] * over
@@ -87,7 +88,10 @@ impl Node {
                 -second[i] * over
             };
         }
-        let speed = grid.limits.rate.min(grid.pivot_rate / rate.max(STILL));
+        let speed = grid
+            .limits
+            .rate
+            .smaller(grid.pivot_rate / rate.larger(STILL));
         Self {
             most: speed * speed,
             acceleration: grid.limits.acceleration,

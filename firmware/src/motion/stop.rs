@@ -6,6 +6,7 @@
 use super::axis::Axis;
 use super::brake::Brake;
 use super::envelope::{Broken, Envelope, MOST_LOOKS};
+use super::float::Order;
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
 use super::sample::Arc;
@@ -89,7 +90,7 @@ pub fn plan_stop(
                 | Broken::Speed(over)
                 | Broken::Force(over),
             ) => {
-                hardness[0] = (hardness[0] * (0.98 / over).max(0.5)).max(GENTLEST);
+                hardness[0] = (hardness[0] * (0.98 / over).larger(0.5)).larger(GENTLEST);
             }
         }
     }
@@ -137,5 +138,5 @@ fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> f32 {
             hardest = left / part.abs();
         }
     }
-    hardest.max(GENTLEST)
+    hardest.larger(GENTLEST)
 }

@@ -10,7 +10,7 @@
 //!
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
-use super::float::hypot;
+use super::float::{Order, hypot};
 use super::ground::Ground;
 use super::units::PER_AXIS_UNIT;
 use crate::number::sqrt_f32;
@@ -34,8 +34,8 @@ impl Pace {
     /// The greater of both parts.
     pub fn max(self, other: Self) -> Self {
         Self {
-            way: self.way.max(other.way),
-            turn: self.turn.max(other.turn),
+            way: self.way.larger(other.way),
+            turn: self.turn.larger(other.turn),
         }
     }
 }

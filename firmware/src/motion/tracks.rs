@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::axis_profile::{AxisLimits, AxisProfile};
 use super::brake::jerks;
 use super::fit::{Track, fit, task};
+use super::float::Order;
 use super::plan::{MAX_PIECES, Piece};
 use heapless::Vec;
 
@@ -30,7 +31,7 @@ pub(super) fn shortest(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Op
 /// slowest of them can: the others take as long, or arrive early where no slower motion leads there. `None` for limits that
 /// are not positive numbers, and states that take more than 2^63 ticks.
 pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Option<Pieces> {
-    let longest = shortest(ways, limits)?.into_iter().fold(0.0, f32::max);
+    let longest = shortest(ways, limits)?.into_iter().fold(0.0, Order::larger);
     let mut tracks: [Track; 3] = Default::default();
     for (i, track) in tracks.iter_mut().enumerate() {
         let (axis, way) = ways[i];

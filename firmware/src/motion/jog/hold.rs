@@ -2,6 +2,7 @@
 
 use super::super::axis::Axis;
 use super::super::change::Ramp;
+use super::super::float::Order;
 use super::super::swing::{Pace, per_second};
 use super::Jog;
 use super::start::Setting;
@@ -40,10 +41,10 @@ impl Jog {
         let bounds = setting
             .steady(&self.steady, &target)
             .within(&setting.ground.bounds);
-        let mut point = (edge.seconds - done).min(bounds);
+        let mut point = (edge.seconds - done).smaller(bounds);
         let mut turn = setting.turn_seconds(&self.steady[2], self.wanted[2]);
         if edge.all {
-            point = point.min(turn);
+            point = point.smaller(turn);
             turn = point;
         }
         let brake = self.brake.ticks() as f32 / (2.0 * hz);
@@ -58,7 +59,7 @@ impl Jog {
                 turn: is_short[1] && (edge.all || !is_short[0]),
             });
         }
-        let ticks = |seconds: f32| ((seconds - brake) * hz).min(LONGEST) as u64;
+        let ticks = |seconds: f32| ((seconds - brake) * hz).smaller(LONGEST) as u64;
         Ok([ticks(point), ticks(point), ticks(turn)])
     }
 

@@ -4,7 +4,7 @@
 //! and the most that its second derivative can be, whose crossing with the edge's square is known. Where the platform does not
 //! turn about a point beside its centre that parabola is the thing itself, and the first step the last.
 
-use super::super::float::hypot;
+use super::super::float::{Order, hypot};
 use super::super::ground::Bounds;
 use super::super::units::{PER_UNIT, UNITS};
 use crate::number::{Fixed, sqrt_f32};
@@ -82,7 +82,7 @@ impl Steady {
                 point - low - MARGIN
             };
             if velocity != 0.0 {
-                seconds = seconds.min((way / velocity.abs()).max(0.0));
+                seconds = seconds.smaller((way / velocity.abs()).larger(0.0));
             }
         }
         seconds
@@ -146,7 +146,7 @@ fn crossing(value: f32, slope: f32, bend: f32) -> f32 {
     } else {
         (root - slope) / bend
     };
-    time.max(0.0)
+    time.larger(0.0)
 }
 
 #[cfg(test)]

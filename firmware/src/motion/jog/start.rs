@@ -2,7 +2,7 @@
 
 use super::super::axis::{Axis, SUB_BITS};
 use super::super::change::{Force, Ramp};
-use super::super::float::hypot;
+use super::super::float::{Order, hypot};
 use super::super::ground::Ground;
 use super::super::plan::Piece;
 use super::super::refusal::Refusal;
@@ -106,7 +106,7 @@ impl<'a> Setting<'a> {
         {
             return Err(NoTransition::NeedsStop);
         }
-        let part = part.min(1.0);
+        let part = part.smaller(1.0);
         let acceleration = Pace {
             way: self.force.acceleration.way * part,
             turn: self.force.acceleration.turn * part,
@@ -179,20 +179,21 @@ impl<'a> Setting<'a> {
         let seconds = ticks as f32 / self.hz;
         // Its way: the release of what acceleration there is, the braking; and the arc over the chord before.
         let brake = Ramp::new(speed, force, self.hz).ticks() as f32 / (2.0 * self.hz)
-            + (now.way / force.jerk.way).max(now.turn / force.jerk.turn);
+            + (now.way / force.jerk.way).larger(now.turn / force.jerk.turn);
         let whole = speed.way + speed.turn * arm;
         let bend = now.way + now.turn * arm + speed.turn * speed.turn * arm;
         let arc = bend * seconds * seconds / 8.0;
         let out = hypot(state.platform[0], state.platform[1]);
         let [x, y] = [0, 1].map(|i| state.point[i] + state.velocity[i] * brake);
         // The moved point goes straight; with the arm besides every orientation is inside.
-        let straight = hypot(state.point[0], state.point[1]).max(hypot(x, y)) + arm;
-        if straight.min(out + whole * brake) + arc > radius {
+        let straight = hypot(state.point[0], state.point[1]).larger(hypot(x, y)) + arm;
+        if straight.smaller(out + whole * brake) + arc > radius {
             return false;
         }
         (0..3).all(|i| {
             let [low, high] = self.ground.bounds[i];
-            let way = (state.velocity[i] * brake).abs() + now.way.max(now.turn) * seconds * seconds;
+            let way =
+                (state.velocity[i] * brake).abs() + now.way.larger(now.turn) * seconds * seconds;
             let per_unit = if i < 2 {
                 PER_UNIT
             } else {
