@@ -23,12 +23,15 @@ const CROSSINGS = ["100", "101"];
 const EVERY = 10;
 /** Points asked for at a time, so that a slow line shows the status in between. */
 const POINTS = 512;
+/** Item and parameter that say how many points make a record. */
+const POINTS_OF_A_RECORD = "1 0x16000201";
 /** How often the progress is asked for, ms. */
 const LOOK_MS = 250;
 const PAINTS = ["pivot-1", "pivot-2", "pivot-3", "centre", "theta", "ink", "faint", "steel"];
 
 export class Recorder {
   #tables = 0;
+  #armings = 0;
   #rows = null;
 
   constructor(stage) {
@@ -99,20 +102,22 @@ export class Recorder {
     await link.ask(`DRT 1 ${this.trigger.value} ${plain(typed(this.value.value) || 0)}`);
   }
 
-  /** Tells how far the record is until it is no longer. */
+  /** Tells how far the record is until it is complete, armed anew, or out of sight. */
   async #watch() {
-    let before = -1;
-    for (;;) {
+    const arming = ++this.#armings;
+    const watched = () => this.box.open && arming === this.#armings;
+    const sought = await this.stage.link.ask(`SPA? ${POINTS_OF_A_RECORD}`).catch(() => "");
+    const complete = Number(fields(sought)[POINTS_OF_A_RECORD]);
+    while (watched()) {
       const points = await this.#points().catch(() => NaN);
-      if (Number.isNaN(points)) return;
-      if (points > 0 && points === before) break;
-      before = points;
-      setText(this.said, points ? `${points} points so far` : "armed: waiting for its trigger");
+      if (Number.isNaN(points) || !watched()) return;
+      setText(this.said, points ? `${points} of ${complete} points so far` : "armed: waiting for its trigger");
+      if (points >= complete) {
+        this.fetch.click();
+        return;
+      }
       await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
-      if (!this.box.open) return;
     }
-    setText(this.said, `${before} points recorded`);
-    this.fetch.click();
   }
 
   async #points() {

@@ -117,10 +117,14 @@ pub(super) struct Serve {
 /// A page for a controller that runs already.
 #[cfg(unix)]
 #[derive(Args, Clone, Debug)]
-#[group(id = "controller", required = true, multiple = false, args = ["port", "connect"])]
 pub(super) struct View {
     /// The serial line that the controller is at, or a pseudo-terminal.
-    #[arg(long, value_name = "DEVICE")]
+    #[arg(
+        long,
+        value_name = "DEVICE",
+        required_unless_present = "connect",
+        conflicts_with = "connect"
+    )]
     pub(super) port: Option<PathBuf>,
     /// Host and port that the controller is at.
     #[arg(long, value_name = "ADDRESS")]
