@@ -37,9 +37,10 @@ mod table {
             "viewers", "ticks", "late, mean", "latest", "lost", "pictures a second"
         );
         for viewers in [0, 1, 4, 16] {
-            let (pacing, pictures_hz) = measure(viewers);
+            let (pacing, slowest_hz) = measure(viewers);
+            let pictures = slowest_hz.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.1}"));
             println!(
-                "{viewers:>8} {:>12} {:>9.2} ms {:>9.2} ms {:>9.0} ms {pictures_hz:>20.1}",
+                "{viewers:>8} {:>12} {:>9.2} ms {:>9.2} ms {:>9.0} ms {pictures:>20}",
                 pacing.ticks,
                 1e3 * pacing.late_s / pacing.ticks as f64,
                 1e3 * pacing.latest.as_secs_f64(),
@@ -49,7 +50,7 @@ mod table {
     }
 
     /// How the loop keeps to the clock with so many viewers, and how many status messages a second the slowest of them gets.
-    fn measure(viewers: usize) -> (Pacing, f64) {
+    fn measure(viewers: usize) -> (Pacing, Option<f64>) {
         let options = RunOptions::default();
         let server = Server::bind(ServeOptions {
             listen: "127.0.0.1:0".into(),
@@ -82,7 +83,7 @@ mod table {
             let rates = looking
                 .into_iter()
                 .map(|viewer| viewer.join().expect("a viewer"));
-            let slowest = rates.fold(f64::INFINITY, f64::min);
+            let slowest = rates.min_by(f64::total_cmp);
             drop(page);
             stop.store(true, Ordering::Relaxed);
             (served.join().expect("the server"), slowest)
