@@ -23,9 +23,9 @@ ARGUMENTS = argparse.Namespace()
 
 def recorded(gateway):
     """`gateway`, whose traffic is written to the transcript besides."""
-    def write(line):
+    def write(sign, text):
         with open(ARGUMENTS.transcript, "a", encoding="utf-8") as file:
-            file.write(f"{line}\n")
+            file.write(f"{sign} {text!r}\n")
 
     return overheard(gateway, write)
 

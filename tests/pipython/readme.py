@@ -23,26 +23,32 @@ class Readme(unittest.TestCase):
         self.program, self.shown = re.findall(r"```(?:python)?\n(.*?)```", section, re.DOTALL)[:2]
 
     def test_its_program_runs_and_its_transcript_is_what_was_said(self):
-        said = []
+        messages = []
         socket = pisocket.PISocket
+
+        def hear(sign, text):
+            # However many pieces a reply has come in.
+            if sign == "<" and messages and messages[-1][0] == "<":
+                text = messages.pop()[1] + text
+            messages.append((sign, text))
 
         def here(host, port):
             self.assertEqual((host, port), ("127.0.0.1", 50000))
-            return overheard(socket(host=host, port=self.port), said.append)
+            return overheard(socket(host=host, port=self.port), hear)
 
         names = {}
         with mock.patch.object(pisocket, "PISocket", here), mock.patch("builtins.print") as printed:
             exec(compile(self.program, "README.md", "exec"), names)
-        self.addCleanup(names["stage"].CloseConnection)
+        self.addCleanup(names["stage"].close)
         place = printed.call_args.args[0]
         for axis, target in (("X", 30), ("Y", -20), ("W", 45)):
             self.assertAlmostEqual(place[axis], target, delta=1e-3)
-        self.assert_parts_of(self.shown.splitlines(), said)
+        self.assert_parts_of(self.shown, [f"{sign} {text!r}" for sign, text in messages])
 
     def assert_parts_of(self, shown, said):
         """Without the lines left out, what is shown stands in what was said, word by word and in order."""
         start = 0
-        for part in "\n".join(shown).split(f"\n{LEFT_OUT}\n"):
+        for part in shown.split(f"\n{LEFT_OUT}\n"):
             lines = part.splitlines()
             found = [i for i in range(start, len(said)) if said[i:i + len(lines)] == lines]
             self.assertTrue(found, f"the README shows what was not said:\n{part}\nSaid was:\n" + "\n".join(said[start:]))

@@ -2,12 +2,12 @@
 
 
 def overheard(gateway, write):
-    """`gateway`, each message of which is given to `write` as a line besides; it may be closed twice, as PIPython does."""
+    """`gateway`, whose bytes are given to `write` besides, after ">" or "<"; it may be closed twice, as PIPython does."""
     send, read, close = gateway.send, gateway.read, gateway.close
 
     def told(sign, text):
         if text:
-            write(f"{sign} {text.encode('latin-1', 'replace')!r}")
+            write(sign, text.encode("latin-1", "replace"))
 
     def told_send(message):
         told(">", message)
