@@ -207,6 +207,11 @@ class Live(OnPage):
             URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text; }); return make.call(URL, blob); }""")
         browser.run("document.querySelector('#recorder').scrollIntoView()")
         self.picture(browser, "recorder")
+        drawn = "return document.querySelector('#recorder canvas').toDataURL()"
+        whole = browser.run(drawn)
+        browser.run("document.querySelector('#recorder canvas').focus()")
+        browser.press("+")
+        browser.wait(lambda: browser.run(drawn) != whole, "the zoom")
         browser.run("[...document.querySelectorAll('#recorder button')].find((b) => b.textContent.includes('CSV')).click()")
         text = browser.wait(lambda: browser.run("return window.saved"), "the file")
         head, *rows = text.strip().split("\n")

@@ -81,12 +81,12 @@ export class Recorder {
   }
 
   #pictures() {
-    this.canvas = make("canvas", { className: "plot", tabIndex: 0, role: "img", "aria-label": "The record over time", hidden: true });
+    this.pictures = make("div");
+    this.plots = [];
     this.view = new TimeView(0, 1);
     this.view.addEventListener("change", () => this.#draw());
-    control(this.canvas, this.view, (x) => this.plots[0].timeAt(x, this.view.range));
     addEventListener("resize", () => this.#draw());
-    return this.canvas;
+    return this.pictures;
   }
 
   async #arm() {
@@ -142,15 +142,22 @@ export class Recorder {
   #show() {
     const { names, values, period } = this.#rows;
     const times = values[0].map((_, i) => i * period);
-    const series = names.map((name, channel) => ({ name, short: String(channel + 1), paint: PAINTS[channel % PAINTS.length], channel }));
-    this.plots = [new Plot(this.canvas, { title: "Record", series, data: { times, low: values, high: values }, decimals: 5 })];
-    this.canvas.hidden = false;
+    const data = { times, low: values, high: values };
+    this.plots = [...byUnit(names)].map(([unit, series]) => this.#plot(unit, series, data));
+    this.pictures.replaceChildren(...this.plots.map(({ canvas }) => canvas));
     this.view.whole = [0, times.at(-1) || period];
     this.view.all();
   }
 
+  #plot(unit, series, data) {
+    const title = unit ? `Record, ${unit}` : "Record";
+    const canvas = make("canvas", { className: "plot", tabIndex: 0, role: "img", "aria-label": `${title}, over time` });
+    const plot = new Plot(canvas, { title, series, data, decimals: 5 });
+    control(canvas, this.view, (x) => plot.timeAt(x, this.view.range));
+    return plot;
+  }
+
   #draw() {
-    if (!this.#rows) return;
     for (const plot of this.plots) plot.draw(this.view);
   }
 
@@ -160,4 +167,15 @@ export class Recorder {
     const lines = values[0].map((_, i) => [(i * period).toFixed(9), ...values.map((column) => column[i])].join(","));
     save("record.csv", `${[head, ...lines].join("\n")}\n`);
   }
+}
+
+/** Series of the columns, by their unit: the text after the last comma of a name, or none. */
+function byUnit(names) {
+  const units = new Map();
+  names.forEach((whole, channel) => {
+    const [, name, unit] = /^(.*), ([^,]*)$/.exec(whole) ?? [whole, whole, ""];
+    if (!units.has(unit)) units.set(unit, []);
+    units.get(unit).push({ name, short: String(channel + 1), paint: PAINTS[channel % PAINTS.length], channel });
+  });
+  return units;
 }
