@@ -10,32 +10,36 @@ use std::process::{Child, Command, Output, Stdio};
 struct Served {
     child: Child,
     address: String,
+    terminal: String,
 }
 
 impl Served {
     fn start() -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_tripivot"))
-            .args(["serve", "--listen", "127.0.0.1:0"])
+            .args(["serve", "--listen", "127.0.0.1:0", "--web", "off", "--pty"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let mut line = String::new();
         let mut out = BufReader::new(child.stdout.take().unwrap());
-        out.read_line(&mut line).unwrap();
+        let mut place = |prefix: &str| {
+            let mut line = String::new();
+            out.read_line(&mut line).unwrap();
+            line.trim().strip_prefix(prefix).unwrap().to_owned()
+        };
+        let (address, terminal) = (place("listening at "), place("terminal at "));
         // Read on, so that its notices find somebody.
         std::thread::spawn(move || out.lines().count());
-        let address = line
-            .trim()
-            .strip_prefix("listening at ")
-            .unwrap()
-            .to_owned();
-        Self { child, address }
+        Self {
+            child,
+            address,
+            terminal,
+        }
     }
 
     /// Records; the output, and the folder.
     fn record(&self, name: &str, arguments: &[&str]) -> (Output, PathBuf) {
-        record(&self.address, name, arguments)
+        record(["--connect", &self.address], name, arguments)
     }
 }
 
@@ -46,12 +50,14 @@ impl Drop for Served {
     }
 }
 
-fn record(address: &str, name: &str, arguments: &[&str]) -> (Output, PathBuf) {
+fn record(way: [&str; 2], name: &str, arguments: &[&str]) -> (Output, PathBuf) {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     // Not there at the first run.
     let _ = fs::remove_dir_all(&folder);
     let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
-        .args(["record", "--connect", address, "--out"])
+        .arg("record")
+        .args(way)
+        .arg("--out")
         .arg(&folder)
         .args(arguments)
         .output()
@@ -136,8 +142,38 @@ fn a_move_from_before_its_start() {
 }
 
 #[test]
+fn over_a_serial_line() {
+    let served = Served::start();
+    let way = ["--port", &served.terminal];
+    let reference = ["--send", "FRF", "--trigger", "now", "--points", "100"];
+    let (output, _) = record(way, "line-reference", &reference);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let arguments = [
+        "--tables", "X:1,X:2", "--every", "10", "--points", "500", "--send", "MOV X 5",
+    ];
+    let arguments = [&arguments[..], &["--baud", "115200"]].concat();
+    let (output, folder) = record(way, "line-move", &arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (names, rows) = table(&folder);
+    assert_eq!(
+        names,
+        "\"time since trigger, s\",\"commanded position of X, mm\",\"real position of X, mm\""
+    );
+    let [first, last] = [&rows[0], rows.last().unwrap()];
+    assert!(
+        first[1].abs() < 1e-2 && (last[1] - 5.0).abs() < 1e-6,
+        "{first:?} {last:?}"
+    );
+    assert!(rows.iter().all(|row| (row[1] - row[2]).abs() < 0.02));
+    // The line is free again, and says the same as TCP.
+    let (output, _) = record(way, "line-refused", &["--send", "MOV X 100"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error_line(&output).contains("GCS error 7"), "{output:?}");
+}
+
+#[test]
 fn nobody_there() {
-    let (output, _) = record("127.0.0.1:1", "nobody", &[]);
+    let (output, _) = record(["--connect", "127.0.0.1:1"], "nobody", &[]);
     assert_eq!(output.status.code(), Some(2));
     let line = error_line(&output);
     assert!(

@@ -40,7 +40,9 @@ impl Stage {
         let (address, terminal) = (server.address().unwrap(), server.terminal().map(Into::into));
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
-        let thread = thread::spawn(move || server.run(&stopped, &mut drop).unwrap());
+        let thread = thread::spawn(move || {
+            server.run(&stopped, &mut drop).unwrap();
+        });
         Self {
             address,
             terminal,

@@ -8,6 +8,7 @@ import time
 import urllib.error
 import urllib.request
 
+ESCAPE, ENTER, UP, RIGHT = "\ue00c", "\ue007", "\ue013", "\ue014"
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 PATIENCE_S = 60
 """Far longer than anything here takes, on a busy machine too."""
@@ -47,13 +48,22 @@ class Browser:
             options["mobileEmulation"] = {"deviceMetrics": metrics}
         capabilities = {"alwaysMatch": {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}}
         self.base = driver.url
-        self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
+        self.session = self.start(capabilities)
         self.base = f"{driver.url}/session/{self.session}"
         if not touch:
             self.devtools("Emulation.setDeviceMetricsOverride",
                           width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.devtools("Emulation.setEmulatedMedia",
                       features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def start(self, capabilities):
+        """A new window's name. A browser that does not come up on a busy machine gets a second chance."""
+        for _ in range(2):
+            try:
+                return self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
+            except (RuntimeError, TimeoutError) as error:
+                reason = error
+        raise RuntimeError(f"no browser: {reason}")
 
     def call(self, method, path, body=None):
         data = None if method in ("GET", "DELETE") else json.dumps(body or {}).encode()
@@ -122,17 +132,17 @@ class Browser:
         self.call("POST", "/actions", {"actions": [pointer]})
 
     def wait(self, condition, what):
-        """Until `condition()` holds; its value."""
+        """Until `condition()` holds; its value. `what` is waited for: in words, or a function that has them when it is too late."""
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
             value = condition()
             if value:
                 return value
             time.sleep(0.05)
-        raise AssertionError(f"waited in vain for {what}")
+        raise AssertionError(f"waited in vain for {what() if callable(what) else what}")
 
     def wait_text(self, selector, part):
-        self.wait(lambda: part in self.text(selector), f"“{part}” in {selector}, which says “{self.text(selector)}”")
+        self.wait(lambda: part in self.text(selector), lambda: f"“{part}” in {selector}, which says “{self.text(selector)}”")
 
     def errors(self):
         """What the page's scripts have complained about."""

@@ -10,6 +10,10 @@ from pipython import GCSDevice, GCSError, datarectools, gcserror, pitools
 from pipython.pidevice.interfaces.piserial import PISerial
 from pipython.pidevice.interfaces.pisocket import PISocket
 
+from programs import Programs
+from readme import Readme
+from wire import overheard
+
 AXES = ["X", "Y", "Z", "U", "V", "W"]
 PLACE_MM = 1e-3
 """How near a settled stage is to its target, mm or deg: a hundred encoder counts, and more than its noise."""
@@ -18,32 +22,15 @@ ARGUMENTS = argparse.Namespace()
 
 
 def recorded(gateway):
-    """`gateway`, whose traffic is written to the transcript besides, and which may be closed twice, as PIPython does."""
-    send, read, close = gateway.send, gateway.read, gateway.close
-
+    """`gateway`, whose traffic is written to the transcript besides."""
     def write(sign, text):
-        if text:
-            with open(ARGUMENTS.transcript, "a", encoding="utf-8") as file:
-                file.write(f"{sign} {text.encode('latin-1', 'replace')!r}\n")
+        with open(ARGUMENTS.transcript, "a", encoding="utf-8") as file:
+            file.write(f"{sign} {text!r}\n")
 
-    def recorded_send(message):
-        write(">", message)
-        send(message)
-
-    def recorded_read():
-        text = read()
-        write("<", text)
-        return text
-
-    def close_once():
-        if gateway.connected:
-            close()
-
-    gateway.send, gateway.read, gateway.close = recorded_send, recorded_read, close_once
-    return gateway
+    return overheard(gateway, write)
 
 
-class Drive:
+class Drive(Programs):
     """The same tests for each way to the stage."""
 
     SERIAL = "SIM"
@@ -442,5 +429,6 @@ if __name__ == "__main__":
     parser.add_argument("--chip", type=int)
     parser.add_argument("--transcript", required=True)
     ARGUMENTS, rest = parser.parse_known_args()
+    Readme.port = ARGUMENTS.port
     open(ARGUMENTS.transcript, "w", encoding="utf-8").close()
     unittest.main(argv=["drive.py", *rest], verbosity=2)

@@ -17,7 +17,9 @@ export class Aim {
     canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch") this.#aim(this.#placeOf(event)); });
     canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") this.#leave(); });
     canvas.addEventListener("click", (event) => {
-      this.#aim(this.#placeOf(event), event.pointerType !== "touch");
+      const place = this.#placeOf(event);
+      if (event.pointerType === "touch") this.#aim(place);
+      else this.#goTo(place);
     });
     canvas.addEventListener("keydown", (event) => this.#key(event));
     this.go.addEventListener("click", () => this.#move(this.at.place));
@@ -28,14 +30,24 @@ export class Aim {
     return this.scene.targetAt(event.offsetX, event.offsetY).map((mm) => Math.round(mm * 10) / 10);
   }
 
-  /** Shows what the controller says of a place, and goes there if it is asked to and can. */
-  #aim(place, goes = false) {
+  /** Shows what the controller says of a place. */
+  #aim(place) {
     this.at = { place };
     this.reach.check(place, (verdict) => {
       this.at = verdict;
       this.#show();
-      if (goes && verdict.good) this.#move(place);
     });
+  }
+
+  /** The same, and goes there if it can, wherever is pointed at meanwhile. */
+  async #goTo(place) {
+    this.at = { place };
+    const verdict = await this.reach.verdict(place);
+    if (this.at?.place === place) {
+      this.at = { place, ...verdict };
+      this.#show();
+    }
+    if (verdict.good) this.#move(place);
   }
 
   #show() {
@@ -54,7 +66,7 @@ export class Aim {
 
   #key(event) {
     const { key, shiftKey } = event;
-    if (key === "Enter" && this.at) this.#aim(this.at.place, true);
+    if (key === "Enter" && this.at) this.#goTo(this.at.place);
     if (!KEYS[key]) return;
     event.preventDefault();
     const from = this.at?.place ?? this.stage.measured?.slice(0, 2) ?? [0, 0];

@@ -148,12 +148,15 @@ export class Plot {
     context.font = "600 13px system-ui, sans-serif";
     context.fillStyle = colour("ink");
     context.fillText(this.title, 2, 12);
+    const titleEnd = 2 + context.measureText(this.title).width;
     let right = frame.right;
     context.textAlign = "right";
     context.font = "12px system-ui, sans-serif";
-    const narrow = frame.right < 420;
+    const whole = (one) => `${one.name}${this.#valueText(one, view)}`;
+    const wanted = this.series.reduce((sum, one) => sum + context.measureText(whole(one)).width + 31, 0);
+    const narrow = wanted > frame.right - titleEnd;
     for (const one of [...this.series].reverse()) {
-      const text = narrow ? one.short ?? one.name : `${one.name}${this.#valueText(one, view)}`;
+      const text = narrow ? one.short ?? one.name : whole(one);
       context.fillStyle = colour("ink");
       context.fillText(text, right, 12);
       right -= context.measureText(text).width + 5;

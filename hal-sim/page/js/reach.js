@@ -21,10 +21,15 @@ export class Reach {
     while (this.#next) {
       const { place, tell } = this.#next;
       this.#next = null;
-      const verdict = await this.#ask(place).catch((error) => ({ good: false, reason: error.message }));
+      const verdict = await this.verdict(place);
       if (!this.#next) tell({ place, ...verdict });
     }
     this.#busy = false;
+  }
+
+  /** { good, reason } of a place, asked at once. */
+  verdict(place) {
+    return this.#ask(place).catch((error) => ({ good: false, reason: error.message }));
   }
 
   async #ask([x, y]) {

@@ -23,12 +23,15 @@ const CROSSINGS = ["100", "101"];
 const EVERY = 10;
 /** Points asked for at a time, so that a slow line shows the status in between. */
 const POINTS = 512;
+/** Item and parameter that say how many points make a record. */
+const POINTS_OF_A_RECORD = "1 0x16000201";
 /** How often the progress is asked for, ms. */
 const LOOK_MS = 250;
 const PAINTS = ["pivot-1", "pivot-2", "pivot-3", "centre", "theta", "ink", "faint", "steel"];
 
 export class Recorder {
   #tables = 0;
+  #armings = 0;
   #rows = null;
 
   constructor(stage) {
@@ -78,12 +81,12 @@ export class Recorder {
   }
 
   #pictures() {
-    this.canvas = make("canvas", { className: "plot", tabIndex: 0, role: "img", "aria-label": "The record over time", hidden: true });
+    this.pictures = make("div");
+    this.plots = [];
     this.view = new TimeView(0, 1);
     this.view.addEventListener("change", () => this.#draw());
-    control(this.canvas, this.view, (x) => this.plots[0].timeAt(x, this.view.range));
     addEventListener("resize", () => this.#draw());
-    return this.canvas;
+    return this.pictures;
   }
 
   async #arm() {
@@ -99,20 +102,22 @@ export class Recorder {
     await link.ask(`DRT 1 ${this.trigger.value} ${plain(typed(this.value.value) || 0)}`);
   }
 
-  /** Tells how far the record is until it is no longer. */
+  /** Tells how far the record is until it is complete, armed anew, or out of sight. */
   async #watch() {
-    let before = -1;
-    for (;;) {
+    const arming = ++this.#armings;
+    const watched = () => this.box.open && arming === this.#armings;
+    const sought = await this.stage.link.ask(`SPA? ${POINTS_OF_A_RECORD}`).catch(() => "");
+    const complete = Number(fields(sought)[POINTS_OF_A_RECORD]);
+    while (watched()) {
       const points = await this.#points().catch(() => NaN);
-      if (Number.isNaN(points)) return;
-      if (points > 0 && points === before) break;
-      before = points;
-      setText(this.said, points ? `${points} points so far` : "armed: waiting for its trigger");
+      if (Number.isNaN(points) || !watched()) return;
+      setText(this.said, points ? `${points} of ${complete} points so far` : "armed: waiting for its trigger");
+      if (points >= complete) {
+        this.fetch.click();
+        return;
+      }
       await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
-      if (!this.box.open) return;
     }
-    setText(this.said, `${before} points recorded`);
-    this.fetch.click();
   }
 
   async #points() {
@@ -137,15 +142,22 @@ export class Recorder {
   #show() {
     const { names, values, period } = this.#rows;
     const times = values[0].map((_, i) => i * period);
-    const series = names.map((name, channel) => ({ name, short: String(channel + 1), paint: PAINTS[channel % PAINTS.length], channel }));
-    this.plots = [new Plot(this.canvas, { title: "Record", series, data: { times, low: values, high: values }, decimals: 5 })];
-    this.canvas.hidden = false;
+    const data = { times, low: values, high: values };
+    this.plots = [...byUnit(names)].map(([unit, series]) => this.#plot(unit, series, data));
+    this.pictures.replaceChildren(...this.plots.map(({ canvas }) => canvas));
     this.view.whole = [0, times.at(-1) || period];
     this.view.all();
   }
 
+  #plot(unit, series, data) {
+    const title = unit ? `Record, ${unit}` : "Record";
+    const canvas = make("canvas", { className: "plot", tabIndex: 0, role: "img", "aria-label": `${title}, over time` });
+    const plot = new Plot(canvas, { title, series, data, decimals: 5 });
+    control(canvas, this.view, (x) => plot.timeAt(x, this.view.range));
+    return plot;
+  }
+
   #draw() {
-    if (!this.#rows) return;
     for (const plot of this.plots) plot.draw(this.view);
   }
 
@@ -155,4 +167,15 @@ export class Recorder {
     const lines = values[0].map((_, i) => [(i * period).toFixed(9), ...values.map((column) => column[i])].join(","));
     save("record.csv", `${[head, ...lines].join("\n")}\n`);
   }
+}
+
+/** Series of the columns, by their unit: the text after the last comma of a name, or none. */
+function byUnit(names) {
+  const units = new Map();
+  names.forEach((whole, channel) => {
+    const [, name, unit] = /^(.*), ([^,]*)$/.exec(whole) ?? [whole, whole, ""];
+    if (!units.has(unit)) units.set(unit, []);
+    units.get(unit).push({ name, short: String(channel + 1), paint: PAINTS[channel % PAINTS.length], channel });
+  });
+  return units;
 }

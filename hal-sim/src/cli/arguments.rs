@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, value_parser};
 
 #[cfg(unix)]
 use crate::record::Trigger;
@@ -117,7 +117,7 @@ pub(super) struct Serve {
 /// A page for a controller that runs already.
 #[cfg(unix)]
 #[derive(Args, Clone, Debug)]
-#[group(id = "controller", required = true, multiple = false, args = ["port", "connect"])]
+#[command(group(ArgGroup::new("controller").required(true).args(["port", "connect"])))]
 pub(super) struct View {
     /// The serial line that the controller is at, or a pseudo-terminal.
     #[arg(long, value_name = "DEVICE")]

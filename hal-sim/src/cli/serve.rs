@@ -10,9 +10,9 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::arguments::Serve;
 use super::error::CliError;
-use super::simulate::imperfections;
+use super::simulate::stage_options;
 use super::view::page;
-use crate::run::{RunOptions, controller_parameters, stage_parameters};
+use crate::run::{controller_parameters, stage_parameters};
 use crate::serve::{Printer, ServeError, ServeOptions, Server};
 use crate::web::{Endpoint, Page};
 
@@ -36,14 +36,7 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
 }
 
 fn options(arguments: &Serve) -> ServeOptions {
-    let stage = &arguments.stage;
-    let options = RunOptions {
-        seed: stage.seed,
-        mismatch_percent: stage.mismatch,
-        payload_kg: stage.payload,
-        imperfections: imperfections(stage),
-        ..RunOptions::default()
-    };
+    let options = stage_options(&arguments.stage);
     ServeOptions {
         listen: arguments.listen.clone(),
         speed: arguments.speed,

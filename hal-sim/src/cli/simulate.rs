@@ -57,15 +57,23 @@ pub(super) fn options(name: &str, arguments: &Simulation) -> RunOptions {
     RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,
-        seed: arguments.stage.seed,
-        mismatch_percent: arguments.stage.mismatch,
-        payload_kg: arguments.stage.payload,
-        imperfections: imperfections(&arguments.stage),
         quiet: arguments.quiet,
+        ..stage_options(&arguments.stage)
     }
 }
 
-pub(super) fn imperfections(arguments: &SimulatedStage) -> Imperfections {
+/// The stage that was asked for; the rest as it is by default.
+pub(super) fn stage_options(arguments: &SimulatedStage) -> RunOptions {
+    RunOptions {
+        seed: arguments.seed,
+        mismatch_percent: arguments.mismatch,
+        payload_kg: arguments.payload,
+        imperfections: imperfections(arguments),
+        ..RunOptions::default()
+    }
+}
+
+fn imperfections(arguments: &SimulatedStage) -> Imperfections {
     let mut on = Imperfections {
         encoder_eccentricity: arguments.eccentricity,
         ..Imperfections::CALIBRATED

@@ -35,6 +35,7 @@ use firmware::parameters::Parameters;
 use crate::devices::StageParameters;
 
 pub use notice::Notice;
+pub use pace::Pacing;
 pub use printer::Printer;
 pub use server::Server;
 

@@ -9,6 +9,19 @@ const BATCH: u64 = 40;
 /// What may be made up for later: a delay up to this is the machine's, not the simulation's.
 const PATIENCE: Duration = Duration::from_millis(200);
 
+/// How well the ticks kept to the wall clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pacing {
+    /// Ticks that were run.
+    pub ticks: u64,
+    /// How late they were all together, s: each is due at its time, and runs in a batch that begins at or after it.
+    pub late_s: f64,
+    /// How late the latest was.
+    pub latest: Duration,
+    /// Time that could not be made up for, which the stage never had.
+    pub lost: Duration,
+}
+
 /// Which ticks are due.
 #[derive(Debug)]
 pub(super) struct Pace {
@@ -17,6 +30,7 @@ pub(super) struct Pace {
     done: u64,
     /// Ticks in a second of the wall clock.
     rate_hz: f64,
+    pacing: Pacing,
 }
 
 impl Pace {
@@ -25,14 +39,38 @@ impl Pace {
             start: now,
             done: 0,
             rate_hz,
+            pacing: Pacing::default(),
         }
+    }
+
+    /// How it went so far.
+    pub const fn pacing(&self) -> Pacing {
+        self.pacing
     }
 
     /// Ticks to run now; they count as done.
     pub fn take(&mut self, now: Instant) -> u64 {
         let count = self.behind(now).min(BATCH);
+        if count > 0 {
+            self.note(count, self.late(now, self.done + 1));
+        }
         self.done += count;
         count
+    }
+
+    /// Of a batch, whose first tick is so late and whose others were due one after another since.
+    fn note(&mut self, count: u64, latest: Duration) {
+        let number = count as f64;
+        let since_s = number * (number - 1.0) / 2.0 / self.rate_hz;
+        self.pacing.ticks += count;
+        self.pacing.late_s += number * latest.as_secs_f64() - since_s;
+        self.pacing.latest = self.pacing.latest.max(latest);
+    }
+
+    /// How long ago so many ticks were due.
+    fn late(&self, now: Instant, ticks: u64) -> Duration {
+        let due = Duration::from_secs_f64(ticks as f64 / self.rate_hz);
+        now.duration_since(self.start).saturating_sub(due)
     }
 
     /// How long to wait for the next batch.
@@ -48,13 +86,12 @@ impl Pace {
 
     /// Gives up what can not be made up for any more, and says how much that was.
     pub fn give_up(&mut self, now: Instant) -> Option<Duration> {
-        let late = now
-            .duration_since(self.start)
-            .saturating_sub(Duration::from_secs_f64(self.done as f64 / self.rate_hz));
+        let late = self.late(now, self.done);
         if late <= PATIENCE {
             return None;
         }
         self.start += late;
+        self.pacing.lost += late;
         Some(late)
     }
 
@@ -83,6 +120,13 @@ mod tests {
             ticks += pace.take(start + ms(at));
         }
         assert_eq!(ticks, 20_000);
+        // In every millisecond the first of 20 ticks, or 21, waits for the last.
+        let pacing = pace.pacing();
+        assert_eq!((pacing.ticks, pacing.lost), (20_000, Duration::ZERO));
+        let latest_us = 1e6 * pacing.latest.as_secs_f64();
+        assert!((949.0..=1001.0).contains(&latest_us), "{latest_us} us");
+        let mean_us = 1e6 * pacing.late_s / 20_000.0;
+        assert!((474.0..=480.0).contains(&mean_us), "{mean_us} us");
     }
 
     #[test]
@@ -106,6 +150,7 @@ mod tests {
         let mut pace = Pace::new(start, 20_000.0);
         let late = start + ms(3_000);
         assert_eq!(pace.give_up(late), Some(ms(3_000)));
+        assert_eq!(pace.pacing().lost, ms(3_000));
         assert_eq!(pace.take(late), 0);
         assert_eq!(pace.take(late + ms(1)), 20);
     }

@@ -15,7 +15,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
 use super::connection::Connection;
-use super::pace::Pace;
+use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
 use super::{Notice, ServeError, ServeOptions};
 use crate::host::Host;
@@ -72,11 +72,12 @@ impl Server {
         self.terminal.as_ref().map(|terminal| &*terminal.path)
     }
 
-    /// Runs the stage and serves it until `stop` is set; looks at that 20 times a second at least.
+    /// Runs the stage and serves it until `stop` is set; looks at that 20 times a second at least. How well it kept to the
+    /// clock.
     ///
     /// # Errors
     /// [`ServeError::Wait`].
-    pub fn run(self, stop: &AtomicBool, say: &mut dyn FnMut(Notice)) -> Result<(), ServeError> {
+    pub fn run(self, stop: &AtomicBool, say: &mut dyn FnMut(Notice)) -> Result<Pacing, ServeError> {
         let mut link = Link::new();
         let (tick_link, panel_link) = link.split();
         let now = Instant::now();
@@ -96,14 +97,13 @@ impl Server {
             connections: connections.into_iter().collect(),
             accept_from: now,
             fault_tick: None,
-            lost: Duration::ZERO,
             lost_told: None,
             say,
         };
         while !stop.load(Ordering::Relaxed) {
             service.turn().map_err(ServeError::Wait)?;
         }
-        Ok(())
+        Ok(service.pace.pacing())
     }
 }
 
@@ -127,8 +127,7 @@ struct Service<'a> {
     accept_from: Instant,
     /// The fault that was told last.
     fault_tick: Option<u64>,
-    /// Time that could not be made up for.
-    lost: Duration,
+    /// When the time that could not be made up for was told last.
     lost_told: Option<Instant>,
     say: &'a mut dyn FnMut(Notice),
 }
@@ -181,13 +180,12 @@ impl Service<'_> {
     }
 
     fn tell_lost(&mut self, now: Instant) {
-        let Some(lost) = self.pace.give_up(now) else {
+        if self.pace.give_up(now).is_none() {
             return;
-        };
-        self.lost += lost;
+        }
         if (self.lost_told).is_none_or(|told| now.duration_since(told) > BEHIND_EVERY) {
             self.lost_told = Some(now);
-            (self.say)(Notice::Behind(self.lost.as_secs_f64()));
+            (self.say)(Notice::Behind(self.pace.pacing().lost.as_secs_f64()));
         }
     }
 
