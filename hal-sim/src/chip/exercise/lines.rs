@@ -152,18 +152,20 @@ impl Lines {
         self.rest();
     }
 
-    /// A centre of rotation beside the platform's.
+    /// A centre of rotation beside the platform's, which can be set where the platform's axes are the track's.
     fn about_a_point(&mut self) {
-        self.line("MOV X 0 Y 0");
+        self.line("MOV X 0 Y 0 W 0");
         self.rest();
         let [r, s] = [0, 1].map(|_| self.within(-45.0, 45.0));
         self.line(&format!("SPI R {r:.4} S {s:.4}"));
         for _ in 0..self.whole(1, 4) {
-            let w = self.within(-360.0, 360.0);
+            let w = self.within(-180.0, 180.0);
             self.line(&format!("MVR W {w:.4}"));
             self.wait(50, 400);
         }
         self.line("HLT");
+        self.rest();
+        self.line("MOV W 0");
         self.rest();
         self.line("SPI R 0 S 0");
     }
@@ -208,7 +210,7 @@ impl Lines {
         let r = EDGE_MM * (self.within(0.0, 1.1).min(1.0)).sqrt();
         let direction = self.within(0.0, TAU);
         let (x, y) = (r * direction.cos(), r * direction.sin());
-        let w = self.within(-360.0, 360.0);
+        let w = self.within(-180.0, 180.0);
         let line = match self.whole(0, 3) {
             0 => format!("MOV X {x:.6} Y {y:.6}"),
             1 => format!("MOV W {w:.6}"),
