@@ -3,15 +3,25 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use firmware::config::Config;
+use firmware::controller::{Inputs, State, tick};
+use firmware::drivers::biss::RawFrame;
+use firmware::link::{Link, PanelLink, TickLink};
+use firmware::panel::{Panel, Session};
+use firmware::parameters::Parameters;
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
+use hal_sim::host::Host;
+use hal_sim::observer::TickRecord;
 use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
-use hal_sim::run::{RunOptions, run};
+use hal_sim::run::{IDENTITY, RunOptions, run};
 use hal_sim::script::Script;
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;
 /// Control periods in a batch.
 const PERIODS: u32 = 20_000;
+/// Ticks of the move that the controller makes by itself: all of it, and some rest.
+const MOVE_TICKS: usize = 40_000;
 /// The substeps of one control period, s.
 const SUBSTEPS_S: [f64; 4] = [12.5e-6, 12.5e-6, 10e-6, 15e-6];
 
@@ -34,7 +44,109 @@ fn main() {
         micros_each(|| run_stage(&mut stage))
     );
     assert_eq!(stage.plant.broken(), None);
+    controller_alone();
     whole_run();
+}
+
+/// The controller without a plant: its tick and its panel, given what it was given in a move with one.
+fn controller_alone() {
+    let inputs = recorded_inputs();
+    let replayed = || {
+        let mut rig = Rig::new();
+        let (mut config, mut state) = (Config::new(&Parameters::REFERENCE), State::new());
+        for (index, inputs) in inputs.iter().enumerate() {
+            rig.command(index);
+            black_box(tick(
+                &mut config,
+                &mut state,
+                inputs,
+                &mut rig.tick_link,
+                &mut rig.record,
+            ));
+        }
+        assert_eq!(state.fault(), None);
+        rig.record.hash
+    };
+    let (mut fastest_s, mut hash) = (f64::INFINITY, None);
+    for _ in 0..BATCHES {
+        let start = Instant::now();
+        hash = Some(replayed());
+        fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
+    }
+    println!(
+        "{:<44} {:>8.3}",
+        "controller without plant: tick, panel",
+        fastest_s / inputs.len() as f64 * 1e6
+    );
+    let simulated_s = inputs.len() as f64 / Parameters::REFERENCE.limits.rate_hz;
+    println!(
+        "{:<44} {:>8.1} times real time, hash {:08x}",
+        "",
+        simulated_s / fastest_s,
+        hash.map_or(0, |hash| hash.0)
+    );
+}
+
+/// What the controller is given in that move, tick by tick.
+fn recorded_inputs() -> Vec<Inputs> {
+    let mut host = Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE);
+    let mut rig = Rig::new();
+    (0..MOVE_TICKS)
+        .map(|index| {
+            rig.command(index);
+            let (current_counts, supply_counts) = host.stage.analog();
+            let inputs = Inputs {
+                frames: host.stage.frames().map(RawFrame),
+                bridge_fault: [false; 3],
+                emergency_stop: false,
+                current_counts,
+                supply_counts,
+                tick_cycles: 0,
+                late: false,
+            };
+            host.tick(&mut rig.tick_link, &mut rig.record);
+            inputs
+        })
+        .collect()
+}
+
+/// What stands around a tick.
+struct Rig {
+    tick_link: TickLink<'static>,
+    panel_link: PanelLink<'static>,
+    panel: Panel,
+    session: Session,
+    record: TickRecord,
+}
+
+impl Rig {
+    fn new() -> Self {
+        // As long as the process: a few of them are made.
+        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        Self {
+            tick_link,
+            panel_link,
+            panel: Panel::new(&Parameters::REFERENCE, IDENTITY),
+            session: Session::new(),
+            record: TickRecord::default(),
+        }
+    }
+
+    fn receive(&mut self, line: &[u8]) {
+        assert_eq!(self.session.receive(line), line.len());
+    }
+
+    /// The command side's turn before a tick: a reference, and a move about the disk.
+    fn command(&mut self, index: usize) {
+        match index {
+            100 => self.receive(b"FRF X\n"),
+            200 => self.receive(b"MOV X 60 Y -40 W 600\n"),
+            _ => {}
+        }
+        let mut answers = Vec::new();
+        // Writing to a vector does not fail.
+        let _ = (self.panel).service(&mut self.session, &mut self.panel_link, &mut answers);
+    }
 }
 
 /// The demonstration, controller and report's bookkeeping included.

@@ -45,10 +45,15 @@ fn chip_and_host_agree_to_the_bit_through_a_move() {
             100 => b"MOV X 20 Y -30 W 90\n",
             _ => b"",
         };
-        let mode = match twin.follow(period) {
-            Ok(record) => record.and_then(|(record, _)| Some(record.sample.as_ref()?.mode)),
-            Err(divergence) => panic!("{divergence}"),
-        };
+        twin.look(period)
+            .unwrap_or_else(|divergence| panic!("{divergence}"));
+        let mut mode = None;
+        while let Some(agreed) = twin
+            .catch_up()
+            .unwrap_or_else(|divergence| panic!("{divergence}"))
+        {
+            mode = agreed.record.sample.as_ref().map(|sample| sample.mode);
+        }
         twin.receive(script);
         period.send(script);
         if period.tick < 20_000 {

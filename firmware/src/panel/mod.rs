@@ -153,12 +153,17 @@ impl Panel {
         self.events.note_start(cause);
     }
 
+    /// The tick of the latest snapshot taken; 0 before the first.
+    pub fn tick(&self) -> u64 {
+        self.stage.tick()
+    }
+
     /// Whether `RBT` has been given: the board is to start the controller again.
     pub const fn wants_restart(&self) -> bool {
         self.wants_restart
     }
 
-    /// Takes new snapshots, carries on what is pending, handles what `session` has received and writes the replies to `out`.
+    /// Takes a new snapshot, carries on what is pending, handles what `session` has received and writes the replies to `out`.
     /// To be called for every connection as often as possible: on the host once every tick, on the chip in the idle loop.
     ///
     /// # Errors
@@ -181,9 +186,10 @@ impl Panel {
         result
     }
 
-    /// What goes on with and without connections: takes new snapshots, carries on what is pending, a macro too.
+    /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
     pub fn advance(&mut self, link: &mut PanelLink<'_>) {
-        while let Some(snapshot) = link.snapshot() {
+        // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next call.
+        if let Some(snapshot) = link.snapshot() {
             self.events.take(&snapshot);
             self.statistics.take(&snapshot);
             self.stage.take(snapshot);

@@ -39,7 +39,23 @@ pub struct Trace {
     pub commands: u32,
     /// Why the chip started, as the image understood it.
     pub reset_cause: u32,
+    /// How often the command interface has run.
+    pub served: u32,
 }
+
+/// A run of the chip's command interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Service {
+    /// Bytes it has taken since the chip started, the last of them right before this run.
+    pub bytes: u32,
+    /// The tick of the snapshot it had at hand; 0 before the first.
+    pub snapshot: u32,
+}
+
+/// How many of them the image remembers.
+const SERVICES: u32 = 16;
+/// Where they stand in the record, in words.
+const SERVICES_AT: u64 = 5;
 
 /// One control period: the frames and the ADC inputs of tick [`Period::tick`] have just been handed over, 16 us before it.
 pub struct Period<'a> {
@@ -114,6 +130,24 @@ impl Period<'_> {
             hash: word(1),
             commands: word(2),
             reset_cause: word(3),
+            served: word(4),
         }
+    }
+
+    /// The runs of the command interface from number `from` up to, not including, `to`; `None` when the image has forgotten some.
+    pub fn services(&mut self, from: u32, to: u32) -> Option<Vec<Service>> {
+        let count = to.wrapping_sub(from);
+        if count > SERVICES {
+            return None;
+        }
+        let mut word = |index: u64| self.word(self.trace_at + 4 * index).unwrap_or(0);
+        let services = (0..count).map(|offset| {
+            let place = u64::from(from.wrapping_add(offset) % SERVICES);
+            Service {
+                bytes: word(SERVICES_AT + 2 * place),
+                snapshot: word(SERVICES_AT + 2 * place + 1),
+            }
+        });
+        Some(services.collect())
     }
 }

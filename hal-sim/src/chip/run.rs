@@ -15,7 +15,7 @@ use crate::devices::Stage;
 use crate::observer::Observer;
 use crate::report::{Progress, Run};
 use crate::run::{RunOptions, stage_parameters, stuck_text};
-use crate::script::Script;
+use crate::script::{Script, ScriptError};
 
 /// A run on the chip that came to its end, one way or another.
 #[derive(Debug)]
@@ -47,6 +47,8 @@ pub enum ChipError {
     Gaps(Vec<String>),
     /// The run ended without a result.
     Lost,
+    /// The lines of an exercise are no script.
+    Script(ScriptError),
 }
 
 impl fmt::Display for ChipError {
@@ -62,6 +64,7 @@ impl fmt::Display for ChipError {
                 )
             }
             Self::Lost => write!(f, "the emulator ended before the script"),
+            Self::Script(error) => error.fmt(f),
         }
     }
 }
@@ -187,21 +190,25 @@ impl Runner {
     }
 
     fn follow(&mut self, period: &mut Period<'_>) -> ControlFlow<Option<String>> {
-        match self.twin.follow(period) {
-            Err(divergence) => Break(Some(apart(&divergence))),
-            Ok(None) => Continue(()),
-            Ok(Some((record, pose))) => {
-                self.agreed += 1;
-                self.hash = record.hash.0;
-                let Some(sample) = &record.sample else {
-                    return Continue(());
-                };
-                self.observer.look(sample, pose);
-                self.moving = sample.mode == Mode::Moving;
-                if sample.mode == Mode::Fault {
-                    return Break(Some(format!("fault at tick {}", sample.tick)));
-                }
-                Continue(())
+        let apart = |divergence| Break(Some(apart(&divergence)));
+        if let Err(divergence) = self.twin.look(period) {
+            return apart(divergence);
+        }
+        loop {
+            let (record, pose) = match self.twin.catch_up() {
+                Err(divergence) => return apart(divergence),
+                Ok(None) => return Continue(()),
+                Ok(Some(agreed)) => (agreed.record, agreed.pose),
+            };
+            self.agreed += 1;
+            self.hash = record.hash.0;
+            let Some(sample) = &record.sample else {
+                continue;
+            };
+            self.observer.look(sample, pose);
+            self.moving = sample.mode == Mode::Moving;
+            if sample.mode == Mode::Fault {
+                return Break(Some(format!("fault at tick {}", sample.tick)));
             }
         }
     }

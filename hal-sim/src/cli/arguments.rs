@@ -38,7 +38,7 @@ pub(super) enum Command {
     /// Record signals of a controller that runs already, every tick or less often: a table and a picture.
     #[cfg(unix)]
     Record(RecordRun),
-    /// Run a script on the image for the controller's chip, emulated, and compare it with the host to the bit.
+    /// Run a script, or motion from a seed, on the image for the controller's chip, emulated, and compare it with the host to the bit.
     #[cfg(feature = "chip")]
     Chip(ChipRun),
     /// Let GCS clients drive the emulated chip over its serial line, one at a time, over TCP.
@@ -186,6 +186,12 @@ pub(super) struct RecordRun {
 pub(super) struct ChipRun {
     /// The script [default: the demonstration].
     pub(super) file: Option<PathBuf>,
+    /// Instead of a script demanding motion from the seed, compared at so many ticks, with what they cost.
+    #[arg(long, value_name = "N", conflicts_with_all = ["file", "out", "every"], value_parser = value_parser!(u64).range(1..))]
+    pub(super) ticks: Option<u64>,
+    /// Flip one bit of an encoder count on the host alone at this tick, counted from 0: the comparison has to find it, exit code 1.
+    #[arg(long, value_name = "TICK", requires = "ticks")]
+    pub(super) flip: Option<u64>,
     #[command(flatten)]
     pub(super) simulation: Simulation,
 }

@@ -12,9 +12,12 @@ use crate::run::{self, RunOutcome};
 use crate::script::Script;
 
 /// Instructions a control period has at 168 MHz.
-const PERIOD_INSTRUCTIONS: f64 = 8_400.0;
+pub(super) const PERIOD_INSTRUCTIONS: f64 = 8_400.0;
 
 pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
+    if let Some(ticks) = arguments.ticks {
+        return super::exercise::run(ticks, arguments);
+    }
     let script = match &arguments.file {
         Some(file) => Script::read(file)?,
         None => Script::demonstration()?,

@@ -12,6 +12,8 @@ mod chip_serve;
 mod cost;
 mod direct;
 mod error;
+#[cfg(feature = "chip")]
+mod exercise;
 mod inverse;
 mod map;
 #[cfg(unix)]

@@ -191,12 +191,18 @@ mod app {
     #[idle(local = [panel, session, panel_link, receiver, transmitter])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
+        let mut received = 0u32;
         loop {
-            local.receiver.pass_to(|bytes| local.session.receive(bytes));
+            local.receiver.pass_to(|bytes| {
+                let taken = local.session.receive(bytes);
+                received = received.wrapping_add(taken as u32);
+                taken
+            });
             local.session.set_room(local.transmitter.room());
             let Ok(()) = local
                 .panel
                 .service(local.session, local.panel_link, local.transmitter);
+            TRACE.note_service(received, local.panel.tick() as u32);
             local.transmitter.send();
             if local.panel.wants_restart() {
                 restart::now();

@@ -1,4 +1,7 @@
-//! What a bench or a debugger reads by symbol: `TRACE`, written by the tick and at start.
+//! What a bench or a debugger reads by symbol: `TRACE`, written by the tick, by the command interface and at start.
+//!
+//! What the command interface sends depends on the bytes and the snapshot that it has at hand, and how long it takes depends
+//! on the chip. With a record of both, whoever repeats the run elsewhere can give its own command interface the same.
 
 use crate::watchdog::ResetCause;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -15,7 +18,14 @@ pub struct Trace {
     commands: AtomicU32,
     /// Why the chip started: [`ResetCause`] as a number.
     reset_cause: AtomicU32,
+    /// How often the command interface has run; written behind the entry in `services` that it counts.
+    served: AtomicU32,
+    /// The latest of these, each in the place of its number: bytes taken so far, and the tick of the snapshot at hand.
+    services: [[AtomicU32; 2]; SERVICES],
 }
+
+/// Runs of the command interface that are remembered: more than there are interrupts to wake it in a control period.
+const SERVICES: usize = 16;
 
 /// The record.
 #[unsafe(no_mangle)]
@@ -24,6 +34,8 @@ pub static TRACE: Trace = Trace {
     hash: AtomicU32::new(0),
     commands: AtomicU32::new(0),
     reset_cause: AtomicU32::new(0),
+    served: AtomicU32::new(0),
+    services: [const { [const { AtomicU32::new(0) }; 2] }; SERVICES],
 };
 
 impl Trace {
@@ -35,6 +47,16 @@ impl Trace {
     /// Notes why the chip started.
     pub fn set_reset_cause(&self, cause: ResetCause) {
         self.reset_cause.store(cause as u32, Ordering::Relaxed);
+    }
+
+    /// Notes a run of the command interface: bytes taken since start, the last ones right before it, and the tick of the
+    /// snapshot it has had. To be called by the command interface alone.
+    pub fn note_service(&self, bytes: u32, tick: u32) {
+        let served = self.served.load(Ordering::Relaxed);
+        let [bytes_place, tick_place] = &self.services[served as usize % SERVICES];
+        bytes_place.store(bytes, Ordering::Relaxed);
+        tick_place.store(tick, Ordering::Relaxed);
+        self.served.store(served.wrapping_add(1), Ordering::Release);
     }
 }
 

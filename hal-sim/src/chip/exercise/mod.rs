@@ -1,0 +1,206 @@
+//! An exercise: demanding motion from a seed on the image, and its twin on the host beside it at every tick.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `lines` | the GCS lines |
+//! | `tally` | what ticks cost, by what they did |
+//!
+//! Besides what the lines do, an encoder is broken now and then: for as many frames as are bridged, or for more, which is
+//! a fault that the lines acknowledge.
+
+mod lines;
+mod tally;
+
+pub use tally::{Cost, Doing, Tally, Worst};
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow::{self, Break, Continue};
+use std::path::Path;
+use std::sync::mpsc;
+
+use firmware::link::Mode;
+use firmware::parameters::Parameters;
+
+use super::run::ChipError;
+use super::{Bench, Divergence, Period, Twin, image};
+use crate::client::{Client, Event};
+use crate::devices::{EncoderFault, Stage};
+use crate::report::Progress;
+use crate::run::{RunOptions, stage_parameters};
+
+/// What to do.
+#[derive(Clone, Debug)]
+pub struct ExerciseOptions {
+    /// Ticks to compare.
+    pub ticks: u64,
+    /// The simulated stage, and the seed of the lines.
+    pub run: RunOptions,
+    /// Before this tick (from 0) the host's encoder count differs in one bit: a comparison that is one finds it.
+    pub flip: Option<u64>,
+}
+
+/// What came of it.
+#[derive(Debug, Default)]
+pub struct Exercise {
+    /// Ticks in which chip and host agreed.
+    pub agreed: u64,
+    /// The running hash over them.
+    pub hash: u32,
+    /// Where the two went apart.
+    pub divergence: Option<Divergence>,
+    /// The line that was waited for in vain for a minute.
+    pub stuck: Option<String>,
+    /// What the ticks cost.
+    pub tally: Tally,
+    /// Lines carried out, and lines refused, by error number.
+    pub lines: usize,
+    /// See `lines`.
+    pub refused: BTreeMap<String, u32>,
+    /// Plans and other commands that the tick took.
+    pub commands: u64,
+    /// Faults latched.
+    pub faults: u32,
+    /// Most ticks that the host was behind the chip: how long the chip's command side took to send a command and be done.
+    pub behind: u64,
+    /// Wall-clock time, s.
+    pub wall_s: f64,
+}
+
+struct Runner {
+    client: Client,
+    twin: Twin,
+    progress: Progress,
+    ticks: u64,
+    period_s: f64,
+    mode: Mode,
+    exercise: Exercise,
+}
+
+/// Periods before the first line: what the image needs to start its interpreter.
+const WARM_UP: u64 = 20;
+const PROGRESS_EVERY: u64 = 500;
+/// Ticks from one broken encoder to the next.
+const BREAK_EVERY: u64 = 25_000;
+/// Broken for one frame, two and so on up to this many: the last two are more than are bridged.
+const FRAMES: u64 = 6;
+
+/// Runs an exercise on the image that lies in the target folder.
+///
+/// # Errors
+/// [`ChipError`]; a divergence is part of what comes of it.
+pub fn exercise(options: &ExerciseOptions) -> Result<Exercise, ChipError> {
+    let path = image::find().ok_or(ChipError::NoImage)?;
+    run_image(&path, options)
+}
+
+fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipError> {
+    let stage = Stage::new(&stage_parameters(&options.run));
+    let script = lines::script(options.run.seed, options.ticks).map_err(ChipError::Script)?;
+    let mut runner = Some(Runner {
+        client: Client::new(&script),
+        twin: Twin::new(&Parameters::REFERENCE).with_flip(options.flip),
+        progress: Progress::new(options.ticks, options.run.quiet),
+        ticks: options.ticks,
+        period_s: stage.period_s(),
+        mode: Mode::Off,
+        exercise: Exercise::default(),
+    });
+    let (send, receive) = mpsc::channel();
+    let bench = |error| ChipError::Bench(path.to_owned(), error);
+    let outcome = Bench::load(path, stage)
+        .map_err(bench)?
+        .run(move |period| {
+            let flow = (runner.as_mut()).map_or(Break(()), |runner| runner.period(period));
+            if flow.is_break()
+                && let Some(runner) = runner.take()
+            {
+                // Nobody to send to means that the caller has given up.
+                let _ = send.send(runner);
+            }
+            flow
+        })
+        .map_err(bench)?;
+    if !outcome.gaps.is_empty() {
+        return Err(ChipError::Gaps(outcome.gaps));
+    }
+    let runner = receive.try_recv().map_err(|_| ChipError::Lost)?;
+    let mut exercise = runner.exercise;
+    exercise.wall_s = runner.progress.finish();
+    exercise.lines = runner.client.done();
+    Ok(exercise)
+}
+
+impl Runner {
+    fn period(&mut self, period: &mut Period<'_>) -> ControlFlow<()> {
+        if let Err(divergence) = self.compare(period) {
+            self.exercise.divergence = Some(divergence);
+            return Break(());
+        }
+        if self.exercise.agreed >= self.ticks {
+            return Break(());
+        }
+        let received = period.received();
+        if period.tick < WARM_UP {
+            return Continue(());
+        }
+        break_an_encoder(period);
+        let (bytes, event) = self.client.poll(&received, self.mode == Mode::Moving);
+        period.send(&bytes);
+        self.twin.receive(&bytes);
+        if period.tick.is_multiple_of(PROGRESS_EVERY) {
+            let simulated_s = period.tick as f64 * self.period_s;
+            self.progress.update(self.exercise.agreed, simulated_s);
+        }
+        match event {
+            Some(Event::Refused(_, error)) => {
+                *self.exercise.refused.entry(error).or_default() += 1;
+            }
+            Some(Event::Stuck(line)) => {
+                self.exercise.stuck = Some(line.text);
+                return Break(());
+            }
+            Some(Event::Finished) => return Break(()),
+            _ => {}
+        }
+        Continue(())
+    }
+
+    fn compare(&mut self, period: &mut Period<'_>) -> Result<(), Divergence> {
+        self.twin.look(period)?;
+        let now = &mut self.exercise;
+        while now.agreed < self.ticks
+            && let Some(agreed) = self.twin.catch_up()?
+        {
+            let Some(sample) = &agreed.record.sample else {
+                continue;
+            };
+            if sample.mode == Mode::Fault && self.mode != Mode::Fault {
+                now.faults += 1;
+            }
+            self.mode = sample.mode;
+            let doing = Doing {
+                mode: sample.mode,
+                commanded: agreed.commanded,
+            };
+            let line =
+                || (self.client.current()).map_or_else(String::new, |line| line.text.clone());
+            (now.tally).add(now.agreed, agreed.instructions, doing, line);
+            now.commands += u64::from(agreed.commanded);
+            now.hash = agreed.record.hash.0;
+            now.agreed += 1;
+        }
+        now.behind = now.behind.max(period.tick - now.agreed);
+        Ok(())
+    }
+}
+
+/// Breaks one of the encoders, or mends it.
+fn break_an_encoder(period: &mut Period<'_>) {
+    let (number, since) = (period.tick / BREAK_EVERY, period.tick % BREAK_EVERY);
+    let encoder = &mut period.stage.encoders[(number % 3) as usize];
+    if since == BREAK_EVERY / 2 {
+        encoder.set_fault(EncoderFault::ErrorBit);
+    } else if since == BREAK_EVERY / 2 + 1 + number % FRAMES {
+        encoder.set_fault(None);
+    }
+}
