@@ -146,6 +146,11 @@ impl Stage {
         self.substep(AFTER_LATCH);
     }
 
+    /// Changes the supply, V, from now on.
+    pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.bridge.supply_v = supply_v;
+    }
+
     /// The frames that the next tick reads, as an SPI master stores them.
     #[must_use]
     pub fn frames(&self) -> [[u8; 8]; AXES] {
