@@ -159,8 +159,8 @@ pub fn tick(
         link.recorder.record(&sample());
     }
     // Not in a tick that has taken a command, which is the longest as it is.
-    if !commanded && link.snapshots.ready() {
-        // There is room: `ready` said so, and only this side fills the queue.
+    if !commanded && link.has_room() {
+        // There is room: only this side fills the queue.
         let _ = link
             .snapshots
             .enqueue(state.snapshot(&pivots, &target, duty));

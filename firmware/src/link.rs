@@ -169,6 +169,14 @@ impl Link {
 }
 
 impl TickLink<'_> {
+    /// Whether there is room for a snapshot.
+    // The queue carries its number of slots with it. To be told it spares the tick a division by what, for all the compiler
+    // knows, could be zero, and the panic behind that.
+    #[inline]
+    pub fn has_room(&self) -> bool {
+        self.snapshots.capacity() == SNAPSHOTS - 1 && self.snapshots.ready()
+    }
+
     /// Throws away the commands that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.commands.dequeue().is_some() {}

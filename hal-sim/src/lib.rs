@@ -11,6 +11,8 @@ pub mod devices;
 pub mod host;
 pub mod observer;
 pub mod plant;
+#[cfg(feature = "chip")]
+pub mod proof;
 #[cfg(unix)]
 pub mod record;
 pub mod report;

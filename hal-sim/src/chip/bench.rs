@@ -1,6 +1,6 @@
 //! The bench as its callers see it.
 
-use super::board::ChipBoard;
+use super::board::{ChipBoard, STAGE_RATE};
 use super::cost::TickCost;
 use super::driver::{Landmarks, StageDriver};
 use super::gaps;
@@ -12,6 +12,7 @@ use rigless::session::Session;
 use rigless::symbols::{self, Symbols};
 use rigless::time::VirtualNanos;
 use std::fmt;
+use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,7 @@ pub struct Bench {
     image: Image,
     symbols: Symbols,
     stage: Stage,
+    instructions_per_second: NonZeroU64,
 }
 
 /// What a run leaves behind.
@@ -83,7 +85,17 @@ impl Bench {
             image,
             symbols,
             stage,
+            instructions_per_second: STAGE_RATE,
         })
+    }
+
+    /// The same on a chip that executes so many instructions in a second, instead of one a cycle.
+    #[must_use]
+    pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
+        Self {
+            instructions_per_second,
+            ..self
+        }
     }
 
     /// Address of a symbol of the image, for [`Period::word`].
@@ -102,6 +114,7 @@ impl Bench {
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
+        let board = board.at_rate(self.instructions_per_second);
         let mut session =
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));

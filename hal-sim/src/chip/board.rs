@@ -22,7 +22,8 @@ const SUPPLY_MV: u32 = 3300;
 /// Instructions in a second: one a cycle.
 pub const CORE_HZ: u64 = 168_000_000;
 
-const STAGE_RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
+/// The same, as the board runs unless told otherwise.
+pub const STAGE_RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
 
 const ADC1: usize = 0;
 const TIM1: usize = 0;

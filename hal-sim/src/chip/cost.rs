@@ -14,6 +14,8 @@ pub struct TickCost {
     pub worst_tick: u64,
     /// Instructions of the last.
     pub last: u64,
+    /// Earliest and latest start of a tick, ns after its interrupt was due.
+    pub start_ns: Option<(u64, u64)>,
     /// Latest end of a tick, ns after its interrupt was due.
     pub latest_end_ns: u64,
 }
@@ -23,6 +25,11 @@ impl TickCost {
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.total as f64 / self.ticks.max(1) as f64
+    }
+
+    pub(super) fn begin(&mut self, start_ns: u64) {
+        let (first, last) = self.start_ns.unwrap_or((start_ns, start_ns));
+        self.start_ns = Some((first.min(start_ns), last.max(start_ns)));
     }
 
     pub(super) fn add(&mut self, instructions: u64, end_ns: u64) {

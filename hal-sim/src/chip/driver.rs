@@ -116,13 +116,17 @@ impl<F> StageDriver<F> {
     }
 
     fn note_hit(&mut self, address: u64, at: VirtualNanos, instructions: u64) {
+        let Some(started_at) = self.started_at else {
+            return;
+        };
+        // The tick under way is the one before the one to come.
+        let due = started_at + FIRST_TICK_NS + self.tick.saturating_sub(1) * PERIOD_NS;
+        let after_ns = at.0.saturating_sub(due);
         if address == self.landmarks.tick_begin {
             self.tick_began = Some(instructions);
-        } else if let (Some(began), Some(started_at)) = (self.tick_began.take(), self.started_at) {
-            // The tick under way is the one before the one to come.
-            let due = started_at + FIRST_TICK_NS + self.tick.saturating_sub(1) * PERIOD_NS;
-            self.cost
-                .add(instructions - began, at.0.saturating_sub(due));
+            self.cost.begin(after_ns);
+        } else if let Some(began) = self.tick_began.take() {
+            self.cost.add(instructions - began, after_ns);
         }
     }
 

@@ -19,6 +19,11 @@ impl HostLine {
         self.to_chip.extend(bytes);
     }
 
+    /// How many bytes have not gone out yet.
+    pub fn waiting(&self) -> usize {
+        self.to_chip.len()
+    }
+
     /// What the chip has sent since the last call.
     pub fn take_received(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.from_chip)

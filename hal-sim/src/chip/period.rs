@@ -100,6 +100,11 @@ impl Period<'_> {
         }
     }
 
+    /// How many bytes have not gone out to it yet.
+    pub fn unsent(&mut self) -> usize {
+        self.board.line().map_or(0, |line| line.waiting())
+    }
+
     /// What the command interface has answered since the last call.
     pub fn received(&mut self) -> Vec<u8> {
         self.board

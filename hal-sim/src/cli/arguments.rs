@@ -47,6 +47,13 @@ pub(super) enum Command {
     /// Count the instructions that parts of the library take on the emulated chip, over random states.
     #[cfg(feature = "chip")]
     Cost(CostRun),
+    /// Let the control loop run on the emulated chip while the serial line is full, and tell when its ticks start.
+    #[cfg(feature = "chip")]
+    ChipLoad(ChipLoad),
+    /// Prove of the chip's image that its control loop cannot panic and how deep its stack gets; print what it takes of flash and
+    /// RAM. Exit code 1 if the proof fails.
+    #[cfg(feature = "chip")]
+    ImageCheck,
     /// Pivot angles (deg) of a pose (mm, mm, deg).
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
@@ -210,6 +217,15 @@ pub(super) struct ChipServe {
 /// Where the repository keeps the figures, for a program that is run where it was built.
 #[cfg(feature = "chip")]
 const FIGURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../firmware/figures.csv");
+
+/// Load on the emulated chip.
+#[cfg(feature = "chip")]
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipLoad {
+    /// Ticks.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = value_parser!(u64).range(1_000..=10_000_000))]
+    pub(super) ticks: u64,
+}
 
 /// Counting on the emulated chip.
 #[cfg(feature = "chip")]

@@ -53,6 +53,9 @@ pub(super) enum CliError {
     #[cfg(feature = "chip")]
     #[error(transparent)]
     Figures(#[from] crate::cost::FiguresError),
+    #[cfg(feature = "chip")]
+    #[error(transparent)]
+    Proof(#[from] crate::proof::ProofError),
     /// A part costs more than it did.
     #[cfg(feature = "chip")]
     #[error("{0}")]
@@ -69,7 +72,7 @@ impl CliError {
             #[cfg(unix)]
             Self::Record(error) if error.is_failure() => FAILED,
             #[cfg(feature = "chip")]
-            Self::Grown(_) => FAILED,
+            Self::Grown(_) | Self::Proof(_) => FAILED,
             _ => BAD_REQUEST,
         }
     }

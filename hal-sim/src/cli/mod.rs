@@ -6,6 +6,8 @@ mod arguments;
 mod check;
 #[cfg(feature = "chip")]
 mod chip;
+#[cfg(feature = "chip")]
+mod chip_load;
 #[cfg(all(feature = "chip", unix))]
 mod chip_serve;
 #[cfg(feature = "chip")]
@@ -14,6 +16,8 @@ mod direct;
 mod error;
 #[cfg(feature = "chip")]
 mod exercise;
+#[cfg(feature = "chip")]
+mod image_check;
 mod inverse;
 mod map;
 #[cfg(unix)]
@@ -85,6 +89,10 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::ChipServe(arguments)) => chip_serve::run(&arguments),
         #[cfg(feature = "chip")]
         Some(Command::Cost(arguments)) => cost::run(&arguments),
+        #[cfg(feature = "chip")]
+        Some(Command::ChipLoad(arguments)) => chip_load::run(&arguments),
+        #[cfg(feature = "chip")]
+        Some(Command::ImageCheck) => image_check::run(),
         #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),

@@ -1,0 +1,205 @@
+//! The image taken apart: functions, and what leads from one to another.
+
+use super::elf::{Elf, even};
+use super::step::{Decoded, Engine, Step};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::path::Path;
+
+/// Why nothing is proven.
+#[derive(Debug, thiserror::Error)]
+pub enum ProofError {
+    /// The file is no image.
+    #[error("{0}")]
+    File(String),
+    /// Bytes that should be an instruction.
+    #[error("no instruction at {0:#010x}")]
+    Bytes(u64),
+    /// A jump to where no function is.
+    #[error("{0} leads to {1:#010x}, where no function is")]
+    Nowhere(String, u64),
+    /// Functions that call each other round and round: their stack has no bound.
+    #[error("recursion: {0}")]
+    Recursion(String),
+    /// The stack pointer changes in a way that is not understood.
+    #[error("{0} moves the stack pointer at {1:#010x} in a way that is not understood")]
+    StackPointer(String, u64),
+    /// An interrupt handler of which the stack's table of levels knows nothing.
+    #[error("{0} handles an interrupt of which the levels of the stack know nothing")]
+    Handler(String),
+}
+
+/// How one function leads to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Edge {
+    /// Address of the other one.
+    pub to: u64,
+    /// Nothing of the first one's frame is left by then.
+    pub tail: bool,
+}
+
+/// One function.
+#[derive(Clone, Debug, Default)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// Where it leads.
+    pub edges: BTreeSet<Edge>,
+    /// Where it calls through a pointer.
+    pub pointers: Vec<u64>,
+    /// Everything it pushes, bytes.
+    pub frame: u32,
+    /// Where it has a trap, a fused multiply-add, an unknown change of the stack pointer, a change of an interrupt mask.
+    pub traps: Vec<u64>,
+    #[allow(missing_docs)]
+    pub fused: Vec<u64>,
+    #[allow(missing_docs)]
+    pub unknown: Vec<u64>,
+    #[allow(missing_docs)]
+    pub masks: Vec<(u64, String)>,
+    /// Instructions.
+    pub instructions: u32,
+}
+
+/// All of them.
+pub struct Code {
+    /// By address.
+    pub functions: BTreeMap<u64, Function>,
+    /// Functions whose address stands in a word of data, or is put together by two instructions.
+    pub taken: BTreeSet<u64>,
+    /// What handles exceptions and interrupts.
+    pub handlers: BTreeSet<u64>,
+    /// The memory of the stack, bytes.
+    pub stack: u64,
+}
+
+impl Code {
+    /// Reads an image.
+    ///
+    /// # Errors
+    /// When there is anything in it that is not understood.
+    pub fn read(path: &Path) -> Result<Self, ProofError> {
+        let bytes = std::fs::read(path).map_err(|error| ProofError::File(error.to_string()))?;
+        Self::of(&Elf::read(&bytes).map_err(ProofError::File)?)
+    }
+
+    fn of(elf: &Elf) -> Result<Self, ProofError> {
+        let engine = Engine::new()?;
+        let mut code = Self {
+            functions: BTreeMap::new(),
+            taken: BTreeSet::new(),
+            handlers: elf
+                .vectors
+                .iter()
+                .filter(|it| **it != 0)
+                .map(|it| even(*it))
+                .collect(),
+            stack: elf.stack,
+        };
+        for (&at, (name, size)) in &elf.functions {
+            let function = code.function(&engine, elf, at, name, *size)?;
+            code.functions.insert(at, function);
+        }
+        let words = elf.words.iter().copied();
+        code.taken
+            .extend(words.filter(|word| word & 1 == 1).map(even));
+        code.taken.retain(|at| elf.functions.contains_key(at));
+        Ok(code)
+    }
+
+    fn function(
+        &mut self,
+        engine: &Engine,
+        elf: &Elf,
+        at: u64,
+        name: &str,
+        size: u64,
+    ) -> Result<Function, ProofError> {
+        let end = at + size;
+        let mut function = Function {
+            name: name.to_owned(),
+            ..Function::default()
+        };
+        let mut lower = BTreeMap::<u16, Vec<u32>>::new();
+        let mut next = at;
+        while next < end {
+            let constants = elf.constants.iter().find(|range| range.contains(&next));
+            if let Some(range) = constants {
+                next = range.end;
+                continue;
+            }
+            let bytes = &elf.text[(next - elf.text_at) as usize..(end - elf.text_at) as usize];
+            let decoded = engine.decode(bytes, next)?;
+            let length = decoded.length;
+            self.note(&mut function, &mut lower, (at..end, next), decoded, elf)?;
+            next += length;
+        }
+        Ok(function)
+    }
+
+    /// Takes note of what the instruction at an address of a function means.
+    fn note(
+        &mut self,
+        function: &mut Function,
+        lower: &mut BTreeMap<u16, Vec<u32>>,
+        (all, at): (Range<u64>, u64),
+        decoded: Decoded,
+        elf: &Elf,
+    ) -> Result<(), ProofError> {
+        function.instructions += 1;
+        let mut lead = |to: u64, tail: bool| {
+            let nowhere = || ProofError::Nowhere(function.name.clone(), to);
+            let to = owner(elf, to).ok_or_else(nowhere)?;
+            function.edges.insert(Edge { to, tail });
+            Ok(())
+        };
+        match decoded.step {
+            Step::Call(to) => lead(to, false)?,
+            Step::Jump(to) if all.contains(&to) => {}
+            Step::Jump(to) => lead(to, true)?,
+            Step::CallPointer | Step::JumpPointer => function.pointers.push(at),
+            Step::Grow(bytes) => function.frame += bytes,
+            Step::StackUnknown => function.unknown.push(at),
+            Step::Trap => function.traps.push(at),
+            Step::Fused => function.fused.push(at),
+            Step::Mask => function.masks.push((at, decoded.text)),
+            Step::Lower(register, half) => lower.entry(register).or_default().push(half),
+            // With every lower half that this register has had: too many rather than too few.
+            Step::Upper(register, half) => {
+                let lower = lower.get(&register).map_or(&[][..], |halves| halves);
+                let whole = lower.iter().map(|lower| u64::from(half << 16 | lower));
+                self.taken.extend(whole.filter(|it| it & 1 == 1).map(even));
+            }
+            Step::Plain => {}
+        }
+        Ok(())
+    }
+
+    /// The function of this name.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<u64> {
+        let found = self.functions.iter().find(|(_, it)| it.name == name);
+        found.map(|(at, _)| *at)
+    }
+
+    /// Its name; an address where there is none.
+    #[must_use]
+    pub fn name(&self, at: u64) -> String {
+        let function = self.functions.get(&at);
+        function.map_or_else(|| format!("{at:#010x}"), |it| it.name.clone())
+    }
+
+    /// Every instruction that holds interrupts back or lets them through, with its function.
+    pub fn masks(&self) -> impl Iterator<Item = (&str, u64, &str)> {
+        self.functions.values().flat_map(|function| {
+            let masks = function.masks.iter();
+            masks.map(|(at, text)| (&*function.name, *at, &**text))
+        })
+    }
+}
+
+/// The function in which an address lies.
+fn owner(elf: &Elf, at: u64) -> Option<u64> {
+    let (start, (_, size)) = elf.functions.range(..=at).next_back()?;
+    (at < start + size).then_some(*start)
+}

@@ -1,0 +1,106 @@
+//! The image's file: functions, which bytes of `.text` are instructions, the vector table, words that could be addresses.
+
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+const VECTORS: &str = ".vector_table";
+const TEXT: &str = ".text";
+
+/// What the proofs read of the file.
+pub struct Elf {
+    /// Names by address, with sizes.
+    pub functions: BTreeMap<u64, (String, u64)>,
+    /// The code, and where it lies.
+    pub text: Vec<u8>,
+    pub text_at: u64,
+    /// Parts of `.text` that are constants.
+    pub constants: Vec<Range<u64>>,
+    /// Every vector but the first, which is the stack's start.
+    pub vectors: Vec<u64>,
+    /// Every word that is not an instruction, outside the vector table.
+    pub words: Vec<u64>,
+    /// The memory of the stack, bytes.
+    pub stack: u64,
+}
+
+impl Elf {
+    pub fn read(bytes: &[u8]) -> Result<Self, String> {
+        let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+        let section = |name: &str| {
+            let section = file.section_by_name(name);
+            let found = section.and_then(|section| Some((section.address(), section.data().ok()?)));
+            found.ok_or_else(|| format!("no section {name}"))
+        };
+        let (text_at, text) = section(TEXT)?;
+        let constants = constants(&file, text_at + text.len() as u64);
+        let mut found = Vec::new();
+        for (at, data) in [section(".rodata")?, section(".data")?] {
+            found.extend(words(data, at));
+        }
+        for range in &constants {
+            let data = &text[(range.start - text_at) as usize..(range.end - text_at) as usize];
+            found.extend(words(data, range.start));
+        }
+        let address = |name: &str| {
+            let symbol = file.symbol_by_name(name);
+            let symbol = symbol.ok_or_else(|| format!("no symbol {name}"))?;
+            Ok::<_, String>(symbol.address())
+        };
+        Ok(Self {
+            functions: functions(&file),
+            text: text.to_vec(),
+            text_at,
+            constants,
+            vectors: words(section(VECTORS)?.1, 0).skip(1).collect(),
+            words: found,
+            stack: address("_stack_start")? - address("_stack_end")?,
+        })
+    }
+}
+
+/// Functions by address: of several names the one with a size, then the first.
+fn functions(file: &object::File<'_>) -> BTreeMap<u64, (String, u64)> {
+    let mut functions: BTreeMap<u64, (String, u64)> = BTreeMap::new();
+    for symbol in file.symbols() {
+        if symbol.kind() != SymbolKind::Text || symbol.size() == 0 {
+            continue;
+        }
+        let name = symbol.name().unwrap_or_default();
+        let name = format!("{:#}", rustc_demangle::demangle(name));
+        functions
+            .entry(even(symbol.address()))
+            .or_insert((name, symbol.size()));
+    }
+    functions
+}
+
+/// From each symbol `$d` to the next `$t`: what the compiler calls data between the instructions.
+fn constants(file: &object::File<'_>, end: u64) -> Vec<Range<u64>> {
+    let text = file.section_by_name(TEXT).map(|section| section.index());
+    let mut marks = BTreeMap::new();
+    for symbol in file.symbols().filter(|it| it.section_index() == text) {
+        match symbol.name() {
+            Ok(name) if name.starts_with("$d") => drop(marks.insert(symbol.address(), true)),
+            Ok(name) if name.starts_with("$t") => drop(marks.insert(symbol.address(), false)),
+            _ => {}
+        }
+    }
+    let ends = marks.keys().copied().skip(1).chain([end]);
+    let ranges = marks.iter().zip(ends);
+    ranges
+        .filter(|((_, is_data), _)| **is_data)
+        .map(|((start, _), end)| *start..end)
+        .collect()
+}
+
+fn words(data: &[u8], at: u64) -> impl Iterator<Item = u64> {
+    let skip = (at.wrapping_neg() % 4) as usize;
+    let words = data.get(skip..).unwrap_or_default().chunks_exact(4);
+    words.map(|word| u64::from(u32::from_le_bytes([word[0], word[1], word[2], word[3]])))
+}
+
+/// A function's address without the bit that says Thumb.
+pub fn even(address: u64) -> u64 {
+    address & !1
+}

@@ -1,0 +1,27 @@
+//! What can be proven of the image `stage` without running it, from its machine code: that the tick cannot fail, and how deep
+//! the stack gets.
+//!
+//! The image is taken apart instruction by instruction ([`Code`]); every call, tail call and jump out of a function is an edge.
+//! What cannot be understood (bytes that are no instruction, an unknown change of the stack pointer) fails the proof, it is
+//! never skipped.
+//!
+//! - **No panic.** From the handlers of the control loop no path leads to the panic machinery, to a trap instruction, to a call
+//!   through a pointer, back to itself, or to arithmetic in f64 ([`faults`]). In the whole image nothing is a fused
+//!   multiply-add, which the desktop would round otherwise.
+//! - **Stack.** The frame of a function is everything it ever pushes, summed, as if it did so at once; its depth that of its
+//!   deepest callee on top ([`Depths`]). A call through a pointer may reach every function whose address stands anywhere in
+//!   the image; such calls nest [`NESTING`] deep at most.
+//! - **Masks.** Where interrupts are held back ([`Code::masks`]).
+
+mod code;
+mod elf;
+mod print;
+mod safe;
+mod stack;
+mod step;
+
+pub use code::{Code, Edge, Function, ProofError};
+pub use print::{print_proof, print_stack};
+pub use safe::{Fault, faults};
+pub use stack::{Depth, Depths, LEVELS, Level, NESTING, Stack};
+pub use step::{Decoded, Engine, Step};
