@@ -12,6 +12,7 @@ mod chip_serve;
 mod cost;
 mod direct;
 mod error;
+mod faults;
 mod inverse;
 mod map;
 #[cfg(unix)]
@@ -85,6 +86,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Cost(arguments)) => cost::run(&arguments),
         #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
+        Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

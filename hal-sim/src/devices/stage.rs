@@ -159,6 +159,12 @@ impl Stage {
         (currents, analog::supply_counts(self.bridge.supply_v))
     }
 
+    /// Changes the supply, V, from now on.
+    pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.bridge.supply_v = supply_v;
+        self.plant.set_supply_v(supply_v);
+    }
+
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
     #[must_use]
     pub const fn latched_pose(&self) -> [f64; 3] {
