@@ -38,12 +38,16 @@ pub enum Injection {
     Jam(f64),
     /// A ring is hit with this torque, N m, more than its motor has, for some milliseconds.
     Knock(f64),
-    /// One tick does not come: no fault.
-    MissedTick,
+    /// So many ticks do not come, one in five: no fault.
+    FewMissedTicks(u8),
+    /// One tick in five does not come.
+    LateLoop,
+    /// The host falls silent, which has promised a heartbeat: no fault, but the motion is stopped and that is told.
+    HostSilent,
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 15] = [
+pub const NAMES: [&str; 17] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -58,7 +62,9 @@ pub const NAMES: [&str; 15] = [
     "emergency stop",
     "pivot jammed",
     "pivot knocked",
-    "tick missed",
+    "few ticks missed",
+    "loop late",
+    "host silent",
 ];
 
 /// When an injection takes effect, as the controller's thresholds have it.
@@ -68,8 +74,16 @@ pub enum Effect {
     AtOnce,
     /// In the tick that sees one bad frame more than are bridged.
     BadFrames,
+    /// In the tick that sees a low supply often enough.
+    LowSupply,
+    /// In the tick that is told of one late tick more than are forgiven.
+    LateTicks,
     /// In the tick in which what the encoders show is too far from the setpoint.
     FollowingError,
+    /// In the tick in which the setpoint of the pivot has gone further than a reading may stay the same.
+    Frozen,
+    /// When nothing has been heard for as long as the host has promised.
+    Silence,
     /// Never: the controller goes on.
     Never,
 }
@@ -83,7 +97,9 @@ pub struct Expected {
     pub kinds: &'static [FaultKind],
     /// Whether the fault names the pivot.
     pub names_pivot: bool,
-    /// Ticks after the effect at which the fault is latched at the latest.
+    /// What `EVT?` tells of it where it is no fault.
+    pub event: Option<&'static str>,
+    /// Ticks after the effect at which the fault is latched, or the event is, at the latest.
     pub within_ticks: u64,
 }
 
@@ -91,6 +107,13 @@ pub struct Expected {
 const JAM_N_M_S_RAD: f64 = 80.0;
 /// How long a pivot is hit: 4 ms.
 const KNOCK_TICKS: u64 = 80;
+/// One of so many ticks does not come.
+pub(super) const MISSED_EVERY: u64 = 5;
+/// Longest silence that a host has promised, ms, and in ticks.
+pub(super) const HEARTBEAT_MS: u64 = 30;
+pub(super) const HEARTBEAT_TICKS: u64 = HEARTBEAT_MS * 20;
+/// Ticks until the command side, which has its turn every few, has told of something.
+const COMMAND_SIDE_TICKS: u64 = 20;
 /// Bits of the frame that a bad one may have flipped: position, flags and CRC behind a preamble of ten clocks.
 const COVERED: u32 = 34;
 const LOWEST: u32 = 18;
@@ -119,7 +142,9 @@ impl Injection {
             11 => Self::EmergencyStop,
             12 => Self::Jam(random.between(60.0, 120.0)),
             13 => Self::Knock(random.between(60.0, 120.0) * random.sign()),
-            _ => Self::MissedTick,
+            14 => Self::FewMissedTicks(1 + random.below(9) as u8),
+            15 => Self::LateLoop,
+            _ => Self::HostSilent,
         }
     }
 
@@ -141,7 +166,9 @@ impl Injection {
             Self::EmergencyStop => 11,
             Self::Jam(_) => 12,
             Self::Knock(_) => 13,
-            Self::MissedTick => 14,
+            Self::FewMissedTicks(_) => 14,
+            Self::LateLoop => 15,
+            Self::HostSilent => 16,
         }
     }
 
@@ -156,30 +183,50 @@ impl Injection {
             Self::Jump(_) => (Effect::BadFrames, &[Kind::EncoderJump], true),
             // At speed it stops impossibly fast.
             Self::Frozen => (
-                Effect::FollowingError,
-                &[Kind::EncoderJump, Kind::FollowingError],
+                Effect::Frozen,
+                &[Kind::EncoderFrozen, Kind::EncoderJump],
                 true,
             ),
             Self::BridgeFault => (Effect::AtOnce, &[Kind::BridgeFault], true),
-            Self::SupplySag(_) => (Effect::AtOnce, &[Kind::SupplyLow], false),
+            Self::SupplySag(_) => (Effect::LowSupply, &[Kind::SupplyLow], false),
             Self::EmergencyStop => (Effect::AtOnce, &[Kind::EmergencyStop], false),
+            Self::LateLoop => (Effect::LateTicks, &[Kind::LoopLate], false),
             // The platform ties the pivots together, so another one may be the first to be too far off.
-            Self::DriveLost | Self::DirectionStuck | Self::Jam(_) | Self::Knock(_) => {
-                (Effect::FollowingError, &[Kind::FollowingError], false)
-            }
-            Self::FewBadFrames(_) | Self::Warning | Self::MissedTick => (Effect::Never, &[], false),
+            Self::DriveLost => (
+                Effect::FollowingError,
+                &[Kind::FollowingError, Kind::Stalled],
+                false,
+            ),
+            Self::DirectionStuck | Self::Knock(_) => (
+                Effect::FollowingError,
+                &[Kind::FollowingError, Kind::Stalled, Kind::Overspeed],
+                false,
+            ),
+            // Wedged to the last bit it cannot be told from an encoder that is frozen.
+            Self::Jam(_) => (
+                Effect::FollowingError,
+                &[Kind::FollowingError, Kind::Stalled, Kind::EncoderFrozen],
+                false,
+            ),
+            Self::Warning => (Effect::AtOnce, &[], false),
+            Self::HostSilent => (Effect::Silence, &[], false),
+            Self::FewBadFrames(_) | Self::FewMissedTicks(_) => (Effect::Never, &[], false),
+        };
+        let (event, within_ticks) = match self {
+            Self::Warning => (Some("encoder warns"), COMMAND_SIDE_TICKS),
+            Self::HostSilent => (Some("no host heard"), COMMAND_SIDE_TICKS),
+            // Where the setpoint slows down, it is the drive that shows it.
+            Self::Frozen => (None, 30),
+            // The setpoint is compared in other numbers here.
+            _ if matches!(effect, Effect::FollowingError) => (None, 1),
+            _ => (None, 0),
         };
         Expected {
             effect,
             kinds,
             names_pivot,
-            within_ticks: match effect {
-                Effect::AtOnce | Effect::BadFrames | Effect::Never => 0,
-                // Bad frames are bridged first, and a frozen encoder at speed gives some.
-                Effect::FollowingError if self.index() == 3 => 6,
-                // The setpoint is compared in other numbers here.
-                Effect::FollowingError => 1,
-            },
+            event,
+            within_ticks,
         }
     }
 
@@ -211,11 +258,14 @@ impl Injection {
             }
             Self::EmergencyStop => host.emergency_stop = true,
             Self::Jam(_) | Self::Knock(_) => self.push(&mut host.stage.plant, axis, age),
-            Self::MissedTick => {
-                if age == 0 {
+            Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
+            Self::FewMissedTicks(_) | Self::LateLoop => {
+                if age % MISSED_EVERY == 0 {
                     host.miss_tick();
                 }
             }
+            // It is the command side that hears nothing.
+            Self::HostSilent => {}
         }
     }
 

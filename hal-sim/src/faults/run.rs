@@ -1,16 +1,18 @@
 //! One run of the campaign.
 
-use firmware::fault::{Fault, FaultKind};
+use core::f64::consts::TAU;
+
+use firmware::fault::{Fault, Reaction};
 use firmware::link::{Link, Mode};
 use firmware::motion::Position;
 use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::{Record, Sample};
 
-use super::injection::Effect;
+use super::injection::{Effect, HEARTBEAT_TICKS, MISSED_EVERY};
 use super::random::Random;
 use super::scenario::Scenario;
-use super::truth::{Path, fastest_rad_s, overrun_mm, shown_error_rad};
+use super::truth::{Path, fastest_rad_s, overrun_mm, setpoint_turns, shown_errors_rad};
 use crate::devices::{BridgeState, Encoder, Stage};
 use crate::host::{Host, Wiring};
 use crate::plant::AXES;
@@ -24,6 +26,10 @@ const AFTERMATH: u64 = 20_000;
 const AT_REST_RAD_S: f64 = 0.01;
 /// Ticks between two looks at path and limits: 0.2 mm at full speed.
 const LOOK_EVERY: u64 = 20;
+/// Ticks in a row in which a low supply is one.
+const LOW_SUPPLY_TICKS: u64 = 4;
+/// Ticks from one sign of life of the host to the next.
+const HEARTBEAT_EVERY: u64 = 200;
 /// Ticks between two turns of the command side.
 const SERVICE_EVERY: u64 = 5;
 
@@ -38,6 +44,8 @@ pub struct Outcome {
     pub effect: Option<u64>,
     /// What was latched first.
     pub fault: Option<Fault>,
+    /// The tick of the event that tells of it where it is no fault.
+    pub told: Option<u64>,
     /// Largest distance of the platform's centre from the path of its setpoint after the injection, mm.
     pub deviation_mm: f64,
     /// Way of the centre (mm) and angle of the platform (deg) from the fault to the end.
@@ -82,13 +90,18 @@ impl End {
 #[derive(Default)]
 struct Seen {
     position: Position,
+    /// Of the pivots' setpoints, from the last tick in which there were any.
+    rates_rad_s: [f32; AXES],
     is_on: bool,
 }
 
 impl Record for Seen {
     fn record(&mut self, sample: &Sample) {
         self.position = sample.setpoint.position;
-        self.is_on = matches!(sample.mode, Mode::Holding | Mode::Moving);
+        self.is_on = matches!(sample.mode, Mode::Holding | Mode::Moving | Mode::Stopping);
+        if self.is_on {
+            self.rates_rad_s = sample.pivot_rates;
+        }
     }
 }
 
@@ -120,6 +133,11 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             watch.outcome.end = end(&host, outputs.awake);
             break;
         }
+        // A host that is there says so, if only by an empty line.
+        if tick % HEARTBEAT_EVERY == 0 && (is_control || tick < scenario.at) {
+            session.receive(b"\n");
+            watch.heard = tick;
+        }
         while let Some((_, line)) = lines.next_if(|(at, _)| *at <= tick) {
             session.receive(line.as_bytes());
             session.receive(b"\n");
@@ -129,7 +147,22 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             let _ = panel.service(&mut session, &mut panel_link, &mut answers);
         }
     }
+    if let Some(event) = scenario.injection.expected().event {
+        session.receive(b"EVT?\n");
+        answers.clear();
+        for _ in 0..SERVICE_EVERY {
+            host.tick(&mut tick_link, &mut seen);
+            let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+        }
+        watch.outcome.told = told(&String::from_utf8_lossy(&answers), event);
+    }
     watch.finish()
+}
+
+/// The tick of an event in the answer to `EVT?`, whose lines are number, tick and text.
+fn told(events: &str, event: &str) -> Option<u64> {
+    let line = events.lines().find(|line| line.contains(event))?;
+    line.split(' ').nth(1)?.parse().ok()
 }
 
 fn end(host: &Host, awake: bool) -> End {
@@ -142,11 +175,6 @@ fn end(host: &Host, awake: bool) -> End {
     }
 }
 
-/// Whether the documented reaction opens the bridges; otherwise they brake.
-const fn lets_go(kind: FaultKind) -> bool {
-    matches!(kind, FaultKind::BridgeFault | FaultKind::SupplyLow)
-}
-
 /// Judges a run while it goes on.
 struct Watch<'a> {
     parameters: &'a Parameters,
@@ -156,6 +184,10 @@ struct Watch<'a> {
     been: Vec<[f64; 2]>,
     left: Path,
     turned_from: f64,
+    /// The tick in which the host was heard last.
+    heard: u64,
+    /// Setpoint of the pivot when it broke, turns.
+    broke_at: Option<f64>,
     /// The stage when the reaction had to begin.
     in_time: Option<Moment>,
 }
@@ -169,6 +201,7 @@ impl<'a> Watch<'a> {
                 is_control,
                 effect: None,
                 fault: None,
+                told: None,
                 deviation_mm: 0.0,
                 travelled: (0.0, 0.0),
                 overrun_mm: 0.0,
@@ -180,6 +213,8 @@ impl<'a> Watch<'a> {
             been: Vec::new(),
             left: Path::default(),
             turned_from: 0.0,
+            heard: 0,
+            broke_at: None,
             in_time: None,
         }
     }
@@ -220,12 +255,28 @@ impl<'a> Watch<'a> {
             return;
         }
         let first = scenario.at + u64::from(scenario.injection.is_of_encoder());
-        let bridged = u64::from(self.parameters.supervision.bridged_frames);
-        let most = self.parameters.supervision.following_error_rad;
+        let supervision = &self.parameters.supervision;
         let passed = match scenario.injection.expected().effect {
             Effect::AtOnce => tick >= first,
-            Effect::BadFrames => tick >= first + bridged,
-            Effect::FollowingError => shown_error_rad(shown, self.parameters, seen.position) > most,
+            Effect::BadFrames => tick >= first + u64::from(supervision.bridged_frames),
+            Effect::LowSupply => tick >= first + LOW_SUPPLY_TICKS - 1,
+            Effect::LateTicks => tick >= first + MISSED_EVERY * u64::from(supervision.late_ticks),
+            Effect::FollowingError => {
+                let errors = shown_errors_rad(shown, self.parameters, seen.position);
+                errors
+                    .iter()
+                    .zip(seen.rates_rad_s)
+                    .any(|(error, rate_rad_s)| {
+                        let lag_rad = supervision.following_error_s * f64::from(rate_rad_s.abs());
+                        *error > supervision.following_error_rad + lag_rad
+                    })
+            }
+            Effect::Frozen => {
+                let turns = setpoint_turns(seen.position)[scenario.axis];
+                let way = turns - *self.broke_at.get_or_insert(turns);
+                (way - way.round()).abs() * TAU > supervision.frozen_rad
+            }
+            Effect::Silence => tick > self.heard + HEARTBEAT_TICKS,
             Effect::Never => false,
         };
         if passed {
@@ -271,7 +322,9 @@ impl<'a> Watch<'a> {
             .fold(0.0, f64::max);
         outcome.travelled.0 = self.left.length();
         if outcome.overrun_mm > 0.0 {
-            let awake = !outcome.fault.is_some_and(|fault| lets_go(fault.kind));
+            let awake = !outcome
+                .fault
+                .is_some_and(|fault| fault.kind.reaction() == Reaction::Coast);
             let in_time = self.in_time;
             outcome.unavoidable_mm =
                 in_time.map_or(0.0, |moment| moment.overrun_mm(&outcome.scenario, awake));

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use firmware::parameters::Parameters;
 
-use super::injection::Injection;
+use super::injection::{HEARTBEAT_MS, Injection};
 use super::random::Random;
 use crate::devices::StageParameters;
 use crate::plant::{AXES, Payload, PlantParameters};
@@ -54,11 +54,14 @@ impl Scenario {
         };
         let [x_mm, y_mm] = place_mm(&mut random);
         let start = [x_mm * 1e-3, y_mm * 1e-3, random.between(-0.49, 0.49) * TAU];
-        let lines = motion(&mut random);
+        let mut lines = motion(&mut random);
         let injection = Injection::random(
             &mut random,
             Parameters::REFERENCE.supervision.bridged_frames,
         );
+        if injection == Injection::HostSilent {
+            lines.insert(0, (REFERENCE, format!("HBT {HEARTBEAT_MS}")));
+        }
         Self {
             seed,
             stage,

@@ -26,10 +26,12 @@ pub fn table(outcomes: &[Outcome]) -> String {
 }
 
 fn row(name: &str, outcomes: &[&Outcome]) -> String {
-    let detected = outcomes.iter().filter(|outcome| outcome.fault.is_some());
+    let detected = outcomes
+        .iter()
+        .filter(|outcome| outcome.detected().is_some());
     let quiet = outcomes
         .iter()
-        .filter(|o| o.fault.is_none() && o.effect.is_none());
+        .filter(|o| o.detected().is_none() && o.effect.is_none());
     let [latency, worst_latency] = median_and_worst(
         outcomes
             .iter()
@@ -37,7 +39,7 @@ fn row(name: &str, outcomes: &[&Outcome]) -> String {
             .map(|t| t as f64),
     );
     let [_, deviation] = median_and_worst(outcomes.iter().map(|o| o.deviation_mm));
-    let faulted = || outcomes.iter().filter(|outcome| outcome.fault.is_some());
+    let faulted = || (outcomes.iter()).filter(|outcome| outcome.detected().is_some());
     let [way, longest] = median_and_worst(faulted().map(|outcome| outcome.travelled.0));
     let [_, turned] = median_and_worst(faulted().map(|outcome| outcome.travelled.1));
     let ended = |end: End| outcomes.iter().filter(|outcome| outcome.end == end).count();

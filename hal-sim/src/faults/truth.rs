@@ -40,30 +40,33 @@ pub fn fastest_rad_s(plant: &Plant) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Largest distance of what an encoder shows from the setpoint of its pivot, rad: the setpoint as a pose in the controller's
-/// integers. Turns are left out, of both.
+/// Angles of the pivots' setpoints, turns: of a pose in the controller's integers. Whole turns are left out.
 #[must_use]
-pub fn shown_error_rad(
-    encoders: &[Encoder; AXES],
-    parameters: &Parameters,
-    setpoint: [i64; 3],
-) -> f64 {
+pub fn setpoint_turns(setpoint: [i64; 3]) -> [f64; AXES] {
     let [x, y, theta] = setpoint.map(|units| units as f64 / UNITS);
     let pose = Pose {
         x,
         y,
         theta: theta.fract() * TAU,
     };
-    let Ok(Inverse { pivots, .. }) = inverse(&pose) else {
-        return f64::INFINITY;
-    };
-    (0..AXES)
-        .map(|i| {
-            let shown = shown_turns(&parameters.encoders[i], encoders[i].position());
-            let off = shown - pivots[i] / TAU;
-            (off - off.round()).abs() * TAU
-        })
-        .fold(0.0, f64::max)
+    inverse(&pose).map_or([f64::NAN; AXES], |inverse| {
+        inverse.pivots.map(|rad| rad / TAU)
+    })
+}
+
+/// Distances of what the encoders show from the setpoints of their pivots, rad.
+#[must_use]
+pub fn shown_errors_rad(
+    encoders: &[Encoder; AXES],
+    parameters: &Parameters,
+    setpoint: [i64; 3],
+) -> [f64; AXES] {
+    let wanted = setpoint_turns(setpoint);
+    [0, 1, 2].map(|i| {
+        let shown = shown_turns(&parameters.encoders[i], encoders[i].position());
+        let off = shown - wanted[i];
+        (off - off.round()).abs() * TAU
+    })
 }
 
 fn shown_turns(setup: &EncoderSetup, counts: u32) -> f64 {

@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use super::injection::Effect;
 use super::run::Outcome;
 
 /// What is wrong with a run.
@@ -26,8 +25,15 @@ impl Outcome {
     /// Ticks from the effect to the fault; a fault that came first has none.
     #[must_use]
     pub fn latency_ticks(&self) -> Option<u64> {
-        let fault = self.fault?;
-        Some((self.effect).map_or(0, |effect| fault.tick.saturating_sub(effect)))
+        let tick = self.detected()?;
+        Some((self.effect).map_or(0, |effect| tick.saturating_sub(effect)))
+    }
+
+    /// The tick in which it was found: that of the fault, or of the event where it is none.
+    #[must_use]
+    pub fn detected(&self) -> Option<u64> {
+        let fault = self.fault.map(|fault| fault.tick);
+        fault.or(self.told.filter(|_| !self.is_control))
     }
 
     /// What is wrong with it, if anything.
@@ -41,11 +47,19 @@ impl Outcome {
 
     fn wrong_report(&self) -> Option<Problem> {
         let expected = self.scenario.injection.expected();
+        let late = || {
+            let latency = self.latency_ticks().unwrap_or(0);
+            (latency > expected.within_ticks).then_some(Problem::Late(latency))
+        };
         let Some(fault) = self.fault else {
-            return (self.effect.is_some()).then_some(Problem::Undetected);
+            return match (self.effect, self.detected(), self.told) {
+                (_, None, Some(_)) => Some(Problem::FalseAlarm),
+                (Some(_), None, _) => Some(Problem::Undetected),
+                _ => late(),
+            };
         };
         let early = fault.tick < self.scenario.at;
-        if self.is_control || early || expected.effect == Effect::Never {
+        if self.is_control || early || expected.kinds.is_empty() {
             return Some(Problem::FalseAlarm);
         }
         if !expected.kinds.contains(&fault.kind) {
@@ -54,8 +68,7 @@ impl Outcome {
         if expected.names_pivot && fault.pivot != Some(self.scenario.axis as u8) {
             return Some(Problem::WrongPivot);
         }
-        let latency = self.latency_ticks().unwrap_or(0);
-        (latency > expected.within_ticks).then_some(Problem::Late(latency))
+        late()
     }
 }
 
@@ -93,6 +106,9 @@ impl fmt::Display for Outcome {
         match &self.fault {
             Some(fault) => write!(f, "; {fault}")?,
             None => f.write_str("; no fault latched")?,
+        }
+        if let Some(tick) = self.told {
+            write!(f, ", event at tick {tick}")?;
         }
         match self.problem() {
             Some(problem) => write!(f, ": {problem}"),
