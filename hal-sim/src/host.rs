@@ -56,8 +56,10 @@ pub struct Host {
     pub emergency_stop: bool,
     /// Wires to the motors.
     pub wiring: [Wiring; AXES],
-    /// The tick before was late, or did not come.
-    late: bool,
+    /// The tick before was late, or there should have been one more: what a host has no clock to find out.
+    pub late: bool,
+    /// The tick before did not come.
+    missed: bool,
     drivers: [Driver; AXES],
     config: Config,
     state: State,
@@ -86,6 +88,7 @@ impl Host {
             emergency_stop: false,
             wiring: [Wiring::Sound; AXES],
             late: false,
+            missed: false,
             drivers: drivers.try_into().ok().expect(three),
             config: Config::new(parameters),
             state: State::new(),
@@ -111,7 +114,7 @@ impl Host {
     /// A period in which the controller does not run: the bridges keep what the last tick gave them, and the next tick is
     /// told.
     pub fn miss_tick(&mut self) {
-        self.late = true;
+        self.missed = true;
         self.stage.advance_period(self.pins());
     }
 
@@ -151,7 +154,7 @@ impl Host {
             current_counts,
             supply_counts,
             tick_cycles: 0,
-            late: std::mem::take(&mut self.late),
+            late: self.late | std::mem::take(&mut self.missed),
         }
     }
 }

@@ -5,7 +5,7 @@ use firmware::fault::FaultKind;
 use super::random::Random;
 use crate::devices::EncoderFault;
 use crate::host::{Host, Wiring};
-use crate::plant::{AXES, External, Plant};
+use crate::plant::{External, Plant};
 
 /// Something that breaks, for good unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,8 @@ pub enum Injection {
     SupplySag(f64),
     /// The emergency stop is pressed.
     EmergencyStop,
-    /// A pivot hardly turns any more: as if in pitch, up to this torque, N m.
-    Jam(f64),
+    /// Something hard gets in a pivot's way, on both sides.
+    Jam,
     /// A ring is hit with this torque, N m, more than its motor has, for some milliseconds.
     Knock(f64),
     /// So many ticks do not come, one in five: no fault.
@@ -103,8 +103,6 @@ pub struct Expected {
     pub within_ticks: u64,
 }
 
-/// Damping of a jammed pivot, N m s/rad: as stiff as the tick's steps can take it.
-const JAM_N_M_S_RAD: f64 = 80.0;
 /// How long a pivot is hit: 4 ms.
 const KNOCK_TICKS: u64 = 80;
 /// One of so many ticks does not come.
@@ -140,9 +138,9 @@ impl Injection {
             9 => Self::DirectionStuck,
             10 => Self::SupplySag(random.between(0.0, 35.5)),
             11 => Self::EmergencyStop,
-            12 => Self::Jam(random.between(60.0, 120.0)),
+            12 => Self::Jam,
             13 => Self::Knock(random.between(60.0, 120.0) * random.sign()),
-            14 => Self::FewMissedTicks(1 + random.below(9) as u8),
+            14 => Self::FewMissedTicks(1 + random.below(3) as u8),
             15 => Self::LateLoop,
             _ => Self::HostSilent,
         }
@@ -164,7 +162,7 @@ impl Injection {
             Self::DirectionStuck => 9,
             Self::SupplySag(_) => 10,
             Self::EmergencyStop => 11,
-            Self::Jam(_) => 12,
+            Self::Jam => 12,
             Self::Knock(_) => 13,
             Self::FewMissedTicks(_) => 14,
             Self::LateLoop => 15,
@@ -190,11 +188,17 @@ impl Injection {
             Self::BridgeFault => (Effect::AtOnce, &[Kind::BridgeFault], true),
             Self::SupplySag(_) => (Effect::LowSupply, &[Kind::SupplyLow], false),
             Self::EmergencyStop => (Effect::AtOnce, &[Kind::EmergencyStop], false),
-            Self::LateLoop => (Effect::LateTicks, &[Kind::LoopLate], false),
+            // At full speed the pivots lag by what was missed, which may be too far.
+            Self::LateLoop => (
+                Effect::LateTicks,
+                &[Kind::LoopLate, Kind::FollowingError],
+                false,
+            ),
             // The platform ties the pivots together, so another one may be the first to be too far off.
+            // At rest too: what is driven and does not stir by a bit is taken for an encoder that is frozen.
             Self::DriveLost => (
                 Effect::FollowingError,
-                &[Kind::FollowingError, Kind::Stalled],
+                &[Kind::FollowingError, Kind::Stalled, Kind::EncoderFrozen],
                 false,
             ),
             Self::DirectionStuck | Self::Knock(_) => (
@@ -203,7 +207,7 @@ impl Injection {
                 false,
             ),
             // Wedged to the last bit it cannot be told from an encoder that is frozen.
-            Self::Jam(_) => (
+            Self::Jam => (
                 Effect::FollowingError,
                 &[Kind::FollowingError, Kind::Stalled, Kind::EncoderFrozen],
                 false,
@@ -257,7 +261,7 @@ impl Injection {
                 }
             }
             Self::EmergencyStop => host.emergency_stop = true,
-            Self::Jam(_) | Self::Knock(_) => self.push(&mut host.stage.plant, axis, age),
+            Self::Jam | Self::Knock(_) => self.push(&mut host.stage.plant, axis, age),
             Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
             Self::FewMissedTicks(_) | Self::LateLoop => {
                 if age % MISSED_EVERY == 0 {
@@ -271,20 +275,16 @@ impl Injection {
 
     /// What pushes the machine, from one tick to the next.
     pub fn push(&self, plant: &mut Plant, axis: usize, age: u64) {
-        let torque_n_m = match *self {
-            Self::Jam(most_n_m) => {
-                let drag_n_m = -JAM_N_M_S_RAD * plant.pivot_rates_rad_s()[axis];
-                drag_n_m.clamp(-most_n_m, most_n_m)
+        let mut external = External::default();
+        match *self {
+            Self::Jam if age == 0 => {
+                external.jammed_at_rad[axis] = Some(plant.pivots_rad()[axis]);
             }
-            Self::Knock(torque_n_m) if age < KNOCK_TICKS => torque_n_m,
-            _ => 0.0,
-        };
-        let mut ring_torque_n_m = [0.0; AXES];
-        ring_torque_n_m[axis] = torque_n_m;
-        plant.set_external(External {
-            ring_torque_n_m,
-            ..External::default()
-        });
+            Self::Knock(torque_n_m) if age == 0 => external.ring_torque_n_m[axis] = torque_n_m,
+            Self::Knock(_) if age == KNOCK_TICKS => {}
+            _ => return,
+        }
+        plant.set_external(external);
     }
 
     /// The tick of age 0 is the first to see it: what breaks an encoder is seen with the next frame that is latched.

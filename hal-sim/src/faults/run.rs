@@ -9,7 +9,7 @@ use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::{Record, Sample};
 
-use super::injection::{Effect, HEARTBEAT_TICKS, MISSED_EVERY};
+use super::injection::{Effect, HEARTBEAT_TICKS, Injection, MISSED_EVERY};
 use super::random::Random;
 use super::scenario::Scenario;
 use super::truth::{Path, fastest_rad_s, overrun_mm, setpoint_turns, shown_errors_rad};
@@ -138,9 +138,13 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             session.receive(b"\n");
             watch.heard = tick;
         }
+        let is_silent = scenario.injection == Injection::HostSilent && tick >= scenario.at;
         while let Some((_, line)) = lines.next_if(|(at, _)| *at <= tick) {
-            session.receive(line.as_bytes());
-            session.receive(b"\n");
+            if is_control || !is_silent {
+                session.receive(line.as_bytes());
+                session.receive(b"\n");
+                watch.heard = tick;
+            }
         }
         if tick % SERVICE_EVERY == 0 {
             // Writing to a vector does not fail.
