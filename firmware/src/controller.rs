@@ -154,6 +154,9 @@ pub fn tick(
         commands: state.commands,
     };
     recorder.record(&sample());
+    if let Some(history) = &mut link.history {
+        history.record(&sample());
+    }
     // Made anew, so that a tick that records nothing has it in registers only.
     if link.recorder.is_wanted() {
         link.recorder.record(&sample());

@@ -9,6 +9,7 @@
 //! ```
 #![cfg_attr(not(test), no_std)]
 
+pub mod blackbox;
 pub mod config;
 pub mod controller;
 pub mod drivers;

@@ -4,6 +4,7 @@
 //! for one and it took no command: that tick is the longest as it is. [`PanelLink::snapshot`] throws away a snapshot that
 //! has been waiting, so that what it returns is new.
 
+use crate::blackbox::{BlackBox, History};
 use crate::config::Config;
 use crate::drivers::bridge::Duty;
 use crate::fault::Fault;
@@ -123,6 +124,8 @@ pub struct TickLink<'a> {
     pub snapshots: Producer<'a, Snapshot>,
     /// The data recorder's end in the tick.
     pub recorder: TickRecorder<'a>,
+    /// The fault record's, where there is memory for one.
+    pub history: Option<History<'a>>,
 }
 
 /// The command side's ends.
@@ -131,6 +134,8 @@ pub struct PanelLink<'a> {
     snapshots: Consumer<'a, Snapshot>,
     /// The data recorder's end outside the tick.
     pub recorder: PanelRecorder<'a>,
+    /// The black box, if there is one.
+    pub black_box: Option<&'a BlackBox>,
 }
 
 /// The command queue is full: nothing was queued.
@@ -148,8 +153,23 @@ impl Link {
         }
     }
 
-    /// The two sides.
+    /// The two sides, without a black box.
     pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
+        self.split_with(None)
+    }
+
+    /// The two sides, with this black box, in which a start is noted.
+    pub fn split_keeping<'a>(
+        &'a mut self,
+        black_box: &'a BlackBox,
+    ) -> (TickLink<'a>, PanelLink<'a>) {
+        self.split_with(Some(black_box))
+    }
+
+    fn split_with<'a>(
+        &'a mut self,
+        black_box: Option<&'a BlackBox>,
+    ) -> (TickLink<'a>, PanelLink<'a>) {
         let (command_in, command_out) = self.commands.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
         let (tick_recorder, panel_recorder) = self.recorder.split();
@@ -158,11 +178,13 @@ impl Link {
                 commands: command_out,
                 snapshots: snapshot_in,
                 recorder: tick_recorder,
+                history: black_box.map(BlackBox::begin),
             },
             PanelLink {
                 commands: command_in,
                 snapshots: snapshot_out,
                 recorder: panel_recorder,
+                black_box,
             },
         )
     }
@@ -180,6 +202,9 @@ impl TickLink<'_> {
     /// Throws away the commands that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.commands.dequeue().is_some() {}
+        if let Some(history) = &mut self.history {
+            history.start_again();
+        }
     }
 }
 

@@ -16,6 +16,36 @@ use crate::plant::AXES;
 
 type Driver = bridge::Bridge<PwmPin, DirectionPin, SleepPin, FaultPin>;
 
+/// The wires between a bridge and its motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wiring {
+    /// As they should be.
+    #[default]
+    Sound,
+    /// A wire to the motor is broken: it turns freely, and no pin tells.
+    Open,
+    /// The direction pin does not reach the bridge, which takes it for high or low.
+    Direction {
+        /// High: positive voltage.
+        forward: bool,
+    },
+}
+
+impl Wiring {
+    /// What becomes of a bridge's pins.
+    #[must_use]
+    pub const fn pass(self, pins: BridgeState) -> BridgeState {
+        match self {
+            Self::Sound => pins,
+            Self::Open => BridgeState {
+                awake: false,
+                ..pins
+            },
+            Self::Direction { forward } => BridgeState { forward, ..pins },
+        }
+    }
+}
+
 /// A simulated stage under the controller, at a tick.
 pub struct Host {
     /// The stage; public so that a scenario can push it, break it and look at it.
@@ -24,8 +54,12 @@ pub struct Host {
     pub bridges: [Bridge; AXES],
     /// Emergency stop pressed.
     pub emergency_stop: bool,
+    /// Wires to the motors.
+    pub wiring: [Wiring; AXES],
     /// The tick before was late, or there should have been one more: what a host has no clock to find out.
     pub late: bool,
+    /// The tick before did not come.
+    missed: bool,
     drivers: [Driver; AXES],
     config: Config,
     state: State,
@@ -52,7 +86,9 @@ impl Host {
             stage: Stage::new(stage),
             bridges: bridges.try_into().expect(three),
             emergency_stop: false,
+            wiring: [Wiring::Sound; AXES],
             late: false,
+            missed: false,
             drivers: drivers.try_into().ok().expect(three),
             config: Config::new(parameters),
             state: State::new(),
@@ -71,9 +107,21 @@ impl Host {
             };
             sure(done);
         }
-        let pins: [BridgeState; AXES] = self.bridges.each_ref().map(Bridge::state);
-        self.stage.advance_period(pins);
+        self.stage.advance_period(self.pins());
         outputs
+    }
+
+    /// A period in which the controller does not run: the bridges keep what the last tick gave them, and the next tick is
+    /// told.
+    pub fn miss_tick(&mut self) {
+        self.missed = true;
+        self.stage.advance_period(self.pins());
+    }
+
+    /// What the bridges are told, after their wiring.
+    #[must_use]
+    pub fn pins(&self) -> [BridgeState; AXES] {
+        [0, 1, 2].map(|axis| self.wiring[axis].pass(self.bridges[axis].state()))
     }
 
     /// Starts the controller again, with these parameters; the stage stays as it is.
@@ -106,7 +154,7 @@ impl Host {
             current_counts,
             supply_counts,
             tick_cycles: 0,
-            late: self.late,
+            late: self.late | std::mem::take(&mut self.missed),
         }
     }
 }

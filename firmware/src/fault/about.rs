@@ -77,13 +77,13 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::EncoderFrozen,
-        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks, if the setpoint has gone further than a threshold meanwhile, or the voltage has changed by more than another (3 ticks more), and then it brakes, since the servo has been misled. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
+        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks, if the setpoint has gone further than a threshold meanwhile, or the voltage has been off by more than another in as many ticks (3 more), and then it brakes, since the servo has been misled. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
         thresholds: &[0x5450_0502, 0x5450_0506, 0x5450_0507],
         reason: LOST,
     },
     About {
         kind: FaultKind::Overspeed,
-        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every third tick while driven",
+        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every third tick while driven, but not while a late tick is unforgiven, which makes steps too long",
         thresholds: &[0x5450_0505, 0x5450_0106],
         reason: "what lets a pivot run away cannot be trusted to stop it",
     },

@@ -1,16 +1,21 @@
 //! What has happened to the controller: a ring of typed events, each with its tick. `EVT?` tells them, the oldest first; when
 //! it is full the oldest goes. They are numbered from 1 on, so that one sees how many have gone.
+//!
+//! Each is written into the black box too, if there is one, and those from before a reset are found there: they keep their
+//! numbers, and the events after the start go on from there.
+
+mod word;
+
+pub use word::CAUSES;
 
 use super::Panel;
 use super::reply::Reply;
+use crate::blackbox::{BlackBox, EVENTS};
 use crate::fault::Fault;
 use crate::link::{Mode, Snapshot};
 use core::fmt;
 use embedded_io::Write;
 use heapless::Deque;
-
-/// Events that are kept.
-pub const EVENTS: usize = 64;
 
 /// Something that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +46,8 @@ pub(super) enum Event {
 pub(super) struct Events {
     kept: Deque<(u64, Event), EVENTS>,
     count: u32,
+    /// How many of them the black box has; `None` before it was looked at.
+    boxed: Option<u32>,
     last: Seen,
 }
 
@@ -61,6 +68,7 @@ impl Events {
         let mut events = Self {
             kept: Deque::new(),
             count: 0,
+            boxed: None,
             last: Seen::default(),
         };
         events.add(0, Event::Start(None));
@@ -81,6 +89,52 @@ impl Events {
         // There is room now.
         let _ = self.kept.push_back((tick, event));
         self.count = self.count.wrapping_add(1);
+    }
+
+    /// Writes what is new into the black box; the first time, takes what is in it from before.
+    pub fn keep(&mut self, black_box: &BlackBox) {
+        let boxed = match self.boxed {
+            Some(boxed) => boxed,
+            None => self.recall(black_box),
+        };
+        let first = self.count - self.kept.len() as u32;
+        let events = (first.wrapping_add(1)..).zip(&self.kept);
+        for (number, (tick, event)) in events.filter(|(number, _)| *number > boxed) {
+            black_box
+                .events
+                .write(number, &word::words(number, *tick, event));
+        }
+        self.boxed = Some(self.count);
+    }
+
+    /// Puts events from before the start in front of those since; the number of the last of them.
+    fn recall(&mut self, black_box: &BlackBox) -> u32 {
+        let since = core::mem::take(&mut self.kept);
+        let read = |number: u32| {
+            let words = black_box.events.read(number)?;
+            Some((words[0], word::event(&words)?))
+        };
+        let last = (0..EVENTS as u32)
+            .filter_map(read)
+            .map(|(number, _)| number)
+            .max();
+        let last = last.unwrap_or(0);
+        let first = last.saturating_sub(EVENTS as u32 - 1).max(1);
+        self.count = first - 1;
+        for number in first..=last {
+            match read(number) {
+                Some((found, (tick, event))) if found == number => self.add(tick, event),
+                // Numbers tell places: what is left out must be behind all that is told.
+                _ => {
+                    self.kept.clear();
+                    self.count = number;
+                }
+            }
+        }
+        for (tick, event) in &since {
+            self.add(*tick, *event);
+        }
+        last
     }
 
     /// Finds out what has happened up to a snapshot.

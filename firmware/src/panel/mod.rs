@@ -58,6 +58,8 @@ mod target;
 mod variables;
 mod wave;
 
+pub use events::CAUSES;
+
 pub use axis::{Axis, AxisSet, AxisValues};
 pub use error::ErrorCode;
 pub use macros::{DEPTH, LINES, MACRO_BYTES, MACROS, MacroRequest};
@@ -147,7 +149,8 @@ impl Panel {
         }
     }
 
-    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`.
+    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`. The black
+    /// box knows the [`CAUSES`] alone.
     pub fn note_start(&mut self, cause: &'static str) {
         self.start = Some(cause);
         self.events.note_start(cause);
@@ -194,6 +197,9 @@ impl Panel {
             self.statistics.take(&snapshot);
             self.stage.take(snapshot);
         }
+        if let Some(black_box) = link.black_box {
+            self.events.keep(black_box);
+        }
         self.take_back_if_refused();
         self.stage.carry_on(link);
         self.watch_heartbeat(link);
@@ -228,7 +234,10 @@ impl Panel {
         out: &mut W,
     ) -> Result<(), W::Error> {
         loop {
-            while self.carry_dump(session, link, out)? || self.is_waiting(session, link) {
+            while self.carry_dump(session, link, out)?
+                || self.carry_history(session, link, out)?
+                || self.is_waiting(session, link)
+            {
                 let Some(byte) = session.take_single() else {
                     return Ok(());
                 };

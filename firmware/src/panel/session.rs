@@ -2,7 +2,7 @@
 
 use super::error::ErrorCode;
 use super::monitor::Monitor;
-use super::record::Dump;
+use super::record::{Dump, HistoryDump};
 use super::request::Condition;
 use heapless::{Deque, Vec};
 use kinematics::Angle;
@@ -25,6 +25,8 @@ pub struct Session {
     pub(super) wait: Option<Wait>,
     /// An answer that is written as the output has room.
     pub(super) dump: Option<Dump>,
+    /// The same for the fault record.
+    pub(super) history: Option<HistoryDump>,
     /// Bytes of it that the output takes now; any number where nobody has said.
     pub(super) room: Option<usize>,
     /// Bytes have come since it was last looked at.
@@ -137,7 +139,11 @@ impl Session {
 
     /// Whether everything received has been carried out: no line, whole or begun, no wait and no answer is left.
     pub fn is_idle(&self) -> bool {
-        self.input.is_empty() && self.line.is_empty() && self.wait.is_none() && self.dump.is_none()
+        self.input.is_empty()
+            && self.line.is_empty()
+            && self.wait.is_none()
+            && self.dump.is_none()
+            && self.history.is_none()
     }
 
     /// The error that `ERR?` would answer.

@@ -172,6 +172,11 @@ pub(super) const COMMANDS: &[Entry] = &[
         Syntax::Plain(Request::Act(Action::Acknowledge)),
         "acknowledge the latched fault",
     ),
+    own(
+        "FLR?",
+        record::fault_record,
+        "get the fault record: the ticks before the last fault, and after",
+    ),
     ask("FLT?", Query::Fault, "get the latched fault in words"),
     entry(
         "FRF",

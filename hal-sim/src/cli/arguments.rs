@@ -54,6 +54,8 @@ pub(super) enum Command {
     /// RAM. Exit code 1 if the proof fails.
     #[cfg(feature = "chip")]
     ImageCheck,
+    /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
+    Faults(Faults),
     /// Pivot angles (deg) of a pose (mm, mm, deg).
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
@@ -253,6 +255,36 @@ pub(super) struct CostRun {
     /// No progress bar.
     #[arg(long, short)]
     pub(super) quiet: bool,
+}
+
+/// A campaign of faults.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Faults {
+    /// Runs with a fault; as many are run without.
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = value_parser!(u32).range(1..=10_000_000))]
+    pub(super) runs: u32,
+    /// Seed of the campaign.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Threads [default: as many as there are processors].
+    #[arg(long, value_name = "N", value_parser = jobs)]
+    pub(super) jobs: Option<usize>,
+    /// Run the run of this seed again, alone, and tell about it.
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["runs", "seed", "jobs"])]
+    pub(super) only: Option<u64>,
+    /// Write all runs into this file, as CSV.
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+fn jobs(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(jobs @ 1..=1024) => Ok(jobs),
+        _ => Err("not a number from 1 to 1024".to_owned()),
+    }
 }
 
 /// What a simulated stage can do without.

@@ -18,6 +18,7 @@ mod error;
 mod exercise;
 #[cfg(feature = "chip")]
 mod image_check;
+mod faults;
 mod inverse;
 mod map;
 #[cfg(unix)]
@@ -95,6 +96,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::ImageCheck) => image_check::run(),
         #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
+        Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

@@ -146,11 +146,6 @@ impl Stage {
         self.substep(AFTER_LATCH);
     }
 
-    /// Another supply from now on, V.
-    pub fn set_supply_v(&mut self, supply_v: f64) {
-        self.bridge.supply_v = supply_v;
-    }
-
     /// The frames that the next tick reads, as an SPI master stores them.
     #[must_use]
     pub fn frames(&self) -> [[u8; 8]; AXES] {
@@ -162,6 +157,12 @@ impl Stage {
     pub fn analog(&self) -> ([u16; AXES], u16) {
         let currents = self.plant.currents_a().map(analog::current_counts);
         (currents, analog::supply_counts(self.bridge.supply_v))
+    }
+
+    /// Changes the supply, V, from now on.
+    pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.bridge.supply_v = supply_v;
+        self.plant.set_supply_v(supply_v);
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.

@@ -102,6 +102,12 @@ impl Plant {
         self.external = external;
     }
 
+    /// Changes the supply that cuts voltages and against which currents die, V.
+    pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.parameters.supply_v = supply_v;
+        self.dynamics.drive = DriveModel::new(&self.parameters);
+    }
+
     /// Integrates over `step_s` (10 to 15 us is what the parameters are made for) with constant drives: one classic
     /// Runge-Kutta step of fourth order. A broken plant stands still.
     pub fn step(&mut self, step_s: f64, drives: &[Drive; AXES]) {

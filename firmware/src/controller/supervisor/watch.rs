@@ -23,6 +23,8 @@ pub(in super::super) struct Watch {
     at_end: u32,
     /// Duty when the encoder last showed something new.
     duty: i16,
+    /// Ticks since then in which it has been far from that.
+    driven: u16,
 }
 
 /// The pivot whose turn it is, what belongs to it, and the next one.
@@ -81,17 +83,22 @@ impl State {
             return true;
         }
         let step = encoder.step().unsigned_abs();
-        if step > limits.overspeed {
+        // After a tick that did not come a step is up to twice as long as it should be.
+        if self.lateness == 0 && step > limits.overspeed {
             let rates = [step, limits.overspeed].map(|step| radians(step) * limits.hz);
             self.fail(FaultKind::Overspeed, Some(i), rates[0], rates[1]);
             return false;
         }
         if encoder.same_readings() < TURN as u16 {
             watch.duty = turn.duty.0;
-        } else if encoder.same_readings() >= SAME_READINGS
-            && turn.duty.0.abs_diff(watch.duty) > limits.frozen_duty
-        {
-            self.freeze(i);
+            watch.driven = 0;
+        } else if turn.duty.0.abs_diff(watch.duty) > limits.frozen_duty {
+            // From here on: a reading that has rested for long may go on resting until the drive has had its time.
+            watch.driven += TURN as u16;
+            if watch.driven >= SAME_READINGS {
+                watch.driven = 0;
+                self.freeze(i);
+            }
         }
         true
     }
@@ -106,6 +113,7 @@ impl State {
         for watch in &mut self.watch {
             watch.at_end = 0;
             watch.duty = 0;
+            watch.driven = 0;
         }
     }
 }

@@ -10,7 +10,7 @@ use super::super::Panel;
 use super::super::error::ErrorCode;
 use super::super::session::Session;
 use super::option::{Channel, Row};
-use super::{Desk, Record, RecordQuery, TableList, tell};
+use super::{Desk, HistoryDump, Record, RecordQuery, TableList, tell};
 use crate::link::PanelLink;
 use crate::recorder::{Cursor, PanelRecorder, TABLES};
 use core::fmt::{self, Write as _};
@@ -18,9 +18,9 @@ use embedded_io::Write;
 use heapless::String;
 
 /// Longest line: eight numbers.
-const LINE: usize = 384;
+pub(super) const LINE: usize = 384;
 /// Lines that a service writes at most, so that other work is not kept waiting.
-const LINES: usize = 8;
+pub(super) const LINES: usize = 8;
 
 /// What is left of an answer.
 pub(in crate::panel) struct Dump {
@@ -51,6 +51,13 @@ impl Panel {
             RecordQuery::Triggers(tables) => desk.tell_triggers(&tables, out),
             RecordQuery::Rate => desk.tell_rate(out),
             RecordQuery::Lengths(tables) => desk.tell_lengths(&tables, &link.recorder, out),
+            RecordQuery::History => {
+                match HistoryDump::new(link.black_box) {
+                    Ok(dump) => session.history = Some(dump),
+                    Err(code) => session.error = code,
+                }
+                Ok(())
+            }
             RecordQuery::Help => tell::tell_help(self.parameters.recorder.points, out),
             RecordQuery::Count => tell::tell_count(out),
             RecordQuery::Data(span, tables) => {

@@ -13,18 +13,22 @@
 //! | `parse` | lines |
 //! | `tell` | answers of a few lines |
 //! | `dump` | `DRR?`: an answer of any length, written as the output has room |
+//! | `history` | `FLR?`: the fault record, the same way |
 
 mod arm;
 mod dump;
+mod history;
 mod option;
 mod parse;
 mod tell;
 mod trigger;
 
 pub(super) use dump::Dump;
+pub(super) use history::HistoryDump;
 pub use option::{Channel, Source};
 pub(super) use parse::{
-    channels, count, data, help, lengths, rate, set_channels, set_rate, set_triggers, triggers,
+    channels, count, data, fault_record, help, lengths, rate, set_channels, set_rate, set_triggers,
+    triggers,
 };
 pub use trigger::Trigger;
 
@@ -57,6 +61,8 @@ pub enum RecordQuery {
     Count,
     /// `DRR?`: rows, counted from 1, and how many; all without them.
     Data(Option<[u32; 2]>, TableList),
+    /// `FLR?`: the fault record.
+    History,
 }
 
 /// Something to be done to the recorder.

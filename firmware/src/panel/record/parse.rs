@@ -43,6 +43,11 @@ pub(in crate::panel) fn count(_: &mut Scanner<'_>) -> Parsed {
     Ok(Request::Record(RecordQuery::Count))
 }
 
+/// `FLR?`
+pub(in crate::panel) fn fault_record(_: &mut Scanner<'_>) -> Parsed {
+    Ok(Request::Record(RecordQuery::History))
+}
+
 /// `DRR?`: first row and number of rows, then tables; all of each that is not named.
 pub(in crate::panel) fn data(scanner: &mut Scanner<'_>) -> Parsed {
     if scanner.is_at_end() {

@@ -1,0 +1,74 @@
+//! All runs as a CSV file.
+
+use std::io;
+use std::path::Path;
+
+use ::csv::Writer;
+
+use super::injection::NAMES;
+use super::run::Outcome;
+
+const COLUMNS: [&str; 16] = [
+    "seed",
+    "fault",
+    "pivot",
+    "tick",
+    "effect_tick",
+    "latched",
+    "latched_pivot",
+    "latched_tick",
+    "latency_ticks",
+    "deviation_mm",
+    "travelled_mm",
+    "turned_deg",
+    "overrun_mm",
+    "unavoidable_mm",
+    "end",
+    "problem",
+];
+
+/// Writes a row for each run, with a line of headings.
+///
+/// # Errors
+/// Those of the file.
+pub fn write(path: &Path, outcomes: &[Outcome]) -> io::Result<()> {
+    let mut writer = Writer::from_path(path)?;
+    writer.write_record(COLUMNS)?;
+    for outcome in outcomes {
+        writer.write_record(row(outcome))?;
+    }
+    writer.flush()
+}
+
+fn row(outcome: &Outcome) -> [String; 16] {
+    let scenario = &outcome.scenario;
+    let fault = outcome.fault.as_ref();
+    let told = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
+    let mm = |value: f64| format!("{value:.4}");
+    let name = match outcome.is_control {
+        true => "none",
+        false => NAMES[scenario.injection.index()],
+    };
+    [
+        scenario.seed.to_string(),
+        name.to_owned(),
+        (scenario.axis + 1).to_string(),
+        scenario.at.to_string(),
+        told(outcome.effect),
+        fault.map_or_else(String::new, |fault| fault.kind.text().to_owned()),
+        told(
+            fault
+                .and_then(|fault| fault.pivot)
+                .map(|pivot| u64::from(pivot) + 1),
+        ),
+        told(fault.map(|fault| fault.tick)),
+        told(outcome.latency_ticks()),
+        mm(outcome.deviation_mm),
+        mm(outcome.travelled.0),
+        mm(outcome.travelled.1),
+        mm(outcome.overrun_mm),
+        mm(outcome.unavoidable_mm),
+        outcome.end.text().to_owned(),
+        (outcome.problem()).map_or_else(String::new, |problem| problem.to_string()),
+    ]
+}

@@ -1,0 +1,106 @@
+//! The campaign of faults: it finds nothing wrong with the controller, and would if there were.
+
+use firmware::fault::FaultKind;
+use hal_sim::faults::{Campaign, Effect, Injection, NAMES, Outcome, Problem, Scenario, run, table};
+
+const SHORT: Campaign = Campaign {
+    runs: 12,
+    seed: 7,
+    jobs: 2,
+};
+
+/// The first run of the campaign's kind in which this breaks and is noticed.
+fn noticed(of: fn(&Injection) -> bool) -> Outcome {
+    (1..)
+        .map(Scenario::new)
+        .filter(|scenario| of(&scenario.injection))
+        .map(|scenario| run(scenario, false))
+        .find(|outcome| outcome.effect.is_some())
+        .expect("one of so many")
+}
+
+#[test]
+fn the_same_seed_gives_the_same_campaign_whatever_the_threads() {
+    let outcomes = SHORT.run(|_| {});
+    let alone = Campaign { jobs: 1, ..SHORT }.run(|_| {});
+    assert_eq!(format!("{outcomes:?}"), format!("{alone:?}"));
+    assert_eq!(outcomes.len(), 24);
+    for outcome in &outcomes {
+        assert_eq!(outcome.problem(), None, "{outcome}");
+    }
+    let table = table(&outcomes);
+    for name in NAMES {
+        assert!(table.contains(name), "{name}:\n{table}");
+    }
+}
+
+#[test]
+fn every_kind_of_injection_comes_up() {
+    let mut seen = [false; NAMES.len()];
+    for seed in 0..400 {
+        seen[Scenario::new(seed).injection.index()] = true;
+    }
+    assert_eq!(seen, [true; NAMES.len()]);
+}
+
+#[test]
+fn a_fault_that_is_not_reported_rightly_is_a_problem() {
+    let good = noticed(|injection| *injection == Injection::BadCrc);
+    assert_eq!(good.problem(), None, "{good}");
+    let latched = good.fault.expect("noticed");
+    let judged = |fault| {
+        let outcome = Outcome {
+            fault,
+            ..good.clone()
+        };
+        outcome.problem()
+    };
+    assert_eq!(judged(None), Some(Problem::Undetected));
+    let late = firmware::fault::Fault {
+        tick: latched.tick + 3,
+        ..latched
+    };
+    assert_eq!(judged(Some(late)), Some(Problem::Late(3)));
+    let kind = FaultKind::SupplyLow;
+    let wrong = firmware::fault::Fault { kind, ..latched };
+    assert_eq!(judged(Some(wrong)), Some(Problem::WrongKind));
+    let pivot = Some((good.scenario.axis as u8 + 1) % 3);
+    let elsewhere = firmware::fault::Fault { pivot, ..latched };
+    assert_eq!(judged(Some(elsewhere)), Some(Problem::WrongPivot));
+    let early = firmware::fault::Fault {
+        tick: good.scenario.at - 1,
+        ..latched
+    };
+    assert_eq!(judged(Some(early)), Some(Problem::FalseAlarm));
+}
+
+#[test]
+fn an_alarm_without_a_fault_is_a_problem() {
+    let fault = noticed(|injection| *injection == Injection::EmergencyStop).fault;
+    for control in [true, false] {
+        let scenario = (1..)
+            .map(Scenario::new)
+            .find(|scenario| scenario.injection.expected().effect == Effect::Never)
+            .expect("one of so many");
+        let quiet = run(scenario, control);
+        assert_eq!((quiet.fault, quiet.problem()), (None, None));
+        let alarmed = Outcome { fault, ..quiet };
+        assert_eq!(alarmed.problem(), Some(Problem::FalseAlarm));
+    }
+}
+
+#[test]
+fn an_overrun_counts_where_it_could_have_been_prevented() {
+    let good = noticed(|injection| *injection == Injection::BridgeFault);
+    let avoidable = Outcome {
+        overrun_mm: 0.5,
+        unavoidable_mm: 0.0,
+        ..good
+    };
+    assert_eq!(avoidable.problem(), Some(Problem::LimitBroken(0.5)));
+    let unavoidable = Outcome {
+        unavoidable_mm: 0.4,
+        ..avoidable
+    };
+    assert_eq!(unavoidable.problem(), None);
+}
