@@ -192,6 +192,13 @@ impl State {
         Self::default()
     }
 
+    /// State at power-up, with a fault that was found before: latched, so that nothing drives until it is acknowledged.
+    pub fn with_fault(kind: FaultKind) -> Self {
+        let mut state = Self::new();
+        state.fail(kind, None, 0.0, 0.0);
+        state
+    }
+
     /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.fault

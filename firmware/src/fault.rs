@@ -23,6 +23,10 @@ pub enum FaultKind {
     SupplyLow,
     /// A setpoint left what the mechanism can reach, or is not finite.
     ImpossibleSetpoint,
+    /// Kept settings are damaged: the controller has started with its own.
+    SettingsDamaged,
+    /// Kept settings are of a newer firmware: the controller has started with its own.
+    SettingsNewer,
 }
 
 /// A latched fault.
@@ -53,6 +57,12 @@ impl FaultKind {
             Self::EmergencyStop => "emergency stop pressed",
             Self::SupplyLow => "supply voltage too low",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
+            Self::SettingsDamaged => {
+                "kept settings are damaged, the controller's own are in force (WPA 100 keeps those)"
+            }
+            Self::SettingsNewer => {
+                "kept settings are of a newer firmware, the controller's own are in force"
+            }
         }
     }
 

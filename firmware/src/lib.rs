@@ -24,3 +24,4 @@ pub mod recorder;
 mod reference;
 pub mod servo;
 mod settling;
+pub mod store;

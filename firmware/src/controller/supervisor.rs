@@ -34,7 +34,14 @@ impl State {
         match (self.mode, self.fault) {
             (Mode::Off, _) => false,
             (_, Some(fault)) => {
-                !matches!(fault.kind, FaultKind::BridgeFault | FaultKind::SupplyLow)
+                // Nothing has moved yet when settings cannot be used.
+                !matches!(
+                    fault.kind,
+                    FaultKind::BridgeFault
+                        | FaultKind::SupplyLow
+                        | FaultKind::SettingsDamaged
+                        | FaultKind::SettingsNewer
+                )
             }
             _ => true,
         }

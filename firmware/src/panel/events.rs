@@ -2,6 +2,7 @@
 //! it is full the oldest goes. They are numbered from 1 on, so that one sees how many have gone.
 
 use super::Panel;
+use super::error::ErrorCode;
 use super::reply::Reply;
 use crate::fault::Fault;
 use crate::link::{Mode, Snapshot};
@@ -33,6 +34,14 @@ pub(super) enum Event {
     Refused(u32),
     /// No host was heard for so many milliseconds.
     Silent(f64),
+    /// Settings were written to flash.
+    Kept,
+    /// They could not be.
+    NotKept(ErrorCode),
+    /// `RPA`
+    Recalled,
+    /// So many parameters are kept that this firmware does not know.
+    Unknown(u16),
 }
 
 /// See the module.
@@ -124,6 +133,14 @@ impl fmt::Display for Event {
             Self::Halt => f.write_str("halted by command"),
             Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
             Self::Silent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
+            Self::Kept => f.write_str("settings kept"),
+            Self::NotKept(code) => {
+                write!(f, "settings could not be kept, error {}", code.number())
+            }
+            Self::Recalled => f.write_str("parameters as they are kept"),
+            Self::Unknown(count) => {
+                write!(f, "{count} kept parameters are unknown here and ignored")
+            }
         }
     }
 }
