@@ -19,6 +19,8 @@ mod record;
 mod rows;
 #[cfg(unix)]
 mod serve;
+#[cfg(unix)]
+mod settings;
 mod simulate;
 mod units;
 #[cfg(unix)]
@@ -72,7 +74,11 @@ fn usage(error: &clap::Error) -> ExitCode {
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         None => simulate::demonstration(&arguments.simulation),
-        Some(Command::Run { file, simulation }) => simulate::script(&file, &simulation),
+        Some(Command::Run {
+            file,
+            settings,
+            simulation,
+        }) => simulate::script(&file, &simulation, settings.as_deref()),
         #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
         #[cfg(unix)]
@@ -85,6 +91,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Cost(arguments)) => cost::run(&arguments),
         #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
+        #[cfg(unix)]
+        Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),
