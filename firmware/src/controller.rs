@@ -231,6 +231,23 @@ impl State {
         Self::default()
     }
 
+    /// State at power-up, with a fault that was found before: latched, so that nothing drives until it is acknowledged.
+    pub fn with_fault(kind: FaultKind) -> Self {
+        let fault = Fault {
+            kind,
+            pivot: None,
+            tick: 0,
+            value: 0.0,
+            limit: 0.0,
+        };
+        Self {
+            mode: Mode::Fault,
+            fault: Some(fault),
+            coasts: true,
+            ..Self::new()
+        }
+    }
+
     /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.fault

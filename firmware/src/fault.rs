@@ -45,6 +45,10 @@ pub enum FaultKind {
     LoopLate,
     /// What the tick computes is no longer a number.
     NotFinite,
+    /// Kept settings are damaged: the controller has started with its own.
+    SettingsDamaged,
+    /// Kept settings are of a newer firmware: the controller has started with its own.
+    SettingsNewer,
 }
 
 /// What a fault does to the motors.
@@ -94,7 +98,8 @@ impl FaultKind {
             | Self::WorkspaceLeft
             | Self::Stalled
             | Self::NotFinite => Reaction::Brake,
-            Self::BridgeFault => Reaction::Coast,
+            // Nothing has moved yet when settings cannot be used.
+            Self::BridgeFault | Self::SettingsDamaged | Self::SettingsNewer => Reaction::Coast,
         }
     }
 
@@ -131,6 +136,12 @@ impl FaultKind {
             Self::MotorHot => "motor too hot",
             Self::LoopLate => "control loop late too often",
             Self::NotFinite => "a computed value is not a number",
+            Self::SettingsDamaged => {
+                "kept settings are damaged, the controller's own are in force (WPA 100 keeps those)"
+            }
+            Self::SettingsNewer => {
+                "kept settings are of a newer firmware, the controller's own are in force"
+            }
         }
     }
 

@@ -25,3 +25,4 @@ pub mod recorder;
 mod reference;
 pub mod servo;
 mod settling;
+pub mod store;

@@ -4,7 +4,7 @@ use firmware::config::Config;
 use firmware::controller::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
-use firmware::fault::Fault;
+use firmware::fault::{Fault, FaultKind};
 use firmware::link::TickLink;
 use firmware::parameters::Parameters;
 use firmware::recorder::Record;
@@ -124,10 +124,10 @@ impl Host {
         [0, 1, 2].map(|axis| self.wiring[axis].pass(self.bridges[axis].state()))
     }
 
-    /// Starts the controller again, with these parameters; the stage stays as it is.
-    pub fn restart(&mut self, parameters: &Parameters) {
+    /// Starts the controller again, with these parameters and perhaps a fault; the stage stays as it is.
+    pub fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
         self.config = Config::new(parameters);
-        self.state = State::new();
+        self.state = fault.map_or_else(State::new, State::with_fault);
     }
 
     /// The latched fault.

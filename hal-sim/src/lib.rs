@@ -22,4 +22,6 @@ pub mod script;
 #[cfg(unix)]
 pub mod serve;
 #[cfg(unix)]
+pub mod settings;
+#[cfg(unix)]
 pub mod web;

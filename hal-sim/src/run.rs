@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use firmware::fault::Fault;
+use firmware::fault::{Fault, FaultKind};
 use firmware::link::{Link, Mode};
 use firmware::panel::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::store::Keeper;
 
 use crate::client::{Client, Event};
-use crate::devices::{FINE_PWM, StageParameters};
+use crate::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::host::Host;
 use crate::observer::{Observer, TickRecord};
 use crate::plant::{Imperfections, Payload, PlantParameters};
@@ -105,12 +106,28 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
     }
 }
 
-/// Runs a script on the simulated stage.
+/// Runs a script on the simulated stage. Nothing is kept of its settings.
 #[must_use]
 pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
+    run_with(script, options, SettingsFlash::in_memory())
+}
+
+/// Runs a script on the simulated stage, whose controller starts with the settings of this flash and keeps them there.
+#[must_use]
+pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> RunOutcome {
     let stage = stage_parameters(options);
     let parameters = controller_parameters(options);
-    simulate(script, &parameters, &stage, options)
+    simulate(script, &parameters, &stage, options, flash)
+}
+
+/// The panel of a controller that starts with what is kept, and the fault that it starts with.
+pub(crate) fn started(
+    parameters: &Parameters,
+    keeper: &mut Keeper<SettingsFlash>,
+) -> (Panel, Option<FaultKind>) {
+    let mut panel = Panel::new(parameters, IDENTITY);
+    let fault = keeper.restore(&mut panel);
+    (panel, fault)
 }
 
 /// The controller's parameters, as the imperfections that are left make them.
@@ -142,14 +159,18 @@ fn simulate(
     parameters: &Parameters,
     stage: &StageParameters,
     options: &RunOptions,
+    flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut host = Host::new(stage, parameters);
+    let mut keeper = Keeper::new(flash);
+    let (mut panel, fault) = started(parameters, &mut keeper);
+    let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
+    let mut host = Host::new(stage, panel.parameters());
+    host.restart(panel.parameters(), fault);
     let mut link = Link::new();
     let (mut tick_link, mut panel_link) = link.split();
-    let mut panel = Panel::new(parameters, IDENTITY);
     let mut session = Session::new();
     let mut client = Client::new(script);
-    let mut observer = Observer::new(parameters, options.every);
+    let mut observer = Observer::new(panel.parameters(), options.every);
     let mut record = TickRecord::default();
     let mut wire = Wire::default();
     let mut answers = Vec::new();
@@ -171,9 +192,11 @@ fn simulate(
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
+        keeper.carry_on(&mut panel);
         if panel.wants_restart() {
-            host.restart(parameters);
-            panel = Panel::new(parameters, IDENTITY);
+            let fault;
+            (panel, fault) = started(parameters, &mut keeper);
+            host.restart(panel.parameters(), fault);
             session.start_again();
             tick_link.clear();
             panel_link.clear();
@@ -197,8 +220,8 @@ fn simulate(
     RunOutcome {
         run: Run {
             name: script.name.clone(),
-            geometry: parameters.geometry,
-            limits: parameters.limits,
+            geometry,
+            limits,
             trace: observer.trace,
             moves: observer.moves,
             wall_s: progress.finish(),

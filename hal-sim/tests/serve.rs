@@ -35,6 +35,7 @@ impl Served {
             speed,
             terminal,
             parameters: controller_parameters(&run),
+            settings: None,
             stage: stage_parameters(&run),
         })
         .unwrap();

@@ -34,6 +34,7 @@ impl Stage {
             speed: 1.0,
             terminal: true,
             parameters: controller_parameters(&run),
+            settings: None,
             stage: stage_parameters(&run),
         })
         .unwrap();

@@ -129,4 +129,16 @@ pub const ABOUT: &[About] = &[
         thresholds: &[],
         reason: "nothing that is computed can be trusted; braking needs no numbers",
     },
+    About {
+        kind: FaultKind::SettingsDamaged,
+        detection: "an item kept in flash fails its checks, or no store can be made of the flash; at the start, before anything drives",
+        thresholds: &[],
+        reason: "nothing has moved yet; the controller's own parameters are in force, which may not be those of this stage",
+    },
+    About {
+        kind: FaultKind::SettingsNewer,
+        detection: "the store's version is newer than this firmware; at the start, before anything drives",
+        thresholds: &[],
+        reason: "nothing has moved yet; what is kept would be misread, and stays as it is",
+    },
 ];

@@ -48,6 +48,12 @@ impl Panel {
             Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
             Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
             Action::Set(settings) => self.set(&settings, session, link),
+            Action::Keep(addresses) => {
+                self.keep(&addresses)?;
+                self.wait(session, Awaited::Kept);
+                Ok(())
+            }
+            Action::Recall(addresses) => self.recall(&addresses, link),
             Action::Level(level, password) => Self::set_level(session, level, password),
             Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
             Action::Stop => {

@@ -95,6 +95,8 @@ pub enum ErrorCode {
     MacroRunning = 1008,
     /// A fault is latched, the motors are off.
     MotionError = 1024,
+    /// The flash does not take the settings that are to be kept.
+    FlashFailed = 4001,
 }
 
 impl ErrorCode {

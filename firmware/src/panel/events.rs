@@ -40,6 +40,14 @@ pub(super) enum Event {
     Silent(f64),
     /// The encoder of a pivot, counted from 0, has begun to warn, or has stopped.
     Warning(u8, bool),
+    /// Settings were written to flash.
+    Kept,
+    /// They could not be: the error's number.
+    NotKept(u16),
+    /// `RPA`
+    Recalled,
+    /// So many parameters are kept that this firmware does not know.
+    Unknown(u16),
 }
 
 /// See the module.
@@ -193,6 +201,14 @@ impl fmt::Display for Event {
             Self::Warning(pivot, true) => write!(f, "encoder warns, pivot {}", pivot + 1),
             Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
             Self::Silent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
+            Self::Kept => f.write_str("settings kept"),
+            Self::NotKept(number) => {
+                write!(f, "settings could not be kept, error {number}")
+            }
+            Self::Recalled => f.write_str("parameters as they are kept"),
+            Self::Unknown(count) => {
+                write!(f, "{count} kept parameters are unknown here and ignored")
+            }
         }
     }
 }

@@ -19,6 +19,7 @@
 //! | `monitor` | what `MON?` tells, for clients that draw the stage while it moves |
 //! | `frames` | coordinate systems of the user's own, and the centre of rotation |
 //! | `parameter` | what parameters there are |
+//! | `keeping` | what is kept over a restart |
 //! | `record` | the data recorder: what it records, when, and reading it |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //! | `macros` | lines that are kept and carried out later |
@@ -39,6 +40,7 @@ mod error;
 mod events;
 mod frames;
 mod heartbeat;
+mod keeping;
 mod macros;
 mod monitor;
 mod parameter;
@@ -86,6 +88,7 @@ use answer::tell_reach;
 use embedded_io::Write;
 use events::Events;
 use heartbeat::Heartbeat;
+use keeping::Keeping;
 use macros::{Macros, Recorded};
 use record::Desk;
 use session::{Awaited, Event};
@@ -126,6 +129,7 @@ pub struct Panel {
     wants_restart: bool,
     macros: Macros,
     variables: Variables,
+    keeping: Keeping,
 }
 
 impl Panel {
@@ -145,6 +149,7 @@ impl Panel {
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),
+            keeping: Keeping::new(parameters),
             start: None,
         }
     }
@@ -387,6 +392,13 @@ impl Panel {
                 }
                 self.stage.present().is_some() && (self.stage.is_faulted() || holds.unwrap_or(true))
             }
+            Awaited::Kept => match self.keeping.result() {
+                None => false,
+                Some(result) => {
+                    session.error = result.err().unwrap_or(session.error);
+                    true
+                }
+            },
             Awaited::Reference => match self.stage.reference(link) {
                 Referencing::Waiting => false,
                 Referencing::Done => true,

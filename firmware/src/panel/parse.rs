@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, AxisSet, AxisValues};
 use super::error::ErrorCode;
+use super::keeping::PASSWORD as PASSWORD_TO_KEEP;
 use super::macros;
 use super::parameter::{Address, Addresses, Item, PASSWORD, Parameter, Settings};
 use super::request::{Action, Condition, Operand, Operator, Query, Request};
@@ -190,6 +191,23 @@ fn addresses(scanner: &mut Scanner<'_>) -> Result<Addresses, ParseError> {
         *place = Some(address(scanner)?.0);
     }
     Ok(addresses)
+}
+
+/// The password of `WPA`, and pairs of item and parameter that can be set; none stands for all.
+pub(super) fn keep(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
+    let password = scanner.word();
+    if password.text.is_empty() {
+        return Err(password.unfit(ErrorCode::ParameterCount, "a password"));
+    }
+    if password.text != PASSWORD_TO_KEEP {
+        return Err(password.unfit(ErrorCode::Password, "the password"));
+    }
+    Ok(Request::Act(Action::Keep(addresses(scanner)?)))
+}
+
+/// Pairs of item and parameter; none stands for all.
+pub(super) fn recall(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
+    Ok(Request::Act(Action::Recall(addresses(scanner)?)))
 }
 
 /// Triples of item, parameter and number up to the end of the line, at least one.

@@ -162,6 +162,10 @@ pub enum Action {
     SoftActive(AxisValues),
     /// `SPA`
     Set(Settings),
+    /// `WPA`: these parameters, or all.
+    Keep(Addresses),
+    /// `RPA`: these parameters, or all.
+    Recall(Addresses),
     /// `CCL`: level, and whether the password is right.
     Level(f64, bool),
     /// `VLS`, mm/s.

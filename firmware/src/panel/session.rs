@@ -75,6 +75,8 @@ pub(super) enum Awaited {
     Condition(Condition),
     /// `FRF`: its end.
     Reference,
+    /// `WPA`: its end.
+    Kept,
 }
 
 /// What comes next in the input.

@@ -389,6 +389,11 @@ pub(super) const COMMANDS: &[Entry] = &[
         Syntax::Plain(Request::Macro(MacroRequest::Running)),
         "get running macros",
     ),
+    own(
+        "RPA",
+        parse::recall,
+        "[{<item> <parameter>}] get parameters back as they are kept",
+    ),
     own("RTR", record::set_rate, "<ticks> set ticks a point"),
     own("RTR?", record::rate, "get ticks a point"),
     entry(
@@ -526,6 +531,11 @@ pub(super) const COMMANDS: &[Entry] = &[
         "WGO?",
         |scanner| wave::generators(WaveQuery::Going, scanner),
         "[{<generator>}] get whether wave generators run",
+    ),
+    own(
+        "WPA",
+        parse::keep,
+        "<password> [{<item> <parameter>}] keep parameters over a restart",
     ),
     own(
         "WSL",

@@ -329,6 +329,10 @@ impl Bench {
         &self.panel
     }
 
+    pub fn panel_mut(&mut self) -> &mut Panel {
+        &mut self.panel
+    }
+
     /// What a connection has been answered since the last time.
     pub fn answers_of(&mut self, number: usize) -> Vec<u8> {
         core::mem::take(&mut self.sessions[number].1.0)

@@ -26,6 +26,9 @@ pub(super) enum Command {
     Run {
         /// The script.
         file: PathBuf,
+        /// File that the controller keeps its settings in [default: nothing is kept].
+        #[arg(long, value_name = "FILE")]
+        settings: Option<PathBuf>,
         #[command(flatten)]
         simulation: Simulation,
     },
@@ -38,6 +41,10 @@ pub(super) enum Command {
     /// Record signals of a controller that runs already, every tick or less often: a table and a picture.
     #[cfg(unix)]
     Record(RecordRun),
+    /// Write settings of a controller that runs already into a readable file, or bring them back from one.
+    #[cfg(unix)]
+    #[command(subcommand)]
+    Settings(SettingsCommand),
     /// Run a script, or motion from a seed, on the image for the controller's chip, emulated, and compare it with the host to the bit.
     #[cfg(feature = "chip")]
     Chip(ChipRun),
@@ -119,6 +126,9 @@ pub(super) struct Serve {
     /// free port if that is taken].
     #[arg(long, value_name = "ADDRESS")]
     pub(super) web: Option<String>,
+    /// File that the controller keeps its settings in [default: nothing is kept].
+    #[arg(long, value_name = "FILE")]
+    pub(super) settings: Option<PathBuf>,
     #[command(flatten)]
     pub(super) stage: SimulatedStage,
 }
@@ -187,6 +197,38 @@ pub(super) struct RecordRun {
     /// No progress bar.
     #[arg(long, short)]
     pub(super) quiet: bool,
+}
+
+/// What to do with settings.
+#[cfg(unix)]
+#[derive(Subcommand, Clone, Debug)]
+pub(super) enum SettingsCommand {
+    /// Write all parameters that can be set, and all macros, into a file.
+    Export(SettingsFile),
+    /// Set the parameters of a file, record its macros, and have both kept. All must be at rest; some need the servo off.
+    Import(SettingsFile),
+}
+
+/// A file of settings, and the controller.
+#[cfg(unix)]
+#[derive(Args, Clone, Debug)]
+pub(super) struct SettingsFile {
+    /// The file.
+    pub(super) file: PathBuf,
+    /// Host and port that the controller is at.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        default_value = "127.0.0.1:50000",
+        conflicts_with = "port"
+    )]
+    pub(super) connect: String,
+    /// The serial line that the controller is at, or a pseudo-terminal.
+    #[arg(long, value_name = "DEVICE")]
+    pub(super) port: Option<PathBuf>,
+    /// Bits a second on the serial line.
+    #[arg(long, value_name = "N", default_value_t = 921_600)]
+    pub(super) baud: u32,
 }
 
 /// A run on the emulated chip.

@@ -34,6 +34,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
+    SettingsFile(#[from] crate::devices::SettingsFileError),
+    #[error(transparent)]
     Script(#[from] ScriptError),
     #[cfg(unix)]
     #[error(transparent)]
@@ -41,6 +43,9 @@ pub(super) enum CliError {
     #[cfg(unix)]
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
+    #[cfg(unix)]
+    #[error(transparent)]
+    Settings(#[from] crate::settings::SettingsError),
     #[cfg(unix)]
     #[error(transparent)]
     Page(#[from] crate::web::PageError),
@@ -69,6 +74,8 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) => FAILED,
+            #[cfg(unix)]
+            Self::Settings(error) if error.is_failure() => FAILED,
             #[cfg(unix)]
             Self::Record(error) if error.is_failure() => FAILED,
             #[cfg(feature = "chip")]

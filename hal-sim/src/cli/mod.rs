@@ -16,9 +16,9 @@ mod direct;
 mod error;
 #[cfg(feature = "chip")]
 mod exercise;
+mod faults;
 #[cfg(feature = "chip")]
 mod image_check;
-mod faults;
 mod inverse;
 mod map;
 #[cfg(unix)]
@@ -26,6 +26,8 @@ mod record;
 mod rows;
 #[cfg(unix)]
 mod serve;
+#[cfg(unix)]
+mod settings;
 mod simulate;
 mod units;
 #[cfg(unix)]
@@ -79,7 +81,11 @@ fn usage(error: &clap::Error) -> ExitCode {
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         None => simulate::demonstration(&arguments.simulation),
-        Some(Command::Run { file, simulation }) => simulate::script(&file, &simulation),
+        Some(Command::Run {
+            file,
+            settings,
+            simulation,
+        }) => simulate::script(&file, &simulation, settings.as_deref()),
         #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
         #[cfg(unix)]
@@ -97,6 +103,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
+        #[cfg(unix)]
+        Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

@@ -43,6 +43,7 @@ fn options(arguments: &Serve) -> ServeOptions {
         terminal: arguments.pty,
         parameters: controller_parameters(&options),
         stage: stage_parameters(&options),
+        settings: arguments.settings.clone(),
     }
 }
 

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use super::arguments::{Imperfection, SimulatedStage, Simulation};
 use super::error::CliError;
+use crate::devices::SettingsFlash;
 use crate::plant::Imperfections;
 use crate::report::make_folder;
 use crate::run::{self, RunOptions};
@@ -15,22 +16,32 @@ use crate::script::Script;
 const FOLDER: &str = "target/tripivot";
 
 pub(super) fn demonstration(arguments: &Simulation) -> Result<ExitCode, CliError> {
-    simulate("demonstration", arguments, &Script::demonstration()?)
+    simulate("demonstration", arguments, &Script::demonstration()?, None)
 }
 
-pub(super) fn script(file: &Path, arguments: &Simulation) -> Result<ExitCode, CliError> {
+pub(super) fn script(
+    file: &Path,
+    arguments: &Simulation,
+    settings: Option<&Path>,
+) -> Result<ExitCode, CliError> {
     let name = file
         .file_stem()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
-    simulate(&name, arguments, &Script::read(file)?)
+    simulate(&name, arguments, &Script::read(file)?, settings)
 }
 
 /// Runs, and prints what came of it. A fault is reported after the summary, which shows how it came to it.
-fn simulate(name: &str, arguments: &Simulation, script: &Script) -> Result<ExitCode, CliError> {
+fn simulate(
+    name: &str,
+    arguments: &Simulation,
+    script: &Script,
+    settings: Option<&Path>,
+) -> Result<ExitCode, CliError> {
+    let flash = settings.map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
     let options = options(name, arguments);
     make_folder(&options.out)?;
-    let outcome = run::run(script, &options);
+    let outcome = run::run_with(script, &options, flash);
     outcome.run.write(&options.out)?;
     let mut text = String::new();
     for (query, answer) in &outcome.answers {

@@ -4,6 +4,7 @@ pub mod analog;
 pub mod biss;
 mod bridge;
 mod encoder;
+mod flash;
 mod noise;
 mod stage;
 
@@ -12,5 +13,6 @@ pub use bridge::{
     PwmPin, SleepPin,
 };
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
+pub use flash::{FlashError, SettingsFileError, SettingsFlash};
 pub use noise::Noise;
 pub use stage::{Stage, StageParameters};

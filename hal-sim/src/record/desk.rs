@@ -14,7 +14,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 const DELAY_MS: f64 = 500.0;
 
 /// A controller that listens.
-pub(super) struct Desk {
+pub(crate) struct Desk {
     line: Line,
     place: String,
 }
@@ -29,7 +29,7 @@ impl Desk {
     }
 
     /// A line, and its answer if it has one.
-    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
+    pub fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
         let answer = self.line.ask(line).map_err(|error| RecordError::Broken {
             place: self.place.clone(),
             error,
@@ -43,6 +43,11 @@ impl Desk {
                 hint: hint(line, code),
             }),
         }
+    }
+
+    /// Who answers.
+    pub fn identity(&self) -> &str {
+        self.line.identity()
     }
 
     /// A line that is not to answer.
@@ -133,8 +138,15 @@ fn hint(line: &str, code: u16) -> &'static str {
     match (line.get(..3), code) {
         (Some("DRC"), 15 | 58) => ": HDR? of the controller lists sources and options",
         (Some("DRT"), 17) => ": this signal cannot trigger",
-        (Some("SPA"), 17) => ": more points than there is room for, or none after the trigger",
-        (Some("SPA"), 53) => ": the recorder can be set up while the stage is at rest",
+        (Some("SPA"), 17) => {
+            ": out of its range, or it does not go with the others (a record: more points than there is room\
+             for, or none after the trigger)"
+        }
+        (Some("WPA"), 53) => ": settings can be kept while the stage is at rest",
+        (Some("WPA"), 4001) => ": the flash does not take what is written",
+        (Some("SPA"), 89) => ": this one needs the servo off (SVO X 0)",
+        (Some("SPA"), 54) => ": this controller has no such parameter",
+        (Some("SPA"), 53) => ": parameters can be set while the stage is at rest",
         (_, 2) => ": this controller has no data recorder, or does not know the command",
         (_, 5) => ": the stage is not referenced (FRF), or its servo is off",
         (_, 1024) => ": a fault is latched (FLT? tells it, FLC acknowledges it)",

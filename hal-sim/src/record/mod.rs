@@ -7,7 +7,7 @@
 //! | `answer` | the answer of `DRR?` |
 
 mod answer;
-mod desk;
+pub(crate) mod desk;
 
 use std::fmt;
 use std::io;

@@ -29,10 +29,11 @@ mod server;
 mod terminal;
 
 use std::io;
+use std::path::PathBuf;
 
 use firmware::parameters::Parameters;
 
-use crate::devices::StageParameters;
+use crate::devices::{SettingsFileError, StageParameters};
 
 pub use notice::Notice;
 pub use pace::Pacing;
@@ -52,6 +53,8 @@ pub struct ServeOptions {
     pub parameters: Parameters,
     /// The simulated stage.
     pub stage: StageParameters,
+    /// The file that settings are kept in; none: they end with the server.
+    pub settings: Option<PathBuf>,
 }
 
 /// Why nothing can be served.
@@ -65,6 +68,9 @@ pub enum ServeError {
         /// What the system says.
         error: io::Error,
     },
+    /// Settings cannot be kept in the file.
+    #[error(transparent)]
+    Settings(#[from] SettingsFileError),
     /// There is no pseudo-terminal to be had.
     #[error("cannot open a pseudo-terminal: {0}")]
     Terminal(io::Error),

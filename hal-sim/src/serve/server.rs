@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use firmware::link::{Link, PanelLink, TickLink};
 use firmware::panel::Panel;
 use firmware::parameters::Parameters;
+use firmware::store::Keeper;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
@@ -18,8 +19,9 @@ use super::connection::Connection;
 use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
 use super::{Notice, ServeError, ServeOptions};
+use crate::devices::SettingsFlash;
 use crate::host::Host;
-use crate::run::IDENTITY;
+use crate::run::started;
 
 /// Clients at once.
 const CLIENTS: usize = 64;
@@ -35,14 +37,19 @@ pub struct Server {
     options: ServeOptions,
     listener: TcpListener,
     terminal: Option<Terminal>,
+    flash: SettingsFlash,
 }
 
 impl Server {
     /// Listens. Clients can connect from now on, and are answered once it [`run`](Self::run)s.
     ///
     /// # Errors
-    /// [`ServeError::Listen`] and [`ServeError::Terminal`].
+    /// [`ServeError::Settings`], [`ServeError::Listen`] and [`ServeError::Terminal`].
     pub fn bind(options: ServeOptions) -> Result<Self, ServeError> {
+        let flash = match &options.settings {
+            Some(path) => SettingsFlash::open(path)?,
+            None => SettingsFlash::in_memory(),
+        };
         let listener = listen(&options.listen).map_err(|error| ServeError::Listen {
             listen: options.listen.clone(),
             error,
@@ -55,6 +62,7 @@ impl Server {
             options,
             listener,
             terminal,
+            flash,
         })
     }
 
@@ -86,10 +94,15 @@ impl Server {
         // The client's end has to stay open as long as the controller's.
         let (terminal, _client) = self.terminal.map(|t| (t.controller, t.client)).unzip();
         let connections = terminal.map(|port| Connection::new("terminal".into(), port, true, now));
+        let mut keeper = Keeper::new(self.flash);
+        let (panel, fault) = started(parameters, &mut keeper);
+        let mut host = Host::new(&self.options.stage, panel.parameters());
+        host.restart(panel.parameters(), fault);
         let mut service = Service {
             parameters: parameters.clone(),
-            host: Host::new(&self.options.stage, parameters),
-            panel: Panel::new(parameters, IDENTITY),
+            host,
+            panel,
+            keeper,
             tick_link,
             panel_link,
             pace: Pace::new(now, rate_hz),
@@ -118,6 +131,7 @@ struct Service<'a> {
     parameters: Parameters,
     host: Host,
     panel: Panel,
+    keeper: Keeper<SettingsFlash>,
     tick_link: TickLink<'a>,
     panel_link: PanelLink<'a>,
     pace: Pace,
@@ -150,8 +164,9 @@ impl Service<'_> {
 
     /// What `RBT` asks for: the controller starts again, its clients stay connected.
     fn restart(&mut self) {
-        self.host.restart(&self.parameters);
-        self.panel = Panel::new(&self.parameters, IDENTITY);
+        let (panel, fault) = started(&self.parameters, &mut self.keeper);
+        self.panel = panel;
+        self.host.restart(self.panel.parameters(), fault);
         self.tick_link.clear();
         self.panel_link.clear();
         for connection in &mut self.connections {
@@ -166,6 +181,7 @@ impl Service<'_> {
         for connection in &mut self.connections {
             connection.service(&mut self.panel, &mut self.panel_link, self.say);
         }
+        self.keeper.carry_on(&mut self.panel);
     }
 
     fn tell_fault(&mut self) {

@@ -4,10 +4,11 @@ use crate::{
     analog::Analog,
     clocks, dma,
     encoders::Encoders,
+    flash::SettingsFlash,
     latch::LatchTimer,
     pwm::{self, PwmChannel, PwmTimer},
     serial::{self, Receiver, Transmitter},
-    watchdog::{self, ResetCause},
+    watchdog::ResetCause,
 };
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -40,6 +41,10 @@ pub struct Board {
     pub receiver: Receiver,
     /// Answers of the command interface.
     pub transmitter: Transmitter,
+    /// Where settings are kept.
+    pub flash: SettingsFlash,
+    /// The watchdog, which does not run yet.
+    pub watchdog: pac::IWDG,
     /// Why the chip started.
     pub reset_cause: ResetCause,
 }
@@ -97,7 +102,6 @@ impl Board {
     /// Brings the board up. The timers stand still until [`LatchTimer::start_with`].
     pub fn new(mut peripherals: pac::Peripherals) -> Self {
         let reset_cause = ResetCause::take(&mut peripherals.RCC);
-        watchdog::start(peripherals.IWDG);
         let mut rcc = clocks::start(peripherals.RCC);
         let streams = dma::split(peripherals.DMA1, peripherals.DMA2, &mut rcc);
 
@@ -163,6 +167,8 @@ impl Board {
             },
             receiver,
             transmitter,
+            flash: SettingsFlash::new(peripherals.FLASH),
+            watchdog: peripherals.IWDG,
             reset_cause,
         }
     }

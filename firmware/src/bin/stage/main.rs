@@ -36,7 +36,7 @@
 //! # Priorities
 //!
 //! Latch and tick share the highest priority, 0 in the hardware, which no BASEPRI mask holds back; they never meet. All
-//! the rest, command interface, watchdog and log, is the idle task. There is no third. Between the two sides are
+//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides are
 //! lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a full
 //! buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
 #![no_std]
@@ -47,6 +47,7 @@ mod board;
 mod clocks;
 mod dma;
 mod encoders;
+mod flash;
 mod latch;
 mod panic;
 mod pwm;
@@ -63,6 +64,7 @@ use defmt_rtt as _;
 mod app {
     use crate::{
         board::{Board, Loop},
+        flash::SettingsFlash,
         restart,
         serial::{Receiver, Transmitter},
         stopwatch::Stopwatch,
@@ -77,6 +79,7 @@ mod app {
         link::{Link, PanelLink, TickLink},
         panel::{Identity, Panel, Session},
         parameters::Parameters,
+        store::Keeper,
     };
 
     const IDENTITY: Identity = Identity {
@@ -100,6 +103,7 @@ mod app {
         tick_link: TickLink<'static>,
         panel: &'static mut Panel,
         session: &'static mut Session,
+        keeper: Keeper<SettingsFlash>,
         panel_link: PanelLink<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
@@ -117,6 +121,8 @@ mod app {
             mut control,
             receiver,
             transmitter,
+            flash,
+            watchdog,
             reset_cause,
         } = Board::new(context.device);
         TRACE.set_reset_cause(reset_cause);
@@ -130,18 +136,26 @@ mod app {
         if let Some(cause) = reset_cause.unasked() {
             panel.note_start(cause);
         }
+        // Before anything can move.
+        let mut keeper = Keeper::new(flash);
+        let state = match keeper.restore(panel) {
+            None => State::new(),
+            Some(problem) => State::with_fault(problem),
+        };
         let local = Local {
-            config: Config::new(&PARAMETERS),
-            state: context.local.state_place.write(State::new()),
+            config: Config::new(panel.parameters()),
+            state: context.local.state_place.write(state),
             tracer: Tracer::default(),
             stopwatch: Stopwatch::new(&mut core.DCB, &mut core.DWT),
             tick_link,
             panel,
             session: context.local.session_place.write(Session::new()),
+            keeper,
             panel_link,
             receiver,
             transmitter,
         };
+        watchdog::start(watchdog);
         // Last: everything that takes time is done, the first tick comes 50 us from here.
         control.latch_timer.start_with(&mut control.pwm);
         (Shared { control }, local)
@@ -187,8 +201,8 @@ mod app {
         trace::mark_end_of_tick();
     }
 
-    /// The command interface and the watchdog.
-    #[idle(local = [panel, session, panel_link, receiver, transmitter])]
+    /// The command interface, the settings and the watchdog.
+    #[idle(local = [panel, session, keeper, panel_link, receiver, transmitter])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
         let mut received = 0u32;
@@ -204,6 +218,7 @@ mod app {
                 .service(local.session, local.panel_link, local.transmitter);
             TRACE.note_service(received, local.panel.tick() as u32);
             local.transmitter.send();
+            local.keeper.carry_on(local.panel);
             if local.panel.wants_restart() {
                 restart::now();
             }

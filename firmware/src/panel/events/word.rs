@@ -51,6 +51,10 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
             (11, [0; 2], [0, low, high])
         }
         Event::Warning(pivot, warns) => (12, [*pivot, u8::from(*warns)], [0; 3]),
+        Event::Kept => bare(13),
+        Event::NotKept(number) => (14, [0; 2], [u32::from(*number), 0, 0]),
+        Event::Recalled => bare(15),
+        Event::Unknown(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
     }
 }
 
@@ -80,6 +84,10 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         10 => Event::Refused(a),
         11 => Event::Silent(number),
         12 => Event::Warning(first, second != 0),
+        13 => Event::Kept,
+        14 => Event::NotKept(a as u16),
+        15 => Event::Recalled,
+        16 => Event::Unknown(a as u16),
         _ => return None,
     };
     Some((tick, event))

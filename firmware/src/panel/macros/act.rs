@@ -37,6 +37,27 @@ impl Macros {
         }
     }
 
+    /// All macros, with their lines.
+    pub fn all(&self) -> impl Iterator<Item = (Name, &[u8])> {
+        self.store.all()
+    }
+
+    /// Adds to the text of a macro that was kept; false when it can be none, or there is no room.
+    pub fn add_text(&mut self, text: &[u8]) -> bool {
+        let printable = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
+        text.iter().all(printable) && self.store.extend(text)
+    }
+
+    /// The text that was added is the macro of this name; false when there are too many.
+    pub fn end_text(&mut self, name: Name) -> bool {
+        self.store.find(&name).is_none() && self.store.keep(name).is_ok()
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.store.clear();
+    }
+
     fn place(&self, name: &Name) -> Result<usize, ErrorCode> {
         self.store.find(name).ok_or(ErrorCode::MacroNotFound)
     }
@@ -93,8 +114,11 @@ impl Panel {
             },
             _ => return self.tell_macros(request, out),
         };
-        if let Err(code) = result {
-            session.error = code;
+        let changes = matches!(request, MacroRequest::End | MacroRequest::Delete(_));
+        match result {
+            Ok(()) if changes => self.keeping.note_macros(),
+            Ok(()) => {}
+            Err(code) => session.error = code,
         }
         Ok(())
     }

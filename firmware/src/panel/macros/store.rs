@@ -65,6 +65,17 @@ impl Store {
         self.text.extend_from_slice(line).is_ok() && self.text.push(b'\n').is_ok()
     }
 
+    /// Adds text as it was kept; false, and nothing is added, when there is no room.
+    pub fn extend(&mut self, text: &[u8]) -> bool {
+        self.text.extend_from_slice(text).is_ok()
+    }
+
+    /// Names and texts of all macros.
+    pub fn all(&self) -> impl Iterator<Item = (Name, &[u8])> {
+        let places = (0..MACROS).filter(|&place| self.stretch(place).is_some());
+        places.map(|place| (self.name(place), self.text(place)))
+    }
+
     /// Keeps what was recorded under a name; a macro that had it is gone. With an error nothing is kept of it.
     pub fn keep(&mut self, name: Name) -> Result<(), ErrorCode> {
         let old = self.find(&name);
@@ -80,6 +91,12 @@ impl Store {
             length: (self.text.len() - start) as u16,
         });
         Ok(())
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.text.clear();
+        self.macros = [None; MACROS];
     }
 
     /// Forgets what was recorded.

@@ -4,7 +4,7 @@
 //! computes with is derived from them here and handed over as one command, which the tick takes only at rest. Nothing that
 //! depends on them is decided before the tick has said that it did.
 
-use super::{Parameter, Settings, When};
+use super::{PARAMETERS, Parameter, Settings, When};
 use crate::link::PanelLink;
 use crate::motion::Limits;
 use crate::panel::Panel;
@@ -30,9 +30,25 @@ impl Panel {
             self.permit(parameter, session.level)?;
             parameter.put(*value, &mut wanted)?;
         }
+        if session.level == 0 && !self.is_within_rating(&wanted) {
+            return Err(ErrorCode::OutOfRange);
+        }
+        self.put_in_force(wanted, link)?;
+        for (address, value) in settings.iter().flatten() {
+            self.events
+                .add(self.stage.tick(), Event::Set(address.id, *value));
+        }
+        Ok(())
+    }
+
+    /// Goes over to other parameters, or leaves everything as it is.
+    pub(in crate::panel) fn put_in_force(
+        &mut self,
+        wanted: Parameters,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
         let most_rows = self.desk.most_rows(link.recorder.capacity());
-        let fits = wanted.recorder.points <= most_rows;
-        if !fits || !wanted.are_sound() || (session.level == 0 && !self.is_within_rating(&wanted)) {
+        if wanted.recorder.points > most_rows || !wanted.are_sound() {
             return Err(ErrorCode::OutOfRange);
         }
         self.stage.configure(&self.parameters, &wanted, link)?;
@@ -40,12 +56,17 @@ impl Panel {
             self.desk.arm_again(&link.recorder);
         }
         self.rated = highest(&self.rated, &wanted.limits);
-        for (address, value) in settings.iter().flatten() {
-            self.events
-                .add(self.stage.tick(), Event::Set(address.id, *value));
-        }
         self.parameters_before = core::mem::replace(&mut self.parameters, wanted);
         Ok(())
+    }
+
+    /// Whether this may become of the parameters now: what was kept may be in force again at any command level.
+    pub(in crate::panel) fn permit_change(&self, wanted: &Parameters) -> Result<(), ErrorCode> {
+        let changed = |p: &&Parameter| p.number(&self.parameters) != p.number(wanted);
+        let settable = PARAMETERS.iter().filter(|p| !p.is_read_only());
+        settable
+            .filter(changed)
+            .try_for_each(|parameter| self.permit(parameter, parameter.level))
     }
 
     fn permit(&self, parameter: &Parameter, level: u8) -> Result<(), ErrorCode> {

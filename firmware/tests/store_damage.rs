@@ -1,0 +1,205 @@
+//! What is not settings is never taken for them: damage is found and told, another firmware's settings are not misread.
+
+mod flash_bench;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use firmware::fault::FaultKind;
+use firmware::parameters::Parameters;
+use firmware::store::Keeper;
+use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
+
+const SECTOR: usize = 1024;
+const SPEED: u32 = 0x5450_0100;
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// Some settings, kept one after the other.
+fn used() -> KeptBench<SECTOR> {
+    let mut bench = KeptBench::start(Flash::<SECTOR>::new());
+    for speed in [150, 140, 130, 120, 110] {
+        let lines = format!("SPA 1 {SPEED} {speed}\nWPA 100");
+        assert_eq!(bench.error_after(&lines), "0");
+        assert_eq!(bench.error_after("MAC BEG A\nMOV X 1\nMAC END"), "0");
+    }
+    bench
+}
+
+fn restored(flash: &Flash<SECTOR>) -> (Option<FaultKind>, Kept) {
+    let mut panel = fresh();
+    let problem = Keeper::new(flash.powered()).restore(&mut panel);
+    let found = kept(&panel, panel.parameters());
+    (problem, found)
+}
+
+fn nothing_kept() -> Kept {
+    kept(&fresh(), &Parameters::REFERENCE)
+}
+
+#[test]
+fn a_flipped_bit_is_told_or_does_no_harm() {
+    let flash = used().keeper.flash().powered();
+    let (problem, whole) = restored(&flash);
+    assert_eq!(problem, None);
+    let (mut told, mut harmless) = (0, 0);
+    for bit in 0..flash.bytes.len() * 8 {
+        let mut flash = flash.powered();
+        flash.bytes[bit / 8] ^= 1 << (bit % 8);
+        match restored(&flash) {
+            (None, found) => {
+                assert_eq!(found, whole, "bit {bit}");
+                harmless += 1;
+            }
+            (problem, found) => {
+                assert_eq!(problem, Some(FaultKind::SettingsDamaged), "bit {bit}");
+                assert_eq!(found, nothing_kept(), "bit {bit}");
+                told += 1;
+            }
+        }
+    }
+    // The newest record's image and CRC, and nothing else.
+    assert!(told > 8 * 20 && told < 8 * 60, "{told} of {harmless}");
+}
+
+/// A record as the store's head describes it, written by other hands.
+fn record(generation: u32, image: &[u8]) -> Vec<u8> {
+    let words = [0x3153_5054, generation, image.len() as u32];
+    let mut head: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    head.extend(CRC.checksum(&head).to_le_bytes());
+    let sealed: Vec<u8> = head.iter().chain(image).copied().collect();
+    let mut record = [head.clone(), head, image.to_vec()].concat();
+    record.resize(record.len().next_multiple_of(4), 0);
+    record.extend(CRC.checksum(&sealed).to_le_bytes());
+    record.extend([0; 4]);
+    record
+}
+
+fn image(version: u16, parameters: &[(u32, f64)]) -> Vec<u8> {
+    let mut image = version.to_le_bytes().to_vec();
+    image.extend((parameters.len() as u16).to_le_bytes());
+    for (id, value) in parameters {
+        image.extend(id.to_le_bytes());
+        image.extend(value.to_le_bytes());
+    }
+    image.push(0);
+    image
+}
+
+fn flash_with(record: &[u8]) -> Flash<SECTOR> {
+    let mut flash = Flash::new();
+    flash.bytes[..record.len()].copy_from_slice(record);
+    flash
+}
+
+fn value(found: &Kept, id: u32) -> f64 {
+    let parameter = found.parameters.iter().find(|(other, _)| *other == id);
+    parameter.expect("a parameter").1
+}
+
+#[test]
+fn the_format_is_the_one_described() {
+    let flash = flash_with(&record(7, &image(1, &[(SPEED, 123.5)])));
+    let (problem, found) = restored(&flash);
+    assert_eq!(problem, None);
+    assert_eq!(value(&found, SPEED), 123.5);
+}
+
+#[test]
+fn settings_of_a_newer_firmware_are_refused() {
+    let flash = flash_with(&record(7, &image(2, &[(SPEED, 123.5)])));
+    assert_eq!(
+        restored(&flash),
+        (Some(FaultKind::SettingsNewer), nothing_kept())
+    );
+}
+
+#[test]
+fn a_parameter_that_is_unknown_here_is_ignored_and_told() {
+    let image = image(1, &[(0x5450_FFFF, 1.0), (SPEED, 123.5)]);
+    let mut bench = KeptBench::start(flash_with(&record(7, &image)));
+    assert_eq!(bench.bench.value(&format!("SPA? 1 {SPEED}")), 123.5);
+    let events = bench.say("EVT?\n");
+    assert!(
+        events.contains("1 kept parameters are unknown here"),
+        "{events}"
+    );
+}
+
+#[test]
+fn what_cannot_be_in_force_is_damage() {
+    // Out of its range; not a number; two that do not go together; an image that goes on; one that ends early.
+    let mut longer = image(1, &[(SPEED, 123.5)]);
+    longer.push(0);
+    let mut shorter = image(1, &[(SPEED, 123.5)]);
+    shorter.pop();
+    let images = [
+        image(1, &[(SPEED, 1e9)]),
+        image(1, &[(SPEED, f64::NAN)]),
+        image(1, &[(0x1600_0201, 100.0), (0x5450_0900, 200.0)]),
+        longer,
+        shorter,
+        Vec::new(),
+    ];
+    for image in images {
+        let flash = flash_with(&record(7, &image));
+        assert_eq!(
+            restored(&flash),
+            (Some(FaultKind::SettingsDamaged), nothing_kept()),
+            "{image:?}"
+        );
+    }
+}
+
+#[test]
+fn any_content_at_all_leaves_parameters_that_go_together() {
+    let mut random = Random(5);
+    let seed = used().keeper.flash().powered();
+    for case in 0..3_000 {
+        let mut flash = seed.powered();
+        match case % 3 {
+            // Noise, noise that is short, and settings with a stretch of noise.
+            0 => flash
+                .bytes
+                .iter_mut()
+                .for_each(|byte| *byte = random.bits() as u8),
+            1 => {
+                flash = Flash::new();
+                let length = 1 + random.below(200);
+                let at = random.below(flash.bytes.len() - length);
+                for byte in &mut flash.bytes[at..at + length] {
+                    *byte = random.bits() as u8;
+                }
+            }
+            _ => {
+                let at = random.below(flash.bytes.len() - 64);
+                for byte in &mut flash.bytes[at..at + 1 + random.below(63)] {
+                    *byte = random.bits() as u8;
+                }
+            }
+        }
+        let mut panel = fresh();
+        let mut keeper = Keeper::new(flash);
+        let problem = keeper.restore(&mut panel);
+        assert!(panel.parameters().are_sound(), "case {case}");
+        if problem.is_some() {
+            assert_eq!(kept(&panel, panel.parameters()), nothing_kept());
+        }
+        // Whatever was there, settings can be kept from now on.
+        assert_eq!(keeper.write(&panel), Ok(()), "case {case}");
+        assert_eq!(keeper.restore(&mut fresh()), None, "case {case}");
+    }
+}
+
+#[test]
+fn a_sector_that_is_worn_out_is_passed_over() {
+    for worn in 0..flash_bench::SECTORS {
+        let mut flash = Flash::<SECTOR>::new();
+        flash.worn = Some(worn);
+        let mut bench = KeptBench::start(flash);
+        for speed in 100..180 {
+            let lines = format!("SPA 1 {SPEED} {speed}\nWPA 100");
+            assert_eq!(bench.error_after(&lines), "0", "{speed}, sector {worn}");
+            let (problem, found) = restored(bench.keeper.flash());
+            assert_eq!(problem, None);
+            assert_eq!(value(&found, SPEED), f64::from(speed));
+        }
+    }
+}
