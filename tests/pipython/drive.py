@@ -35,6 +35,7 @@ class Drive(Programs):
 
     SERIAL = "SIM"
     KEEPS_TIME = True
+    KEEPS_SETTINGS = True
 
     @classmethod
     def open(cls):
@@ -213,6 +214,18 @@ class Drive(Programs):
         stage.SPA(1, 0x54500100, 200)
         self.assert_refused(gcserror.E64_PI_CNTR_READ_ONLY_PARAMETER, stage.SPA, 1, 0x0E000200, 1)
         self.assertGreater(len(stage.qSPA()), 1)
+
+    def test_settings_are_kept_and_come_back(self):
+        stage = self.stage
+        self.assert_refused(gcserror.E56_PI_CNTR_INVALID_PASSWORD, stage.WPA, "101")
+        if not self.KEEPS_SETTINGS:
+            self.assert_refused(4001, stage.WPA, "100")
+            return
+        stage.WPA("100")
+        stage.SPA(1, 0x54500100, 150)
+        self.assertEqual(stage.qSPA(1, 0x54500100)[1][0x54500100], 150)
+        stage.RPA(1, 0x54500100)
+        self.assertEqual(stage.qSPA(1, 0x54500100)[1][0x54500100], 200)
 
     def test_work_and_tool_frames(self):
         stage = self.stage
@@ -416,6 +429,8 @@ class OverChip(Drive, unittest.TestCase):
 
     SERIAL = "0"
     KEEPS_TIME = False
+    # The emulator has no model of what is in flash.
+    KEEPS_SETTINGS = False
 
     @classmethod
     def open(cls):

@@ -8,6 +8,8 @@ use firmware::link::{Command, Link, Mode, PanelLink, QueueFull, TickLink};
 use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::{Record, Sample};
+use firmware::store::Keeper;
+use hal_sim::devices::SettingsFlash;
 use hal_sim::devices::biss::{Preamble, encode};
 use hal_sim::run::IDENTITY;
 use kinematics::Angle;
@@ -56,6 +58,8 @@ pub struct Ideal {
     state: State,
     /// All that the connections share.
     pub panel: Panel,
+    /// Keeps its settings, in memory.
+    pub keeper: Keeper<SettingsFlash>,
     /// The connections.
     pub connections: Vec<Connection>,
     /// What is wrong with the hardware.
@@ -80,10 +84,14 @@ impl Ideal {
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
         let counts = [0, 1, 2].map(|i| config.encoders[i].counts_at(third(i)));
+        let mut panel = Panel::new(&parameters, IDENTITY);
+        let mut keeper = Keeper::new(SettingsFlash::in_memory());
+        keeper.restore(&mut panel);
         Self {
             config,
             state: State::new(),
-            panel: Panel::new(&parameters, IDENTITY),
+            panel,
+            keeper,
             connections: (0..connections).map(|_| Connection::default()).collect(),
             trouble: Trouble::default(),
             outputs: Outputs::default(),
@@ -129,6 +137,7 @@ impl Ideal {
             &mut self.panel_link,
             &mut connection.output,
         );
+        self.keeper.carry_on(&mut self.panel);
         if self.panel.wants_restart() {
             self.restart();
         }
@@ -158,10 +167,10 @@ impl Ideal {
 
     /// What `RBT` asks for.
     fn restart(&mut self) {
-        let parameters = Parameters::REFERENCE;
-        self.config = Config::new(&parameters);
-        self.state = State::new();
-        self.panel = Panel::new(&parameters, IDENTITY);
+        self.panel = Panel::new(&Parameters::REFERENCE, IDENTITY);
+        self.state =
+            (self.keeper.restore(&mut self.panel)).map_or_else(State::new, State::with_fault);
+        self.config = Config::new(self.panel.parameters());
         self.tick_link.clear();
         self.panel_link.clear();
         for connection in &mut self.connections {

@@ -7,3 +7,11 @@ fn nothing_is_found_in_the_first_cases() {
         tests::fuzz::run(seed);
     }
 }
+
+#[test]
+fn no_content_of_the_flash_is_taken_for_what_it_is_not() {
+    for seed in 0..1_000 {
+        println!("seed {seed}");
+        tests::fuzz::run_settings(seed);
+    }
+}

@@ -55,6 +55,22 @@ impl SettingsFlash {
         }
     }
 
+    /// With these bytes in the beginning, and gone when it is dropped.
+    #[must_use]
+    pub fn holding(bytes: &[u8]) -> Self {
+        let mut flash = Self::in_memory();
+        for (kept, byte) in flash.bytes.iter_mut().zip(bytes) {
+            *kept = *byte;
+        }
+        flash
+    }
+
+    /// What it holds.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// With what a file holds; makes it, erased, where there is none. It is locked against others until dropped.
     ///
     /// # Errors

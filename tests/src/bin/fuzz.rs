@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     let mut cases = 0;
     while cases < options.cases && Instant::now() < end {
         let seed = options.seed.wrapping_add(cases);
-        if std::panic::catch_unwind(|| tests::fuzz::run(seed)).is_err() {
+        if std::panic::catch_unwind(|| tests::fuzz::run_all(seed)).is_err() {
             eprintln!("seed {seed}: see it again with --seed {seed} --cases 1");
             return ExitCode::FAILURE;
         }

@@ -9,10 +9,12 @@
 //! A case is its seed: the same one does the same everywhere.
 
 mod random;
+mod settings;
 mod watch;
 mod words;
 
 pub use random::Random;
+pub use settings::run as run_settings;
 
 use crate::ideal::{Connection, Ideal, Trouble};
 use watch::Watch;
@@ -34,6 +36,15 @@ struct Case {
     stage: Ideal,
     watch: Watch,
     names: Vec<String>,
+}
+
+/// Carries out a case of each kind.
+///
+/// # Panics
+/// When something did not hold; the message says what.
+pub fn run_all(seed: u64) {
+    run_settings(seed);
+    run(seed);
 }
 
 /// Carries out a case.

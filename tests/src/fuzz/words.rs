@@ -54,6 +54,10 @@ const LINES: &[&str] = &[
     "TRA? X {n} W {n}",
     "VMO? X {x} Y {x}",
     "LST",
+    "WPA 100",
+    "WPA 100 1 {p}",
+    "RPA",
+    "RPA 1 {p}",
     "RBT",
 ];
 

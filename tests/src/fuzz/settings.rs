@@ -1,0 +1,131 @@
+//! A fuzz target: a controller that starts with any content of its flash, above all with what is nearly settings.
+//!
+//! Nothing panics, parameters are sound and each in its range, macros can be printed; what cannot be used leaves the
+//! controller's own settings; and settings can be kept afterwards, whatever was there.
+
+use super::Random;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use firmware::fault::FaultKind;
+use firmware::panel::{PARAMETERS, Panel};
+use firmware::parameters::Parameters;
+use firmware::store::Keeper;
+use hal_sim::devices::SettingsFlash;
+use hal_sim::run::IDENTITY;
+
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+const SECTOR: usize = 16 << 10;
+
+/// Carries out a case.
+///
+/// # Panics
+/// When something did not hold; the message says what.
+pub fn run(seed: u64) {
+    let mut random = Random::new(seed);
+    let mut content = Vec::new();
+    for _ in 0..=random.below(4) {
+        let image = image(&mut random);
+        content.extend(record(&mut random, &image));
+        if random.once_in(4) {
+            content.resize(content.len().next_multiple_of(SECTOR), 0xFF);
+        }
+    }
+    for _ in 0..random.below(4) {
+        let at = random.below(content.len());
+        content[at] = random.bits() as u8;
+    }
+    let mut keeper = Keeper::new(SettingsFlash::holding(&content));
+    let (panel, problem) = started(&mut keeper);
+    check(&panel, problem);
+    assert_eq!(keeper.write(&panel), Ok(()));
+    let (again, problem) = started(&mut keeper);
+    assert_eq!(problem, None);
+    assert_eq!(again.parameters(), panel.parameters_to_keep());
+    assert!(again.macros().eq(panel.macros()));
+}
+
+fn started(keeper: &mut Keeper<SettingsFlash>) -> (Panel, Option<FaultKind>) {
+    let mut panel = Panel::new(&Parameters::REFERENCE, IDENTITY);
+    let problem = keeper.restore(&mut panel);
+    (panel, problem)
+}
+
+fn check(panel: &Panel, problem: Option<FaultKind>) {
+    let parameters = panel.parameters();
+    assert!(parameters.are_sound());
+    for parameter in PARAMETERS.iter().filter(|p| !p.is_read_only()) {
+        let value = parameter.number(parameters).expect("a number");
+        // Units are changed on the way, so an end of a range may be rounded past.
+        let [lowest, highest] = parameter.range;
+        let slack = 1e-9 * (highest - lowest);
+        let within = (lowest - slack..=highest + slack).contains(&value);
+        assert!(within, "{:x}: {value}", parameter.id);
+    }
+    for (_, text) in panel.macros() {
+        assert!(text.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\n')));
+    }
+    if problem.is_some() {
+        assert_eq!(*parameters, Parameters::REFERENCE);
+        assert_eq!(panel.macros().count(), 0);
+    }
+}
+
+/// An image in an envelope that is whole, as a rule.
+fn record(random: &mut Random, image: &[u8]) -> Vec<u8> {
+    let generation = match random.below(8) {
+        0 => random.bits() as u32,
+        _ => random.below(10) as u32,
+    };
+    let words = [0x3153_5054, generation, image.len() as u32];
+    let mut head: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    head.extend(CRC.checksum(&head).to_le_bytes());
+    let sealed = [&head, image].concat();
+    let mut record = [&head, &head, image].concat();
+    record.resize(record.len().next_multiple_of(4), 0);
+    record.extend(CRC.checksum(&sealed).to_le_bytes());
+    record.extend(if random.once_in(8) { [0xFF; 4] } else { [0; 4] });
+    record
+}
+
+fn image(random: &mut Random) -> Vec<u8> {
+    let version = if random.once_in(10) {
+        random.bits() as u16
+    } else {
+        1
+    };
+    let mut image = version.to_le_bytes().to_vec();
+    let count = random.below(12);
+    image.extend((count as u16).to_le_bytes());
+    for _ in 0..count {
+        let parameter = random.pick(PARAMETERS);
+        let id = if random.once_in(10) {
+            random.bits() as u32
+        } else {
+            parameter.id
+        };
+        let [lowest, highest] = parameter.range;
+        let value = match random.below(40) {
+            0 => f64::from_bits(random.bits()),
+            1 => highest * 2.0,
+            2 => lowest,
+            3 => highest,
+            _ => parameter.number(&Parameters::REFERENCE).unwrap_or_default(),
+        };
+        image.extend(id.to_le_bytes());
+        image.extend(value.to_le_bytes());
+    }
+    let count = random.below(20);
+    image.push(count as u8);
+    for _ in 0..count {
+        let name = format!("macro_{}", random.below(40));
+        let text = "MOV X 1\n".repeat(random.below(100));
+        image.push(name.len() as u8);
+        image.extend(name.as_bytes());
+        image.extend((text.len() as u16).to_le_bytes());
+        image.extend(text.as_bytes());
+    }
+    for _ in 0..random.below(2) {
+        let at = random.below(image.len());
+        image[at] = random.bits() as u8;
+    }
+    image
+}
