@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use firmware::blackbox::BlackBox;
 use firmware::fault::Fault;
 use firmware::link::{Link, Mode};
 use firmware::panel::{Identity, Panel, Session};
@@ -145,7 +146,8 @@ fn simulate(
 ) -> RunOutcome {
     let mut host = Host::new(stage, parameters);
     let mut link = Link::new();
-    let (mut tick_link, mut panel_link) = link.split();
+    let black_box = Box::new(BlackBox::new());
+    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
     let mut panel = Panel::new(parameters, IDENTITY);
     let mut session = Session::new();
     let mut client = Client::new(script);
