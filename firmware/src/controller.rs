@@ -192,7 +192,10 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
         motion.advance_slower(&config.slowdown);
         return motion.slowed_setpoint(&config.scale);
     }
-    motion.advance();
+    // With the servo off there is nothing under way.
+    if matches!(state.mode, Mode::Holding | Mode::Moving) {
+        motion.advance();
+    }
     motion.setpoint(&config.scale)
 }
 

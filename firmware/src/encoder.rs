@@ -65,18 +65,22 @@ pub struct Encoder {
     reason: Option<FaultKind>,
     /// The last reading that decoded.
     reading: u32,
-    /// Frames since then that have repeated it.
+    /// Frames since then that have repeated it, and were believed.
     same: u16,
 }
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
 const READY: u8 = 4;
+/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s. To stop
+/// so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
+const STILL: u32 = 16 << ALIGN;
 
 impl Encoder {
     /// Takes the frame of this tick.
     ///
     /// A frame is believed when it decodes and its step differs from the last one's by no more than the plausible
-    /// acceleration, times the square of the ticks since the last good frame. A frame that is not believed is never used:
+    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while the pivot
+    /// turns. A frame that is not believed is never used:
     /// the angle goes on by the last step, up to [`EncoderConfig`]'s count of them in a row.
     #[inline]
     pub fn take(&mut self, config: &EncoderConfig, frame: &RawFrame) {
@@ -89,12 +93,16 @@ impl Encoder {
                 } else {
                     fraction
                 };
-                self.same = if fraction == self.reading {
-                    self.same.saturating_add(1)
+                if fraction == self.reading {
+                    if self.step.unsigned_abs() > STILL {
+                        self.miss(config, FaultKind::EncoderFrozen);
+                        return;
+                    }
+                    self.same = self.same.saturating_add(1);
                 } else {
-                    0
-                };
-                self.reading = fraction;
+                    self.same = 0;
+                    self.reading = fraction;
+                }
                 self.take_fraction(config, fraction);
             }
             Err(error) => self.miss(
@@ -180,7 +188,7 @@ impl Encoder {
         self.same = 0;
     }
 
-    /// How often in a row it has repeated one reading to the bit.
+    /// How often in a row it has repeated one reading to the bit, and was believed: it may be at rest.
     #[inline]
     pub fn same_readings(&self) -> u16 {
         self.same

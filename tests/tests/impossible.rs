@@ -35,6 +35,17 @@ fn lenient() -> Parameters {
     }
 }
 
+/// The reference, but for the margin of the disk.
+fn with_disk_margin(disk_margin_mm: f64) -> Parameters {
+    Parameters {
+        supervision: Supervision {
+            disk_margin_mm,
+            ..Parameters::REFERENCE.supervision
+        },
+        ..Parameters::REFERENCE
+    }
+}
+
 /// A line along x to `end_mm`, further than any planner would go.
 fn line(parameters: &Parameters, from: [i64; 3], end_mm: f64) -> Plan {
     let half = [(end_mm / 200.0 * 4_294_967_296.0) as i64, 0, 0];
@@ -54,9 +65,9 @@ fn line(parameters: &Parameters, from: [i64; 3], end_mm: f64) -> Plan {
     plan
 }
 
-fn fault_of_a_line_to(end_mm: f64) -> Option<FaultKind> {
-    let parameters = lenient();
-    let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
+fn fault_of_a_line_to(end_mm: f64, theta_deg: f64, parameters: &Parameters) -> Option<FaultKind> {
+    let mut host = Host::new(&StageParameters::REFERENCE, parameters);
+    (host.stage).set_pose_at_rest([0.0, 0.0, theta_deg.to_radians()]);
     let mut link = Link::new();
     let (mut tick_link, mut commands) = link.split();
     for _ in 0..10 {
@@ -71,7 +82,7 @@ fn fault_of_a_line_to(end_mm: f64) -> Option<FaultKind> {
     let at = at.expect("a snapshot");
     assert_eq!(at.mode, Mode::Holding);
     commands
-        .send(Command::Move(line(&parameters, at.setpoint, end_mm)))
+        .send(Command::Move(line(parameters, at.setpoint, end_mm)))
         .expect("room");
     for _ in 0..20_000 {
         host.tick(&mut tick_link, &mut ());
@@ -81,12 +92,48 @@ fn fault_of_a_line_to(end_mm: f64) -> Option<FaultKind> {
 
 #[test]
 fn a_setpoint_beyond_the_track_is_a_fault() {
-    assert_eq!(
-        fault_of_a_line_to(130.0),
-        Some(FaultKind::ImpossibleSetpoint)
-    );
+    let fault = fault_of_a_line_to(130.0, 0.0, &lenient());
+    assert_eq!(fault, Some(FaultKind::ImpossibleSetpoint));
     // The twin ends inside the mechanics.
-    assert_eq!(fault_of_a_line_to(82.0), None);
+    assert_eq!(fault_of_a_line_to(82.0, 0.0, &lenient()), None);
+}
+
+#[test]
+fn a_setpoint_out_of_the_disk_is_a_fault() {
+    let parameters = Parameters::REFERENCE;
+    let fault = |end_mm| fault_of_a_line_to(end_mm, 0.0, &parameters);
+    assert_eq!(fault(80.6), Some(FaultKind::WorkspaceLeft));
+    assert_eq!(fault(80.4), None);
+}
+
+#[test]
+fn a_setpoint_out_of_a_guide_is_a_fault() {
+    // Guide 3 points along -x: it is the first to reach its end.
+    let fault = |end_mm| fault_of_a_line_to(end_mm, -30.0, &with_disk_margin(3.0));
+    assert_eq!(fault(80.6), Some(FaultKind::GuideRange));
+    assert_eq!(fault(80.4), None);
+}
+
+/// A gain that no float holds: the servo's sums are no numbers from the first tick on.
+#[test]
+fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
+    for (velocity_v_s_rad, fault) in [(1e300, Some(FaultKind::NotFinite)), (40.0, None)] {
+        let mut parameters = Parameters::REFERENCE;
+        parameters.servo.velocity_v_s_rad = velocity_v_s_rad;
+        let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
+        let mut link = Link::new();
+        let (mut tick_link, mut commands) = link.split();
+        for _ in 0..10 {
+            host.tick(&mut tick_link, &mut ());
+        }
+        commands.send(Command::Reference).expect("room");
+        for _ in 0..100 {
+            let outputs = host.tick(&mut tick_link, &mut ());
+            let largest = outputs.duty.iter().map(|duty| duty.0.abs()).max();
+            assert!(largest < Some(500), "{largest:?}");
+        }
+        assert_eq!(host.fault().map(|fault| fault.kind), fault);
+    }
 }
 
 /// The tick refuses by itself what the command side would not send: nobody can go round it.

@@ -1,16 +1,15 @@
 //! Faults that the inputs show.
 
 use super::super::{Inputs, State};
+use super::watch::SAME_READINGS;
 use crate::config::{Config, SUPPLY_V_PER_COUNT};
-use crate::fault::FaultKind;
+use crate::fault::{FaultKind, Reaction};
 use crate::link::Mode;
 
 /// Ticks in a row that a low supply is one: 0.2 ms, over which a converter's noise is none.
 const SUPPLY_TICKS: u8 = 4;
 /// Ticks over which one late tick is forgiven.
 const FORGIVEN: u32 = 100;
-/// Frames with one reading after which it is asked whether there should have been others.
-const SAME_READINGS: u16 = 4;
 
 impl State {
     pub(in super::super) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
@@ -87,12 +86,14 @@ impl State {
         }
     }
 
-    /// An encoder that repeats itself.
+    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so that its
+    /// integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own speed.
     #[cold]
     pub(super) fn freeze(&mut self, pivot: usize) {
         if let Some(encoder) = self.encoders.get_mut(pivot) {
             encoder.give_up(FaultKind::EncoderFrozen);
         }
-        self.fail(FaultKind::EncoderFrozen, Some(pivot), 0.0, 0.0);
+        let kind = FaultKind::EncoderFrozen;
+        self.fail_with(Reaction::Brake, kind, Some(pivot), [0.0; 2]);
     }
 }

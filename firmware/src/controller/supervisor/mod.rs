@@ -177,7 +177,16 @@ impl State {
     /// The first one stays latched until it is acknowledged; one that ends its controlled stop is kept besides.
     #[cold]
     pub(super) fn fail(&mut self, kind: FaultKind, pivot: Option<usize>, value: f32, limit: f32) {
-        let mut reaction = kind.reaction();
+        self.fail_with(kind.reaction(), kind, pivot, [value, limit]);
+    }
+
+    fn fail_with(
+        &mut self,
+        mut reaction: Reaction,
+        kind: FaultKind,
+        pivot: Option<usize>,
+        [value, limit]: [f32; 2],
+    ) {
         if kind.is_of_encoder() {
             self.referenced = false;
             // One lost pivot is led by its model; two are not.

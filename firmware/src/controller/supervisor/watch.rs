@@ -10,8 +10,9 @@ use kinematics::Angle;
 
 /// Ticks from one look at a pivot to the next.
 pub(crate) const TURN: u32 = 3;
-/// Frames with one reading, from which a change of the drive must have moved it: 1 ms, three times the windings' own time.
-const SLOW_READINGS: u16 = 20;
+/// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the windings' own
+/// time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
+pub(super) const SAME_READINGS: u16 = 20;
 
 /// What is kept of a pivot from look to look.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,7 +59,7 @@ impl State {
         let i = turn.pivot;
         let separation = (turn.next - turn.angle).fraction();
         if separation < limits.separation {
-            self.fail_with(FaultKind::PivotsTooClose, i, separation, limits.separation);
+            self.fail_by_angle(FaultKind::PivotsTooClose, i, separation, limits.separation);
             return false;
         }
         let (Some(watch), Some(encoder), Some(servo)) = (
@@ -94,7 +95,7 @@ impl State {
         } else if turn.duty.0.abs_diff(watch.duty) > limits.frozen_duty {
             // From here on: a reading that has rested for long may go on resting until the drive has had its time.
             watch.driven += TURN as u16;
-            if watch.driven >= SLOW_READINGS {
+            if watch.driven >= SAME_READINGS {
                 watch.driven = 0;
                 self.freeze(i);
             }
@@ -103,7 +104,7 @@ impl State {
     }
 
     #[cold]
-    fn fail_with(&mut self, kind: FaultKind, pivot: usize, value: u32, limit: u32) {
+    fn fail_by_angle(&mut self, kind: FaultKind, pivot: usize, value: u32, limit: u32) {
         self.fail(kind, Some(pivot), radians(value), radians(limit));
     }
 

@@ -1,0 +1,156 @@
+//! `FAULTS.md` is what the supervisor's tables say. `UPDATE=1 cargo test -p firmware --test fault_page` writes it.
+
+use firmware::controller::{Outcome, STATES, TABLE};
+use firmware::fault::{ABOUT, Fault, Reaction};
+use firmware::link::Mode;
+use firmware::panel::{PARAMETERS, error_of};
+use firmware::parameters::Parameters;
+use std::fmt::Write;
+use std::path::Path;
+
+const HEAD: &str = "# Faults
+
+Written by `UPDATE=1 cargo test -p firmware --test fault_page` from the tables that the controller has
+(`firmware/src/controller/supervisor/table.rs`, `firmware/src/fault/about.rs`); edit those, not this.
+
+A fault is latched with its kind, pivot, tick and values. `FLT?` tells it in words, `EVT?` when it came, `ERR?` its number on every
+connection, once; from then on every motion is refused with 1024 until `FLC` acknowledges it. A second fault that ends a controlled
+stop is told besides; the first stays latched.
+
+## States and events
+
+Off lets the motors coast; holding, moving and stopping drive them; a fault brakes them, or lets them coast where its reaction is
+that. `refused`: the command is counted as refused, nothing changes. `if ready`: the encoders answer and are referenced, or the plan
+starts where the motion is; refused if not.
+
+";
+
+const BETWEEN: &str = "
+## Reactions
+
+- **stop**: the plan under way is followed slower and slower, on its path, at rest after the time of parameter 0x5450050F; then the
+  bridges brake. An encoder that is lost is replaced by its pivot's setpoint: feedforward and what the servo has learnt drive that
+  pivot, the other two stay under control. At rest already, the bridges brake at once. Whatever goes wrong on the way brakes.
+- **brake**: the bridges short the windings. A pivot slows down with a time constant of some 8 ms.
+- **coast**: the sleep pins open the bridges.
+
+How far a lost encoder lets the platform be off its path: see \"Measured\" in the README.
+
+## Kinds
+
+";
+
+const TAIL: &str = "
+## What is no latched fault
+
+| what | what happens |
+|---|---|
+| an encoder's warning bit | an event (`EVT?`) when it begins and when it ends; the position is good |
+| no host heard for longer than `HBT` or parameter 0x54500510 allow | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
+| the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
+| a restart by the watchdog, a panic or a dip of the supply | found at the next start: `FLT?` and `EVT?` tell it; the motors are off and the reference is gone |
+";
+
+fn word(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Off => "off",
+        Mode::Holding => "holding",
+        Mode::Moving => "moving",
+        Mode::Stopping => "stopping",
+        Mode::Fault => "fault",
+    }
+}
+
+fn states(page: &mut String) {
+    let heads: Vec<&str> = STATES.into_iter().map(word).collect();
+    writeln!(page, "| event | {} |", heads.join(" | ")).unwrap();
+    writeln!(page, "|---|{}", "---|".repeat(STATES.len())).unwrap();
+    for (event, outcomes) in TABLE {
+        let cells = outcomes.map(|outcome| match outcome {
+            Outcome::To(mode) => word(mode).to_owned(),
+            Outcome::If(mode) => format!("{} if ready", word(mode)),
+            Outcome::Refused => "refused".to_owned(),
+            Outcome::Nothing => String::new(),
+        });
+        let mut name = String::new();
+        for letter in format!("{event:?}").chars() {
+            if letter.is_uppercase() && !name.is_empty() {
+                name.push(' ');
+            }
+            name.extend(letter.to_lowercase());
+        }
+        writeln!(page, "| {name} | {} |", cells.join(" | ")).unwrap();
+    }
+}
+
+fn kinds(page: &mut String) {
+    *page += "| kind | found by | thresholds | reaction | why | error |\n|---|---|---|---|---|---|\n";
+    for about in ABOUT {
+        let thresholds: Vec<String> = (about.thresholds.iter())
+            .map(|id| {
+                let parameter = PARAMETERS.iter().find(|parameter| parameter.id == *id);
+                let parameter = parameter.unwrap_or_else(|| panic!("no parameter 0x{id:X}"));
+                let value = parameter.number(&Parameters::REFERENCE).expect("a number");
+                format!("0x{id:X} ({value} {})", parameter.unit).replace(" )", ")")
+            })
+            .collect();
+        let reaction = match about.kind.reaction() {
+            Reaction::Stop => "stop",
+            Reaction::Brake => "brake",
+            Reaction::Coast => "coast",
+        };
+        writeln!(
+            page,
+            "| {} | {} | {} | {reaction} | {} | {} |",
+            about.kind.text(),
+            about.detection,
+            thresholds.join(", "),
+            about.reason,
+            error_of(about.kind).number(),
+        )
+        .unwrap();
+    }
+}
+
+fn page() -> String {
+    let mut page = HEAD.to_owned();
+    states(&mut page);
+    page += BETWEEN;
+    kinds(&mut page);
+    page += TAIL;
+    page
+}
+
+#[test]
+fn page_is_up_to_date() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("FAULTS.md");
+    let page = page();
+    if std::env::var_os("UPDATE").is_some() {
+        std::fs::write(&path, page).unwrap();
+        return;
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        kept == page,
+        "{} is not what the tables say: UPDATE=1 cargo test -p firmware --test fault_page writes it",
+        path.display()
+    );
+}
+
+/// Every kind is told about, once, where its number says; and told with its unit where it has values.
+#[test]
+fn every_kind_has_its_line() {
+    for (number, about) in ABOUT.iter().enumerate() {
+        assert_eq!(about.kind as usize, number);
+        let fault = Fault {
+            kind: about.kind,
+            pivot: Some(1),
+            tick: 7,
+            value: 2.0,
+            limit: 1.0,
+        };
+        let text = fault.to_string();
+        assert!(text.starts_with(about.kind.text()) && text.ends_with(", at tick 7"));
+        assert_eq!(text.contains("limit"), !about.kind.unit().is_empty());
+    }
+}

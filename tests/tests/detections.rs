@@ -1,0 +1,353 @@
+//! What the supervisor finds out while the stage is driven: each fault fires, and its twin just under the threshold does not.
+//! Through the simulated hardware and the firmware's own drivers; thresholds are set as a user sets them.
+
+use firmware::fault::{FaultKind, Reaction};
+use firmware::link::Mode;
+use hal_sim::devices::EncoderFault;
+use hal_sim::plant::External;
+use tests::Bench;
+
+const TURN: f64 = 4_294_967_296.0;
+const FOLLOWING_ERROR: u32 = 0x5450_0500;
+const FOLLOWING_ERROR_BY_RATE: u32 = 0x5450_0504;
+const LARGEST_RATE: u32 = 0x5450_0106;
+const OVERSPEED: u32 = 0x5450_0505;
+const FROZEN: u32 = 0x5450_0506;
+const AT_END: u32 = 0x5450_0508;
+const MOTOR_CURRENT: u32 = 0x5450_0509;
+const MOTOR_HEATING: u32 = 0x5450_050A;
+const LATE: u32 = 0x5450_050B;
+
+/// Sets parameters of the supervision.
+fn set(bench: &mut Bench, parameters: &[(u32, f64)]) {
+    assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
+    for (id, value) in parameters {
+        assert_eq!(bench.error_after(&format!("SPA 1 {id} {value}")), "0");
+    }
+}
+
+/// Holding, with these parameters.
+fn holding(parameters: &[(u32, f64)]) -> Bench {
+    let mut bench = Bench::ready();
+    set(&mut bench, parameters);
+    bench
+}
+
+/// Turning steadily.
+fn turning(parameters: &[(u32, f64)], deg_s: f64) -> Bench {
+    let mut bench = holding(parameters);
+    assert_eq!(bench.error_after(&format!("JOG W {deg_s}")), "0");
+    bench.run(8_000);
+    assert_eq!((bench.mode(), bench.fault()), (Mode::Moving, None));
+    bench
+}
+
+/// Pushes ring 2.
+fn push(bench: &mut Bench, torque_n_m: f64, ticks: u32) {
+    bench.host.stage.plant.set_external(External {
+        ring_torque_n_m: [0.0, torque_n_m, 0.0],
+        ..External::default()
+    });
+    bench.run(ticks);
+    bench.host.stage.plant.set_external(External::default());
+}
+
+/// Jams ring 2 where it is.
+fn jam(bench: &mut Bench, ticks: u32) {
+    let at_rad = bench.host.stage.plant.pivots_rad()[1];
+    bench.host.stage.plant.set_external(External {
+        jammed_at_rad: [None, Some(at_rad), None],
+        ..External::default()
+    });
+    bench.run(ticks);
+    bench.host.stage.plant.set_external(External::default());
+}
+
+#[track_caller]
+fn assert_fault(bench: &Bench, kind: FaultKind, pivot: Option<u8>) {
+    let fault = bench.fault().unwrap_or_else(|| panic!("no {kind:?}"));
+    assert_eq!((fault.kind, fault.pivot), (kind, pivot), "{fault}");
+    if fault.limit != 0.0 {
+        let over = fault.value.abs() > fault.limit;
+        assert_eq!(over, kind != FaultKind::PivotsTooClose, "{fault}");
+    }
+}
+
+/// At rest, under servo or braked.
+fn assert_at_rest(bench: &mut Bench) {
+    bench.run(2_000);
+    let rates = bench.host.stage.plant.pivot_rates_rad_s();
+    assert!(rates.iter().all(|rate| rate.abs() < 0.01), "{rates:?}");
+}
+
+#[test]
+fn the_following_error_may_be_larger_the_faster_it_goes() {
+    // The same push leaves the same error at rest and in motion, over the limit of rest and under that of motion.
+    let limits = [(FOLLOWING_ERROR, 5e-4), (FOLLOWING_ERROR_BY_RATE, 1e-3)];
+    let mut bench = holding(&limits);
+    push(&mut bench, 35.0, 2_000);
+    assert_fault(&bench, FaultKind::FollowingError, Some(1));
+    let mut twin = turning(&limits, 120.0);
+    push(&mut twin, 35.0, 2_000);
+    assert_eq!(twin.fault(), None);
+    let mut twin = holding(&limits);
+    push(&mut twin, 8.0, 2_000);
+    assert_eq!(twin.fault(), None);
+}
+
+#[test]
+fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
+    for (deg_s, most_ticks) in [(300.0, 6), (30.0, 6), (3.0, 6), (0.3, 1_000)] {
+        let mut bench = turning(&[], deg_s);
+        bench.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+        let before = bench.sample().tick;
+        bench.run_until("found", |bench| bench.fault().is_some());
+        assert_fault(&bench, FaultKind::EncoderFrozen, Some(1));
+        let ticks = bench.sample().tick - before;
+        assert!(ticks <= most_ticks, "{deg_s} deg/s: {ticks} ticks");
+        bench.run_until("stopped", |bench| bench.mode() == Mode::Fault);
+        assert_at_rest(&mut bench);
+        assert_eq!(bench.say("FRF? W\n"), "W=0\n", "its turns are lost");
+    }
+    for deg_s in [300.0, 30.0, 3.0, 0.3] {
+        // The twin: frozen for as many frames as are bridged.
+        let mut twin = turning(&[], deg_s);
+        for _ in 0..20 {
+            twin.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+            twin.run(4);
+            twin.host.stage.encoders[1].set_fault(None);
+            twin.run(100);
+        }
+        assert_eq!(twin.fault(), None, "{deg_s} deg/s");
+    }
+}
+
+#[test]
+fn an_encoder_that_has_frozen_at_rest_is_found_when_something_is_to_move() {
+    for line in ["MOV X 10", "MOV W 0.02", "JOG W 0.01"] {
+        let mut bench = Bench::ready();
+        bench.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+        bench.run(10_000);
+        assert_eq!(bench.fault(), None, "as far as can be known");
+        assert_eq!(bench.error_after(line), "0");
+        bench.run_until("found", |bench| bench.fault().is_some());
+        assert_fault(&bench, FaultKind::EncoderFrozen, Some(1));
+        assert_at_rest(&mut bench);
+        let [x, y, theta] = bench.host.stage.plant.pose();
+        assert!(
+            x.hypot(y) < 1e-3 && theta.abs() < 0.01,
+            "{line}: {x} {y} {theta}"
+        );
+        let mut twin = Bench::ready();
+        assert_eq!(twin.error_after(line), "0");
+        twin.run(10_000);
+        assert_eq!(twin.fault(), None);
+    }
+}
+
+#[test]
+fn an_encoder_that_jumps() {
+    let jump = |counts: i32| {
+        let mut bench = Bench::ready();
+        bench.host.stage.encoders[2].set_fault(EncoderFault::Jump { counts });
+        bench.run(1_000);
+        bench
+    };
+    assert_fault(&jump(40_000), FaultKind::EncoderJump, Some(2));
+    // Under what acceleration could do in a tick, 1,330 counts.
+    assert_eq!(jump(1_300).fault(), None);
+}
+
+#[test]
+fn a_pivot_that_runs_away() {
+    let limits = [
+        (FOLLOWING_ERROR, 0.2),
+        (LARGEST_RATE, 5.5),
+        (OVERSPEED, 1.05),
+    ];
+    let pushed = |torque_n_m: f64| {
+        let mut bench = turning(&limits, 300.0);
+        push(&mut bench, torque_n_m, 100);
+        bench.run(100);
+        bench
+    };
+    assert_fault(&pushed(40.0), FaultKind::Overspeed, Some(1));
+    assert_eq!(pushed(10.0).fault(), None);
+}
+
+#[test]
+fn pivots_that_come_too_close() {
+    let pushed = |torque_n_m: f64, ticks: u32| {
+        let mut bench = Bench::default();
+        // A disk whose edge is where two pivots are 60 deg apart.
+        set(&mut bench, &[(FOLLOWING_ERROR, 0.2), (0x5450_0203, 60.0)]);
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        // Away from guide 1, and so between pivots 2 and 3.
+        assert_eq!(bench.error_after("MOV X -49.8 Y 28.75 W 0"), "0");
+        bench.settle();
+        push(&mut bench, torque_n_m, ticks);
+        bench
+    };
+    let mut bench = pushed(70.0, 400);
+    assert_fault(&bench, FaultKind::PivotsTooClose, Some(1));
+    assert_eq!(bench.mode(), Mode::Fault);
+    assert_at_rest(&mut bench);
+    let twin = pushed(40.0, 400);
+    assert_eq!(twin.fault(), None);
+}
+
+#[test]
+fn a_pivot_that_is_held_fast() {
+    let jammed = |ticks: u32| {
+        // Not to be taken for its encoder, which a jam holds as fast.
+        let limits = [(FOLLOWING_ERROR, 0.2), (FROZEN, 1.0), (AT_END, 0.02)];
+        let mut bench = turning(&limits, 60.0);
+        jam(&mut bench, ticks);
+        bench.run(400);
+        bench
+    };
+    let mut bench = jammed(1_000);
+    assert_fault(&bench, FaultKind::Stalled, Some(1));
+    assert_at_rest(&mut bench);
+    // It takes some ticks for the error to ask for all the voltage there is.
+    assert_eq!(jammed(200).fault(), None);
+}
+
+#[test]
+fn a_motor_that_gets_too_hot() {
+    let pushed = |torque_n_m: f64| {
+        let mut bench = holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
+        push(&mut bench, torque_n_m, 15_000);
+        bench
+    };
+    // The simulated motor gives 2.4 N m/A, and friction holds 0.12 N m of the push.
+    assert_eq!(pushed(2.2).fault(), None);
+    let mut bench = holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
+    bench.host.stage.plant.set_external(External {
+        ring_torque_n_m: [0.0, 2.9, 0.0],
+        ..External::default()
+    });
+    bench.run_until("hot", |bench| bench.fault().is_some());
+    bench.host.stage.plant.set_external(External::default());
+    assert_fault(&bench, FaultKind::MotorHot, Some(1));
+    assert_eq!(bench.mode(), Mode::Fault, "nothing was to be stopped");
+    // Acknowledged, it is as hot as before until it has cooled.
+    assert_eq!(bench.error_after(""), "1024");
+    bench.say("FLC\nSVO W 1\n");
+    bench.run(10);
+    assert_fault(&bench, FaultKind::MotorHot, Some(1));
+    bench.run(5_000);
+    assert_eq!(bench.error_after(""), "1024");
+    assert_eq!(bench.error_after("FLC\nFRF"), "0");
+    bench.settle();
+    assert_eq!(bench.fault(), None);
+}
+
+#[test]
+fn a_loop_that_is_late() {
+    let late = |ticks: u32| {
+        let mut bench = turning(&[(LATE, 7.0)], 90.0);
+        bench.host.late = true;
+        bench.run(ticks);
+        bench.host.late = false;
+        bench.run(1);
+        bench
+    };
+    let mut bench = late(8);
+    assert_fault(&bench, FaultKind::LoopLate, None);
+    assert_eq!(bench.mode(), Mode::Stopping);
+    assert_eq!(bench.error_after("FLC"), "53", "not before it is at rest");
+    bench.run(2_000);
+    assert_eq!(bench.mode(), Mode::Fault);
+    assert_eq!(bench.say("FRF? W\n"), "W=1\n", "nothing is lost");
+    assert_eq!(bench.error_after("FLC"), "0");
+    let mut twin = late(7);
+    for _ in 0..50 {
+        twin.run(100);
+        twin.host.late = true;
+        twin.run(1);
+        twin.host.late = false;
+    }
+    assert_eq!(twin.fault(), None);
+}
+
+#[test]
+fn a_supply_that_sags() {
+    let sagged = |supply_v: f64, ticks: u32| {
+        let mut bench = turning(&[], 90.0);
+        bench.host.stage.set_supply_v(supply_v);
+        bench.run(ticks);
+        bench.host.stage.set_supply_v(48.0);
+        bench.run(1);
+        bench
+    };
+    let mut bench = sagged(35.9, 4);
+    assert_fault_below(&bench, FaultKind::SupplyLow);
+    assert!(bench.outputs.awake, "it brakes");
+    assert_at_rest(&mut bench);
+    assert_eq!(sagged(35.9, 3).fault(), None);
+    assert_eq!(sagged(36.1, 1_000).fault(), None);
+}
+
+#[track_caller]
+fn assert_fault_below(bench: &Bench, kind: FaultKind) {
+    let fault = bench.fault().unwrap_or_else(|| panic!("no {kind:?}"));
+    assert_eq!(fault.kind, kind);
+    assert!(fault.value < fault.limit, "{fault}");
+}
+
+#[test]
+fn a_warning_is_told_as_an_event() {
+    let mut bench = Bench::ready();
+    bench.host.stage.encoders[2].set_fault(EncoderFault::WarningBit);
+    bench.run(10);
+    bench.host.stage.encoders[2].set_fault(None);
+    bench.run(10);
+    let events = bench.say("EVT?\n");
+    assert!(events.contains("encoder warns, pivot 3 \n"), "{events}");
+    assert!(
+        events.contains("encoder warns no more, pivot 3\n"),
+        "{events}"
+    );
+    assert_eq!(bench.fault(), None);
+}
+
+/// The stop stays on the line, and its setpoint is continuous up to the acceleration.
+#[test]
+fn a_controlled_stop_stays_on_its_path() {
+    assert_eq!(FaultKind::LoopLate.reaction(), Reaction::Stop);
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("MOV X 60 Y 30"), "0");
+    bench.run(3_000);
+    let speed_mm_s = 100.0 * f64::from(bench.sample().setpoint.twist.x) / 2.0_f64.sqrt();
+    assert!(speed_mm_s > 50.0, "{speed_mm_s}");
+    bench.host.late = true;
+    bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
+    bench.host.late = false;
+    let start = bench.sample().setpoint;
+    let mut last = start;
+    let mut ticks = 0;
+    while bench.mode() == Mode::Stopping {
+        bench.tick();
+        ticks += 1;
+        let now = bench.sample().setpoint;
+        let [x, y, _] = now.position.map(|units| units as f64 / TURN * 1e5);
+        assert!(
+            (y - x / 2.0).abs() < 0.005,
+            "off the line by {} um",
+            y - x / 2.0
+        );
+        let moved = (now.position[0] - last.position[0]) as f64 / TURN * 20_000.0;
+        let between = f64::from(now.twist.x + last.twist.x) / 2.0;
+        assert!((moved - between).abs() < 2e-4, "{moved} {between}");
+        let jerk = f64::from(now.acceleration.x - last.acceleration.x).abs() * 20_000.0;
+        assert!(jerk < 4_500.0, "{jerk} track radii/s^3");
+        last = now;
+    }
+    assert_eq!((bench.mode(), ticks), (Mode::Fault, 1_200));
+    assert!(bench.worst_error_counts() < 1_000);
+    assert_at_rest(&mut bench);
+    let way_mm = (last.position[0] - start.position[0]) as f64 / TURN * 100.0;
+    assert!((1.0..8.0).contains(&way_mm), "{way_mm} mm");
+}
