@@ -58,6 +58,7 @@ mod table {
             terminal: false,
             parameters: controller_parameters(&options),
             stage: stage_parameters(&options),
+            settings: None,
         })
         .expect("a free port");
         let address = server.address().expect("the port");

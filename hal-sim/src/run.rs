@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use firmware::blackbox::BlackBox;
 use firmware::fault::{Fault, FaultKind};
 use firmware::link::{Link, Mode};
 use firmware::panel::{Identity, Panel, Session};
@@ -167,7 +168,8 @@ fn simulate(
     let mut host = Host::new(stage, panel.parameters());
     host.restart(panel.parameters(), fault);
     let mut link = Link::new();
-    let (mut tick_link, mut panel_link) = link.split();
+    let black_box = Box::new(BlackBox::new());
+    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
     let mut session = Session::new();
     let mut client = Client::new(script);
     let mut observer = Observer::new(panel.parameters(), options.every);

@@ -6,6 +6,7 @@
 pub mod fuzz;
 pub mod ideal;
 
+use firmware::blackbox::BlackBox;
 use firmware::controller::Outputs;
 use firmware::fault::{Fault, FaultKind};
 use firmware::link::{Link, Mode, PanelLink, TickLink};
@@ -49,7 +50,8 @@ impl Bench {
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
         // The queues live as long as the process: a test has a few of them.
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let black_box = Box::leak(Box::new(BlackBox::new()));
+        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split_keeping(black_box);
         let parameters = Parameters::REFERENCE;
         Self {
             host: Host::new(stage, &parameters),
@@ -62,6 +64,17 @@ impl Bench {
             answers: Vec::new(),
             worst_error_counts: 0,
         }
+    }
+
+    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the black box.
+    pub fn reset(&mut self, cause: &'static str) {
+        let parameters = Parameters::REFERENCE;
+        self.host.restart(&parameters, None);
+        self.panel = Panel::new(&parameters, IDENTITY);
+        self.panel.note_start(cause);
+        self.session = Session::new();
+        self.tick_link.clear();
+        self.panel_link.clear();
     }
 
     /// Referenced, holding and settled.

@@ -77,7 +77,7 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::EncoderFrozen,
-        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks, if the setpoint has gone further than a threshold meanwhile, or the voltage has been off by more than another in as many ticks (3 more), and then it brakes, since the servo has been misled. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
+        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks, if the setpoint has gone further than a threshold meanwhile, or for 20 ticks (3 more) in which the voltage is off by more than another, and then it brakes, since the servo has been misled. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
         thresholds: &[0x5450_0502, 0x5450_0506, 0x5450_0507],
         reason: LOST,
     },

@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use firmware::blackbox::BlackBox;
 use firmware::fault::{Fault, Reaction};
 use firmware::link::{Link, Mode};
 use firmware::motion::Position;
@@ -112,7 +113,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let mut host = Host::new(&scenario.stage, &parameters);
     host.stage.set_pose_at_rest(scenario.start);
     let mut link = Box::new(Link::new());
-    let (mut tick_link, mut panel_link) = link.split();
+    let black_box = Box::new(BlackBox::new());
+    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
     let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
     let mut session = Session::new();
     let mut seen = Seen::default();

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use firmware::blackbox::BlackBox;
 use firmware::link::{Link, PanelLink, TickLink};
 use firmware::panel::Panel;
 use firmware::parameters::Parameters;
@@ -87,7 +88,8 @@ impl Server {
     /// [`ServeError::Wait`].
     pub fn run(self, stop: &AtomicBool, say: &mut dyn FnMut(Notice)) -> Result<Pacing, ServeError> {
         let mut link = Link::new();
-        let (tick_link, panel_link) = link.split();
+        let black_box = Box::new(BlackBox::new());
+        let (tick_link, panel_link) = link.split_keeping(&black_box);
         let now = Instant::now();
         let parameters = &self.options.parameters;
         let rate_hz = parameters.limits.rate_hz * self.options.speed;

@@ -43,6 +43,7 @@
 #![no_main]
 
 mod analog;
+mod black_box;
 mod board;
 mod clocks;
 mod dma;
@@ -63,6 +64,7 @@ use defmt_rtt as _;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use crate::{
+        black_box::BLACK_BOX,
         board::{Board, Loop},
         flash::SettingsFlash,
         restart,
@@ -128,7 +130,7 @@ mod app {
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
         let mut core = context.core;
-        let (tick_link, panel_link) = context.local.link.split();
+        let (tick_link, panel_link) = context.local.link.split_keeping(&BLACK_BOX);
         let panel = context
             .local
             .panel_place
