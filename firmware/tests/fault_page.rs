@@ -84,7 +84,8 @@ fn states(page: &mut String) {
 }
 
 fn kinds(page: &mut String) {
-    *page += "| kind | found by | thresholds | reaction | why | error |\n|---|---|---|---|---|---|\n";
+    *page +=
+        "| kind | found by | thresholds | reaction | why | error |\n|---|---|---|---|---|---|\n";
     for about in ABOUT {
         let thresholds: Vec<String> = (about.thresholds.iter())
             .map(|id| {
