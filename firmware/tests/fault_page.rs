@@ -3,7 +3,7 @@
 use firmware::controller::{Outcome, STATES, TABLE};
 use firmware::fault::{ABOUT, Fault, Reaction};
 use firmware::link::Mode;
-use firmware::panel::{PARAMETERS, error_of};
+use firmware::panel::{ErrorCode, PARAMETERS};
 use firmware::parameters::Parameters;
 use std::fmt::Write;
 use std::path::Path;
@@ -31,7 +31,7 @@ const BETWEEN: &str = "
 - **stop**: the plan under way is followed slower and slower, on its path, at rest after the time of parameter 0x5450050F; then the
   bridges brake. An encoder that is lost is replaced by its pivot's setpoint: feedforward and what the servo has learnt drive that
   pivot, the other two stay under control. At rest already, the bridges brake at once. Whatever goes wrong on the way brakes.
-- **brake**: the bridges short the windings. A pivot slows down with a time constant of some 8 ms.
+- **brake**: the bridges short the windings. A pivot of the reference drive slows down with a time constant of some 8 ms (computed).
 - **coast**: the sleep pins open the bridges.
 
 How far a lost encoder lets the platform be off its path: see \"Measured\" in the README.
@@ -92,6 +92,7 @@ fn kinds(page: &mut String) {
                 let parameter = PARAMETERS.iter().find(|parameter| parameter.id == *id);
                 let parameter = parameter.unwrap_or_else(|| panic!("no parameter 0x{id:X}"));
                 let value = parameter.number(&Parameters::REFERENCE).expect("a number");
+                let value = (value * 1e9).round() / 1e9;
                 format!("0x{id:X} ({value} {})", parameter.unit).replace(" )", ")")
             })
             .collect();
@@ -107,7 +108,7 @@ fn kinds(page: &mut String) {
             about.detection,
             thresholds.join(", "),
             about.reason,
-            error_of(about.kind).number(),
+            ErrorCode::of(about.kind).number(),
         )
         .unwrap();
     }

@@ -246,3 +246,18 @@ fn axes_that_have_moved_since_their_position_was_asked_for() {
     let other = bench.connect();
     assert_eq!(bench.say_to(other, "\x06"), "23\n");
 }
+
+#[test]
+fn the_heartbeat_is_a_parameter_too() {
+    let mut bench = Bench::ready();
+    bench.say("HBT 250\n");
+    assert_eq!(bench.say("SPA? 1 0x54500510\n"), "1 0x54500510=250\n");
+    bench.say("SPA 1 0x54500510 40\n");
+    assert_eq!(bench.say("HBT?\n"), "40\n");
+    assert_eq!(
+        bench.say("SPA 1 0x54500510 5\nERR?\n"),
+        "17\n",
+        "too short for any host"
+    );
+    assert_eq!(bench.say("HBT?\n"), "40\n");
+}

@@ -1,5 +1,7 @@
 //! GCS error numbers: those this controller can set.
 
+use crate::fault::FaultKind;
+
 /// The error of a connection, read and cleared by `ERR?`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u16)]
@@ -100,6 +102,14 @@ pub enum ErrorCode {
 }
 
 impl ErrorCode {
+    /// What a fault sets on every connection when it comes.
+    pub const fn of(kind: FaultKind) -> Self {
+        match kind {
+            FaultKind::FollowingError => Self::FollowingError,
+            _ => Self::MotionError,
+        }
+    }
+
     /// The number that `ERR?` answers.
     pub const fn number(self) -> u16 {
         self as u16

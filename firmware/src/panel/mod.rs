@@ -80,7 +80,6 @@ pub use short::{NAME_BYTES, Name, Short, TEXT_BYTES, Text};
 pub use variables::{NAMED, VARIABLES, VariableRequest};
 pub use wave::{Curve, Join, Shape, WaveAction, WavePoints, WaveQuery};
 
-use crate::fault::FaultKind;
 use crate::link::PanelLink;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
@@ -225,10 +224,7 @@ impl Panel {
         if let Some(fault) = fault
             && session.fault_tick.replace(fault.tick) != Some(fault.tick)
         {
-            session.error = match fault.kind {
-                FaultKind::FollowingError => ErrorCode::FollowingError,
-                _ => ErrorCode::MotionError,
-            };
+            session.error = ErrorCode::of(fault.kind);
         }
     }
 
