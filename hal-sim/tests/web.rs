@@ -323,6 +323,29 @@ fn it_comes_back_when_the_controller_does() {
 }
 
 #[test]
+fn a_page_that_nobody_looks_at_is_no_host_that_is_heard() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    // Somebody has looked, and has gone.
+    drop(Viewer::ready(&page));
+    let mut host = TcpStream::connect(stage.address).unwrap();
+    host.set_read_timeout(Some(PATIENCE)).unwrap();
+    let mut error = |lines: &str| {
+        host.write_all(format!("{lines}ERR?\n").as_bytes()).unwrap();
+        let mut answer = [0; 8];
+        let count = host.read(&mut answer).unwrap();
+        answer[..count].to_vec()
+    };
+    assert_eq!(error("FRF\nVLS 1\nHBT 400\nMOV X 60\n"), b"0\n");
+    // The stage's time may be slower than the clock's.
+    let stopped = [1, 2, 4, 8].iter().any(|&wait_s| {
+        thread::sleep(Duration::from_secs(wait_s));
+        error("") == b"10\n"
+    });
+    assert!(stopped);
+}
+
+#[test]
 fn a_serial_line_serves_as_well() {
     let stage = Stage::start("127.0.0.1:0");
     let device = stage.terminal.clone().unwrap();

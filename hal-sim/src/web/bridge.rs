@@ -18,8 +18,9 @@ use super::watch::{FAST, SLOW_EVERY, slow};
 
 /// Between two status messages: a screen's refresh.
 const PERIOD: Duration = Duration::from_micros(16_667);
-/// The same while nobody looks.
-const IDLE_PERIOD: Duration = Duration::from_secs(1);
+/// Between two looks for viewers while there are none. The controller is not asked anything then: a page that nobody looks at
+/// must not be the host that a heartbeat (`HBT`) waits for.
+const IDLE_PERIOD: Duration = Duration::from_millis(100);
 /// Between two attempts to reach the controller.
 const RETRY: Duration = Duration::from_millis(500);
 /// Requests that may wait for the line.
@@ -165,7 +166,7 @@ impl Worker {
             help: &help,
             reason: String::new(),
         });
-        let seldom = slow(&help);
+        let all = [FAST, &slow(&help)].concat();
         let mut next = Instant::now();
         for number in 0_u32.. {
             loop {
@@ -179,17 +180,12 @@ impl Worker {
                     break;
                 }
             }
-            let questions = [
-                FAST,
-                if number % SLOW_EVERY == 0 {
-                    &seldom
-                } else {
-                    &[]
-                },
-            ]
-            .concat();
-            self.poll(&mut line, &questions)?;
             let looked_at = self.status.receiver_count() > 0;
+            if looked_at && number % SLOW_EVERY == 0 {
+                self.poll(&mut line, &all)?;
+            } else if looked_at {
+                self.poll(&mut line, FAST)?;
+            }
             let period = if looked_at { PERIOD } else { IDLE_PERIOD };
             // A line that is slower than a screen is asked as fast as it goes, and what was missed is not made up for.
             next = (next + period).max(Instant::now());
