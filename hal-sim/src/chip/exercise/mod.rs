@@ -88,8 +88,8 @@ const FEW: u64 = 4;
 const MANY: u64 = 8;
 /// Ticks after which a line that waits while the servo is off is given up with a stop.
 const OFF_PATIENCE: u32 = 4_000;
-/// `#24`.
-const STOP: u8 = 24;
+/// `#24`, and the question for its error.
+const STOP: &[u8] = b"\x18ERR?\n";
 
 /// Runs an exercise on the image that lies in the target folder.
 ///
@@ -215,14 +215,17 @@ impl Runner {
         }
     }
 
-    /// A stop, when nothing but that ends the wait: the stage does not arrive while its servo is off.
-    fn end_of_patience(&mut self) -> Option<u8> {
-        let off = matches!(self.mode, Mode::Off | Mode::Fault);
-        self.off_polls = if off { self.off_polls + 1 } else { 0 };
-        let over = self.off_polls > OFF_PATIENCE;
-        if over {
-            self.off_polls = 0;
+    /// A stop, when nothing but that ends a wait: the stage does not arrive while its servo is off. It throws away the `ERR?` that
+    /// waits behind it.
+    fn end_of_patience(&mut self) -> &'static [u8] {
+        let current = self.client.current();
+        let waits = current.is_some_and(|line| line.text.starts_with("WAC"));
+        let in_vain = waits && self.mode == Mode::Off;
+        self.off_polls = if in_vain { self.off_polls + 1 } else { 0 };
+        if self.off_polls <= OFF_PATIENCE {
+            return b"";
         }
-        over.then_some(STOP)
+        self.off_polls = 0;
+        STOP
     }
 }
