@@ -48,7 +48,7 @@ impl Random {
         Pose {
             x: Fixed::from_f64(r * direction.cos()),
             y: Fixed::from_f64(r * direction.sin()),
-            theta: Angle::from_units((self.bits() >> 1) as i64 % (2 * TURNS << 32) - (TURNS << 32)),
+            theta: Angle::from_units((self.bits() >> 1) as i64 % (TURNS << 33) - (TURNS << 32)),
         }
     }
 }

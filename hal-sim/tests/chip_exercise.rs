@@ -2,6 +2,7 @@
 //! `cargo test --release -p hal-sim --features chip --ignore-rust-version --test chip_exercise`.
 #![cfg(feature = "chip")]
 
+use firmware::link::Mode;
 use hal_sim::chip::{Divergence, Exercise, ExerciseOptions, exercise};
 use hal_sim::run::RunOptions;
 
@@ -27,9 +28,12 @@ fn a_bit_of_an_encoder_count_flipped_on_the_host_is_found_at_its_tick() {
 }
 
 #[test]
-fn chip_and_host_agree_through_new_targets_stops_and_a_broken_encoder() {
+fn chip_and_host_agree_through_new_targets_in_motion_and_a_broken_encoder() {
     let found = exercised(20_000, None);
     assert_eq!(found.divergence, None);
     assert_eq!((found.agreed, found.tally.all().ticks), (20_000, 20_000));
-    assert!(found.commands > 10, "{found:?}");
+    let in_motion = (found.tally.by_doing())
+        .find(|(doing, _)| doing.commanded && doing.mode == Mode::Moving)
+        .map_or(0, |(_, cost)| cost.ticks);
+    assert!(in_motion > 3, "{found:?}");
 }

@@ -35,9 +35,10 @@ struct Lines {
 
 impl Lines {
     fn episode(&mut self) {
-        // After a fault, of which an encoder may have had one.
+        // After a fault, of which an encoder may have had one, and with it lost its turns, the episode before is not whole.
         self.line("FLC");
-        self.line("SVO X 1");
+        self.line("FRF");
+        self.line("SPA 1 0x19001900 0 1 0x54500110 0 1 0x54500500 0.002");
         match self.whole(0, 11) {
             0 => self.tour(),
             1 | 2 => self.retargets(),
@@ -184,7 +185,7 @@ impl Lines {
         if self.whole(0, 2) == 0 {
             self.line("SVO X 0");
             self.wait(5, 50);
-            self.line("SVO X 1");
+            self.line("FRF");
             self.rest();
         }
     }
@@ -197,7 +198,7 @@ impl Lines {
         self.line("FLT?");
         self.line("FLC");
         self.line("SPA 1 0x54500500 0.002");
-        self.line("SVO X 1");
+        self.line("FRF");
         self.rest();
         let speed = self.within(20.0, 200.0);
         self.line(&format!("VLS {speed:.3}"));

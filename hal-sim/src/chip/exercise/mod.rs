@@ -5,8 +5,8 @@
 //! | `lines` | the GCS lines |
 //! | `tally` | what ticks cost, by what they did |
 //!
-//! Besides what the lines do, an encoder is broken now and then: for as many frames as are bridged, or for more, which is
-//! a fault that the lines acknowledge.
+//! Besides what the lines do, an encoder is broken now and then: in motion for as many frames as are bridged, at rest for more,
+//! which is a fault that the lines acknowledge.
 
 mod lines;
 mod tally;
@@ -73,6 +73,8 @@ struct Runner {
     ticks: u64,
     period_s: f64,
     mode: Mode,
+    mended_at: u64,
+    off_polls: u32,
     exercise: Exercise,
 }
 
@@ -81,8 +83,13 @@ const WARM_UP: u64 = 20;
 const PROGRESS_EVERY: u64 = 500;
 /// Ticks from one broken encoder to the next.
 const BREAK_EVERY: u64 = 25_000;
-/// Broken for one frame, two and so on up to this many: the last two are more than are bridged.
-const FRAMES: u64 = 6;
+/// Frames that are bridged, and frames that are not.
+const FEW: u64 = 4;
+const MANY: u64 = 8;
+/// Ticks after which a line that waits while the servo is off is given up with a stop.
+const OFF_PATIENCE: u32 = 4_000;
+/// `#24`, and the question for its error.
+const STOP: &[u8] = b"\x18ERR?\n";
 
 /// Runs an exercise on the image that lies in the target folder.
 ///
@@ -103,6 +110,8 @@ fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipErr
         ticks: options.ticks,
         period_s: stage.period_s(),
         mode: Mode::Off,
+        mended_at: 0,
+        off_polls: 0,
         exercise: Exercise::default(),
     });
     let (send, receive) = mpsc::channel();
@@ -143,8 +152,9 @@ impl Runner {
         if period.tick < WARM_UP {
             return Continue(());
         }
-        break_an_encoder(period);
-        let (bytes, event) = self.client.poll(&received, self.mode == Mode::Moving);
+        self.break_an_encoder(period);
+        let (mut bytes, event) = self.client.poll(&received, self.mode == Mode::Moving);
+        bytes.extend(self.end_of_patience());
         period.send(&bytes);
         self.twin.receive(&bytes);
         if period.tick.is_multiple_of(PROGRESS_EVERY) {
@@ -192,15 +202,30 @@ impl Runner {
         now.behind = now.behind.max(period.tick - now.agreed);
         Ok(())
     }
-}
 
-/// Breaks one of the encoders, or mends it.
-fn break_an_encoder(period: &mut Period<'_>) {
-    let (number, since) = (period.tick / BREAK_EVERY, period.tick % BREAK_EVERY);
-    let encoder = &mut period.stage.encoders[(number % 3) as usize];
-    if since == BREAK_EVERY / 2 {
-        encoder.set_fault(EncoderFault::ErrorBit);
-    } else if since == BREAK_EVERY / 2 + 1 + number % FRAMES {
-        encoder.set_fault(None);
+    /// Breaks one of the encoders, or mends it.
+    fn break_an_encoder(&mut self, period: &mut Period<'_>) {
+        let encoder = &mut period.stage.encoders[(period.tick / BREAK_EVERY % 3) as usize];
+        if period.tick % BREAK_EVERY == BREAK_EVERY / 2 {
+            let at_rest = self.mode == Mode::Holding;
+            self.mended_at = period.tick + if at_rest { MANY } else { FEW };
+            encoder.set_fault(EncoderFault::ErrorBit);
+        } else if period.tick == self.mended_at {
+            encoder.set_fault(None);
+        }
+    }
+
+    /// A stop, when nothing but that ends a wait: the stage does not arrive while its servo is off. It throws away the `ERR?` that
+    /// waits behind it.
+    fn end_of_patience(&mut self) -> &'static [u8] {
+        let current = self.client.current();
+        let waits = current.is_some_and(|line| line.text.starts_with("WAC"));
+        let in_vain = waits && self.mode == Mode::Off;
+        self.off_polls = if in_vain { self.off_polls + 1 } else { 0 };
+        if self.off_polls <= OFF_PATIENCE {
+            return b"";
+        }
+        self.off_polls = 0;
+        STOP
     }
 }
