@@ -56,9 +56,9 @@ fn help_lists_what_is_there() {
         "#3 #4 #5 #6 #7 #8 #9 #24 *IDN? ADD CCL CCL? CST? CSV? DEL DRC DRC? DRL? DRR? DRT DRT? ERR? EVT? FLC FLT? FRF FRF? HDR? HBT HBT? HLT HLP? HPA? \
          JOG JOG? JRC KEN KEN? KET? KLN KLN? KLS? KLT? KRM KSD KSF KST KSW LIM? LST LST? \
          MAC MAC MAC MAC MAC MAC MAC MAC MAC? MEX MON? MOV MOV? MRT MRW MVR NLM NLM? ONT? \
-         PLM PLM? POS? PUN? RBT RMC? RTR RTR? SAI? SCT SCT? SPA SPA? SPI SPI? SSL SSL? SSN? STE STP SVO SVO? \
+         PLM PLM? POS? PUN? RBT RMC? RPA RTR RTR? SAI? SCT SCT? SPA SPA? SPI SPI? SSL SSL? SSN? STE STP SVO SVO? \
          TMN? TMX? TNR? TRA? TRS? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
-         WAV WAV? WCL WGC WGC? WGO WGO? WSL WSL? WTR WTR?"
+         WAV WAV? WCL WGC WGC? WGO WGO? WPA WSL WSL? WTR WTR?"
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {
         // With no parameters each is either understood or short of them, never unknown.

@@ -34,7 +34,8 @@ impl<F: NorFlash> Journal<F> {
 
     pub const fn new(flash: F) -> Self {
         const {
-            assert!(WORD as usize % F::WRITE_SIZE == 0 && WORD as usize % F::READ_SIZE == 0);
+            assert!((WORD as usize).is_multiple_of(F::WRITE_SIZE));
+            assert!((WORD as usize).is_multiple_of(F::READ_SIZE));
         }
         Self {
             flash,

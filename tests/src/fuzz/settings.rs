@@ -81,8 +81,8 @@ fn record(random: &mut Random, image: &[u8]) -> Vec<u8> {
     let words = [0x3153_5054, generation, image.len() as u32];
     let mut head: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     head.extend(CRC.checksum(&head).to_le_bytes());
-    let sealed = [&head, image].concat();
-    let mut record = [&head, &head, image].concat();
+    let sealed = [&head[..], image].concat();
+    let mut record = [&head[..], &head[..], image].concat();
     record.resize(record.len().next_multiple_of(4), 0);
     record.extend(CRC.checksum(&sealed).to_le_bytes());
     record.extend(if random.once_in(8) { [0xFF; 4] } else { [0; 4] });
