@@ -32,6 +32,7 @@ fn faulted() -> Bench {
     bench.run(500);
     assert_eq!(bench.mode(), Mode::Fault);
     bench.host.emergency_stop = false;
+    assert_eq!(bench.error_after(""), "1024");
     bench
 }
 
