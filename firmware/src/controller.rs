@@ -273,9 +273,11 @@ impl State {
             self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
-        if let Some(i) = self.lost {
-            // All that is known of it.
-            pivots[i] = target[i];
+        for i in 0..3 {
+            if self.lost == Some(i) {
+                // All that is known of it.
+                pivots[i] = target[i];
+            }
         }
         let errors = self.following_errors(config, pivots, &target, &motion.rates)?;
         let worst = self
@@ -304,17 +306,22 @@ impl State {
             return None;
         }
         let i = self.turn;
-        let turn = Turn {
-            pivot: i,
-            angle: pivots[i],
-            next: pivots[if i < 2 { i + 1 } else { 0 }],
-            duty: duty[i],
-        };
-        (self.is_in_range(config, i, &guides[i]) && self.watch_pivot(config, &turn)).then_some((
-            target,
-            motion.rates,
-            duty,
-        ))
+        let after = if i < 2 { i + 1 } else { 0 };
+        // All four are there: the turn is never more than 2.
+        if let (Some(guide), Some(&angle), Some(&next), Some(&duty)) =
+            (guides.get(i), pivots.get(i), pivots.get(after), duty.get(i))
+        {
+            let turn = Turn {
+                pivot: i,
+                angle,
+                next,
+                duty,
+            };
+            if !(self.is_in_range(config, i, guide) && self.watch_pivot(config, &turn)) {
+                return None;
+            }
+        }
+        Some((target, motion.rates, duty))
     }
 
     /// Measured minus setpoint, 2^-32 turns, if that is allowed.

@@ -28,10 +28,11 @@ fn faulted() -> Bench {
     assert_eq!(bench.error_after("FLR?"), "77", "nothing has happened yet");
     bench.send("MOV X 40 W 100\n");
     bench.run(2_000);
-    bench.host.bridges[1].set_fault(true);
+    bench.host.emergency_stop = true;
     bench.run(500);
     assert_eq!(bench.mode(), Mode::Fault);
-    bench.host.bridges[1].set_fault(false);
+    bench.host.emergency_stop = false;
+    assert_eq!(bench.error_after(""), "1024");
     bench
 }
 
@@ -44,8 +45,8 @@ fn the_ticks_around_a_fault_can_be_read_until_the_servo_is_on() {
     for (number, row) in rows.iter().enumerate() {
         let at = tick + f64::from(AFTER) - ROWS as f64 + number as f64;
         assert_eq!(row[0], at, "every tick, in order");
-        // Mode and fault: moving before, then latched as the sixth kind.
-        let expected = if at < tick { [2.0, 0.0] } else { [3.0, 6.0] };
+        // Mode and fault: moving before, then latched as the seventh kind.
+        let expected = if at < tick { [2.0, 0.0] } else { [3.0, 7.0] };
         assert_eq!(row[1..3], expected, "tick {at}");
         let driven = row[9..12].iter().any(|duty| *duty != 0.0);
         assert_eq!(driven, at < tick, "tick {at}");

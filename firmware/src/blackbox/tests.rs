@@ -10,7 +10,7 @@ fn sample(tick: u64, mode: Mode) -> Sample {
         tick,
         mode,
         fault: None,
-        setpoint: setpoint.clone(),
+        setpoint,
         point: setpoint,
         pivot_setpoints: Default::default(),
         pivot_rates: [0.0; 3],

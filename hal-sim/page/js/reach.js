@@ -36,7 +36,7 @@ export class Reach {
     const { link, referenced, servo, mode } = this.stage;
     const good = (await link.ask(`VMO? X ${plain(x)} Y ${plain(y)}`)) === "1";
     if (!good) return { good, reason: await this.#why(x, y) };
-    if (mode === "fault") return { good: false, reason: "a fault is latched: acknowledge it first" };
+    if (mode === "fault" || mode === "stopping") return { good: false, reason: "a fault is latched: acknowledge it first" };
     if (!referenced) return { good: false, reason: "reachable, but the stage is not referenced yet" };
     if (!servo) return { good: false, reason: "reachable, but the servo is off" };
     return { good, reason: "" };

@@ -14,7 +14,7 @@ export class Stage extends EventTarget {
   identity = "";
   /** Commands that the controller knows. */
   known = new Set();
-  /** "off", "holding", "moving" or "fault". */
+  /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
   mode = "off";
   fault = "";
   referenced = false;

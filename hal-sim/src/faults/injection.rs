@@ -264,7 +264,7 @@ impl Injection {
             Self::Jam | Self::Knock(_) => self.push(&mut host.stage.plant, axis, age),
             Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
             Self::FewMissedTicks(_) | Self::LateLoop => {
-                if age % MISSED_EVERY == 0 {
+                if age.is_multiple_of(MISSED_EVERY) {
                     host.miss_tick();
                 }
             }

@@ -4,6 +4,9 @@
 //! of, a motion, a fault and the tick in which it comes. It is run twice, with the fault and without: the second must
 //! raise no alarm. The fault is done to the simulated hardware; the controller reads it through its own drivers.
 //!
+//! Not here, since no simulated hardware does it within half a second: hot motors, numbers that are none, setpoints out of reach,
+//! damaged settings, a full command queue, the watchdog. They have tests of their own.
+//!
 //! | file | idea |
 //! |---|---|
 //! | `injection` | what breaks, and what the controller has to say about it |

@@ -136,7 +136,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             break;
         }
         // A host that is there says so, if only by an empty line.
-        if tick % HEARTBEAT_EVERY == 0 && (is_control || tick < scenario.at) {
+        if tick.is_multiple_of(HEARTBEAT_EVERY) && (is_control || tick < scenario.at) {
             session.receive(b"\n");
             watch.heard = tick;
         }
@@ -148,7 +148,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
                 watch.heard = tick;
             }
         }
-        if tick % SERVICE_EVERY == 0 {
+        if tick.is_multiple_of(SERVICE_EVERY) {
             // Writing to a vector does not fail.
             let _ = panel.service(&mut session, &mut panel_link, &mut answers);
         }
@@ -233,7 +233,7 @@ impl<'a> Watch<'a> {
         }
         self.look_for_effect(tick, shown, seen);
         self.keep_moment(tick, host);
-        if tick % LOOK_EVERY != 0 {
+        if !tick.is_multiple_of(LOOK_EVERY) {
             return;
         }
         let plant = &host.stage.plant;
@@ -313,7 +313,7 @@ impl<'a> Watch<'a> {
         match &self.outcome.fault {
             None => tick >= self.outcome.scenario.at + PATIENCE,
             Some(fault) => {
-                let resting = tick % LOOK_EVERY == 0
+                let resting = tick.is_multiple_of(LOOK_EVERY)
                     && fastest_rad_s(&host.stage.plant) < AT_REST_RAD_S
                     && tick > fault.tick + LOOK_EVERY;
                 resting || tick >= fault.tick + AFTERMATH
@@ -359,7 +359,7 @@ impl Moment {
             let plant = &mut self.stage.plant;
             (scenario.injection).push(plant, scenario.axis, tick - scenario.at);
             self.stage.advance_period(pins);
-            if tick % LOOK_EVERY == 0 {
+            if tick.is_multiple_of(LOOK_EVERY) {
                 deepest = deepest.max(overrun_mm(&self.stage.plant));
                 if fastest_rad_s(&self.stage.plant) < AT_REST_RAD_S {
                     break;

@@ -115,6 +115,6 @@ impl Path {
     pub fn length(&self) -> f64 {
         (self.0.windows(2))
             .map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]))
-            .sum()
+            .fold(0.0, |sum, length| sum + length)
     }
 }
