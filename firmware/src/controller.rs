@@ -2,6 +2,9 @@
 
 mod supervisor;
 
+pub(crate) use supervisor::TURN;
+pub use supervisor::{Event, Outcome, STATES, TABLE};
+
 use crate::config::Config;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
@@ -18,6 +21,7 @@ use kinematics::{
     Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
     pivot_motion_in_platform_axes,
 };
+use supervisor::{Turn, Watch};
 
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
@@ -53,6 +57,12 @@ pub struct State {
     tick: u64,
     mode: Mode,
     fault: Option<Fault>,
+    /// The fault that has ended the controlled stop of the one before.
+    worse: Option<Fault>,
+    /// A latched fault lets the motors coast.
+    coasts: bool,
+    /// The pivot that has lost its encoder, until the fault is acknowledged.
+    lost: Option<usize>,
     referenced: bool,
     encoders: [Encoder; 3],
     motion: Motion,
@@ -62,6 +72,17 @@ pub struct State {
     commands: u32,
     refused: u32,
     interval: Interval,
+    /// Rates of the pivots' setpoints, rad/s.
+    rates: [f32; 3],
+    /// Late ticks, a hundred each, less those forgiven.
+    lateness: u32,
+    /// Ticks in a row with a low supply.
+    low_supply: u8,
+    /// Square of how far out the setpoint may be, track radii.
+    reach_square: f32,
+    /// The pivot that is watched in this tick.
+    turn: usize,
+    watch: [Watch; 3],
 }
 
 /// One period of the control loop, at 20 kHz by default.
@@ -69,7 +90,8 @@ pub struct State {
 /// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update interrupt
 /// with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period, 25 us after the
 /// update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No allocation, no blocking,
-/// no panic, no unbounded loop, no f64; its cost on the chip stands in the README and is printed by `cargo chip`.
+/// no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its cost on the chip stands in the
+/// README and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
     config: &mut Config,
@@ -99,15 +121,20 @@ pub fn tick(
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
     state.check_inputs(config, inputs);
+    state.watch_heat(config, inputs);
 
-    let point = advance(config, &mut state.motion);
+    let point = advance(config, state);
     let setpoint = state.motion.centre().platform(&point);
     let driven = if state.servo_on() {
-        state.drive(config, &setpoint, &pivots)
+        state.drive(config, &setpoint, &mut pivots)
     } else {
         None
     };
-    let (target, rates, duty) = driven.unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
+    // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
+    let (target, rates, duty) =
+        (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
+    state.rates = rates;
+    state.turn = if state.turn < 2 { state.turn + 1 } else { 0 };
     let outputs = Outputs {
         duty,
         awake: state.awake(),
@@ -157,7 +184,12 @@ fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) 
 
 /// The motion generator's next setpoint, of the point that is moved.
 #[inline(never)]
-fn advance(config: &Config, motion: &mut Motion) -> Setpoint {
+fn advance(config: &Config, state: &mut State) -> Setpoint {
+    let motion = &mut state.motion;
+    if state.mode == Mode::Stopping {
+        motion.advance_slower(&config.slowdown);
+        return motion.slowed_setpoint(&config.scale);
+    }
     motion.advance();
     motion.setpoint(&config.scale)
 }
@@ -167,6 +199,7 @@ struct Pivots {
     angles: [Angle; 3],
     motion: PivotMotion<f32>,
     torques: [f32; 3],
+    guides: [Guide<f32>; 3],
 }
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
@@ -179,6 +212,7 @@ fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
         angles: pivots,
         motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
         torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
+        guides,
     })
 }
 
@@ -202,41 +236,37 @@ impl State {
         &mut self,
         config: &Config,
         setpoint: &Setpoint,
-        pivots: &[Angle; 3],
+        pivots: &mut [Angle; 3],
     ) -> Option<Driven> {
+        if !self.is_in_disk(config, &setpoint.position) {
+            return None;
+        }
         let Some(Pivots {
             angles: target,
             motion,
             torques,
+            guides,
         }) = pivots_of(config, setpoint)
         else {
             self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
-
-        let mut errors = [0i32; 3];
-        for i in 0..3 {
-            let error = (pivots[i] - target[i]).units();
-            errors[i] = error as i32;
-            let most = config.limits.following_error;
-            if i64::from(errors[i]) != error || errors[i].unsigned_abs() > most.unsigned_abs() {
-                const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
-                let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
-                self.fail(FaultKind::FollowingError, Some(i), value, limit);
-                return None;
-            }
+        // Both bounds are known here and not to the compiler, which would put a panic behind them.
+        if let Some(i) = self.lost.filter(|i| *i < 3) {
+            // All that is known of it.
+            pivots[i] = target[i];
         }
+        let errors = self.following_errors(config, pivots, &target, &motion.rates)?;
         let worst = self
             .settling
             .look(&config.limits, &errors, self.motion.moving());
         self.interval.look(worst);
-        self.mode = if self.motion.moving() {
-            Mode::Moving
-        } else {
-            Mode::Holding
-        };
+        if self.mode != Mode::Holding && !self.motion.moving() {
+            self.come_to_rest();
+        }
         let counts_per_volt = config.servo.counts_per_volt(self.supply);
         let mut duty = [Duty(0); 3];
+        let mut sum = 0.0;
         for i in 0..3 {
             let pivot = PivotSetpoint {
                 error: errors[i],
@@ -245,8 +275,50 @@ impl State {
                 platform_torque: torques[i],
             };
             duty[i] = self.servo[i].step(&config.servo, &pivot, counts_per_volt);
+            sum += self.servo[i].wanted();
         }
-        Some((target, motion.rates, duty))
+        // Infinities add up to one, or to no number.
+        if !(sum.abs() <= f32::MAX) {
+            self.fail(FaultKind::NotFinite, None, 0.0, 0.0);
+            return None;
+        }
+        let i = self.turn.min(2);
+        let turn = Turn {
+            pivot: i,
+            angle: pivots[i],
+            next: pivots[if i < 2 { i + 1 } else { 0 }],
+            duty: duty[i],
+        };
+        (self.is_in_range(config, i, &guides[i]) && self.watch_pivot(config, &turn)).then_some((
+            target,
+            motion.rates,
+            duty,
+        ))
+    }
+
+    /// Measured minus setpoint, 2^-32 turns, if that is allowed.
+    #[inline]
+    fn following_errors(
+        &mut self,
+        config: &Config,
+        pivots: &[Angle; 3],
+        target: &[Angle; 3],
+        rates: &[f32; 3],
+    ) -> Option<[i32; 3]> {
+        let mut errors = [0i32; 3];
+        for i in 0..3 {
+            let error = (pivots[i] - target[i]).units();
+            errors[i] = error as i32;
+            let more = (rates[i].abs() * config.limits.following_per_rate) as i32;
+            let most = config.limits.following_error.saturating_add(more);
+            if i64::from(errors[i]) != error || errors[i].unsigned_abs() > most.unsigned_abs() {
+                const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
+                let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
+                self.fail(FaultKind::FollowingError, Some(i), value, limit);
+                return None;
+            }
+        }
+        Some(errors)
     }
 
     fn snapshot(&self, pivots: &[Angle; 3], target: &[Angle; 3], duty: [Duty; 3]) -> Snapshot {
@@ -255,8 +327,10 @@ impl State {
             tick: self.tick,
             mode: self.mode,
             fault: self.fault,
+            worse: self.worse,
             referenced: self.referenced,
             encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
+            encoder_warnings: self.encoders.each_ref().map(Encoder::warning),
             pivots: *pivots,
             // A difference that does not fit is a fault, and then the target is what is measured.
             pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),

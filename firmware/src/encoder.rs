@@ -63,6 +63,10 @@ pub struct Encoder {
     bad: u8,
     warning: bool,
     reason: Option<FaultKind>,
+    /// The last reading that decoded.
+    reading: u32,
+    /// Frames since then that have repeated it.
+    same: u16,
 }
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
@@ -85,6 +89,12 @@ impl Encoder {
                 } else {
                     fraction
                 };
+                self.same = if fraction == self.reading {
+                    self.same.saturating_add(1)
+                } else {
+                    0
+                };
+                self.reading = fraction;
                 self.take_fraction(config, fraction);
             }
             Err(error) => self.miss(
@@ -161,6 +171,25 @@ impl Encoder {
         } else {
             Some(self.reason.unwrap_or(FaultKind::EncoderSilent))
         }
+    }
+
+    /// Takes it for lost, whatever its frames say, until it has been ready anew.
+    pub fn give_up(&mut self, reason: FaultKind) {
+        self.reason = Some(reason);
+        self.good = 0;
+        self.same = 0;
+    }
+
+    /// How often in a row it has repeated one reading to the bit.
+    #[inline]
+    pub fn same_readings(&self) -> u16 {
+        self.same
+    }
+
+    /// What the pivot has moved in the last tick, 2^-32 turns.
+    #[inline]
+    pub fn step(&self) -> i32 {
+        self.step
     }
 
     /// The pivot's angle.

@@ -1,4 +1,8 @@
-//! What can go wrong in the loop, and what is kept of it.
+//! What can go wrong in the loop, what is done about it, and what is kept of it.
+
+mod about;
+
+pub use about::{ABOUT, About};
 
 use core::fmt;
 
@@ -21,8 +25,37 @@ pub enum FaultKind {
     EmergencyStop,
     /// The supply is under its limit; value and limit in V.
     SupplyLow,
-    /// A setpoint left what the mechanism can reach, or is not finite.
+    /// A setpoint left what the mechanism can reach: no pivots belong to it.
     ImpossibleSetpoint,
+    /// An encoder repeats its reading to the last bit while its pivot is driven.
+    EncoderFrozen,
+    /// A pivot turns faster than it ever should; value and limit in rad/s.
+    Overspeed,
+    /// Two neighbouring pivots are closer than their carriages allow; value and limit in rad.
+    PivotsTooClose,
+    /// A pivot's place on its guide is out of the guide's range; value and limit in track radii.
+    GuideRange,
+    /// The platform's centre is out of the disk that it may be in; value and limit in track radii.
+    WorkspaceLeft,
+    /// A bridge has been at its end for too long; value and limit in s.
+    Stalled,
+    /// A motor has carried too much current for too long; value and limit in A.
+    MotorHot,
+    /// The loop has been late too often; value and limit are numbers of ticks.
+    LoopLate,
+    /// What the tick computes is no longer a number.
+    NotFinite,
+}
+
+/// What a fault does to the motors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reaction {
+    /// The motion under way is brought to rest on its own path, then the bridges brake.
+    Stop,
+    /// The bridges short the motors' windings.
+    Brake,
+    /// The sleep pins open the bridges.
+    Coast,
 }
 
 /// A latched fault.
@@ -41,6 +74,42 @@ pub struct Fault {
 }
 
 impl FaultKind {
+    /// What is done about it; the reasons stand in [`ABOUT`].
+    pub const fn reaction(self) -> Reaction {
+        match self {
+            Self::EncoderSilent
+            | Self::EncoderCrc
+            | Self::EncoderError
+            | Self::EncoderJump
+            | Self::EncoderFrozen
+            | Self::MotorHot
+            | Self::LoopLate => Reaction::Stop,
+            Self::FollowingError
+            | Self::EmergencyStop
+            | Self::SupplyLow
+            | Self::ImpossibleSetpoint
+            | Self::Overspeed
+            | Self::PivotsTooClose
+            | Self::GuideRange
+            | Self::WorkspaceLeft
+            | Self::Stalled
+            | Self::NotFinite => Reaction::Brake,
+            Self::BridgeFault => Reaction::Coast,
+        }
+    }
+
+    /// Whether it is one of an encoder, which can not be used any more.
+    pub const fn is_of_encoder(self) -> bool {
+        matches!(
+            self,
+            Self::EncoderSilent
+                | Self::EncoderCrc
+                | Self::EncoderError
+                | Self::EncoderJump
+                | Self::EncoderFrozen
+        )
+    }
+
     /// The kind in words.
     pub const fn text(self) -> &'static str {
         match self {
@@ -53,14 +122,28 @@ impl FaultKind {
             Self::EmergencyStop => "emergency stop pressed",
             Self::SupplyLow => "supply voltage too low",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
+            Self::EncoderFrozen => "encoder repeats one reading",
+            Self::Overspeed => "pivot too fast",
+            Self::PivotsTooClose => "pivot too close to the next one",
+            Self::GuideRange => "pivot out of its guide's range",
+            Self::WorkspaceLeft => "platform out of its disk",
+            Self::Stalled => "drive at its end for too long",
+            Self::MotorHot => "motor too hot",
+            Self::LoopLate => "control loop late too often",
+            Self::NotFinite => "a computed value is not a number",
         }
     }
 
     /// Unit of the value and the limit; empty where there are none.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::FollowingError => "rad",
+            Self::FollowingError | Self::PivotsTooClose => "rad",
             Self::SupplyLow => "V",
+            Self::Overspeed => "rad/s",
+            Self::GuideRange | Self::WorkspaceLeft => "track radii",
+            Self::Stalled => "s",
+            Self::MotorHot => "A",
+            Self::LoopLate => "ticks",
             _ => "",
         }
     }

@@ -54,6 +54,8 @@ pub enum Mode {
     Moving,
     /// A fault is latched, the motors are in the safe state.
     Fault,
+    /// A fault is latched, the motion under way is being brought to rest under control.
+    Stopping,
 }
 
 /// What is known at a tick.
@@ -65,10 +67,14 @@ pub struct Snapshot {
     pub mode: Mode,
     /// The latched fault.
     pub fault: Option<Fault>,
+    /// The fault that has ended its controlled stop, if one has.
+    pub worse: Option<Fault>,
     /// Whether theta and the turns are known.
     pub referenced: bool,
     /// Whether all three encoders answer well, and, for those that do not, why (index: pivot).
     pub encoder_faults: [Option<crate::fault::FaultKind>; 3],
+    /// Whether an encoder warns.
+    pub encoder_warnings: [bool; 3],
     /// Measured pivot angles; valid once referenced.
     pub pivots: [Angle; 3],
     /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.

@@ -135,14 +135,40 @@ pub struct Window {
 /// Thresholds of the faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supervision {
-    /// Largest following error of a pivot.
+    /// Largest following error of a pivot whose setpoint rests.
     pub following_error_rad: f64,
+    /// What is allowed besides, for each rad/s of the setpoint: a time by which it may lag.
+    pub following_error_s: f64,
     /// Bad encoder frames in a row that are bridged by extrapolation.
     pub bridged_frames: u8,
     /// Largest pivot acceleration that can be real: a frame that asks for more is bad, whatever its CRC says.
     pub plausible_acceleration_rad_s2: f64,
     /// Lowest supply.
     pub supply_min_v: f64,
+    /// Rate of a pivot that is a fault, over the largest rate of a pivot in motion.
+    pub overspeed_factor: f64,
+    /// Way of a pivot's setpoint in which its encoder must show something new.
+    pub frozen_rad: f64,
+    /// Change of a drive's voltage after which its encoder must show something new.
+    pub frozen_v: f64,
+    /// Longest time of a bridge at its largest duty.
+    pub at_end_s: f64,
+    /// Current that a motor bears for ever.
+    pub motor_current_a: f64,
+    /// Time in which a motor's winding goes most of the way (all but 1/e) to its final temperature.
+    pub motor_heating_s: f64,
+    /// Ticks that may be late, one in a hundred ticks forgiven.
+    pub late_ticks: u32,
+    /// How far out of the usable disk the platform's setpoint is a fault.
+    pub disk_margin_mm: f64,
+    /// How far out of its guide's range a pivot's setpoint is a fault, track radii.
+    pub guide_margin: f64,
+    /// How far under their smallest angle two measured pivots are a fault.
+    pub separation_margin_rad: f64,
+    /// Duration of a fault's controlled stop.
+    pub stop_s: f64,
+    /// Longest silence of the host; 0 when any is allowed.
+    pub host_silence_ms: f64,
 }
 
 /// Records of the data recorder.
@@ -222,10 +248,26 @@ impl Parameters {
             dwell_s: 2e-3,
         },
         supervision: Supervision {
+            // A push of 40 N m on a ring, nearly all that a motor can hold, leaves half of it.
             following_error_rad: 2e-3,
+            following_error_s: 1e-4,
             bridged_frames: 4,
             plausible_acceleration_rad_s2: 50_000.0,
             supply_min_v: 36.0,
+            overspeed_factor: 1.25,
+            // 2,000 counts, over and over the same one.
+            frozen_rad: 2e-4,
+            // Half a volt is 0.7 N m, seven times the friction.
+            frozen_v: 0.5,
+            at_end_s: 0.1,
+            motor_current_a: 4.0,
+            motor_heating_s: 20.0,
+            late_ticks: 10,
+            disk_margin_mm: 0.5,
+            guide_margin: 0.005,
+            separation_margin_rad: 0.5 * core::f64::consts::PI / 180.0,
+            stop_s: 0.06,
+            host_silence_ms: 0.0,
         },
         recorder: Recording {
             points: RECORD_ROWS as u32,

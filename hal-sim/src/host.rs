@@ -24,6 +24,8 @@ pub struct Host {
     pub bridges: [Bridge; AXES],
     /// Emergency stop pressed.
     pub emergency_stop: bool,
+    /// The tick before was late, or there should have been one more: what a host has no clock to find out.
+    pub late: bool,
     drivers: [Driver; AXES],
     config: Config,
     state: State,
@@ -50,6 +52,7 @@ impl Host {
             stage: Stage::new(stage),
             bridges: bridges.try_into().expect(three),
             emergency_stop: false,
+            late: false,
             drivers: drivers.try_into().ok().expect(three),
             config: Config::new(parameters),
             state: State::new(),
@@ -103,7 +106,7 @@ impl Host {
             current_counts,
             supply_counts,
             tick_cycles: 0,
-            late: false,
+            late: self.late,
         }
     }
 }

@@ -232,7 +232,7 @@ fn a_low_supply() {
         (fault.value - 35.9).abs() < 0.05 && (fault.limit - 36.0).abs() < 0.05,
         "{fault}"
     );
-    assert!(!bench.outputs.awake && bench.outputs.duty == [Duty(0); 3]);
+    assert!(bench.outputs.awake && bench.outputs.duty == [Duty(0); 3]);
     for line in ["FRF", "SVO X 1"] {
         assert_eq!(bench.error_after(line), "1024");
     }

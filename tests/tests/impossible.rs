@@ -22,11 +22,13 @@ fn pivots_that_are_no_pose_cannot_be_referenced() {
     // The twin is every other test: mounted as the parameters say.
 }
 
-/// A referenced host that does not mind how far a pivot is from its setpoint.
+/// A referenced host that does not mind how far a pivot is from its setpoint, nor how far out that is.
 fn lenient() -> Parameters {
     Parameters {
         supervision: Supervision {
             following_error_rad: 3.0,
+            disk_margin_mm: 100.0,
+            guide_margin: 1.0,
             ..Parameters::REFERENCE.supervision
         },
         ..Parameters::REFERENCE

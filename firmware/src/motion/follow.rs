@@ -1,5 +1,9 @@
 //! Following a plan, tick by tick.
 
+mod slowing;
+
+pub use slowing::Slowdown;
+
 use super::axis::Axis;
 use super::centre::Centre;
 use super::plan::{Piece, Plan, Position, Start};
@@ -24,6 +28,7 @@ pub struct Scale {
     turn_velocity: f32,
     acceleration: f32,
     turn_acceleration: f32,
+    rate_hz: f32,
 }
 
 /// Bits cut from a velocity and from an acceleration to make them 32 bits wide: full range 39 turns per second and 3,050 per
@@ -43,6 +48,7 @@ impl Scale {
             turn_velocity: (velocity * core::f64::consts::TAU) as f32,
             acceleration: acceleration as f32,
             turn_acceleration: (acceleration * core::f64::consts::TAU) as f32,
+            rate_hz: rate_hz as f32,
         }
     }
 }
@@ -64,6 +70,7 @@ pub struct Motion {
     piece: usize,
     left: u64,
     done: u64,
+    slowing: slowing::Slowing,
 }
 
 /// A plan does not start where the motion is (any more); nothing has changed.

@@ -52,7 +52,7 @@ pub use axis::{Axis, JERK_STEP, SUB_BITS};
 pub use axis_profile::{AxisLimits, AxisProfile, Task, Unusable, stop_distance};
 pub use centre::{Centre, FURTHEST};
 pub use float::Float;
-pub use follow::{Motion, Scale, Setpoint, Stale};
+pub use follow::{Motion, Scale, Setpoint, Slowdown, Stale};
 pub use ground::{Bounds, Ground};
 pub use jog::plan_jog;
 pub use limits::{Limits, PathLimits};

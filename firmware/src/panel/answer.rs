@@ -45,7 +45,10 @@ impl Panel {
             Query::Velocity => one_line(out, format_args!("{}", self.stage.velocity_mm_s())),
             Query::ParameterHelp => parameter_help(out),
             Query::Level => one_line(out, format_args!("{}", session.level)),
-            Query::Heartbeat => one_line(out, format_args!("{}", self.heartbeat.ms)),
+            Query::Heartbeat => {
+                let ms = self.parameters.supervision.host_silence_ms;
+                one_line(out, format_args!("{ms}"))
+            }
             Query::Events => self.tell_events(out),
             Query::Statistics => self.tell_statistics(out),
             Query::Fault => self.fault(out),
@@ -156,7 +159,12 @@ impl Panel {
             return one_line(out, format_args!("0 no fault"));
         };
         if let Some(fault) = snapshot.fault {
-            return one_line(out, format_args!("{fault}"));
+            let mut reply = Reply::new(out);
+            reply.line(format_args!("{fault}"))?;
+            if let Some(worse) = snapshot.worse {
+                reply.line(format_args!("its stop was ended: {worse}"))?;
+            }
+            return reply.end();
         }
         let mut reply = Reply::new(out);
         if snapshot.encoder_faults == [None; 3] {

@@ -33,6 +33,8 @@ pub(super) enum Event {
     Refused(u32),
     /// No host was heard for so many milliseconds.
     Silent(f64),
+    /// The encoder of a pivot, counted from 0, has begun to warn, or has stopped.
+    Warning(u8, bool),
 }
 
 /// See the module.
@@ -46,9 +48,11 @@ pub(super) struct Events {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Seen {
     fault: Option<Fault>,
+    worse: Option<Fault>,
     referenced: bool,
     on: bool,
     refused: u32,
+    warnings: [bool; 3],
 }
 
 impl Events {
@@ -83,9 +87,11 @@ impl Events {
     pub fn take(&mut self, snapshot: &Snapshot) {
         let now = Seen {
             fault: snapshot.fault,
+            worse: snapshot.worse,
             referenced: snapshot.referenced,
             on: matches!(snapshot.mode, Mode::Holding | Mode::Moving),
             refused: snapshot.refused,
+            warnings: snapshot.encoder_warnings,
         };
         let last = core::mem::replace(&mut self.last, now);
         let tick = snapshot.tick;
@@ -102,8 +108,15 @@ impl Events {
         for event in happened.into_iter().flatten() {
             self.add(tick, event);
         }
-        if let Some(fault) = now.fault.filter(|_| now.fault != last.fault) {
-            self.add(fault.tick, Event::Fault(fault));
+        for (pivot, (warns, warned)) in (0..).zip(now.warnings.iter().zip(last.warnings)) {
+            if *warns != warned {
+                self.add(tick, Event::Warning(pivot, *warns));
+            }
+        }
+        for (now, last) in [(now.fault, last.fault), (now.worse, last.worse)] {
+            if let Some(fault) = now.filter(|_| now != last) {
+                self.add(fault.tick, Event::Fault(fault));
+            }
         }
     }
 }
@@ -123,6 +136,8 @@ impl fmt::Display for Event {
             Self::Stop => f.write_str("stopped by command"),
             Self::Halt => f.write_str("halted by command"),
             Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
+            Self::Warning(pivot, true) => write!(f, "encoder warns, pivot {}", pivot + 1),
+            Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
             Self::Silent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
         }
     }

@@ -1,4 +1,4 @@
-//! The host's heartbeat: when one is asked for with `HBT`, a host that is not heard for longer is taken for gone.
+//! The host's heartbeat: when one is asked for with `HBT` or its parameter, which are the same, a host that is not heard for longer is taken for gone.
 //!
 //! Heard is any byte on any connection. What follows is what `STP` does: the motion ends at the highest deceleration, on its
 //! path, the macro and all waits end, every connection gets error 10, and the event is kept. It is no fault: a stage that
@@ -12,13 +12,11 @@ use crate::link::PanelLink;
 use crate::motion::Stop;
 
 /// Shortest heartbeat that can be asked for: what an operating system keeps with ease.
-const SHORTEST_MS: f64 = 10.0;
+pub(super) const SHORTEST_MS: f64 = 10.0;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Heartbeat {
-    /// Longest silence, ms; 0 when any is allowed.
-    pub ms: f64,
     heard: u64,
     /// It has been silent for too long, and not heard since.
     is_silent: bool,
@@ -30,8 +28,10 @@ impl Panel {
         if ms != 0.0 && !(SHORTEST_MS..=LONGEST_MS).contains(&ms) {
             return Err(ErrorCode::OutOfRange);
         }
+        for parameters in [&mut self.parameters, &mut self.parameters_before] {
+            parameters.supervision.host_silence_ms = ms;
+        }
         self.heartbeat = Heartbeat {
-            ms,
             heard: self.stage.tick(),
             is_silent: false,
         };
@@ -48,11 +48,8 @@ impl Panel {
 
     /// Stops when the host has been silent for too long.
     pub(super) fn watch_heartbeat(&mut self, link: &mut PanelLink<'_>) {
-        let Heartbeat {
-            ms,
-            heard,
-            is_silent,
-        } = self.heartbeat;
+        let Heartbeat { heard, is_silent } = self.heartbeat;
+        let ms = self.parameters.supervision.host_silence_ms;
         let tick = self.stage.tick();
         if ms == 0.0 || is_silent || tick <= heard + self.stage.ticks(ms) {
             return;

@@ -101,5 +101,6 @@ const fn word(mode: Mode) -> &'static str {
         Mode::Holding => "holding",
         Mode::Moving => "moving",
         Mode::Fault => "fault",
+        Mode::Stopping => "stopping",
     }
 }

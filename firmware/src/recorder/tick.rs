@@ -3,7 +3,6 @@
 use super::Sample;
 use super::setup::{Order, Setup};
 use super::store::{Head, ORDERS};
-use crate::link::Mode;
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Consumer;
 
@@ -117,7 +116,7 @@ impl<'a> TickRecorder<'a> {
         let setup = &self.setup;
         let taken = |commands: u32| sample.commands.wrapping_sub(commands) as i32 >= 0;
         let mut triggered = setup.now || setup.commands.is_some_and(taken);
-        let faulted = sample.mode == Mode::Fault;
+        let faulted = sample.fault.is_some();
         triggered |= setup.fault && self.looked && faulted && !self.faulted;
         let mut above = 0;
         for (i, watch) in setup.watches.iter().enumerate() {

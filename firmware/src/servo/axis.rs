@@ -136,6 +136,8 @@ pub struct AxisServo {
     /// Motor current over the dead time's knee.
     current: f32,
     carry: f32,
+    /// What it asked for last, PWM counts.
+    wanted: f32,
 }
 
 impl AxisServo {
@@ -145,6 +147,23 @@ impl AxisServo {
             learnt: self.learnt,
             ..Self::default()
         };
+    }
+
+    /// From here on the setpoint is given as what is measured: feedforward and what was learnt drive alone.
+    pub fn go_blind(&mut self) {
+        self.last_error = 0.0;
+    }
+
+    /// What it asked for last, PWM counts: not a number where anything that it is made of is none.
+    #[inline]
+    pub fn wanted(&self) -> f32 {
+        self.wanted
+    }
+
+    /// Whether it asked for as much as the bridge can give, or more.
+    #[inline]
+    pub fn is_at_end(&self, config: &ServoConfig) -> bool {
+        self.wanted.abs() > config.full
     }
 
     /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
@@ -178,6 +197,7 @@ impl AxisServo {
         let volts = over_emf + config.volt_per_rate * setpoint.rate;
         let share = limit(self.current, 1.0);
         let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
+        self.wanted = counts;
         let limited = limit(counts, config.full);
 
         // Collecting stops while the bridge is at its end and the error asks for more.

@@ -146,7 +146,7 @@ impl Stage {
         self.substep(AFTER_LATCH);
     }
 
-    /// Changes the supply, V, from now on.
+    /// Another supply from now on, V.
     pub fn set_supply_v(&mut self, supply_v: f64) {
         self.bridge.supply_v = supply_v;
     }

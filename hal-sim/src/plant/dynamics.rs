@@ -27,7 +27,13 @@ pub struct External {
     pub torque_n_m: f64,
     /// Torque on each ring, N m.
     pub ring_torque_n_m: [f64; AXES],
+    /// Angle at which a ring is jammed, rad: by something about as stiff as the guides' ends.
+    pub jammed_at_rad: [Option<f64>; AXES],
 }
+
+/// Stiffness of what jams a ring, N m/rad, and its damping, about half of what lets the ring not swing.
+const JAM_N_M_RAD: f64 = 1e5;
+const JAM_N_M_S_RAD: f64 = 50.0;
 
 /// Everything that is constant while the machine moves.
 #[derive(Clone, Debug)]
@@ -121,6 +127,9 @@ impl Dynamics {
                 .friction
                 .evaluate(ring_rad_s[i], state.bristle_rad[i], step_s);
             ring_n_m[i] += transmitted_n_m - friction.torque_n_m;
+            if let Some(at_rad) = external.jammed_at_rad[i] {
+                ring_n_m[i] -= JAM_N_M_RAD * (pivots[i] - at_rad) + JAM_N_M_S_RAD * ring_rad_s[i];
+            }
             rate.bristle_rad[i] = friction.bristle_rate_rad_s;
             rate.motor_rad_s[i] = self.drive.motor_acceleration(
                 state.current_a[i],

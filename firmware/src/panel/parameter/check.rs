@@ -1,5 +1,6 @@
 //! What has to hold between parameters, each of which is in its own range.
 
+use crate::panel::heartbeat::SHORTEST_MS;
 use crate::parameters::Parameters;
 use kinematics::Geometry;
 
@@ -48,9 +49,14 @@ impl Parameters {
     fn thresholds_agree(&self) -> bool {
         let (supervision, drive) = (&self.supervision, &self.drive);
         let braking = self.limits.pivot_acceleration_rad_s2 * self.limits.stop_factor;
+        let silence_ms = supervision.host_silence_ms;
+        let silence_fits = silence_ms == 0.0 || silence_ms >= SHORTEST_MS;
         // A stage that settles must not be at fault, nor one that brakes, nor one at its nominal supply.
         supervision.following_error_rad > (self.window.counts + 1.0) * COUNT_RAD
             && supervision.plausible_acceleration_rad_s2 > braking
+            && supervision.separation_margin_rad < self.geometry.separation_rad.max(f64::MIN_POSITIVE)
+            && supervision.guide_margin < self.geometry.guide_start
+            && silence_fits
             && supervision.supply_min_v < drive.supply_v
             // Four times the dead time is what a bridge needs to put out anything at all in both directions.
             && drive.dead_time_s * drive.pwm_hz < 0.25

@@ -8,6 +8,7 @@ use super::{Kind, Parameter, Source, When};
 use crate::drivers::biss::POSITION_BITS;
 use crate::link::RECORD_WORDS;
 use crate::motion::Way;
+use crate::panel::LONGEST_MS;
 use crate::panel::axis::Axis;
 
 /// What the parameters of a group share.
@@ -149,6 +150,20 @@ pub const PARAMETERS: &[Parameter] = &[
     SUPERVISION.int(0x5450_0502, "bad encoder frames that are bridged", [0.0, 20.0], whole!(u8: supervision.bridged_frames)),
     SUPERVISION.float(0x5450_0503, "largest plausible acceleration of a pivot", "rad/s^2", [1_000.0, 500_000.0],
         at!(supervision.plausible_acceleration_rad_s2)),
+    SUPERVISION.float(0x5450_0504, "following error allowed besides, by rate", "rad per rad/s", [0.0, 0.01], at!(supervision.following_error_s)),
+    SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
+    SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
+    SUPERVISION.float(0x5450_0507, "change of voltage after which an encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
+    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.at_end_s)),
+    SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
+    SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
+    SUPERVISION.int(0x5450_050B, "late ticks that are allowed, one in 100 ticks forgiven", [0.0, 1_000.0], whole!(u32: supervision.late_ticks)),
+    SUPERVISION.float(0x5450_050C, "how far out of the disk the setpoint is a fault", "mm", [0.01, 100.0], at!(supervision.disk_margin_mm)),
+    SUPERVISION.float(0x5450_050D, "how far out of a guide's range the setpoint is a fault", "track radii", [1e-4, 0.5], at!(supervision.guide_margin)),
+    SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 20.0],
+        Source::Kept(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
+    SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
+    SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any", "ms", [0.0, LONGEST_MS], at!(supervision.host_silence_ms)),
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
     ENCODER.int(0x5450_0601, "reading of encoder 2 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[1].zero_counts)),

@@ -92,7 +92,7 @@ pub(super) const OPTIONS: &[RecordOption] = &[
     option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, Word::Duty)),
     option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, Word::Current)),
     option(201, "supply", ", V", |source| of_controller(source, Signal::Word(Word::Supply))),
-    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault", |source| of_controller(source, Signal::Word(Word::Mode))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(Word::Mode))),
     option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(Word::Fault))),
     option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(Word::Cost))),
 ];

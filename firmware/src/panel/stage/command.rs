@@ -134,7 +134,7 @@ impl Stage {
             return Err(ErrorCode::Busy);
         };
         match (on, snapshot.mode) {
-            (true, Mode::Fault) => Err(ErrorCode::MotionError),
+            (true, Mode::Fault | Mode::Stopping) => Err(ErrorCode::MotionError),
             (true, Mode::Off) if snapshot.referenced => {
                 self.send(Command::Servo(true), Flight::Other, link)
             }
@@ -147,6 +147,9 @@ impl Stage {
 
     /// `FLC`.
     pub fn acknowledge(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+        if self.mode() == Mode::Stopping {
+            return Err(ErrorCode::InMotion);
+        }
         if self.is_faulted() {
             self.send(Command::Acknowledge, Flight::Other, link)?;
         }

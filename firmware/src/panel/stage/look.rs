@@ -142,7 +142,7 @@ impl Stage {
 
     /// The fault that is latched makes every motion an error.
     pub fn is_faulted(&self) -> bool {
-        self.mode() == Mode::Fault
+        matches!(self.mode(), Mode::Fault | Mode::Stopping)
     }
 
     /// Commands sent to the tick so far.
@@ -174,7 +174,7 @@ impl Stage {
             || match self.mode() {
                 Mode::Off | Mode::Fault => false,
                 Mode::Holding => !settled,
-                Mode::Moving => true,
+                Mode::Moving | Mode::Stopping => true,
             }
     }
 

@@ -259,7 +259,7 @@ impl Stage {
                     self.target_is_rest = false;
                 }
             }
-            Mode::Off | Mode::Fault => {
+            Mode::Off | Mode::Fault | Mode::Stopping => {
                 self.course = None;
                 self.next = None;
                 self.stop_wanted = None;

@@ -40,7 +40,7 @@ impl Stage {
         let Some(snapshot) = self.present() else {
             return Referencing::Waiting;
         };
-        let result = if snapshot.mode == Mode::Fault {
+        let result = if matches!(snapshot.mode, Mode::Fault | Mode::Stopping) {
             Referencing::Failed(ErrorCode::MotionError)
         } else if snapshot.referenced {
             Referencing::Done

@@ -1,0 +1,116 @@
+//! Faults of a single pivot: one pivot is looked at in each tick, in turn, so that they are found at most three ticks (150 us)
+//! later than they could be, at a third of the cost.
+
+use super::super::{Inputs, State};
+use crate::config::{CURRENT_A_PER_COUNT, Config};
+use crate::drivers::bridge::Duty;
+use crate::fault::FaultKind;
+use crate::number::sqrt_f32;
+use kinematics::Angle;
+
+/// Ticks from one look at a pivot to the next.
+pub(crate) const TURN: u32 = 3;
+/// Frames with one reading, from which a change of the drive must have moved it: 1 ms, three times the windings' own time.
+const SLOW_READINGS: u16 = 20;
+
+/// What is kept of a pivot from look to look.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in super::super) struct Watch {
+    /// Square of the motor's current, ADC counts, smoothed.
+    heat: f32,
+    /// Ticks at its largest duty.
+    at_end: u32,
+    /// Duty when the encoder last showed something new.
+    duty: i16,
+}
+
+/// The pivot whose turn it is, what belongs to it, and the next one.
+pub(in super::super) struct Turn {
+    pub pivot: usize,
+    pub angle: Angle,
+    pub next: Angle,
+    pub duty: Duty,
+}
+
+impl State {
+    /// The motor's temperature, in every state: it cools while nothing drives it.
+    pub(in super::super) fn watch_heat(&mut self, config: &Config, inputs: &Inputs) {
+        let i = self.turn;
+        let (Some(watch), Some(counts)) = (self.watch.get_mut(i), inputs.current_counts.get(i))
+        else {
+            return;
+        };
+        let counts = f32::from(*counts);
+        watch.heat += (counts * counts - watch.heat) * config.limits.heating;
+        let (heat, most) = (watch.heat, config.limits.heat);
+        if heat > most && self.servo_on() {
+            const A: f32 = CURRENT_A_PER_COUNT as f32;
+            let (value, limit) = (sqrt_f32(heat) * A, sqrt_f32(most) * A);
+            self.fail(FaultKind::MotorHot, Some(i), value, limit);
+        }
+    }
+
+    /// Looks at the pivot whose turn it is, while it is driven; whether all is well with it.
+    pub(in super::super) fn watch_pivot(&mut self, config: &Config, turn: &Turn) -> bool {
+        let limits = &config.limits;
+        let i = turn.pivot;
+        let separation = (turn.next - turn.angle).fraction();
+        if separation < limits.separation {
+            self.fail_with(FaultKind::PivotsTooClose, i, separation, limits.separation);
+            return false;
+        }
+        let (Some(watch), Some(encoder), Some(servo)) = (
+            self.watch.get_mut(i),
+            self.encoders.get(i),
+            self.servo.get(i),
+        ) else {
+            return true;
+        };
+        watch.at_end = if servo.is_at_end(&config.servo) {
+            watch.at_end.saturating_add(TURN)
+        } else {
+            0
+        };
+        if watch.at_end > limits.at_end {
+            let seconds = [watch.at_end, limits.at_end].map(|ticks| ticks as f32 / limits.hz);
+            self.fail(FaultKind::Stalled, Some(i), seconds[0], seconds[1]);
+            return false;
+        }
+        if self.lost == Some(i) {
+            return true;
+        }
+        let step = encoder.step().unsigned_abs();
+        if step > limits.overspeed {
+            let rates = [step, limits.overspeed].map(|step| radians(step) * limits.hz);
+            self.fail(FaultKind::Overspeed, Some(i), rates[0], rates[1]);
+            return false;
+        }
+        if encoder.same_readings() < TURN as u16 {
+            watch.duty = turn.duty.0;
+        } else if encoder.same_readings() >= SLOW_READINGS
+            && turn.duty.0.abs_diff(watch.duty) > limits.frozen_duty
+        {
+            self.freeze(i);
+        }
+        true
+    }
+
+    #[cold]
+    fn fail_with(&mut self, kind: FaultKind, pivot: usize, value: u32, limit: u32) {
+        self.fail(kind, Some(pivot), radians(value), radians(limit));
+    }
+
+    /// A new start of what counts driven time.
+    pub(super) fn rest_watches(&mut self) {
+        for watch in &mut self.watch {
+            watch.at_end = 0;
+            watch.duty = 0;
+        }
+    }
+}
+
+/// 2^-32 turns in rad.
+fn radians(units: u32) -> f32 {
+    const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
+    units as f32 * RAD
+}

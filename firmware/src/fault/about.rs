@@ -1,0 +1,132 @@
+//! What is known of each kind of fault, in words: `FAULTS.md` is made of it.
+
+use super::FaultKind;
+
+/// A kind of fault, for people.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// Which.
+    pub kind: FaultKind,
+    /// How it is found out, and how soon.
+    pub detection: &'static str,
+    /// Parameters that set its threshold; empty where there is nothing to set.
+    pub thresholds: &'static [u32],
+    /// Why the reaction is the one it is.
+    pub reason: &'static str,
+}
+
+const LOST: &str =
+    "the other two pivots and the model of this one carry the motion to rest on its path, gently";
+const ENCODER: &[u32] = &[0x5450_0502];
+
+/// All kinds, in the order of their numbers.
+pub const ABOUT: &[About] = &[
+    About {
+        kind: FaultKind::EncoderSilent,
+        detection: "no frame, or none that is whole, more ticks in a row than are bridged; once referenced, moving or not",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    About {
+        kind: FaultKind::EncoderCrc,
+        detection: "the frame's check fails, more ticks in a row than are bridged; once referenced",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    About {
+        kind: FaultKind::EncoderError,
+        detection: "the frame's error bit, more ticks in a row than are bridged; once referenced",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    About {
+        kind: FaultKind::EncoderJump,
+        detection: "a step that asks for an acceleration no pivot can have, more ticks in a row than are bridged; once referenced",
+        thresholds: &[0x5450_0503, 0x5450_0502],
+        reason: LOST,
+    },
+    About {
+        kind: FaultKind::FollowingError,
+        detection: "measured minus setpoint of a pivot over a constant and a part that grows with the setpoint's rate; every tick while driven",
+        thresholds: &[0x5450_0500, 0x5450_0504],
+        reason: "the servo has lost the pivot: no setpoint will be followed, so none is asked for",
+    },
+    About {
+        kind: FaultKind::BridgeFault,
+        detection: "a bridge pulls its fault pin; every tick while driven",
+        thresholds: &[],
+        reason: "over-current or over-temperature: braking would send the motor's current through the same switches, and the sleep pin is what resets them",
+    },
+    About {
+        kind: FaultKind::EmergencyStop,
+        detection: "the emergency stop's input; every tick, in every state",
+        thresholds: &[],
+        reason: "the hardware cuts the pulses, which brakes; braking stops in the shortest way and needs neither encoders nor computation",
+    },
+    About {
+        kind: FaultKind::SupplyLow,
+        detection: "the supply under its limit in four ticks in a row while driven",
+        thresholds: &[0x5450_0501],
+        reason: "there may be no power left for a controlled stop; braking takes none, and a bridge that loses its own supply lets go by itself",
+    },
+    About {
+        kind: FaultKind::ImpossibleSetpoint,
+        detection: "no pivots belong to the setpoint; every tick while driven",
+        thresholds: &[],
+        reason: "the plan is wrong, and there is no other to stop along",
+    },
+    About {
+        kind: FaultKind::EncoderFrozen,
+        detection: "the same reading to the last bit in four frames or more while the setpoint has gone further than a threshold, or for 20 ticks while the voltage has changed by more than another (3 ticks more). A pivot that is wedged so hard that not one bit changes is reported as this",
+        thresholds: &[0x5450_0506, 0x5450_0507],
+        reason: LOST,
+    },
+    About {
+        kind: FaultKind::Overspeed,
+        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every third tick while driven",
+        thresholds: &[0x5450_0505, 0x5450_0106],
+        reason: "what lets a pivot run away cannot be trusted to stop it",
+    },
+    About {
+        kind: FaultKind::PivotsTooClose,
+        detection: "the measured angle between two neighbours under the smallest one less a margin; each pair every third tick while driven",
+        thresholds: &[0x5450_0203, 0x5450_050E],
+        reason: "the carriages are about to touch: the shortest way to rest is the best",
+    },
+    About {
+        kind: FaultKind::GuideRange,
+        detection: "the setpoint's place on a guide out of the guide's range by more than a margin; each guide every third tick while driven",
+        thresholds: &[0x5450_0201, 0x5450_0202, 0x5450_050D],
+        reason: "the plan is wrong: its path leads on to the guide's end",
+    },
+    About {
+        kind: FaultKind::WorkspaceLeft,
+        detection: "the setpoint out of the usable disk by more than a margin, and not on its way back into it from where the servo was switched on; every tick while driven",
+        thresholds: &[0x5450_050C],
+        reason: "the plan is wrong: its path leads on outwards",
+    },
+    About {
+        kind: FaultKind::Stalled,
+        detection: "a bridge at its largest duty without a pause; each pivot every third tick while driven",
+        thresholds: &[0x5450_0508],
+        reason: "something holds the pivot, or the supply or the motor is too weak for the motion: a stop under control would need the same drive",
+    },
+    About {
+        kind: FaultKind::MotorHot,
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every third tick, in every state; cools while latched, and can not be acknowledged away. Over 7.3 A the current is measured as 7.3 A",
+        thresholds: &[0x5450_0509, 0x5450_050A],
+        reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
+    },
+    About {
+        kind: FaultKind::LoopLate,
+        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state",
+        thresholds: &[0x5450_050B],
+        reason: "encoders and drives still work, a late duty is an old one for 25 us",
+    },
+    About {
+        kind: FaultKind::NotFinite,
+        detection: "a duty that is not a number, where whatever else is none ends up; each drive every tick while driven",
+        thresholds: &[],
+        reason: "nothing that is computed can be trusted; braking needs no numbers",
+    },
+];

@@ -1,0 +1,119 @@
+//! An encoder that is lost in motion: the other two and the model of the third bring the stage to rest on its path.
+//!
+//! `CASES=1000 cargo test -p tests --test lost_encoder -- --nocapture` prints how far it is off.
+
+use firmware::link::Mode;
+use hal_sim::devices::{EncoderFault, StageParameters};
+use hal_sim::run::{RunOptions, stage_parameters};
+use tests::Bench;
+use tests::fuzz::Random;
+
+const TURN: f64 = 4_294_967_296.0;
+const RADIUS_MM: f64 = 100.0;
+/// Where the guides end at the worst orientation, mm.
+const GUIDES_END_MM: f64 = 84.0;
+
+const LOST: [EncoderFault; 3] = [
+    EncoderFault::StuckHigh,
+    EncoderFault::ErrorBit,
+    EncoderFault::Frozen,
+];
+
+/// How far the platform is from its setpoint: mm and deg.
+fn off(bench: &Bench) -> [f64; 2] {
+    let [x, y, theta] = bench.host.stage.latched_pose();
+    let [sx, sy, st] = bench.sample().setpoint.position.map(|units| units as f64);
+    let xy = (x * 1e3 - sx / TURN * RADIUS_MM).hypot(y * 1e3 - sy / TURN * RADIUS_MM);
+    [xy, (theta.to_degrees() - st / TURN * 360.0).abs()]
+}
+
+/// The worst of what was seen.
+#[derive(Debug, Default)]
+struct Worst {
+    off: [f64; 2],
+    from_centre_mm: f64,
+    ticks: u32,
+}
+
+impl Worst {
+    fn look(&mut self, bench: &Bench) {
+        let now = off(bench);
+        self.off = [self.off[0].max(now[0]), self.off[1].max(now[1])];
+        let [x, y, _] = bench.host.stage.latched_pose();
+        self.from_centre_mm = self.from_centre_mm.max(x.hypot(y) * 1e3);
+    }
+}
+
+fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
+    let mut bench = Bench::new(stage);
+    let (radius, angle) = (random.between(0.0, 79.0), random.between(0.0, 6.28));
+    bench.host.stage.set_pose_at_rest([
+        radius * 1e-3 * angle.cos(),
+        radius * 1e-3 * angle.sin(),
+        random.between(-3.0, 3.0),
+    ]);
+    assert_eq!(bench.error_after("FRF"), "0");
+    let (radius, angle) = (random.between(0.0, 79.9), random.between(0.0, 6.28));
+    let line = format!(
+        "MOV X {} Y {} W {}",
+        radius * angle.cos(),
+        radius * angle.sin(),
+        random.between(-400.0, 400.0)
+    );
+    assert_eq!(bench.error_after(&line), "0");
+    for _ in 0..random.below(12_000) {
+        bench.tick();
+    }
+    if bench.mode() != Mode::Moving {
+        return;
+    }
+    let fault = *random.pick(&LOST);
+    let encoder = random.below(3);
+    bench.host.stage.encoders[encoder].set_fault(fault);
+    let mut ticks = 0;
+    while bench.mode() != Mode::Fault && ticks < 40_000 {
+        bench.tick();
+        ticks += 1;
+        if bench.mode() == Mode::Stopping {
+            worst.look(&bench);
+        }
+        if bench.mode() == Mode::Holding {
+            // It came to rest by itself before the loss could be seen.
+            return;
+        }
+    }
+    let latched = bench.fault().expect("a fault");
+    assert!(latched.kind.is_of_encoder(), "{line}, {fault:?}: {latched}");
+    assert_eq!(latched.pivot, Some(encoder as u8), "{line}: {latched}");
+    worst.ticks = worst.ticks.max(ticks);
+    // Braked, with what speed is left.
+    for _ in 0..2_000 {
+        bench.tick();
+        worst.look(&bench);
+    }
+    let at_rest = bench.host.stage.plant.pivot_rates_rad_s();
+    assert!(at_rest.iter().all(|rate| rate.abs() < 0.01), "{at_rest:?}");
+}
+
+#[test]
+fn two_encoders_and_the_model_bring_the_stage_to_rest_inside_its_limits() {
+    let cases = std::env::var("CASES").map_or(30, |cases| cases.parse().expect("a number"));
+    for (mismatch_percent, most) in [(0.0, [1.0, 1.0]), (20.0, [3.0, 3.0])] {
+        let stage = stage_parameters(&RunOptions {
+            mismatch_percent,
+            ..RunOptions::default()
+        });
+        let seed = 5;
+        let mut random = Random::new(seed);
+        let mut worst = Worst::default();
+        for _ in 0..cases {
+            lose_one(&stage, &mut random, &mut worst);
+        }
+        println!("{cases} cases from seed {seed}, mismatch {mismatch_percent} %: {worst:?}");
+        assert!(
+            worst.off[0] < most[0] && worst.off[1] < most[1],
+            "{worst:?}"
+        );
+        assert!(worst.from_centre_mm < GUIDES_END_MM, "{worst:?}");
+    }
+}

@@ -1,0 +1,197 @@
+//! The supervisor's table, line by line: every event in every state, through the tick, with the simulated machine behind it.
+
+use firmware::config::Config;
+use firmware::controller::{Event, Outcome, STATES, TABLE};
+use firmware::link::{Command, Link, Mode, PanelLink, Snapshot, TickLink};
+use firmware::motion::{Axis, Centre, Ground, Plan, Start, Stop, plan_line, plan_stop};
+use firmware::parameters::Parameters;
+use hal_sim::devices::{EncoderFault, StageParameters};
+use hal_sim::host::Host;
+
+/// Ticks in which a command is taken and told.
+const SOON: u32 = 4;
+/// Ticks of any of the motions here.
+const LONG: u32 = 20_000;
+
+struct Run {
+    host: Host,
+    tick_link: TickLink<'static>,
+    commands: PanelLink<'static>,
+    plan: Option<Plan>,
+    now: Snapshot,
+}
+
+impl Run {
+    fn new() -> Self {
+        let (tick_link, commands) = Box::leak(Box::new(Link::new())).split();
+        let mut run = Self {
+            host: Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE),
+            tick_link,
+            commands,
+            plan: None,
+            now: Snapshot::default(),
+        };
+        run.ticks(10);
+        run
+    }
+
+    fn ticks(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.host.tick(&mut self.tick_link, &mut ());
+            if let Some(now) = self.commands.snapshot() {
+                self.now = now;
+            }
+        }
+    }
+
+    fn command(&mut self, command: Command) {
+        self.commands.send(command).expect("room");
+        self.ticks(SOON);
+    }
+
+    /// A line of 60 mm from where it stands.
+    fn line(&self) -> Plan {
+        let parameters = Parameters::REFERENCE;
+        let ground = Ground::new(parameters.limits, parameters.geometry);
+        let from = self.now.setpoint;
+        let to = [from[0] + (6 << 32) / 10, from[1], from[2]];
+        plan_line(self.now.plan + 1, from, to, &ground).expect("inside the disk")
+    }
+
+    /// In a state; referenced in all of them.
+    fn in_state(state: Mode) -> Self {
+        let mut run = Self::new();
+        run.command(Command::Reference);
+        match state {
+            Mode::Off => run.command(Command::Servo(false)),
+            Mode::Holding => {}
+            Mode::Moving | Mode::Stopping => {
+                let line = run.line();
+                run.plan = Some(line.clone());
+                run.command(Command::Move(line));
+                run.ticks(2_000);
+            }
+            Mode::Fault => {
+                run.host.emergency_stop = true;
+                run.ticks(1);
+                run.host.emergency_stop = false;
+                run.ticks(SOON);
+            }
+        }
+        if state == Mode::Stopping {
+            run.host.stage.encoders[0].set_fault(EncoderFault::StuckHigh);
+            run.ticks(10);
+        }
+        assert_eq!(run.now.mode, state);
+        run
+    }
+
+    /// A plan that starts where the motion is or will be.
+    fn next_plan(&self) -> Plan {
+        let Some(plan) = self.plan.as_ref().filter(|_| self.now.mode == Mode::Moving) else {
+            return self.line();
+        };
+        let parameters = Parameters::REFERENCE;
+        let ground = Ground::new(parameters.limits, parameters.geometry);
+        let Start::Rest(from) = plan.start else {
+            panic!("a line starts at rest")
+        };
+        let axes = from.map(Axis::at_rest);
+        let at = self.now.plan_tick + 20;
+        plan_stop(plan.id + 1, plan, &axes, at, &ground, Stop::Urgent).expect("there is a stop")
+    }
+
+    fn happens(&mut self, event: Event) {
+        let mut wanted = Parameters::REFERENCE;
+        match event {
+            Event::Reference => self.command(Command::Reference),
+            Event::ServoOn => self.command(Command::Servo(true)),
+            Event::ServoOff => self.command(Command::Servo(false)),
+            Event::Move => self.command(Command::Move(self.next_plan())),
+            Event::Centre => {
+                let centre = Centre::new([0.2, 0.1]).expect("near enough");
+                self.command(Command::Centre(centre));
+            }
+            Event::Constants => {
+                wanted.servo.position_1_s += 1.0;
+                self.command(Command::Configure(Config::new(&wanted)));
+            }
+            Event::Mounting => {
+                wanted.encoders[1].zero_counts += 1;
+                self.command(Command::Configure(Config::new(&wanted)));
+            }
+            Event::Acknowledge => self.command(Command::Acknowledge),
+            Event::AtRest => self.ticks(LONG),
+            Event::StopFault => {
+                self.host.late = true;
+                self.ticks(12);
+                self.host.late = false;
+            }
+            Event::BrakeFault => {
+                self.host.emergency_stop = true;
+                self.ticks(SOON);
+                self.host.emergency_stop = false;
+            }
+            Event::CoastFault => {
+                self.host.bridges[2].set_fault(true);
+                self.ticks(SOON);
+                self.host.bridges[2].set_fault(false);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_event_does_in_every_state_what_the_table_says() {
+    for (event, outcomes) in TABLE {
+        for (state, outcome) in STATES.into_iter().zip(outcomes) {
+            let mut run = Run::in_state(state);
+            let (before, fault) = (run.now.refused, run.now.fault);
+            run.happens(event);
+            let (mode, refused) = match outcome {
+                Outcome::To(mode) | Outcome::If(mode) => (mode, 0),
+                Outcome::Refused => (state, 1),
+                Outcome::Nothing => (state, 0),
+            };
+            assert_eq!(
+                (run.now.mode, run.now.refused - before),
+                (mode, refused),
+                "{event:?} in {state:?}"
+            );
+            if fault.is_some() && event != Event::Acknowledge {
+                assert_eq!(run.now.fault, fault, "{event:?}: the first one stays");
+            }
+            let faulted = matches!(run.now.mode, Mode::Fault | Mode::Stopping);
+            assert_eq!(run.now.fault.is_some(), faulted, "{event:?} in {state:?}");
+        }
+    }
+}
+
+/// What is refused where the stage is not such that it can be had.
+#[test]
+fn what_needs_something_is_refused_without_it() {
+    let needs = |state: Mode, event: Event| {
+        TABLE.iter().any(|(each, outcomes)| {
+            let column = STATES.iter().position(|&each| each == state).unwrap();
+            *each == event && matches!(outcomes[column], Outcome::If(_))
+        })
+    };
+    let refuses = |mut run: Run, event: Event| {
+        assert!(needs(run.now.mode, event));
+        let (state, before) = (run.now.mode, run.now.refused);
+        run.happens(event);
+        assert_eq!((run.now.mode, run.now.refused), (state, before + 1));
+    };
+    refuses(Run::new(), Event::ServoOn);
+    let mut silent = Run::new();
+    silent.host.stage.encoders[1].set_fault(EncoderFault::StuckLow);
+    silent.ticks(20);
+    refuses(silent, Event::Reference);
+    for state in [Mode::Holding, Mode::Moving] {
+        let mut run = Run::in_state(state);
+        // A plan that starts elsewhere.
+        run.now.setpoint[0] += 1;
+        run.plan = None;
+        refuses(run, Event::Move);
+    }
+}
