@@ -15,7 +15,7 @@ pub struct TickCost {
     /// Instructions of the last.
     pub last: u64,
     /// Earliest and latest start of a tick, ns after its interrupt was due.
-    pub start_ns: Option<(u64, u64)>,
+    pub start_ns: Option<(i64, i64)>,
     /// Latest end of a tick, ns after its interrupt was due.
     pub latest_end_ns: u64,
 }
@@ -27,7 +27,7 @@ impl TickCost {
         self.total as f64 / self.ticks.max(1) as f64
     }
 
-    pub(super) fn begin(&mut self, start_ns: u64) {
+    pub(super) fn begin(&mut self, start_ns: i64) {
         let (first, last) = self.start_ns.unwrap_or((start_ns, start_ns));
         self.start_ns = Some((first.min(start_ns), last.max(start_ns)));
     }

@@ -121,12 +121,12 @@ impl<F> StageDriver<F> {
         };
         // The tick under way is the one before the one to come.
         let due = started_at + FIRST_TICK_NS + self.tick.saturating_sub(1) * PERIOD_NS;
-        let after_ns = at.0.saturating_sub(due);
+        let after_ns = at.0 as i64 - due as i64;
         if address == self.landmarks.tick_begin {
             self.tick_began = Some(instructions);
             self.cost.begin(after_ns);
         } else if let Some(began) = self.tick_began.take() {
-            self.cost.add(instructions - began, after_ns);
+            self.cost.add(instructions - began, after_ns.max(0) as u64);
         }
     }
 

@@ -21,8 +21,6 @@ pub struct Load {
     pub refused: u64,
     /// Bytes of the stack that something was ever written to.
     pub stack: u64,
-    /// Priorities of latch and tick in the interrupt controller, 0 the highest.
-    pub priorities: [Option<u8>; 2],
 }
 
 /// Ticks before the load begins.
@@ -50,10 +48,6 @@ const FLOOD: [&[u8]; 8] = [
 ];
 /// The memory of the stack, which grows down from its end.
 const STACK: std::ops::Range<u64> = 0x1000_0000..0x1001_0000;
-/// The interrupt controller's priorities, a byte each, and the numbers of the two interrupts.
-const PRIORITIES: u64 = 0xE000_E400;
-const TIM3: u64 = 29;
-const TIM1_UP_TIM10: u64 = 25;
 
 /// Runs so many ticks on a chip that executes so many instructions in a second.
 ///
@@ -97,7 +91,6 @@ pub fn load(ticks: u64, instructions_per_second: NonZeroU64) -> Result<Load, Chi
             .filter(|it| *it == REFUSED)
             .count() as u64;
         seen.stack = stack(period);
-        seen.priorities = [TIM3, TIM1_UP_TIM10].map(|number| priority(period, number));
         // Nobody is left to be told when the other side is gone.
         let _ = tell.send(seen);
         Break(())
@@ -118,10 +111,4 @@ fn stack(period: &mut Period<'_>) -> u64 {
     let mut words = STACK.step_by(4);
     let lowest = words.find(|at| period.word(*at).is_some_and(|word| word != 0));
     STACK.end - lowest.unwrap_or(STACK.end)
-}
-
-fn priority(period: &mut Period<'_>, number: u64) -> Option<u8> {
-    let at = PRIORITIES + number;
-    let word = period.word(at & !3)?;
-    Some((word >> (8 * (at & 3))) as u8)
 }

@@ -29,10 +29,6 @@ pub(super) fn run(arguments: &ChipLoad) -> Result<ExitCode, CliError> {
         println!("{:>10}  bytes from it", load.bytes[1]);
         println!("{:>10}  parameters refused in motion", load.refused);
         println!("{:>10}  bytes of stack used", load.stack);
-        for (name, priority) in ["latch", "tick"].iter().zip(load.priorities) {
-            let priority = priority.map_or_else(|| "unknown".to_owned(), |it| it.to_string());
-            println!("{priority:>10}  priority of the {name}");
-        }
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -28,8 +28,9 @@ pub enum Step {
     Mask,
     /// A fused multiply-add.
     Fused,
-    /// The lower half of an address goes into a register, or the upper.
+    /// The lower half of an address goes into a register.
     Lower(u16, u32),
+    /// The upper half of an address goes into a register.
     Upper(u16, u32),
     /// Nothing of interest.
     Plain,
@@ -136,7 +137,8 @@ fn step(instruction: &Insn<'_>, detail: &ArmInsnDetail<'_>) -> Step {
         }
         ArmInsn::ARM_INS_ADD | ArmInsn::ARM_INS_ADDW if first == Some(SP) => Step::Plain,
         ArmInsn::ARM_INS_POP | ArmInsn::ARM_INS_VPOP | ArmInsn::ARM_INS_LDM => Step::Plain,
-        ArmInsn::ARM_INS_MOVW => lower_or_upper(first, number(), Step::Lower),
+        // To the disassembler `movw` is a `mov`, now and then.
+        _ if name.starts_with("movw") => lower_or_upper(first, number(), Step::Lower),
         ArmInsn::ARM_INS_MOVT => lower_or_upper(first, number(), Step::Upper),
         _ if ["vfma", "vfms", "vfnma", "vfnms"]
             .iter()
