@@ -69,7 +69,7 @@ fn the_control_loop_of_the_image_cannot_fail() {
 fn the_stack_of_the_image_leaves_a_quarter_and_no_run_under_load_comes_near_its_bound() {
     let stack = Stack::of(&image_code(), NESTING).expect("a bound");
     assert!(stack.left() > stack.memory / 4, "{stack:?}");
-    let rate = NonZeroU64::new(100_000_000).expect("some");
+    let rate = NonZeroU64::new(168_000_000).expect("some");
     let load = load(5_000, rate).expect("a run");
     println!("{load:?}, bound {}", stack.bytes);
     assert!(load.stack > stack.levels[1].bytes, "{load:?}");
