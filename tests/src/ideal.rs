@@ -221,5 +221,5 @@ impl Ideal {
 /// Whether the servo was on.
 #[must_use]
 pub fn is_held(sample: &Sample) -> bool {
-    matches!(sample.mode, Mode::Holding | Mode::Moving)
+    matches!(sample.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
 }

@@ -92,7 +92,7 @@ impl Bench {
     /// One tick, and one turn of the command side.
     pub fn tick(&mut self) {
         self.outputs = self.host.tick(&mut self.tick_link, &mut self.record);
-        if matches!(self.mode(), Mode::Holding | Mode::Moving) {
+        if matches!(self.mode(), Mode::Holding | Mode::Moving | Mode::Stopping) {
             self.worst_error_counts = self.worst_error_counts.max(self.error_counts());
         }
         // Writing to a vector does not fail.

@@ -37,13 +37,15 @@ pub struct Doing {
 }
 
 impl Doing {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 10] = [
         Self::new(Mode::Off, false),
         Self::new(Mode::Off, true),
         Self::new(Mode::Holding, false),
         Self::new(Mode::Holding, true),
         Self::new(Mode::Moving, false),
         Self::new(Mode::Moving, true),
+        Self::new(Mode::Stopping, false),
+        Self::new(Mode::Stopping, true),
         Self::new(Mode::Fault, false),
         Self::new(Mode::Fault, true),
     ];
@@ -62,6 +64,8 @@ impl Doing {
             (Mode::Holding, true) => "taking a command, at rest",
             (Mode::Moving, false) => "in motion",
             (Mode::Moving, true) => "taking a command, in motion",
+            (Mode::Stopping, false) => "stopping because of a fault",
+            (Mode::Stopping, true) => "taking a command, stopping because of a fault",
             (Mode::Fault, false) => "with a fault latched",
             (Mode::Fault, true) => "taking a command, with a fault",
         }
@@ -135,7 +139,7 @@ mod tests {
             tally.add(tick, 100 + tick % 8, doing, || tick.to_string());
         }
         let counted: Vec<_> = tally.by_doing().map(|(_, cost)| cost.ticks).collect();
-        assert_eq!(counted, [2; 8]);
+        assert_eq!(counted, [2; 10]);
         assert_eq!((tally.all().ticks, tally.all().worst), (16, 107));
         let worst = tally.worst.expect("there were ticks");
         assert_eq!((worst.tick, worst.line.as_str()), (7, "7"));
