@@ -5,6 +5,7 @@
 use firmware::link::Mode;
 use hal_sim::devices::{EncoderFault, StageParameters};
 use hal_sim::run::{RunOptions, stage_parameters};
+use std::f64::consts::TAU;
 use tests::Bench;
 use tests::fuzz::Random;
 
@@ -46,14 +47,14 @@ impl Worst {
 
 fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
     let mut bench = Bench::new(stage);
-    let (radius, angle) = (random.between(0.0, 79.0), random.between(0.0, 6.28));
+    let (radius, angle) = (random.between(0.0, 79.0), random.between(0.0, TAU));
     bench.host.stage.set_pose_at_rest([
         radius * 1e-3 * angle.cos(),
         radius * 1e-3 * angle.sin(),
         random.between(-3.0, 3.0),
     ]);
     assert_eq!(bench.error_after("FRF"), "0");
-    let (radius, angle) = (random.between(0.0, 79.9), random.between(0.0, 6.28));
+    let (radius, angle) = (random.between(0.0, 79.9), random.between(0.0, TAU));
     let line = format!(
         "MOV X {} Y {} W {}",
         radius * angle.cos(),
