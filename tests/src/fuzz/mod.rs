@@ -186,8 +186,14 @@ impl Case {
             }
             self.ticks(100);
         }
-        self.stage.ask(OBSERVER, b"ERR?\n");
-        self.stage.ask(0, b"ERR?\n");
+        // Behind the number of a stop there may be that of a fault.
+        for connection in [OBSERVER, 0] {
+            for _ in 0..4 {
+                if self.stage.ask(connection, b"ERR?\n") == b"0\n" {
+                    break;
+                }
+            }
+        }
     }
 
     fn state(&mut self) -> Vec<u8> {
