@@ -168,8 +168,9 @@ impl Case {
             assert_eq!(
                 String::from_utf8_lossy(&before),
                 String::from_utf8_lossy(&after),
-                "error {error} has changed something: {}",
-                self.watch.story()
+                "error {error} has changed something: {}; {}",
+                self.watch.story(),
+                String::from_utf8_lossy(&self.stage.ask(OBSERVER, b"FLT?\nEVT?\n")),
             );
         }
     }
