@@ -8,6 +8,7 @@ SILENCE_MS = 1000
 """Longest silence of the host: far longer than PIPython is silent between two commands, on a busy machine too."""
 PATIENCE_S = 60
 """Far longer than anything here takes, on a busy machine and on the emulated chip too."""
+FLASH_FAILED = 4001
 
 
 class Programs:
@@ -21,8 +22,22 @@ class Programs:
                 command()
             else:
                 self.stage.send(command)
-        self.stage.MAC_END()
-        self.addCleanup(self.stage.MAC_DEL, name)
+        self.keep(self.stage.MAC_END)
+        self.addCleanup(self.keep, self.stage.MAC_DEL, name)
+
+    def keep(self, change, *arguments):
+        """A change that the controller keeps in flash; without a flash it takes effect, and an error says that it is not kept."""
+        if self.KEEPS_SETTINGS:
+            change(*arguments)
+            return
+        self.stage.errcheck = False
+        try:
+            change(*arguments)
+        finally:
+            self.stage.errcheck = True
+        start = time.monotonic()
+        while self.stage.qERR() != FLASH_FAILED:
+            self.assertLess(time.monotonic(), start + PATIENCE_S)
 
     def test_a_macro_with_arguments_and_one_inside_another(self):
         stage = self.stage
