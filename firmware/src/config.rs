@@ -50,8 +50,8 @@ pub struct SupervisionConfig {
     pub heat: f32,
     /// Part of the way to a new temperature from one look at a motor to the next.
     pub heating: f32,
-    /// Way of a setpoint in which a reading must change: rad/s times ticks.
-    pub frozen_way: f32,
+    /// Way of a setpoint in which a reading must change, 2^-32 turns.
+    pub frozen_way: u64,
     /// Change of a duty that must change a reading, PWM counts.
     pub frozen_duty: u16,
     /// Ticks in a second.
@@ -104,7 +104,7 @@ impl Config {
                 heating: (1.0
                     - libm::exp(-f64::from(TURN) * period_s / supervision.motor_heating_s))
                     as f32,
-                frozen_way: (supervision.frozen_rad * rate_hz) as f32,
+                frozen_way: (supervision.frozen_rad * UNITS_PER_RAD) as u64,
                 frozen_duty: (supervision.frozen_v / drive.supply_v * f64::from(drive.pwm_counts))
                     as u16,
                 hz: rate_hz as f32,

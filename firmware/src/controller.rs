@@ -72,8 +72,6 @@ pub struct State {
     commands: u32,
     refused: u32,
     interval: Interval,
-    /// Rates of the pivots' setpoints, rad/s.
-    rates: [f32; 3],
     /// Late ticks, a hundred each, less those forgiven.
     lateness: u32,
     /// Ticks in a row with a low supply.
@@ -133,7 +131,6 @@ pub fn tick(
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
-    state.rates = rates;
     state.turn = if state.turn < 2 { state.turn + 1 } else { 0 };
     let outputs = Outputs {
         duty,
@@ -308,12 +305,17 @@ impl State {
         }
         let i = self.turn;
         let after = if i < 2 { i + 1 } else { 0 };
-        // All four are there: the turn is never more than 2.
-        if let (Some(guide), Some(&angle), Some(&next), Some(&duty)) =
-            (guides.get(i), pivots.get(i), pivots.get(after), duty.get(i))
-        {
+        // All are there: the turn is never more than 2.
+        if let (Some(guide), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
+            guides.get(i),
+            target.get(i),
+            pivots.get(i),
+            pivots.get(after),
+            duty.get(i),
+        ) {
             let turn = Turn {
                 pivot: i,
+                setpoint,
                 angle,
                 next,
                 duty,

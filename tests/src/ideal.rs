@@ -64,6 +64,8 @@ pub struct Ideal {
     pub connections: Vec<Connection>,
     /// What is wrong with the hardware.
     pub trouble: Trouble,
+    /// The encoders' last bit changes from tick to tick, as that of any real one does.
+    pub flicker: bool,
     /// What the last tick put out.
     pub outputs: Outputs,
     tick_link: TickLink<'static>,
@@ -71,6 +73,7 @@ pub struct Ideal {
     last: Last,
     /// What the encoders show.
     counts: [u32; 3],
+    last_bit: u32,
 }
 
 impl Ideal {
@@ -94,11 +97,13 @@ impl Ideal {
             keeper,
             connections: (0..connections).map(|_| Connection::default()).collect(),
             trouble: Trouble::default(),
+            flicker: false,
             outputs: Outputs::default(),
             tick_link,
             panel_link,
             last: Last::default(),
             counts,
+            last_bit: 0,
         }
     }
 
@@ -114,6 +119,7 @@ impl Ideal {
             &mut self.last,
         );
         self.follow(before.as_ref());
+        self.last_bit = u32::from(self.flicker) & (self.last_bit ^ 1);
         for number in 0..self.connections.len() {
             self.serve(number);
         }
@@ -183,7 +189,12 @@ impl Ideal {
             if self.trouble.silent[i] {
                 RawFrame::MISSING
             } else {
-                let bits = encode(self.counts[i], false, false, Preamble::DEFAULT);
+                let bits = encode(
+                    self.counts[i] ^ self.last_bit,
+                    false,
+                    false,
+                    Preamble::DEFAULT,
+                );
                 RawFrame(bits.to_be_bytes())
             }
         };

@@ -77,7 +77,7 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::EncoderFrozen,
-        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks, if the setpoint has gone further than a threshold meanwhile, or for 20 ticks (3 more) in which the voltage is off by more than another, and then it brakes, since the servo has been misled. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
+        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks (3 more), if the setpoint has gone further than a threshold meanwhile, or for 20 ticks (3 more) in which the voltage exceeds by more than another what it was when the reading last changed (on the same side of zero or on the other), and then it brakes, since the servo has been misled. Less voltage need not move anything: friction holds what has come to rest. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
         thresholds: &[0x5450_0502, 0x5450_0506, 0x5450_0507],
         reason: LOST,
     },
@@ -113,7 +113,7 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::MotorHot,
-        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every third tick, in every state; cools while latched, and can not be acknowledged away. Over 7.3 A the current is measured as 7.3 A",
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every third tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 7.3 A the current is measured as 7.3 A",
         thresholds: &[0x5450_0509, 0x5450_050A],
         reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
     },

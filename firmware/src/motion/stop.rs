@@ -67,7 +67,7 @@ pub fn plan_stop(
         Stop::Smooth => [1.0, 1.0],
         Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
     };
-    let (mut plan, mut looks) = (None, MOST_LOOKS);
+    let mut plan = None;
     for _ in 0..ATTEMPTS {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
         let pieces = brake.pieces(&state);
@@ -77,7 +77,8 @@ pub fn plan_stop(
             return plan;
         }
         let stopped = stopped(id, of, start, &state, &pieces);
-        let checked = envelope.check(&stopped, &state, &mut looks);
+        // A stop has to be found: none is left unlooked at because others have been looked at before.
+        let checked = envelope.check(&stopped, &state, &mut { MOST_LOOKS });
         plan = Some(stopped);
         match checked {
             Ok(()) => break,

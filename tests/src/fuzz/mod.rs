@@ -53,6 +53,8 @@ pub fn run_all(seed: u64) {
 /// When something did not hold; the message says what, and after which line.
 pub fn run(seed: u64) {
     let mut stage = Ideal::new(CONNECTIONS + 1);
+    // With some parameters the voltage is far from what holds the stage; encoders without noise would be taken for frozen then.
+    stage.flicker = true;
     stage.run(10);
     let help = stage.ask(OBSERVER, b"HLP?\n");
     let names = names(&String::from_utf8_lossy(&help));
@@ -156,6 +158,7 @@ impl Case {
             return;
         }
         self.watch.note(&line);
+        let faults = self.stage.ask(OBSERVER, b"FLT?\n");
         let before = self.state();
         let mut probe = line;
         probe.extend(b"ERR?\n");
@@ -163,6 +166,10 @@ impl Case {
         self.watch.look(&self.stage);
         let answer = String::from_utf8_lossy(&answer).into_owned();
         let error = answer.lines().last().unwrap_or("none").trim().to_owned();
+        if self.stage.ask(OBSERVER, b"FLT?\n") != faults {
+            // What was asked for has been done, and has met a fault: with some parameters the encoders show impossible pivots.
+            return;
+        }
         let after = self.state();
         if error != "0" && error != "10" && self.stage.connections[0].session.is_idle() {
             assert_eq!(

@@ -1,7 +1,6 @@
 //! Faults that the inputs show.
 
 use super::super::{Inputs, State};
-use super::watch::SAME_READINGS;
 use crate::config::{Config, SUPPLY_V_PER_COUNT};
 use crate::fault::{FaultKind, Reaction};
 use crate::link::Mode;
@@ -23,12 +22,11 @@ impl State {
             return;
         }
         self.check_lateness(config, inputs.late);
-        let driven = self.servo_on();
-        if driven {
+        if self.servo_on() {
             self.check_power(config, inputs);
         }
         if self.referenced || self.mode == Mode::Stopping {
-            self.check_encoders(config, driven);
+            self.check_encoders();
         }
     }
 
@@ -69,19 +67,13 @@ impl State {
         }
     }
 
-    fn check_encoders(&mut self, config: &Config, driven: bool) {
+    fn check_encoders(&mut self) {
         for i in 0..3 {
             if self.lost == Some(i) {
                 continue;
             }
-            let encoder = &self.encoders[i];
-            if let Some(kind) = encoder.unusable() {
+            if let Some(kind) = self.encoders[i].unusable() {
                 self.fail(kind, Some(i), 0.0, 0.0);
-            } else if driven && encoder.same_readings() >= SAME_READINGS {
-                let way = f32::from(encoder.same_readings()) * self.rates[i].abs();
-                if way > config.limits.frozen_way {
-                    self.freeze(i);
-                }
             }
         }
     }

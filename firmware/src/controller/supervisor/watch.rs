@@ -12,7 +12,7 @@ use kinematics::Angle;
 pub(crate) const TURN: u32 = 3;
 /// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the windings' own
 /// time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
-pub(super) const SAME_READINGS: u16 = 20;
+const SAME_READINGS: u16 = 20;
 
 /// What is kept of a pivot from look to look.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,6 +23,8 @@ pub(in super::super) struct Watch {
     at_end: u32,
     /// Duty when the encoder last showed something new.
     duty: i16,
+    /// Setpoint at the first look since then.
+    setpoint: Option<Angle>,
     /// Ticks since then in which it has been far from that.
     driven: u16,
 }
@@ -30,6 +32,7 @@ pub(in super::super) struct Watch {
 /// The pivot whose turn it is, what belongs to it, and the next one.
 pub(in super::super) struct Turn {
     pub pivot: usize,
+    pub setpoint: Angle,
     pub angle: Angle,
     pub next: Angle,
     pub duty: Duty,
@@ -91,8 +94,15 @@ impl State {
         }
         if encoder.same_readings() < TURN as u16 {
             watch.duty = turn.duty.0;
+            watch.setpoint = None;
             watch.driven = 0;
-        } else if turn.duty.0.abs_diff(watch.duty) > limits.frozen_duty {
+            return true;
+        }
+        let begun = *watch.setpoint.get_or_insert(turn.setpoint);
+        let gone = (turn.setpoint - begun).units().unsigned_abs() > limits.frozen_way;
+        if gone && encoder.same_readings() >= SAME_READINGS {
+            self.freeze(i);
+        } else if drives_more(turn.duty.0, watch.duty, limits.frozen_duty) {
             // From here on: a reading that has rested for long may go on resting until the drive has had its time.
             watch.driven += TURN as u16;
             if watch.driven >= SAME_READINGS {
@@ -113,6 +123,7 @@ impl State {
         for watch in &mut self.watch {
             watch.at_end = 0;
             watch.duty = 0;
+            watch.setpoint = None;
             watch.driven = 0;
         }
     }
@@ -122,4 +133,11 @@ impl State {
 fn radians(units: u32) -> f32 {
     const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
     units as f32 * RAD
+}
+
+/// Whether a duty is over one before by more than a limit, or as far on the other side of zero. Less than what moved a pivot
+/// last need not move it: at the end of a motion friction keeps it where it is.
+fn drives_more(duty: i16, before: i16, limit: u16) -> bool {
+    let [duty, before, limit] = [i32::from(duty), i32::from(before), i32::from(limit)];
+    duty > before.max(0) + limit || duty < before.min(0) - limit
 }

@@ -153,7 +153,7 @@ pub const PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_0504, "following error allowed besides, by rate", "rad per rad/s", [0.0, 0.01], at!(supervision.following_error_s)),
     SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
     SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
-    SUPERVISION.float(0x5450_0507, "change of voltage after which an encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
+    SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
     SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.at_end_s)),
     SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
     SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
