@@ -216,3 +216,12 @@ fn a_restart_by_command_is_told_as_one_and_the_loop_counts_its_cost() {
     assert!(0.5 * worst < mean && mean <= worst, "{mean} of {worst}");
     assert_eq!(told("LATE="), 0.0);
 }
+
+#[test]
+fn a_tick_is_followed_from_its_begin_to_its_end() {
+    let image = image::find().expect("`cargo stage` builds it");
+    let way = hal_sim::chip::follow(600).expect("as many instructions as were counted");
+    let first = way.first().expect("some").0;
+    let code = hal_sim::proof::Code::read(&image).expect("understood");
+    assert_eq!(code.named("TIM1_UP_TIM10"), Some(first));
+}

@@ -46,6 +46,8 @@ pub struct StageDriver<F> {
     pub bridge_faults: [bool; 3],
     pub probes: Vec<(u64, [BridgeState; 3])>,
     pub actions: Vec<(u64, Action)>,
+    /// Where the core has come by since the caller looked last, of what it watches.
+    pub path: Vec<u64>,
     /// When the timers were started, since the last reset.
     pub started_at: Option<u64>,
     /// The tick to come, since the last reset.
@@ -69,6 +71,7 @@ impl<F> StageDriver<F> {
             bridge_faults: [false; 3],
             probes: Vec::new(),
             actions: Vec::new(),
+            path: Vec::new(),
             started_at: None,
             tick: 0,
             tick_began: None,
@@ -116,6 +119,7 @@ impl<F> StageDriver<F> {
     }
 
     fn note_hit(&mut self, address: u64, at: VirtualNanos, instructions: u64) {
+        self.path.push(address);
         let Some(started_at) = self.started_at else {
             return;
         };
@@ -125,7 +129,9 @@ impl<F> StageDriver<F> {
         if address == self.landmarks.tick_begin {
             self.tick_began = Some(instructions);
             self.cost.begin(after_ns);
-        } else if let Some(began) = self.tick_began.take() {
+        } else if address == self.landmarks.tick_end
+            && let Some(began) = self.tick_began.take()
+        {
             self.cost.add(instructions - began, after_ns.max(0) as u64);
         }
     }
@@ -181,7 +187,9 @@ where
             cost: self.cost,
             resets: &self.resets,
             probes: &self.probes,
+            path: &self.path,
         });
+        self.path.clear();
         session
             .board_mut()
             .set_bridge_faults(now, self.bridge_faults);

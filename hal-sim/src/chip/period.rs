@@ -4,7 +4,7 @@ use super::board::ChipBoard;
 use super::cost::TickCost;
 use crate::devices::{BridgeState, Stage};
 use rigless::device::ResetCause;
-use rigless::emulator::Host;
+use rigless::emulator::{Host, Watch};
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 
@@ -78,6 +78,8 @@ pub struct Period<'a> {
     pub resets: &'a [Reset],
     /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
     pub probes: &'a [(u64, [BridgeState; 3])],
+    /// Where the core has come by since the period before: the tick's begin and end, and what [`Period::watch`] asked for.
+    pub path: &'a [u64],
 }
 
 impl Period<'_> {
@@ -125,6 +127,11 @@ impl Period<'_> {
             .read(address, Width::W32)
             .ok()
             .map(|word| word as u32)
+    }
+
+    /// Has the core's way over an instruction noted from now on. Returns whether it can be.
+    pub fn watch(&mut self, instruction: u64) -> bool {
+        self.host.watch(Watch::Instruction(instruction))
     }
 
     /// The image's record.

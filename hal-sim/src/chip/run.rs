@@ -13,6 +13,7 @@ use super::{Bench, BenchError, Divergence, Period, TickCost, Twin, image};
 use crate::client::{Client, Event};
 use crate::devices::Stage;
 use crate::observer::Observer;
+use crate::proof::ProofError;
 use crate::report::{Progress, Run};
 use crate::run::{RunOptions, stage_parameters, stuck_text};
 use crate::script::{Script, ScriptError};
@@ -43,6 +44,8 @@ pub enum ChipError {
     NoImage,
     /// The bench could not run it.
     Bench(PathBuf, BenchError),
+    /// It could not be taken apart.
+    Proof(PathBuf, ProofError),
     /// The image touched what the emulator does not model.
     Gaps(Vec<String>),
     /// The run ended without a result.
@@ -56,6 +59,7 @@ impl fmt::Display for ChipError {
         match self {
             Self::NoImage => write!(f, "no image: build it with `cargo stage` first"),
             Self::Bench(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Proof(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Gaps(gaps) => {
                 write!(
                     f,

@@ -57,6 +57,9 @@ pub(super) enum Command {
     /// Let the control loop run on the emulated chip while the serial line is full, and tell when its ticks start.
     #[cfg(feature = "chip")]
     ChipLoad(ChipLoad),
+    /// Follow one tick of a move on the emulated chip, instruction by instruction, and tell what they are spent on.
+    #[cfg(feature = "chip")]
+    ChipTick(ChipTick),
     /// Prove of the chip's image that its control loop cannot panic and how deep its stack gets; print what it takes of flash and
     /// RAM. Exit code 1 if the proof fails.
     #[cfg(feature = "chip")]
@@ -269,6 +272,30 @@ pub(super) struct ChipLoad {
     /// Ticks.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = value_parser!(u64).range(1_000..=10_000_000))]
     pub(super) ticks: u64,
+}
+
+/// One tick on the emulated chip.
+#[cfg(feature = "chip")]
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipTick {
+    /// The tick, counted from the start; the move begins at 100.
+    #[arg(long, value_name = "N", default_value_t = 600, value_parser = value_parser!(u64).range(..100_000))]
+    pub(super) tick: u64,
+    /// What to sum up by.
+    #[arg(long, default_value = "file")]
+    pub(super) by: Place,
+}
+
+/// Where an instruction is written.
+#[cfg(feature = "chip")]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub(super) enum Place {
+    /// The file.
+    File,
+    /// The function, with its file.
+    Function,
+    /// The line.
+    Line,
 }
 
 /// Counting on the emulated chip.

@@ -11,6 +11,8 @@ mod chip_load;
 #[cfg(all(feature = "chip", unix))]
 mod chip_serve;
 #[cfg(feature = "chip")]
+mod chip_tick;
+#[cfg(feature = "chip")]
 mod cost;
 mod direct;
 mod error;
@@ -98,6 +100,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Cost(arguments)) => cost::run(&arguments),
         #[cfg(feature = "chip")]
         Some(Command::ChipLoad(arguments)) => chip_load::run(&arguments),
+        #[cfg(feature = "chip")]
+        Some(Command::ChipTick(arguments)) => chip_tick::run(&arguments),
         #[cfg(feature = "chip")]
         Some(Command::ImageCheck) => image_check::run(),
         #[cfg(unix)]

@@ -83,7 +83,7 @@ impl Code {
         Self::of(&Elf::read(&bytes).map_err(ProofError::File)?)
     }
 
-    fn of(elf: &Elf) -> Result<Self, ProofError> {
+    pub(super) fn of(elf: &Elf) -> Result<Self, ProofError> {
         let engine = Engine::new()?;
         let mut code = Self {
             functions: BTreeMap::new(),
@@ -121,18 +121,8 @@ impl Code {
             ..Function::default()
         };
         let mut lower = BTreeMap::<u16, Vec<u32>>::new();
-        let mut next = at;
-        while next < end {
-            let constants = elf.constants.iter().find(|range| range.contains(&next));
-            if let Some(range) = constants {
-                next = range.end;
-                continue;
-            }
-            let bytes = &elf.text[(next - elf.text_at) as usize..(end - elf.text_at) as usize];
-            let decoded = engine.decode(bytes, next)?;
-            let length = decoded.length;
-            self.note(&mut function, &mut lower, (at..end, next), decoded, elf)?;
-            next += length;
+        for (here, decoded) in elf.instructions(engine, at, size)? {
+            self.note(&mut function, &mut lower, (at..end, here), decoded, elf)?;
         }
         Ok(function)
     }

@@ -1,5 +1,7 @@
 //! The image's file: functions, which bytes of `.text` are instructions, the vector table, words that could be addresses.
 
+use super::code::ProofError;
+use super::step::{Decoded, Engine};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -56,6 +58,33 @@ impl Elf {
             words: found,
             stack: address("_stack_start")? - address("_stack_end")?,
         })
+    }
+}
+
+impl Elf {
+    /// The instructions of so many bytes of code, without the constants between them.
+    pub fn instructions(
+        &self,
+        engine: &Engine,
+        start: u64,
+        size: u64,
+    ) -> Result<Vec<(u64, Decoded)>, ProofError> {
+        let end = start + size;
+        let mut instructions = Vec::new();
+        let mut next = start;
+        while next < end {
+            let constants = self.constants.iter().find(|range| range.contains(&next));
+            if let Some(range) = constants {
+                next = range.end;
+                continue;
+            }
+            let bytes = &self.text[(next - self.text_at) as usize..(end - self.text_at) as usize];
+            let decoded = engine.decode(bytes, next)?;
+            let length = decoded.length;
+            instructions.push((next, decoded));
+            next += length;
+        }
+        Ok(instructions)
     }
 }
 

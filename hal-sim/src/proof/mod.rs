@@ -15,12 +15,14 @@
 
 mod code;
 mod elf;
+mod listing;
 mod print;
 mod safe;
 mod stack;
 mod step;
 
 pub use code::{Code, Edge, Function, ProofError};
+pub use listing::listing;
 pub use print::{print_proof, print_stack};
 pub use safe::{Fault, faults};
 pub use stack::{Depth, Depths, LEVELS, Level, NESTING, Stack};
