@@ -250,13 +250,12 @@ fn a_script_that_cannot_be_read_is_named() {
 
 #[cfg(unix)]
 #[test]
-fn a_controller_is_named_in_one_of_two_ways_for_its_page() {
+fn a_controller_is_named_in_one_way_for_its_page() {
     // All options go together but the two ways.
     let whole = [
         "view", "--port", "/no/such", "--baud", "9600", "--web", "off",
     ];
     assert_refused(&tripivot(&whole), "/no/such: there is no such device");
     let both = ["view", "--port", "/no/such", "--connect", "localhost:1"];
-    assert_refused(&tripivot(&both), "cannot be used with '--connect");
-    assert_refused(&tripivot(&["view"]), "--port <DEVICE>|--connect <ADDRESS>");
+    assert_refused(&tripivot(&both), "cannot be used with '--");
 }

@@ -6,10 +6,9 @@ use std::time::Duration;
 
 use super::arguments::RecordRun;
 use super::error::CliError;
-use super::view::existing;
+use super::view::endpoint;
 use crate::record::{Order, TABLES, Trigger, record};
 use crate::report::{Record, make_folder};
-use crate::web::Endpoint;
 
 pub(super) fn run(arguments: &RecordRun) -> Result<ExitCode, CliError> {
     let order = order(arguments)?;
@@ -37,20 +36,13 @@ fn order(arguments: &RecordRun) -> Result<Order, CliError> {
             arguments.tables.len()
         )));
     }
-    let endpoint = match &arguments.port {
-        Some(device) => Endpoint::Serial {
-            device: existing(device)?.to_owned(),
-            baud: arguments.baud,
-        },
-        None => Endpoint::Tcp(arguments.connect.clone()),
-    };
     let trigger = match (arguments.trigger, &arguments.send) {
         (Some(trigger), _) => trigger,
         (None, Some(_)) => Trigger::Move,
         (None, None) => Trigger::Now,
     };
     Ok(Order {
-        endpoint,
+        endpoint: endpoint(&arguments.controller)?,
         tables: arguments.tables.clone(),
         every: arguments.every,
         points: arguments.points,

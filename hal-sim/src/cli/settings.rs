@@ -3,16 +3,15 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use super::arguments::{SettingsCommand, SettingsFile};
+use super::arguments::SettingsCommand;
 use super::error::CliError;
-use super::view::existing;
+use super::view::endpoint;
 use crate::settings::{Settings, export, import};
-use crate::web::Endpoint;
 
 pub(super) fn run(command: &SettingsCommand) -> Result<ExitCode, CliError> {
     let said = match command {
         SettingsCommand::Export(arguments) => {
-            let settings = export(&endpoint(arguments)?)?;
+            let settings = export(&endpoint(&arguments.controller)?)?;
             settings.write(&arguments.file)?;
             format!(
                 "{} parameters and {} macros in {}\n",
@@ -23,7 +22,7 @@ pub(super) fn run(command: &SettingsCommand) -> Result<ExitCode, CliError> {
         }
         SettingsCommand::Import(arguments) => {
             let settings = Settings::read(&arguments.file)?;
-            let changed = import(&settings, &endpoint(arguments)?)?;
+            let changed = import(&settings, &endpoint(&arguments.controller)?)?;
             format!(
                 "{} parameters and {} macros changed, and kept\n",
                 changed.parameters, changed.macros
@@ -32,14 +31,4 @@ pub(super) fn run(command: &SettingsCommand) -> Result<ExitCode, CliError> {
     };
     (io::stdout().write_all(said.as_bytes())).map_err(CliError::output)?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn endpoint(arguments: &SettingsFile) -> Result<Endpoint, CliError> {
-    Ok(match &arguments.port {
-        Some(device) => Endpoint::Serial {
-            device: existing(device)?.to_owned(),
-            baud: arguments.baud,
-        },
-        None => Endpoint::Tcp(arguments.connect.clone()),
-    })
 }

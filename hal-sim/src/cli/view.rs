@@ -1,13 +1,12 @@
 //! `tripivot view`: the page for a controller that runs already, until Ctrl-C.
 
 use std::io::{self, Write};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
-use super::arguments::View;
+use super::arguments::{Controller, View};
 use super::error::CliError;
 use super::serve::until_signal;
 use crate::web::{Endpoint, Page, PageError};
@@ -20,13 +19,7 @@ const FREE_ADDRESS: &str = "127.0.0.1:0";
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
-    let endpoint = match (&arguments.port, &arguments.connect) {
-        (Some(device), _) => Endpoint::Serial {
-            device: existing(device)?.to_owned(),
-            baud: arguments.baud,
-        },
-        (None, address) => Endpoint::Tcp(address.clone().unwrap_or_default()),
-    };
+    let endpoint = endpoint(&arguments.controller)?;
     let stop = until_signal()?;
     let place = endpoint.to_string();
     let page = page(arguments.web.as_deref(), endpoint)?;
@@ -41,16 +34,21 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A device that is not there is more likely misspelt than unplugged.
-pub(super) fn existing(device: &Path) -> Result<&Path, CliError> {
-    if device.exists() {
-        Ok(device)
-    } else {
+/// Where a controller is. A device that is not there is more likely misspelt than unplugged.
+pub(super) fn endpoint(controller: &Controller) -> Result<Endpoint, CliError> {
+    let Some(device) = &controller.port else {
+        return Ok(Endpoint::Tcp(controller.connect.clone()));
+    };
+    if !device.exists() {
         let device = device.display();
-        Err(CliError::Value(format!(
+        return Err(CliError::Value(format!(
             "{device}: there is no such device"
-        )))
+        )));
     }
+    Ok(Endpoint::Serial {
+        device: device.clone(),
+        baud: controller.baud,
+    })
 }
 
 /// The page where it was asked for, or at its usual place or a free port.
