@@ -1,12 +1,13 @@
 //! `FAULTS.md` is what the supervisor's tables say. `UPDATE=1 cargo test -p firmware --test fault_page` writes it.
 
+mod written_page;
+
 use firmware::controller::{Outcome, STATES, TABLE};
 use firmware::fault::{ABOUT, Fault, Reaction};
 use firmware::link::Mode;
 use firmware::panel::{ErrorCode, PARAMETERS};
 use firmware::parameters::Parameters;
 use std::fmt::Write;
-use std::path::Path;
 
 const HEAD: &str = "# Faults
 
@@ -125,18 +126,7 @@ fn page() -> String {
 
 #[test]
 fn page_is_up_to_date() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("FAULTS.md");
-    let page = page();
-    if std::env::var_os("UPDATE").is_some() {
-        std::fs::write(&path, page).unwrap();
-        return;
-    }
-    let kept = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        kept == page,
-        "{} is not what the tables say: UPDATE=1 cargo test -p firmware --test fault_page writes it",
-        path.display()
-    );
+    written_page::hold("FAULTS.md", &page());
 }
 
 /// Every kind is told about, once, where its number says; and told with its unit where it has values.

@@ -1,9 +1,10 @@
 //! `PARAMETERS.md` is what the table of parameters says. `UPDATE=1 cargo test -p firmware --test parameter_page` writes it.
 
+mod written_page;
+
 use firmware::panel::{Kind, PARAMETERS, Parameter};
 use firmware::parameters::Parameters;
 use std::fmt::Write;
-use std::path::Path;
 
 const HEAD: &str = "# Parameters
 
@@ -58,16 +59,5 @@ fn page() -> String {
 
 #[test]
 fn page_is_up_to_date() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("PARAMETERS.md");
-    let page = page();
-    if std::env::var_os("UPDATE").is_some() {
-        std::fs::write(&path, page).unwrap();
-        return;
-    }
-    let kept = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        kept == page,
-        "{} is not what the table says: UPDATE=1 cargo test -p firmware --test parameter_page writes it",
-        path.display()
-    );
+    written_page::hold("PARAMETERS.md", &page());
 }
