@@ -171,4 +171,36 @@ proptest! {
         prop_assert_eq!(bench.value("MOV? Y"), y);
         prop_assert_eq!(bench.value("MOV? W"), w);
     }
+
+    /// Where bytes are lost, whole lines are: what is left of two never makes up a third, and error 304 tells.
+    #[test]
+    fn a_gap_takes_whole_lines(from in 0..110usize, length in 0..110usize, rests in any::<bool>()) {
+        // Almost any beginning of one makes a line with the end of another.
+        let lines: Vec<String> = (0..8).map(|k| format!("VAR V{k} 1{k}2.5{k}\n")).collect();
+        let text = lines.concat();
+        let to = (from + length).min(text.len());
+        prop_assume!(from <= text.len());
+        let mut bench = Bench::ready();
+        bench.offer(0, &text.as_bytes()[..from]);
+        if rests {
+            bench.run(2);
+        }
+        bench.session(0).lose();
+        bench.offer(0, &text.as_bytes()[to..]);
+        bench.run(2);
+        let mut at = 0;
+        let mut kept = Vec::new();
+        for (k, line) in lines.iter().enumerate() {
+            let (start, end) = (at, at + line.len());
+            at = end;
+            // Behind the gap the first LF ends what is thrown away.
+            if end <= from || (start >= to && text[to..start].contains('\n')) {
+                kept.push(format!("V{k}=1{k}2.5{k}"));
+            }
+        }
+        prop_assert_eq!(bench.say("\nERR?\n"), "304\n");
+        let told = bench.say("VAR?\n");
+        let told: Vec<&str> = told.split('\n').map(str::trim).filter(|it| !it.is_empty()).collect();
+        prop_assert_eq!(told, kept);
+    }
 }

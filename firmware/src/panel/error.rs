@@ -73,6 +73,8 @@ pub enum ErrorCode {
     NoWave = 75,
     /// Not while the axes that it affects move.
     WhileMoving = 93,
+    /// Received bytes were lost or damaged on the way: the lines that they belonged to have been thrown away.
+    ReceiveOverflow = 304,
     /// Streamed targets did not come in time: the stage has stopped.
     StreamDry = 220,
     /// Streamed targets came faster than their cycle time: this one was not taken.

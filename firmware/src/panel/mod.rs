@@ -247,7 +247,7 @@ impl Panel {
             match session.next_event() {
                 None => return Ok(()),
                 Some(Event::Byte(byte)) => self.obey_byte(byte, session, link, out)?,
-                Some(Event::TooLong) => session.error = ErrorCode::LineTooLong,
+                Some(Event::Thrown(error)) => session.error = error,
                 Some(Event::Line) => match self.understand(session) {
                     Ok(request) if request.needs_present() && self.stage.present().is_none() => {
                         return Ok(());

@@ -54,8 +54,8 @@ enum LineState {
     Gathering,
     /// Its LF has come.
     Complete,
-    /// Its rest is thrown away, up to the LF; the flag says whether it is an error (too long).
-    Skipping(bool),
+    /// Its rest is thrown away, up to the LF, with this error.
+    Skipping(ErrorCode),
 }
 
 /// Why the lines of a connection wait. Single bytes act all the same.
@@ -85,9 +85,12 @@ pub(super) enum Event {
     Byte(u8),
     /// A line is complete: [`Session::line`].
     Line,
-    /// A line was too long and has been thrown away.
-    TooLong,
+    /// A line has been thrown away.
+    Thrown(ErrorCode),
 }
+
+/// Stands in the input where bytes are missing. No text has it: on a serial line it is what noise looks like.
+const GAP: u8 = 0xFF;
 
 /// Whether a byte is a command by itself, wherever it stands.
 pub(super) const fn is_single(byte: u8) -> bool {
@@ -139,6 +142,16 @@ impl Session {
         bytes.len()
     }
 
+    /// Bytes have been lost behind those received so far. The line that is cut off there, and what comes up to the next LF, are
+    /// thrown away with error 304: pieces of two lines must never make up a third.
+    pub fn lose(&mut self) {
+        if self.input.is_full() {
+            self.input.pop_back();
+        }
+        // There is room now.
+        let _ = self.input.push_back(GAP);
+    }
+
     /// Whether everything received has been carried out: no line, whole or begun, no wait and no answer is left.
     pub fn is_idle(&self) -> bool {
         self.input.is_empty()
@@ -162,7 +175,9 @@ impl Session {
             if is_single(byte) {
                 return Some(Event::Byte(byte));
             }
-            if byte == b'\n' {
+            if byte == GAP {
+                self.skip(ErrorCode::ReceiveOverflow);
+            } else if byte == b'\n' {
                 if let Some(event) = self.end_line() {
                     return Some(event);
                 }
@@ -186,16 +201,20 @@ impl Session {
 
     fn gather(&mut self, byte: u8) {
         if self.line.push(byte).is_err() {
-            self.line.clear();
-            self.state = LineState::Skipping(true);
+            self.skip(ErrorCode::LineTooLong);
         }
+    }
+
+    fn skip(&mut self, error: ErrorCode) {
+        self.line.clear();
+        self.state = LineState::Skipping(error);
     }
 
     fn end_line(&mut self) -> Option<Event> {
         match self.state {
             LineState::Skipping(error) => {
                 self.state = LineState::Gathering;
-                error.then_some(Event::TooLong)
+                (error != ErrorCode::None).then_some(Event::Thrown(error))
             }
             _ if self.line.is_empty() => None,
             _ => {
@@ -243,7 +262,7 @@ impl Session {
             last = self.input.pop_front().unwrap_or(last);
         }
         if last != b'\n' {
-            self.state = LineState::Skipping(false);
+            self.state = LineState::Skipping(ErrorCode::None);
         }
     }
 }

@@ -119,20 +119,28 @@ impl Stream {
         self.registers.ndtr().read().ndt().bits()
     }
 
-    /// Whether the stream has come to the end of its buffer since the flag was cleared.
-    pub fn is_complete(&self) -> bool {
+    /// Whether the stream has passed the middle of its buffer, and its end, since it was asked last.
+    pub fn take_marks(&mut self) -> [bool; 2] {
         let flags = if self.number < 4 {
             self.controller.lisr().read().bits()
         } else {
             self.controller.hisr().read().bits()
         };
-        flags & (COMPLETE << self.flag_shift()) != 0
+        let seen = flags & ((HALF | COMPLETE) << self.flag_shift());
+        // Only what was seen is cleared: the next mark may be passed at any moment.
+        self.clear(seen);
+        let is_set = |flag: u32| seen & (flag << self.flag_shift()) != 0;
+        [is_set(HALF), is_set(COMPLETE)]
     }
 
     /// Clears the stream's flags.
     #[inline(always)]
     pub fn clear_flags(&mut self) {
-        let bits = ALL_FLAGS << self.flag_shift();
+        self.clear(ALL_FLAGS << self.flag_shift());
+    }
+
+    #[inline(always)]
+    fn clear(&mut self, bits: u32) {
         // SAFETY: ones clear the flags of this stream, zeros leave the others alone.
         unsafe {
             if self.number < 4 {
@@ -150,5 +158,6 @@ impl Stream {
     }
 }
 
+const HALF: u32 = 1 << 4;
 const COMPLETE: u32 = 1 << 5;
 const ALL_FLAGS: u32 = 0b11_1101;

@@ -209,6 +209,9 @@ mod app {
         let local = context.local;
         let mut received = 0u32;
         loop {
+            if local.receiver.look() {
+                local.session.lose();
+            }
             local.receiver.pass_to(|bytes| {
                 let taken = local.session.receive(bytes);
                 received = received.wrapping_add(taken as u32);

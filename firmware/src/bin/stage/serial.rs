@@ -1,7 +1,7 @@
 //! USART1: the command interface, 921,600 baud, both directions by DMA and without an interrupt.
 //!
-//! Received bytes land in a ring that the command side empties whenever it runs, within 50 us as a rule. At full rate
-//! the ring holds 11 ms; what a slower command side loses is noticed and logged.
+//! Received bytes land in a ring that the command side empties whenever it runs, within 50 us as a rule. At full rate half of
+//! it holds 11 ms, and so long the command side may be away; what it loses then, it is told.
 
 use crate::{
     clocks,
@@ -16,25 +16,31 @@ use stm32f4xx_hal::{
 
 /// Rate of the line.
 pub const BAUD: u32 = 921_600;
-/// Size of either buffer.
+/// Size of the ring of received bytes.
+const RING_BYTES: usize = 2048;
+/// Bytes that may come while others are copied out of it: 1.4 ms.
+const MARGIN_BYTES: usize = 128;
+/// Size of the buffer of bytes to send.
 const BYTES: usize = 1024;
 /// How many bytes are passed on at a time.
 const PIECE_BYTES: usize = 32;
 
-struct Buffer(UnsafeCell<[u8; BYTES]>);
+struct Buffer<const N: usize>(UnsafeCell<[u8; N]>);
 
 // SAFETY: `Receiver` and `Transmitter`, of which there is one each, alone touch their buffers.
-unsafe impl Sync for Buffer {}
+unsafe impl<const N: usize> Sync for Buffer<N> {}
 
-static RECEIVED: Buffer = Buffer(UnsafeCell::new([0; BYTES]));
-static SENDING: Buffer = Buffer(UnsafeCell::new([0; BYTES]));
+static RECEIVED: Buffer<RING_BYTES> = Buffer(UnsafeCell::new([0; RING_BYTES]));
+static SENDING: Buffer<BYTES> = Buffer(UnsafeCell::new([0; BYTES]));
 
 /// The receiving half.
 pub struct Receiver {
+    usart: pac::USART1,
     stream: Stream,
     /// Where the next byte to hand out lies.
     next: usize,
-    overruns: u32,
+    /// Where the stream was going to put the next byte when it was looked at.
+    head: usize,
 }
 
 /// The sending half.
@@ -57,15 +63,16 @@ pub fn configure(
     receive.configure(Mode::ReceiveCircular, data);
     transmit.configure(Mode::Transmit, data);
     // SAFETY: the buffer is a static in RAM; `Receiver` reads only what the stream has left behind.
-    unsafe { receive.start(RECEIVED.0.get().cast(), BYTES as u16) };
+    unsafe { receive.start(RECEIVED.0.get().cast(), RING_BYTES as u16) };
     usart.cr3().write(|w| w.dmar().enabled().dmat().enabled());
     usart
         .cr1()
         .write(|w| w.ue().enabled().te().enabled().re().enabled());
     let receiver = Receiver {
+        usart,
         stream: receive,
         next: 0,
-        overruns: 0,
+        head: 0,
     };
     let transmitter = Transmitter {
         stream: transmit,
@@ -75,13 +82,34 @@ pub fn configure(
 }
 
 impl Receiver {
-    /// Offers what has come, in pieces, to `take`, which says how many bytes of a piece it took; the rest stays.
+    /// Looks how far the bytes have come. Returns whether some are lost or damaged: then all that has not been handed out is
+    /// thrown away, and so has to be what was handed out of a line and what comes of it.
+    pub fn look(&mut self) -> bool {
+        // Both marks passed: half a ring has come, or that and whole ones more.
+        let [half, end] = self.stream.take_marks();
+        let head = (RING_BYTES - usize::from(self.stream.remaining())) % RING_BYTES;
+        let come = distance(self.head, head);
+        let full = distance(self.next, self.head) + come > RING_BYTES - MARGIN_BYTES;
+        // The flags go with the next byte that the stream takes.
+        let status = self.usart.sr().read();
+        let damaged = status.fe().bit() || status.nf().bit() || status.ore().bit();
+        let lost = (half && end) || full || (damaged && come > 0);
+        self.head = head;
+        if lost {
+            self.next = head;
+            defmt::warn!("received bytes lost or damaged");
+        }
+        lost
+    }
+
+    /// Offers what had come when it was looked, in pieces, to `take`, which says how many bytes of a piece it took; the rest
+    /// stays.
     pub fn pass_to(&mut self, mut take: impl FnMut(&[u8]) -> usize) {
         let mut piece = [0; PIECE_BYTES];
         loop {
             let length = self.copy_to(&mut piece);
             let taken = take(&piece[..length]);
-            self.next = (self.next + taken) % BYTES;
+            self.next = (self.next + taken) % RING_BYTES;
             if length == 0 || taken < length {
                 return;
             }
@@ -90,36 +118,19 @@ impl Receiver {
 
     /// Copies the bytes to hand out next, as far as they go, and says how many.
     fn copy_to(&mut self, piece: &mut [u8; PIECE_BYTES]) -> usize {
-        let waiting = (self.head() + BYTES - self.next) % BYTES;
-        let length = waiting.min(PIECE_BYTES);
+        let length = distance(self.next, self.head).min(PIECE_BYTES);
         for (offset, byte) in piece[..length].iter_mut().enumerate() {
-            let at = (self.next + offset) % BYTES;
+            let at = (self.next + offset) % RING_BYTES;
             // SAFETY: the stream has left this byte behind. Volatile, since the compiler does not know who wrote it.
             *byte = unsafe { RECEIVED.0.get().cast::<u8>().add(at).read_volatile() };
         }
         length
     }
+}
 
-    /// Where the stream will put the next byte.
-    fn head(&mut self) -> usize {
-        let before = self.position();
-        if !self.stream.is_complete() {
-            return before;
-        }
-        self.stream.clear_flags();
-        let head = self.position();
-        // The stream has gone round: it must not have come past what was not read yet.
-        if head >= self.next {
-            self.overruns += 1;
-            defmt::warn!("received bytes lost, {} times so far", self.overruns);
-            self.next = head;
-        }
-        head
-    }
-
-    fn position(&self) -> usize {
-        (BYTES - usize::from(self.stream.remaining())) % BYTES
-    }
+/// From one place in the ring on to another.
+fn distance(from: usize, to: usize) -> usize {
+    (to + RING_BYTES - from) % RING_BYTES
 }
 
 impl Transmitter {
