@@ -94,6 +94,18 @@ proptest! {
     }
 }
 
+/// Also near the edge, where some orientations are not possible.
+#[test]
+fn where_it_is_it_can_stay() {
+    let ground = Ground {
+        centre: [0.4, 0.0],
+        ..GROUND
+    };
+    let here = point((0.7, 0.3, 0.1), ground.centre);
+    assert_eq!(check_line(&here, &here, &ground), Ok(()));
+    assert_eq!(plan_line(1, here, here, &ground).unwrap().ticks(), 0);
+}
+
 #[test]
 fn a_refusal_says_where_and_how_far() {
     // At the start and at the end the platform centre is 10 mm from the track's, half a turn from there 90 mm.

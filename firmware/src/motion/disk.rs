@@ -33,7 +33,8 @@ const LOOKS: usize = 48;
 
 /// Where the line leaves the disk of radius `usable`; or gets further out than it starts, when it starts outside.
 pub(super) fn exit(from: &Position, to: &Position, ground: &Ground, usable: f32) -> Option<Exit> {
-    if ground.centre == [0.0; 2] {
+    // A line of no length has no bend to walk along.
+    if ground.centre == [0.0; 2] || from == to {
         return None;
     }
     let path = Path::new(from, to, ground, usable);
