@@ -2,71 +2,14 @@
 
 mod motion_bench;
 
-use firmware::motion::{
-    Axis, Centre, Ground, Motion, NoTransition, Plan, Refusal, Start, plan_jog,
-};
-use motion_bench::exact::Worst;
+use firmware::motion::{Axis, Motion, NoTransition, Refusal, Start, plan_jog};
+use motion_bench::exact::{Worst, ends_at_rest};
+use motion_bench::grounds::{Velocity, grounds, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
-use std::f64::consts::PI;
 
-type Velocity = [f64; 3];
-
-/// mm/s and deg/s within the limits; each axis may have none.
-fn velocities() -> impl Strategy<Value = Velocity> {
-    let still = || proptest::bool::weighted(0.3);
-    (
-        0.0..=1.0_f64,
-        -PI..PI,
-        -1.0..=1.0_f64,
-        still(),
-        still(),
-        still(),
-    )
-        .prop_map(|(speed, direction, turning, a, b, c)| {
-            let speed = LIMITS.speed_mm_s * speed;
-            let part = |still: bool, value: f64| if still { 0.0 } else { value };
-            [
-                part(a, speed * direction.cos()),
-                part(b, speed * direction.sin()),
-                part(c, turning * LIMITS.turn_speed_deg_s),
-            ]
-        })
-}
-
-/// Grounds with and without a centre of rotation beside the platform's, with and without bounds, with strong and weak drives.
-fn grounds() -> impl Strategy<Value = Ground> {
-    (
-        0.0..0.8_f64,
-        -PI..PI,
-        any::<bool>(),
-        0.5..0.9_f64,
-        any::<bool>(),
-        0.0..=1.0_f64,
-    )
-        .prop_map(|(r, d, beside, bound, bounded, strength)| {
-            let mut ground = GROUND;
-            ground.limits.pivot_acceleration_rad_s2 *= 0.2 + 0.8 * strength;
-            ground.limits.pivot_rate_rad_s *= 0.4 + 0.6 * strength;
-            if beside {
-                let centre = Centre::new([r * d.cos(), r * d.sin()]).expect("near");
-                ground.centre = centre.point();
-            }
-            if bounded {
-                let units = (bound * UNIT) as i64;
-                ground.bounds = [[-units, units], [-units / 2, units], [-units, 3 * units]];
-            }
-            ground
-        })
-}
-
-/// Where the moved point is when the platform is at `platform`, as far as the bounds allow it.
-fn rest(platform: firmware::motion::Position, ground: &Ground) -> Option<[Axis; 3]> {
-    let centre = Centre::new(ground.centre).expect("near");
-    let point = centre.of_platform(&platform);
-    let inside = (point.iter().zip(&ground.bounds)).all(|(at, b)| (b[0]..=b[1]).contains(at));
-    inside.then(|| at_rest(point))
-}
+/// Ticks of a velocity held that are looked at.
+const SECOND: u64 = 20_000;
 
 fn start(axes: &[Axis; 3]) -> Start {
     Start::Rest(axes.map(|axis| axis.rounded()))
@@ -82,13 +25,6 @@ fn is_near(a: &Velocity, b: &Velocity) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4)
 }
 
-/// That the tick gets the same positions from it, and that it ends where it says.
-fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
-    end.map(|axis| axis.rounded()) == plan.end
-        // What a velocity in a setpoint is cut to.
-        && end.iter().all(|axis| axis.velocity.abs() < 1 << 32 && axis.acceleration == 0)
-}
-
 proptest! {
     #![proptest_config(settings(150))]
 
@@ -102,7 +38,7 @@ proptest! {
         match plan_jog(3, start(&axes), &axes, &velocity, &ground) {
             Ok(plan) => {
                 let mut worst = Worst::default();
-                let end = worst.walk(&plan, &axes, &ground);
+                let end = worst.walk_ends(&plan, &axes, &ground, SECOND);
                 prop_assert!(worst.is_kept(), "{worst:?}");
                 prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
             }
@@ -130,7 +66,7 @@ proptest! {
         let splice = Start::Splice { plan: 3, tick };
         if let Ok(plan) = plan_jog(4, splice, &state, &other, &ground) {
             let mut worst = Worst::default();
-            let end = worst.walk(&plan, &state, &ground);
+            let end = worst.walk_ends(&plan, &state, &ground, SECOND);
             prop_assert!(worst.is_kept(), "{worst:?}");
             prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
         }
@@ -217,7 +153,7 @@ fn at_the_largest_count_theta_stops_smoothly() {
         let velocity = [0.0, 0.0, sign as f64 * 360.0];
         let plan = plan_jog(1, start(&axes), &axes, &velocity, &GROUND).expect("room");
         let mut worst = Worst::default();
-        let end = worst.walk(&plan, &axes, &GROUND);
+        let end = worst.walk_ends(&plan, &axes, &GROUND, SECOND);
         assert!(worst.is_kept(), "{worst:?}");
         let left = MOST - plan.end[2] * sign;
         assert!((0..1 << 24).contains(&left), "{left}");

@@ -3,6 +3,7 @@
 mod motion_bench;
 
 use firmware::motion::{Plan, Position, Stop, plan_stop};
+use motion_bench::exact::Worst;
 use motion_bench::*;
 use proptest::prelude::*;
 
@@ -53,10 +54,10 @@ proptest! {
     #[test]
     fn urgent_is_as_hard_as_the_pivots_can_follow_and_not_longer((from, _, plan, at) in moves_under_way()) {
         let Some(urgent) = stop(&plan, from, at, Stop::Urgent) else { return Ok(()) };
-        let parts = worst_parts(&urgent, plan.state_after(&at_rest(from), at), &GROUND);
-        let factor = LIMITS.stop_factor;
-        prop_assert!(parts[2] <= factor * factor * SLACK, "{parts:?}");
-        prop_assert!(parts[3] <= SLACK && parts[4] <= 1.001 && parts[5] <= 1.001, "{parts:?}");
+        let mut worst = Worst::default();
+        worst.walk(&urgent, &plan.state_after(&at_rest(from), at), &GROUND);
+        prop_assert!(worst.jerk <= LIMITS.stop_factor.powi(2) * SLACK, "{worst:?}");
+        prop_assert!(worst.outside <= 1e-6 && worst.pivot_rate <= 1.001 && worst.pivot_acceleration <= 1.001, "{worst:?}");
         // Without a smooth stop the plan itself is as soon.
         let smooth = stop(&plan, from, at, Stop::Smooth).map_or(plan.ticks() - at, |stop| stop.ticks());
         prop_assert!(urgent.ticks() <= smooth);
@@ -67,7 +68,7 @@ proptest! {
         let seam = plan.state_after(&at_rest(from), at);
         let Some(stop) = stop(&plan, from, at, Stop::Smooth) else { return Ok(()) };
         for axes in corners(&stop, seam) {
-            prop_assert!(pivot_rate(&axes) <= LIMITS.pivot_rate_rad_s * SLACK);
+            prop_assert!(Worst::of(&axes, &GROUND).pivot_rate <= SLACK);
         }
     }
 

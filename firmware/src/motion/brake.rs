@@ -116,12 +116,22 @@ impl Brake {
         whole(self.times(), |n| self.over(n))
     }
 
+    /// P in so many ticks.
+    fn peak(&self, n: [u64; 3]) -> [f32; 3] {
+        let [n1, n2, n3] = n.map(float);
+        let scale = -1.0 / (n1 / 2.0 + n2 + n3 / 2.0);
+        self.after(n1 / 2.0).map(|w| w * scale)
+    }
+
+    /// The part of the limit that P comes to: jerk alone may end at less than all of it.
+    pub fn part(&self) -> f32 {
+        size(&self.peak(self.ticks())).smaller(1.0)
+    }
+
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
     fn over(&self, n: [u64; 3]) -> [bool; 3] {
-        let [n1, n2, n3] = n.map(float);
-        let w = self.after(n1 / 2.0);
-        let scale = -1.0 / (n1 / 2.0 + n2 + n3 / 2.0);
-        let peak = w.map(|w| w * scale);
+        let [n1, _, n3] = n.map(float);
+        let peak = self.peak(n);
         let change = [0, 1, 2].map(|i| peak[i] - self.acceleration[i]);
         let hardest = size(&self.acceleration).larger(1.0);
         [

@@ -91,8 +91,7 @@ pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pi
     if state.iter().all(|axis| axis.acceleration == 0) {
         return pieces;
     }
-    let seconds = (force.way / jerk.way).larger(force.turn / jerk.turn);
-    let ticks = ticks_up(seconds * hz).max(1);
+    let ticks = ticks_up(release_seconds(force, jerk) * hz).max(1);
     let steps = (ticks as i64).saturating_mul(JERK_STEP);
     let jerk = [0, 1, 2].map(|i| -state[i].acceleration / steps * JERK_STEP);
     let rest = [0, 1, 2].map(|i| -(state[i].acceleration + jerk[i] * ticks as i64));
@@ -103,6 +102,11 @@ pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pi
         jerk: rest,
     });
     pieces
+}
+
+/// How long it takes to bring an acceleration to zero.
+pub(super) fn release_seconds(force: Pace, jerk: Pace) -> f32 {
+    (force.way / jerk.way).larger(force.turn / jerk.turn)
 }
 
 /// Longest stretch that is counted: a hundred thousand years.

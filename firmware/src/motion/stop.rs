@@ -1,7 +1,8 @@
 //! Planning a stop from any tick of any plan: all axes brake together (`brake`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration point; a
-//! curve is only planned where such a stop ends inside the workspace.
+//! curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in which theta comes to
+//! rest later than the point, leaves no room for a brake that takes as long for both: then each has its own.
 
 use super::axis::Axis;
 use super::brake::Brake;
@@ -10,6 +11,7 @@ use super::float::Order;
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
 use super::sample::Arc;
+use super::tracks::{Pieces, braked, merged};
 use super::units::UnitLimits;
 use heapless::Vec;
 
@@ -68,13 +70,19 @@ pub fn plan_stop(
         Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
     };
     let mut plan = None;
+    let mut apart = false;
     for _ in 0..ATTEMPTS {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
-        let pieces = brake.pieces(&state);
-        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it.
+        let pieces = if apart {
+            pieces_apart(&state, &limits, hardness)
+        } else {
+            Pieces::from_iter(brake.pieces(&state))
+        };
+        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it. So
+        // may one that had to be made softer.
         let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
         if at + ticks >= whole {
-            return plan;
+            return None;
         }
         let stopped = stopped(id, of, start, &state, &pieces);
         // A stop has to be found: none is left unlooked at because others have been looked at before.
@@ -82,6 +90,8 @@ pub fn plan_stop(
         plan = Some(stopped);
         match checked {
             Ok(()) => break,
+            // Translation is not kept waiting for rotation then, nor the other way round.
+            Err(Broken::Reach) if !apart => apart = true,
             Err(Broken::Reach) => {
                 hardness = [hardness[0] * 1.3, factor * factor];
             }
@@ -91,14 +101,24 @@ pub fn plan_stop(
                 | Broken::Speed(over)
                 | Broken::Force(over),
             ) => {
-                hardness[0] = (hardness[0] * (0.98 / over).larger(0.5)).larger(GENTLEST);
+                let used = hardness[0] * brake.part();
+                hardness[0] = (used * (0.98 / over).larger(0.5)).larger(GENTLEST);
             }
         }
     }
     plan
 }
 
-fn stopped(id: u32, of: &Plan, start: Start, state: &[Axis; 3], pieces: &[Piece; 3]) -> Plan {
+/// The pieces that brake translation and rotation each as soon as it can.
+fn pieces_apart(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2]) -> Pieces {
+    let [x, y, theta] = *state;
+    let still = Axis::default();
+    let ticks = |state: [Axis; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
+    let (way, turn) = (ticks([x, y, still]), ticks([still, still, theta]));
+    merged(&[braked(&x, way), braked(&y, way), braked(&theta, turn)])
+}
+
+fn stopped(id: u32, of: &Plan, start: Start, state: &[Axis; 3], pieces: &[Piece]) -> Plan {
     let mut end = *state;
     let mut plan = Plan {
         id,

@@ -5,6 +5,17 @@ use firmware::motion::{Axis, Ground, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
 
+/// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of position
+/// and a speed under 2 nm/s.
+pub fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
+    end.iter().zip(&plan.end).all(|(axis, &place)| {
+        let off = axis.position - (i128::from(place) << 40);
+        (-(1_i128 << 36)..1 << 41).contains(&off)
+            && axis.velocity.unsigned_abs() < 1 << 32
+            && axis.acceleration.unsigned_abs() < 1 << 24
+    })
+}
+
 /// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
@@ -91,8 +102,26 @@ impl Worst {
         }
     }
 
-    /// Takes every tick of a plan from `start`; of a piece longer than a second the first half of one and the last.
+    /// Of one state.
+    pub fn of(axes: &[Axis; 3], ground: &Ground) -> Self {
+        let mut worst = Self::default();
+        worst.look(axes, ground);
+        worst
+    }
+
+    /// Takes every tick of a plan from `start`; the state at its end, as the integers give it.
     pub fn walk(&mut self, plan: &Plan, start: &[Axis; 3], ground: &Ground) -> [Axis; 3] {
+        self.walk_ends(plan, start, ground, u64::MAX)
+    }
+
+    /// The same, of a piece longer than `most` ticks only so many: half of them at its start, half at its end.
+    pub fn walk_ends(
+        &mut self,
+        plan: &Plan,
+        start: &[Axis; 3],
+        ground: &Ground,
+        most: u64,
+    ) -> [Axis; 3] {
         let hz = ground.limits.rate_hz;
         let mut axes = *start;
         self.look(&axes, ground);
@@ -104,11 +133,10 @@ impl Worst {
                 .jerk
                 .max(path)
                 .max(jerk[2].abs() * 360.0 / ground.limits.turn_jerk_deg_s3);
-            let half = hz as u64 / 2;
-            let skipped = piece.ticks.saturating_sub(2 * half);
+            let skipped = piece.ticks.saturating_sub(most);
             for tick in 0..piece.ticks - skipped {
                 for (i, axis) in axes.iter_mut().enumerate() {
-                    if skipped > 0 && tick == half {
+                    if skipped > 0 && tick == most / 2 {
                         *axis = axis.after(skipped, piece.jerk[i], plan.nudge[i]);
                     }
                     axis.advance(piece.jerk[i], plan.nudge[i]);
@@ -119,9 +147,8 @@ impl Worst {
         axes
     }
 
-    /// Whether everything is kept, to within roundings.
-    pub fn is_kept(&self) -> bool {
-        const SLACK: f64 = 1.0 + 1e-6;
+    /// Parts of the limits: speed, acceleration, jerk, the pivots' rate and acceleration.
+    pub fn shares(&self) -> [f64; 5] {
         [
             self.speed,
             self.acceleration,
@@ -129,10 +156,31 @@ impl Worst {
             self.pivot_rate,
             self.pivot_acceleration,
         ]
-        .iter()
-        .all(|&share| share <= SLACK)
+    }
+
+    /// Whether everything is kept, to within roundings.
+    pub fn is_kept(&self) -> bool {
+        const SLACK: f64 = 1.0 + 1e-6;
+        self.shares().iter().all(|&share| share <= SLACK)
             && self.outside <= 1e-8
             && self.out_of_bounds == 0.0
+    }
+
+    /// Whether everything is kept as plans in motion have to: speed, acceleration and jerk to 1e-4, pivots to 1e-3, the disk to
+    /// 0.1 um.
+    pub fn is_kept_but_for_a_thousandth(&self) -> bool {
+        const OWN: f64 = 1.0 + 2e-4;
+        const PIVOTS: f64 = 1.0 + 1e-3;
+        [self.speed, self.acceleration, self.jerk]
+            .iter()
+            .all(|&share| share <= OWN)
+            && self.pivot_rate.max(self.pivot_acceleration) <= PIVOTS
+            && self.is_inside()
+    }
+
+    /// Whether disk and bounds are kept, the disk to 0.1 um on the reference stage, the bounds to 0.05 um.
+    pub fn is_inside(&self) -> bool {
+        self.outside <= 1e-6 && self.out_of_bounds <= 5e-7
     }
 
     /// Whether everything but the jerk is kept, to a thousandth: what streamed targets are granted.

@@ -2,14 +2,15 @@
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 pub mod exact;
+pub mod grounds;
 pub mod streaming;
 
 use firmware::motion::{Axis, Ground, Limits, Plan, Position, plan_line};
 use firmware::parameters::Parameters;
-use kinematics::{Acceleration, Geometry, Pose, Twist, inverse, pivot_motion, pivot_rates};
+use kinematics::Geometry;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// 2^32: units of a position in a track radius or a turn.
 pub const UNIT: f64 = 4_294_967_296.0;
@@ -134,100 +135,6 @@ pub fn worst_shares(plan: &Plan, start: [Axis; 3]) -> [f64; 3] {
     for piece in &plan.pieces {
         let jerk = piece.jerk.map(|jerk| jerk as f64 / AXIS_UNIT * hz.powi(3));
         worst[2] = worst[2].max(share(jerk, LIMITS.jerk_mm_s3, LIMITS.turn_jerk_deg_s3));
-    }
-    worst
-}
-
-/// Largest pivot rate (rad/s) of a state.
-pub fn pivot_rate(axes: &[Axis; 3]) -> f64 {
-    let position = axes.map(|axis| axis.position as f64 / AXIS_UNIT);
-    let pose = Pose {
-        x: position[0],
-        y: position[1],
-        // Whole turns change nothing.
-        theta: position[2].fract() * TAU,
-    };
-    let [x, y, turns] = velocity(axes);
-    let twist = Twist {
-        x,
-        y,
-        theta: turns * TAU,
-    };
-    let guides = inverse(&pose).expect("a pose inside the track").guides;
-    pivot_rates(&guides, &twist)
-        .iter()
-        .fold(0.0, |worst, rate| worst.max(rate.abs()))
-}
-
-/// Pose, velocity and acceleration of the platform's centre, track radii and rad, when `centre` is the moved point in its axes.
-pub fn platform(axes: &[Axis; 3], centre: [f64; 2]) -> (Pose<f64>, Twist<f64>, Acceleration<f64>) {
-    let position = axes.map(|axis| axis.position as f64 / AXIS_UNIT);
-    // Whole turns change nothing; dropped before they cost digits.
-    let turn = (axes[2].position & ((1 << 72) - 1)) as f64 / AXIS_UNIT * TAU;
-    let (sin, cos) = turn.sin_cos();
-    let d = [
-        cos * centre[0] - sin * centre[1],
-        sin * centre[0] + cos * centre[1],
-    ];
-    let [vx, vy, w] = velocity(axes);
-    let [ax, ay, s] = acceleration(axes);
-    let (w, s) = (w * TAU, s * TAU);
-    (
-        Pose {
-            x: position[0] - d[0],
-            y: position[1] - d[1],
-            theta: turn,
-        },
-        Twist {
-            x: vx + w * d[1],
-            y: vy - w * d[0],
-            theta: w,
-        },
-        Acceleration {
-            x: ax + s * d[1] + w * w * d[0],
-            y: ay - s * d[0] + w * w * d[1],
-            theta: s,
-        },
-    )
-}
-
-/// Largest part of what is allowed that a plan reaches at any tick: speed, acceleration, jerk, radius of the platform's centre,
-/// pivots' rate and acceleration.
-pub fn worst_parts(plan: &Plan, start: [Axis; 3], ground: &Ground) -> [f64; 6] {
-    let mut worst = [0.0_f64; 6];
-    let limits = &ground.limits;
-    let mut axes = start;
-    for piece in &plan.pieces {
-        let jerk = piece
-            .jerk
-            .map(|jerk| jerk as f64 / AXIS_UNIT * limits.rate_hz.powi(3));
-        worst[2] = worst[2].max(share(jerk, limits.jerk_mm_s3, limits.turn_jerk_deg_s3));
-        for _ in 0..piece.ticks {
-            for (i, axis) in axes.iter_mut().enumerate() {
-                axis.advance(piece.jerk[i], plan.nudge[i]);
-            }
-            let speed = share(velocity(&axes), limits.speed_mm_s, limits.turn_speed_deg_s);
-            let force = share(
-                acceleration(&axes),
-                limits.acceleration_mm_s2,
-                limits.turn_acceleration_deg_s2,
-            );
-            let (pose, twist, change) = platform(&axes, ground.centre);
-            let guides = inverse(&pose).expect("a pose inside the track").guides;
-            let pivots = pivot_motion(&guides, &twist, &change);
-            let largest =
-                |values: [f64; 3]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            for (worst, now) in worst.iter_mut().zip([
-                speed,
-                force,
-                0.0,
-                pose.x.hypot(pose.y) / ground.geometry.usable_radius(),
-                largest(pivots.rates) / limits.pivot_rate_rad_s,
-                largest(pivots.accelerations) / limits.pivot_acceleration_rad_s2,
-            ]) {
-                *worst = worst.max(now);
-            }
-        }
     }
     worst
 }

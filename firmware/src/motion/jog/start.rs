@@ -1,7 +1,7 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
 use super::super::axis::{Axis, SUB_BITS};
-use super::super::change::{Force, Ramp};
+use super::super::change::{Force, Ramp, release_seconds};
 use super::super::float::{Order, hypot};
 use super::super::ground::Ground;
 use super::super::plan::Piece;
@@ -32,6 +32,8 @@ pub(super) struct Setting<'a> {
     usable: f32,
     /// Wanted, 2^-72 units a tick.
     pub velocity: [i64; 3],
+    /// Limits.
+    speed: Pace,
     force: Force,
 }
 
@@ -67,6 +69,7 @@ impl<'a> Setting<'a> {
             swing: Swing::new(ground),
             usable: ground.geometry.usable_radius() as f32,
             velocity: [x / mm, y / mm, turning / 360.0].map(|rate| (rate * units) as i64),
+            speed: pace(limits.speed_mm_s, limits.turn_speed_deg_s),
             force: Force {
                 acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
                 jerk: pace(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
@@ -93,14 +96,14 @@ impl<'a> Setting<'a> {
         } else {
             out
         };
-        // An acceleration under way adds to the velocity while it is released.
-        let gained = Pace {
-            way: speed.way + force.way * force.way / (2.0 * self.force.jerk.way),
-            turn: speed.turn + force.turn * force.turn / (2.0 * self.force.jerk.turn),
-        };
+        // An acceleration under way adds to the velocity while it is released: straight from the one to this.
+        let half = release_seconds(force, self.force.jerk) / 2.0;
+        let released = [0, 1, 2].map(|i| now.velocity[i] + now.acceleration[i] * half);
+        let gained = speed.max(Pace::of(&released));
         let room = swing.room(radius, pace.max(gained));
         let part = room / swing.need(radius, self.force.acceleration);
         if part < LEAST_FORCE
+            || !gained.is_within(speed.max(self.speed))
             || !swing.rate_holds(radius, gained)
             || swing.need(radius, force) > room * SLACK
         {
