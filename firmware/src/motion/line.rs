@@ -36,8 +36,10 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
             end: to,
         });
     }
-    // Planned in the same direction whichever way it is gone: backwards is forwards backwards.
-    let turned_round = from > to;
+    // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so that
+    // it does not matter either where on the mechanism it is.
+    let out = |[x, y, _]: Position| (x as f32) * (x as f32) + (y as f32) * (y as f32);
+    let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
     let path = Path::new(&first, &last, ground, usable as f32);
     let mut pace = Way::new(&path, ground).pace().ok_or(Refusal::Limits)?;
