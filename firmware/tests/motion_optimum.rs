@@ -8,14 +8,10 @@ mod optimum;
 
 use firmware::motion::{Ground, Plan, Position, plan_line};
 use motion_bench::exact::Worst;
+use motion_bench::random::{Random, setting};
 use motion_bench::*;
-use optimum::{Optimum, Random};
+use optimum::Optimum;
 use std::f64::consts::TAU;
-
-fn setting(name: &str, otherwise: u64) -> u64 {
-    let set = std::env::var(name).ok().and_then(|text| text.parse().ok());
-    set.unwrap_or(otherwise)
-}
 
 /// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of them
 /// of any size from 0.1 mm up; one in four about another point than the platform centre.

@@ -14,6 +14,7 @@ use super::axis_profile::{AxisLimits, AxisProfile, SEGMENTS, Task};
 use super::brake::{jerks, stepped};
 use super::float::{Order, float, nearest, ticks_up};
 use super::hats::Hats;
+use crate::number::sqrt_f32;
 use heapless::Vec;
 
 /// Stretches of constant jerk of one axis: ticks, and jerk in 2^-72 units per tick cubed.
@@ -91,12 +92,23 @@ pub(super) fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> 
 
 impl Shape {
     fn new(profile: &AxisProfile<f32>) -> Self {
+        // A duration that is whole but for rounding errors is not rounded up.
+        let up = |duration: f32| ticks_up(duration - 1e-3_f32.smaller(duration * 1e-6));
+        let t = &profile.durations[2..];
         let mut n = [0; 7];
-        for (k, (ticks, duration)) in n.iter_mut().zip(&profile.durations[2..]).enumerate() {
-            // A duration that is whole but for rounding errors is not rounded up. Jerks need a tick each to act in.
-            let least = if k % 2 == 0 { 1 } else { 0 };
-            *ticks = ticks_up(duration - 1e-3_f32.smaller(duration * 1e-6)).max(least);
+        for k in [0, 2, 4, 6] {
+            // Jerks need a tick each to act in.
+            n[k] = up(t[k]).max(1);
         }
+        if profile.released_in_part {
+            n[2] = 0;
+        }
+        // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the way.
+        let longer = |n: &[u64; 7], k: usize| float(n[k]) - t[k];
+        n[1] = up(t[1] - (longer(&n, 0) + longer(&n, 2)) / 2.0);
+        n[5] = up(t[5] - (longer(&n, 4) + longer(&n, 6)) / 2.0);
+        let all = [0, 1, 2, 4, 5, 6].map(|k| longer(&n, k));
+        n[3] = up(t[3] - all.iter().sum::<f32>() / 2.0);
         if profile.released_in_part {
             n[1..4].fill(0);
         }
@@ -112,7 +124,9 @@ impl Shape {
             let hats = Hats::new(self);
             let solution = hats.solution(task)?;
             if !self.lengthen(task, limits, &solution) {
-                return Some(nearest(solution.peak));
+                // A brake that is only released in part has no peak to lengthen.
+                let most = limits.acceleration.larger((task.acceleration as f32).abs());
+                return (solution.peak.abs() <= most * SLACK).then(|| nearest(solution.peak));
             }
         }
         None
@@ -136,14 +150,13 @@ impl Shape {
     }
 
     /// A start near its peak goes down to it in the time of the peak: that much longer, the whole would only ask for a still
-    /// lower peak.
-    fn take_from_peak(&mut self, ticks: u64) {
-        for (k, least) in [(1, 0), (2, 1)] {
-            if self.n[k] >= ticks + least {
-                self.n[k] -= ticks;
-                return;
-            }
-        }
+    /// lower peak. As it does a little even so, by twice the time at once. Whether there was time left to take.
+    fn take_from_peak(&mut self, ticks: u64) -> bool {
+        let (k, least) = if self.n[1] > 0 { (1, 0) } else { (2, 1) };
+        let more = ticks.max(self.n[0]).min(self.n[k].saturating_sub(least));
+        self.n[k] -= more;
+        self.n[0] += more;
+        more > 0
     }
 
     /// Whether something had to be lengthened.
@@ -159,12 +172,18 @@ impl Shape {
         };
         for (k, change) in [(0, peak - start), release, press, (6, brake)] {
             if change.abs() > limits.jerk * SLACK * float(self.n[k]) {
-                let longest = ticks_up(change.abs() / limits.jerk).max(self.n[k] + 1);
-                if k == 0 && peak * start > 0.0 && peak.abs() < start.abs() {
-                    self.take_from_peak(longest - self.n[k]);
+                let now = self.n[k];
+                let enough = change.abs() / limits.jerk;
+                let longest = ticks_up(sqrt_f32(enough * float(now))).max(now + 1);
+                let down = k == 0 && peak * start > 0.0 && peak.abs() < start.abs();
+                longer = true;
+                if down && self.take_from_peak(longest - now) {
+                    continue;
+                }
+                if k < 4 && top.abs() < limits.velocity {
+                    self.n[3] = self.n[3].saturating_sub(longest - now);
                 }
                 self.n[k] = longest;
-                longer = true;
             }
         }
         let hardest = limits.acceleration.larger(start.abs()) * SLACK;
@@ -191,4 +210,115 @@ pub(super) struct Solution {
     pub peak: f32,
     pub brake: f32,
     pub top: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::axis::JERK_STEP;
+    use std::vec::Vec;
+
+    /// 10 mm/s, 200 mm/s^2 and 20 m/s^3 or so.
+    const LIMITS: AxisLimits<f32> = AxisLimits {
+        velocity: 2.5e16,
+        acceleration: 2.2e13,
+        jerk: 2.2e11,
+    };
+
+    /// An axis with these parts of the limits, and what it is to go, in ways that a stop from full speed takes.
+    fn state(velocity: f64, acceleration: f64, way: f64) -> (Axis, i128) {
+        let [v, a, j] = [LIMITS.velocity, LIMITS.acceleration, LIMITS.jerk].map(f64::from);
+        let axis = Axis {
+            position: 5 << 70,
+            velocity: (velocity * v) as i64,
+            acceleration: (acceleration * a) as i64 / JERK_STEP * JERK_STEP,
+        };
+        (axis, (way * v * (v / a + a / j) / 2.0) as i128)
+    }
+
+    /// The track, its ticks, and those of the fastest profile; limits and end are checked.
+    fn fitted(velocity: f64, acceleration: f64, way: f64) -> Option<(u64, f32)> {
+        let (axis, way) = state(velocity, acceleration, way);
+        let target = axis.position + way;
+        let profile = AxisProfile::fastest(&task(&axis, target), &LIMITS).unwrap();
+        let track = fit(axis, way, &LIMITS, profile.duration())?;
+        let mut end = axis;
+        for &(ticks, jerk) in &track {
+            assert!((jerk as f32).abs() <= LIMITS.jerk * 1.000_01, "{track:?}");
+            end = end.after(ticks, jerk, 0);
+            assert!(
+                (end.acceleration as f32).abs() <= LIMITS.acceleration * 1.000_01,
+                "{velocity} {acceleration} {way} {track:?}"
+            );
+            assert!(
+                (end.velocity as f32).abs() <= LIMITS.velocity * 1.000_01,
+                "{track:?}"
+            );
+        }
+        // Jerks are multiples of six: what they leave is far below a unit of a position (2^40).
+        assert!(end.acceleration.abs() < 1 << 14, "{end:?}");
+        assert!(end.velocity.abs() < 1 << 24, "{end:?}");
+        let off = (end.position - target).unsigned_abs();
+        assert!(off < 1 << 39, "{off} of {way} {track:?}");
+        Some((
+            track.iter().map(|(ticks, _)| ticks).sum(),
+            profile.duration(),
+        ))
+    }
+
+    #[test]
+    fn nothing_to_do_is_no_track() {
+        let axis = Axis::at_rest(3);
+        assert!(fit(axis, 0, &LIMITS, 100.0).unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_longer_duration_is_kept() {
+        let (axis, way) = state(0.3, -0.2, 8.0);
+        for duration in [20_000.0, 30_000.0] {
+            let track = fit(axis, way, &LIMITS, duration).unwrap();
+            let ticks: u64 = track.iter().map(|(ticks, _)| ticks).sum();
+            assert!(ticks.abs_diff(duration as u64) < 10, "{ticks}");
+        }
+    }
+
+    #[test]
+    fn in_whole_ticks_it_takes_a_few_ticks_more() {
+        let mut random = 7_u64;
+        let mut next = move || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let (mut more, mut none) = (Vec::new(), 0);
+        for _ in 0..4_000 {
+            let (v, a) = (next(), next());
+            // What an acceleration under way leads to is within the limit too.
+            let released = v + a * a.abs() / 2.0 * f64::from(LIMITS.acceleration).powi(2)
+                / f64::from(LIMITS.jerk * LIMITS.velocity);
+            if released.abs() > 1.0 {
+                continue;
+            }
+            match fitted(v, a, next() * 10_f64.powf(2.0 * next())) {
+                Some((ticks, least)) => more.push(ticks as f32 - least),
+                None => none += 1,
+            }
+        }
+        more.sort_by(f32::total_cmp);
+        let [middle, late, last] = [more.len() / 2, more.len() * 99 / 100, more.len() - 1];
+        let [middle, late, last] = [middle, late, last].map(|k| more[k]);
+        println!("ticks more: median {middle}, 99 % {late}, worst {last}; {none} not at all");
+        // Just beyond the fastest stop there is little to choose from.
+        assert!(middle < 3.0 && late < 10.0 && last < 300.0 && none < 20);
+    }
+
+    /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two ticks.
+    #[test]
+    fn at_the_limit_of_speed_it_takes_a_few_ticks_more() {
+        for (v, a, way) in [(1.0, 0.0, 4.25), (0.999_9, 0.0, 40.1), (0.969, 0.06, 6.2)] {
+            let (ticks, least) = fitted(v, a, way).unwrap();
+            assert!(ticks as f32 - least < 25.0, "{v} {a}: {ticks} {least}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 
 pub mod exact;
 pub mod grounds;
+pub mod random;
 pub mod streaming;
 
 use firmware::motion::{Axis, Ground, Limits, Plan, Position, plan_line};

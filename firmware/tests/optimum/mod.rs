@@ -15,35 +15,6 @@ use firmware::motion::{Ground, Position};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
 
-/// SplitMix64: numbers that are the same everywhere.
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// From 0 to below 1.
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A position of the moved point that puts the platform centre anywhere in the disk, at any orientation.
-    pub fn place(&mut self, ground: &Ground) -> Position {
-        let r = ground.geometry.usable_radius() * self.unit().sqrt();
-        let (direction, theta) = (TAU * self.unit(), TAU * self.unit());
-        let [p, q] = ground.centre;
-        let (sin, cos) = theta.sin_cos();
-        let x = r * direction.cos() + cos * p - sin * q;
-        let y = r * direction.sin() + sin * p + cos * q;
-        [x, y, theta / TAU].map(|value| (value * UNIT) as i64)
-    }
-}
-
 /// Durations of the two motions; see the module.
 pub struct Optimum {
     without_jerk_s: f64,

@@ -1,0 +1,191 @@
+//! What the chip computes, in single precision and integers and as the tick plays it, beside rsruckig in doubles: durations of
+//! three axes from motion to rest.
+//!
+//! `STATES=20000 cargo test --release -p firmware --test motion_reference -- --nocapture` takes more states, `SEED` others.
+
+mod motion_bench;
+
+use firmware::motion::{
+    Axis, AxisLimits, JERK_STEP, Limits, Plan, Position, plan_line, plan_transition, synchronised,
+};
+use motion_bench::exact::ends_at_rest;
+use motion_bench::random::{Random, setting};
+use motion_bench::*;
+use rsruckig::prelude::*;
+
+/// Speed, acceleration and jerk of an axis: 2^-72 units and ticks.
+type AxisMost = [f64; 3];
+
+/// The limits of x, y and theta, those of x and y as a part of the path's.
+fn per_axis(limits: &Limits, part: f64) -> [AxisMost; 3] {
+    let tick = 1.0 / limits.rate_hz;
+    let axis = |unit: f64, [v, a, j]: [f64; 3]| {
+        [v * tick, a * tick.powi(2), j * tick.powi(3)].map(|limit| limit * unit * AXIS_UNIT)
+    };
+    let way = axis(
+        part / GEOMETRY.radius_mm,
+        [
+            limits.speed_mm_s,
+            limits.acceleration_mm_s2,
+            limits.jerk_mm_s3,
+        ],
+    );
+    let turn = axis(
+        1.0 / 360.0,
+        [
+            limits.turn_speed_deg_s,
+            limits.turn_acceleration_deg_s2,
+            limits.turn_jerk_deg_s3,
+        ],
+    );
+    [way, way, turn]
+}
+
+/// The reference's synchronised duration in ticks; `None` where it finds none.
+fn reference(axes: &[Axis; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
+    // Times in thousands of ticks: it takes what is closer than 1e-8 for the same.
+    const LONG: f64 = 1_000.0;
+    let mut input = InputParameter::<3>::new(None);
+    for (i, axis) in axes.iter().enumerate() {
+        let scaled = |value: f64, power: i32| value / AXIS_UNIT * LONG.powi(power);
+        let way = (i128::from(to[i]) << 40) - axis.position;
+        input.target_position[i] = scaled(way as f64, 0);
+        input.current_velocity[i] = scaled(axis.velocity as f64, 1);
+        input.current_acceleration[i] = scaled(axis.acceleration as f64, 2);
+        let [v, a, j] = limits[i];
+        input.max_velocity[i] = scaled(v, 1);
+        input.max_acceleration[i] = scaled(a, 2);
+        input.max_jerk[i] = scaled(j, 3);
+    }
+    let mut trajectory = Trajectory::new(None);
+    let mut ruckig = Ruckig::<3, ThrowErrorHandler>::new(None, 0.001);
+    ruckig.calculate(&input, &mut trajectory).ok()?;
+    Some(trajectory.get_duration() * LONG)
+}
+
+/// Ticks in which the tick itself plays a plan, which has to end at rest.
+fn played(plan: &Plan, start: &[Axis; 3]) -> f64 {
+    let all = states(plan, *start);
+    assert!(
+        ends_at_rest(plan, all.last().unwrap()),
+        "{start:?} {plan:?}"
+    );
+    (all.len() - 1) as f64
+}
+
+/// Median, 99 % and worst, printed.
+fn spread(what: &str, mut ratios: Vec<f64>) -> [f64; 3] {
+    ratios.sort_by(f64::total_cmp);
+    let at = |part: f64| ratios[((ratios.len() - 1) as f64 * part) as usize];
+    let all @ [median, most, worst] = [at(0.5), at(0.99), at(1.0)];
+    println!(
+        "{what}, {} states: least {:.4}, median {median:.4}, 99 % {most:.4}, worst {worst:.4}",
+        ratios.len(),
+        at(0.0)
+    );
+    all
+}
+
+/// Three independent axes, each within limits of its own, of any size and in any relation.
+#[test]
+fn three_axes_take_as_long_as_the_reference() {
+    let (seed, cases) = (setting("SEED", 20_260_401), setting("STATES", 4_000));
+    println!("seed {seed}");
+    let mut random = Random::new(seed);
+    let (mut ratios, mut none) = (Vec::new(), 0);
+    for _ in 0..cases {
+        let limits = per_axis(&LIMITS, 1.0)
+            .map(|all| all.map(|limit| limit * 10_f64.powf(random.unit() - 0.5)));
+        let mut within = |limit: f64| match (8.0 * random.unit()) as u32 {
+            0 => 0.0,
+            1 => limit,
+            _ => (2.0 * random.unit() - 1.0) * limit,
+        };
+        let axes = limits.map(|[v, a, _]| Axis {
+            position: 0,
+            velocity: within(v) as i64,
+            acceleration: within(a) as i64 / JERK_STEP * JERK_STEP,
+        });
+        let end = limits.map(|[v, a, j]| {
+            let size = v * (v / a + a / j) * 10_f64.powf(3.0 * random.unit() - 2.0);
+            ((2.0 * random.unit() - 1.0) * size / AXIS_UNIT * UNIT) as i64
+        });
+        let ways = [0, 1, 2].map(|i| (axes[i], i128::from(end[i]) << 40));
+        let single = limits.map(|all| {
+            let [velocity, acceleration, jerk] = all.map(|limit| limit as f32);
+            AxisLimits {
+                velocity,
+                acceleration,
+                jerk,
+            }
+        });
+        let Some(pieces) = synchronised(&ways, &single) else {
+            none += 1;
+            continue;
+        };
+        let mut plan = Plan {
+            pieces,
+            end,
+            ..Plan::default()
+        };
+        // What the roundings leave is spread over the plan, as for new targets.
+        let last = *states(&plan, axes).last().unwrap();
+        plan.nudge = [0, 1, 2].map(|i| {
+            let missing = (i128::from(end[i]) << 40) - last[i].position;
+            (missing / i128::from(plan.ticks().max(1))) as i64
+        });
+        assert!(
+            plan.nudge.iter().all(|nudge| nudge.abs() < 1 << 30),
+            "{plan:?}"
+        );
+        if let Some(theirs) = reference(&axes, &end, &limits) {
+            ratios.push(played(&plan, &axes) / theirs);
+        }
+    }
+    println!("{none} not at all");
+    let [median, most, worst] = spread("duration over the reference's", ratios);
+    // They last from some hundred ticks on, and are rounded up to whole ones segment by segment; just beyond the fastest stop
+    // one in ten thousand finds no whole ticks that are much nearer.
+    assert!(median < 1.001 && most < 1.005 && worst < 2.0 && none * 500 < cases);
+}
+
+/// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of the
+/// path's it is a bound from below, with a square within the circle what it could be used for here. The pivots' limits, which
+/// it does not know either, are out of the way first.
+#[test]
+fn new_targets_in_motion_beside_the_reference() {
+    let (seed, cases) = (setting("SEED", 20_260_402), setting("STATES", 4_000));
+    println!("seed {seed}");
+    let mut free = GROUND;
+    free.limits.pivot_rate_rad_s = 1e3;
+    free.limits.pivot_acceleration_rad_s2 = 1e5;
+    for (what, ground, most_stops) in [("without pivots", free, 10), ("with pivots", GROUND, 4)] {
+        let mut random = Random::new(seed);
+        let mut ratios = [Vec::new(), Vec::new()];
+        let mut stops = 0;
+        for _ in 0..cases {
+            let [from, to, other] = [0; 3].map(|_| random.place(&ground));
+            let line = plan_line(1, from, to, &ground).expect("a line");
+            let at = (random.unit() * line.ticks() as f64) as u64;
+            let start = line.state_after(&at_rest(from), at);
+            let Ok(next) = plan_transition(2, &line, &at_rest(from), at, other, &ground) else {
+                stops += 1;
+                continue;
+            };
+            let ticks = played(&next, &start);
+            for (ratios, part) in ratios.iter_mut().zip([0.5_f64.sqrt(), 1.0]) {
+                let limits = per_axis(&ground.limits, part);
+                if let Some(theirs) = reference(&start, &other, &limits) {
+                    ratios.push(ticks / theirs);
+                }
+            }
+        }
+        println!("{what}: {stops} of {cases} after a stop");
+        let [within, around] = ratios;
+        let within = spread("duration over the reference's in the square within", within);
+        let around = spread("in the square around", around);
+        assert!(stops * most_stops < cases);
+        assert!(within[0] < 0.95 && within[1] < 1.2 && within[2] < 1.4);
+        assert!(around[0] < 1.1 && around[1] < 1.45 && around[2] < 1.7);
+    }
+}
