@@ -133,3 +133,21 @@ fn odd_limits_are_kept() {
         check(&plan, &from, &to, &ground);
     }
 }
+
+/// Many turns on the way from the middle out: slow only where the pivots ask for it, which is far out, and straight.
+#[test]
+fn a_line_of_a_minute_is_slowed_where_it_has_to_be() {
+    for (turns, to_mm) in [(12.0, 79.0), (50.0, 79.0), (90.0, 70.0)] {
+        let (from, to) = (at(0.0, 0.0, 0.0), at(to_mm, 0.0, turns));
+        let plan = plan_line(1, from, to, &GROUND).expect("a line");
+        check(&plan, &from, &to, &GROUND);
+        let ratio =
+            plan.ticks() as f64 / LIMITS.rate_hz / Optimum::new(&from, &to, &GROUND).seconds();
+        let off = corners(&plan, at_rest(from))
+            .iter()
+            .map(|axes| off_line(axes, &from, &to))
+            .fold(0.0, f64::max);
+        println!("{turns} turns: {ratio:.4} of the bound, {off:.1} units off the line");
+        assert!(ratio < 1.1 && off < 10.0);
+    }
+}

@@ -13,6 +13,9 @@
 //! | disk | the platform's centre, and where a stop from here would end |
 //! | bounds | x, y and theta of the moved point, and where a stop from here would end |
 
+#[cfg(test)]
+mod tests;
+
 use super::axis::Axis;
 use super::brake::Brake;
 use super::float::{Order, float, hypot};
@@ -171,7 +174,7 @@ impl Envelope {
                 }
                 ticks = ticks.max(SHORTEST);
             }
-            axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
+            piece.run(&mut axes, piece.ticks, &plan.nudge);
         }
         Ok(())
     }
@@ -197,7 +200,7 @@ impl Envelope {
                 rate = rate.larger(greatest(&rates));
                 acceleration = acceleration.larger(greatest(&accelerations));
             }
-            axes = [0, 1, 2].map(|i| axes[i].after(piece.ticks, piece.jerk[i], plan.nudge[i]));
+            piece.run(&mut axes, piece.ticks, &plan.nudge);
         }
         let [rate_limit, acceleration_limit] = self.pivots;
         within(acceleration / acceleration_limit, Broken::Acceleration)?;

@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
 use super::float::Order;
 use super::instant::{Instant, Limiter};
-use super::plan::Piece;
+use super::plan::{Piece, after_all};
 use super::refusal::Refusal;
 use super::swing::{Pace, per_second};
 
@@ -44,10 +44,7 @@ pub(super) fn halt(
 
 fn pieces(state: &[Axis; 3], now: &Instant, force: &Force, limiter: &Limiter<'_>) -> Pieces {
     let mut pieces = release(state, now.acceleration, force.jerk, limiter.hz);
-    let mut released = *state;
-    for piece in &pieces {
-        advance(&mut released, piece, piece.ticks);
-    }
+    let released = after_all(state, &pieces, &[0; 3]);
     let change = released.each_ref().map(|axis| -axis.velocity);
     if change != [0; 3] {
         let ramp = Ramp::new(
@@ -83,7 +80,7 @@ fn walk(
             if ticks == 0 {
                 continue;
             }
-            advance(&mut axes, piece, ticks);
+            piece.run(&mut axes, ticks, &[0; 3]);
             // What a tick changes does not show.
             if ticks == 1 {
                 continue;
@@ -99,9 +96,86 @@ fn walk(
     Some((worst, axes))
 }
 
-/// The axes after some ticks of a piece.
-pub(super) fn advance(axes: &mut [Axis; 3], piece: &Piece, ticks: u64) {
-    for (axis, jerk) in axes.iter_mut().zip(piece.jerk) {
-        *axis = axis.after(ticks, jerk, 0);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Ground;
+    use crate::motion::units::AXIS_UNITS;
+    use crate::parameters::Parameters;
+    use kinematics::Geometry;
+
+    const GROUND: Ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+
+    /// At `x` track radii, with these mm/s, mm/s and deg/s, and mm/s^2 along x.
+    fn state(x: f64, velocity: [f64; 3], along: f64) -> [Axis; 3] {
+        let hz = GROUND.limits.rate_hz;
+        let units = f64::from(AXIS_UNITS);
+        let per = [100.0, 100.0, 360.0];
+        let mut axes = [0, 1, 2].map(|i| Axis {
+            position: 0,
+            velocity: (velocity[i] / per[i] / hz * units) as i64,
+            acceleration: 0,
+        });
+        axes[0].position = (x * units) as i128;
+        axes[0].acceleration = (along / 100.0 / hz / hz * units) as i64 / 6 * 6;
+        axes
+    }
+
+    fn halted(axes: &[Axis; 3], ground: &Ground) -> Result<(Pieces, [Axis; 3]), Refusal> {
+        let limiter = Limiter::new(ground, ground.geometry.usable_radius() as f32);
+        halt(axes, &limiter.look(axes)?, &limiter)
+    }
+
+    #[test]
+    fn it_comes_to_rest_along_its_way_in_the_time_that_the_limits_ask_for() {
+        // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm.
+        let axes = state(0.0, [200.0, 0.0, 0.0], 0.0);
+        let (pieces, end) = halted(&axes, &GROUND).unwrap();
+        let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
+        assert!(ticks.abs_diff(1_200) <= 2, "{ticks}");
+        let mm = (end[0].position - axes[0].position) as f64 / f64::from(AXIS_UNITS) * 100.0;
+        assert!((mm - 6.0).abs() < 0.01, "{mm}");
+        assert!(end.iter().all(|axis| axis.acceleration == 0));
+        // What is left is no speed that anything could follow.
+        assert!(end.iter().all(|axis| axis.velocity.abs() < 1 << 32));
+        assert_eq!((end[1], end[2]), (axes[1], axes[2]));
+    }
+
+    #[test]
+    fn an_acceleration_under_way_is_released_first() {
+        let axes = state(0.0, [100.0, 30.0, 90.0], 3_000.0);
+        let (pieces, end) = halted(&axes, &GROUND).unwrap();
+        assert_eq!(pieces.len(), 5);
+        assert!(end.iter().all(|axis| axis.acceleration == 0));
+        assert!(
+            end.iter().all(|axis| axis.velocity.abs() < 1 << 32),
+            "{end:?}"
+        );
+    }
+
+    #[test]
+    fn at_rest_there_is_nothing_to_do() {
+        let (pieces, _) = halted(&state(0.0, [0.0; 3], 0.0), &GROUND).unwrap();
+        assert!(pieces.is_empty());
+    }
+
+    #[test]
+    fn near_the_edge_there_is_none() {
+        assert!(halted(&state(0.73, [200.0, 0.0, 0.0], 0.0), &GROUND).is_ok());
+        let late = halted(&state(0.75, [200.0, 0.0, 0.0], 0.0), &GROUND);
+        assert_eq!(late.err(), Some(Refusal::NoStop));
+        assert!(halted(&state(0.75, [-200.0, 0.0, 0.0], 0.0), &GROUND).is_ok());
+    }
+
+    #[test]
+    fn with_weak_drives_it_is_softer() {
+        let axes = state(0.0, [0.0, 0.0, 300.0], 0.0);
+        let ticks = |ground: &Ground| -> u64 {
+            let (pieces, _) = halted(&axes, ground).unwrap();
+            pieces.iter().map(|piece| piece.ticks).sum()
+        };
+        let mut weak = GROUND;
+        weak.limits.pivot_acceleration_rad_s2 = 100.0;
+        assert!(ticks(&weak) > ticks(&GROUND) * 11 / 10);
     }
 }

@@ -35,8 +35,8 @@ pub(super) struct Ramp {
 /// Ramps that make a motion.
 pub(super) type Ramps = Vec<Ramp, { STRETCHES + 1 }>;
 
-/// Longest duration in ticks: the integers below hold it, and the roundings of the axes' jerks do not yet show in the line.
-const LONGEST: i64 = 262_144;
+/// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
+const LONGEST: i64 = 1 << 21;
 
 /// The pace along `polygon`, with everything `slower` than it is there (1 or more). `None` where it would last too long.
 pub(super) fn pace(polygon: &Polygon, slower: f32, limits: &PathLimits, hz: f32) -> Option<Pace> {
@@ -98,5 +98,87 @@ fn widen(ramps: &mut Ramps, most: f32) {
             ramps[k - 1].ticks = a.ticks.max(ticks);
             ramps[k].ticks = b.ticks.max(ticks);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::polygon::Corner;
+
+    const HZ: f32 = 20_000.0;
+    const LIMITS: PathLimits = PathLimits {
+        rate: 2.0,
+        acceleration: 40.0,
+        jerk: 4_000.0,
+    };
+
+    fn polygon(corners: &[(f32, f32)]) -> Polygon {
+        (corners.iter())
+            .map(|&(s, rate)| Corner { s, rate })
+            .collect()
+    }
+
+    /// Speed (per second) in the middle of the way, the largest jerk, and the duration in seconds.
+    fn measured(pace: &Pace) -> (f32, f32, f32) {
+        let unit = pace.unit() * HZ * HZ * HZ;
+        let (mut s, mut v, mut a, mut jerk, mut middle) = (0.0, 0.0, 0.0, 0.0_f32, 0.0);
+        for beat in &pace.beats {
+            let j = beat.jerk as f32 * unit;
+            jerk = jerk.larger(j.abs());
+            for _ in 0..beat.ticks {
+                let t = 1.0 / HZ;
+                s += t * (v + t * (a / 2.0 + t * j / 6.0));
+                v += t * (a + t * j / 2.0);
+                a += t * j;
+                if s < 0.5 {
+                    middle = v;
+                }
+            }
+        }
+        assert!((s - 1.0_f32).abs() < 1e-3, "{s}");
+        (middle, jerk, pace.ticks() as f32 / HZ)
+    }
+
+    #[test]
+    fn corners_are_rounded_within_the_jerk_and_speeds_are_kept() {
+        // 50 ms up to 2/s at 40/s^2, on, and down.
+        let polygon = polygon(&[(0.0, 0.0), (0.05, 2.0), (0.95, 2.0), (1.0, 0.0)]);
+        let (middle, jerk, seconds) = measured(&pace(&polygon, 1.0, &LIMITS, HZ).unwrap());
+        assert!((middle - 2.0).abs() < 2e-3, "{middle}");
+        assert!(jerk <= LIMITS.jerk * 1.000_1, "{jerk}");
+        // Half a ramp of 10 ms at either end.
+        assert!((seconds - 0.56).abs() < 1e-3, "{seconds}");
+    }
+
+    #[test]
+    fn slower_is_as_much_longer() {
+        let polygon = polygon(&[(0.0, 0.0), (0.05, 2.0), (0.95, 2.0), (1.0, 0.0)]);
+        let (middle, _, _) = measured(&pace(&polygon, 2.0, &LIMITS, HZ).unwrap());
+        assert!((middle - 1.0).abs() < 1e-3, "{middle}");
+    }
+
+    /// Two corners closer than their ramps: each ramp as long as their sum asks for.
+    #[test]
+    fn where_ramps_meet_the_jerk_is_kept() {
+        let polygon = polygon(&[
+            (0.0, 0.0),
+            (0.05, 2.0),
+            (0.5, 2.0),
+            (0.505, 1.94),
+            (0.51, 1.8),
+            (0.95, 1.8),
+            (1.0, 0.0),
+        ]);
+        let (_, jerk, _) = measured(&pace(&polygon, 1.0, &LIMITS, HZ).unwrap());
+        assert!(jerk <= LIMITS.jerk * 1.001, "{jerk}");
+    }
+
+    #[test]
+    fn too_long_or_no_number_is_no_pace() {
+        let never = polygon(&[(0.0, 0.0), (0.5, 1e-3), (1.0, 0.0)]);
+        assert!(pace(&never, 1.0, &LIMITS, HZ).is_none());
+        let none = polygon(&[(0.0, 0.0), (0.5, f32::NAN), (1.0, 0.0)]);
+        assert!(pace(&none, 1.0, &LIMITS, HZ).is_none());
     }
 }

@@ -16,14 +16,10 @@ pub(super) struct Score {
     ramps: Vec<(i64, i64, i32), { STRETCHES + 1 }>,
     start: i64,
     end: i64,
-    /// Bits of the largest jerk.
-    bits: u32,
 }
 
-/// Bits of the largest jerk, and of it times the square of the duration: what the integers below hold. For most lines it is
-/// the first that counts.
-const MOST_BITS: u32 = 30;
-const BITS_IN_ALL: u32 = 56;
+/// Bits of the largest jerk. Times the cube of the longest duration it is within 128 bits.
+const BITS: u32 = 30;
 
 impl Score {
     pub fn new(ramps: &Ramps) -> Option<Self> {
@@ -35,12 +31,8 @@ impl Score {
             ramps: Vec::new(),
             start: i64::MAX,
             end: i64::MIN,
-            bits: 0,
         };
-        let length = |ramps: &Ramps| Some(ramps.last()?.middle - ramps.first()?.middle);
-        let duration_bits = u64::BITS - length(ramps)?.unsigned_abs().leading_zeros();
-        score.bits = (BITS_IN_ALL - 2 * duration_bits).min(MOST_BITS);
-        let scale = (1u32 << score.bits) as f32 / largest;
+        let scale = (1u32 << BITS) as f32 / largest;
         for ramp in ramps {
             let half = ramp.ticks / 2;
             let (start, end) = (ramp.middle - half, ramp.middle + half);
@@ -54,13 +46,13 @@ impl Score {
     }
 
     /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
-    fn left(&self) -> (i64, i64) {
+    fn left(&self) -> (i64, i128) {
         self.ramps
             .iter()
             .fold((0, 0), |(force, speed), (start, end, jerk)| {
                 let step = i64::from(*jerk) * (end - start);
                 let lever = 2 * self.end - start - end;
-                (force + step, speed + step * lever)
+                (force + step, speed + long(step, lever))
             })
     }
 
@@ -73,7 +65,7 @@ impl Score {
         let (force, speed) = self.left();
         let lever = |start: i64, end: i64| 2 * self.end - start - end;
         let (a, b) = (lever(a_start, a_end), lever(b_start, b_end));
-        let a_step = -(speed - force * b) as f32 / (a - b) as f32;
+        let a_step = -(speed - long(force, b)) as f32 / (a - b) as f32;
         let a_jerk = libm::rintf(a_step / (a_end - a_start) as f32) as i32;
         self.ramps[n - 2].2 += a_jerk;
         let force = force + i64::from(a_jerk) * (a_end - a_start);
@@ -101,7 +93,7 @@ impl Score {
         (sum.sixfold > 0).then_some(Pace {
             beats: sum.beats,
             sixfold: sum.sixfold,
-            bits: self.bits,
+            bits: BITS,
         })
     }
 }
@@ -113,7 +105,7 @@ struct Sum {
     /// Acceleration.
     force: i64,
     /// Twice the speed.
-    speed: i64,
+    speed: i128,
     /// Six times the way.
     sixfold: i128,
 }
@@ -121,9 +113,9 @@ struct Sum {
 impl Sum {
     fn push(&mut self, ticks: i64, jerk: i32) -> Option<()> {
         let bent = i64::from(jerk) * ticks;
-        let way = 3 * (self.speed + self.force * ticks) + bent * ticks;
-        self.sixfold += i128::from(way) * i128::from(ticks);
-        self.speed += (2 * self.force + bent) * ticks;
+        let way = 3 * self.speed + long(3 * self.force + bent, ticks);
+        self.sixfold += way * i128::from(ticks);
+        self.speed += long(2 * self.force + bent, ticks);
         self.force += bent;
         let ticks = ticks as u64;
         self.beats.push(Beat { ticks, jerk }).ok()
@@ -134,11 +126,17 @@ impl Sum {
         if self.force == 0 && self.speed == 0 {
             return Some(());
         }
-        let first = -(self.speed + 3 * self.force) / 2;
-        let second = -self.force - first;
-        self.push(1, i32::try_from(first).ok()?)?;
-        self.push(1, i32::try_from(second).ok()?)
+        let first = i32::try_from(-(self.speed + i128::from(3 * self.force)) / 2).ok()?;
+        let second = i32::try_from(-self.force - i64::from(first)).ok()?;
+        self.push(1, first)?;
+        self.push(1, second)
     }
+}
+
+/// The whole product.
+#[inline]
+fn long(a: i64, b: i64) -> i128 {
+    i128::from(a) * i128::from(b)
 }
 
 /// Inserts in order of time; nearly always at the end.
@@ -151,4 +149,76 @@ fn insert<const N: usize>(times: &mut Vec<(i64, i32), N>, event: (i64, i32)) -> 
     }
     times[k] = event;
     Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Up, along, and down, with ramps that overlap or not.
+    fn ramps(length: i64, ticks: i64) -> Ramps {
+        [
+            (0, 1.0),
+            (length, -1.0),
+            (5 * length, -0.7),
+            (6 * length, 0.7),
+        ]
+        .into_iter()
+        .map(|(middle, change)| Ramp {
+            middle,
+            ticks,
+            change: change * 1e-6,
+        })
+        .collect()
+    }
+
+    /// Every tick of it, in the integers of the beats.
+    fn played(pace: &Pace) -> (i128, i128, i128) {
+        let (mut force, mut twice_speed, mut sixfold) = (0_i128, 0_i128, 0_i128);
+        for beat in &pace.beats {
+            for _ in 0..beat.ticks {
+                let jerk = i128::from(beat.jerk);
+                sixfold += 3 * (twice_speed + force) + jerk;
+                twice_speed += 2 * force + jerk;
+                force += jerk;
+            }
+        }
+        (force, twice_speed, sixfold)
+    }
+
+    #[test]
+    fn it_ends_at_rest_to_the_bit_and_knows_its_way() {
+        for (length, ticks) in [
+            (2, 2),
+            (40, 10),
+            (1_000, 200),
+            (1_000, 1_400),
+            (300_000, 2_000),
+        ] {
+            let pace = Score::new(&ramps(length, ticks)).unwrap().pace().unwrap();
+            let (force, speed, sixfold) = played(&pace);
+            assert_eq!((force, speed), (0, 0), "{length} {ticks}");
+            assert_eq!(sixfold, pace.sixfold, "{length} {ticks}");
+            // Two ticks close it.
+            assert!(pace.ticks() <= (6 * length + ticks) as u64 + 2);
+        }
+    }
+
+    #[test]
+    fn what_ramps_leave_of_speed_is_taken_up_by_the_last_two() {
+        let mut off = ramps(1_000, 200);
+        off[3].change *= 1.01;
+        let pace = Score::new(&off).unwrap().pace().unwrap();
+        let (force, speed, _) = played(&pace);
+        assert_eq!((force, speed), (0, 0));
+    }
+
+    #[test]
+    fn backwards_is_no_pace() {
+        let mut backwards = ramps(1_000, 200);
+        for ramp in &mut backwards {
+            ramp.change = -ramp.change;
+        }
+        assert!(Score::new(&backwards).unwrap().pace().is_none());
+    }
 }
