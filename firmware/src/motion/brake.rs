@@ -218,6 +218,7 @@ fn times(vector: [f32; 3], factors: [f32; 3]) -> [f32; 3] {
 }
 
 /// Jerks of the first and the last segment that bring one axis to rest in `n1 + n2 + n3` ticks; `n1` and `n3` are not zero.
+#[inline(never)]
 pub(super) fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
     let (n1, n2, n3) = (n1 as i64, n2 as i64, n3 as i64);
     // An acceleration is even.

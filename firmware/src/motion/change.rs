@@ -34,6 +34,7 @@ pub(super) struct Ramp {
 
 impl Ramp {
     /// The shortest ramp in which velocity changes by `change` within `force`, both per second; of `hz` ticks a second.
+    #[inline(never)]
     pub fn new(change: Pace, force: &Force, hz: f32) -> Self {
         let way = times(change.way, force.acceleration.way, force.jerk.way);
         let turn = times(change.turn, force.acceleration.turn, force.jerk.turn);
@@ -53,6 +54,7 @@ impl Ramp {
 
     /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk rounded down
     /// leaves.
+    #[inline(never)]
     pub fn pieces(self, change: [i64; 3]) -> [Piece; 3] {
         let steps = (self.rise as i64)
             .saturating_mul((self.rise + self.hold) as i64)
@@ -86,6 +88,7 @@ fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
 }
 
 /// The pieces that bring the acceleration of `state` to exactly zero, within the jerks `most` (2^-72 units).
+#[inline(never)]
 pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pieces {
     let mut pieces = Pieces::new();
     if state.iter().all(|axis| axis.acceleration == 0) {

@@ -82,7 +82,8 @@ pub(super) fn task(axis: &Axis, target: i128) -> Task {
     }
 }
 
-pub(super) fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> {
+#[inline(never)]
+fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> {
     if ticks > 0 {
         *axis = axis.after(ticks, jerk, 0);
         track.push((ticks, jerk)).ok()?;

@@ -135,7 +135,7 @@ const UPPER: f32 = 4_294_967_296.0;
 pub(super) fn float(ticks: u64) -> f32 {
     match u32::try_from(ticks) {
         Ok(ticks) => ticks as f32,
-        Err(_) => ticks as f32,
+        Err(_) => float_of_long(ticks),
     }
 }
 
@@ -146,8 +146,21 @@ pub(super) fn ticks_up(duration: f32) -> u64 {
         let down = duration as u32;
         u64::from(down) + u64::from(duration > down as f32)
     } else {
-        duration as u64
+        ticks_of_long(duration)
     }
+}
+
+/// The same beyond 32 bits, days long, where the chip has no instruction for it.
+#[cold]
+#[inline(never)]
+fn float_of_long(ticks: u64) -> f32 {
+    ticks as f32
+}
+
+#[cold]
+#[inline(never)]
+fn ticks_of_long(duration: f32) -> u64 {
+    duration as u64
 }
 
 /// A float rounded to nearest; it has to be within 63 bits.

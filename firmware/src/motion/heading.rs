@@ -50,6 +50,7 @@ impl Plane {
 
 impl Heading {
     /// Along a vector; along x for one of no length.
+    #[inline(never)]
     pub fn new(x: f32, y: f32) -> Self {
         const ONE: i64 = 1 << POINT;
         // Squares of 2^-72 track radii are beyond a float.

@@ -48,6 +48,7 @@ pub(super) fn centre(position: &Position) -> [f64; 2] {
 
 impl Limits {
     /// Whether every limit is a positive number: along a line the smallest counts, which would hide one that is not.
+    #[inline(never)]
     pub fn all_positive(&self) -> bool {
         let Self {
             rate_hz,

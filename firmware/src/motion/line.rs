@@ -24,6 +24,7 @@ use crate::number::cbrt_f32;
 use heapless::Vec;
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
+#[inline(never)]
 pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Result<Plan, Refusal> {
     let usable = ground.geometry.usable_radius();
     check(&from, &to, ground, usable)?;

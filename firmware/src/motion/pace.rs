@@ -68,6 +68,7 @@ impl Pace {
     }
 
     /// Writes the jerks of an axis; its nudge.
+    #[inline(never)]
     fn axis(&self, i: usize, way: i128, duration: u64, plan: &mut Plan) -> Option<i64> {
         let way = way << SUB_BITS;
         let factor = i64::try_from((way << self.bits) / self.sixfold).ok()?;

@@ -123,6 +123,7 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
     [b1, b1, 2.0 * b1]
 }
 
+#[inline(never)]
 fn ticks(duration: f32) -> Option<u64> {
     const LONGEST: f32 = 4_503_599_627_370_496.0;
     // A duration that is whole but for its rounding errors is not rounded up.

@@ -38,6 +38,7 @@ const GENTLEST: f32 = 0.1;
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the workspace
 /// asks for.
+#[inline(never)]
 pub fn plan_stop(
     id: u32,
     of: &Plan,
@@ -128,9 +129,7 @@ fn stopped(id: u32, of: &Plan, start: Start, state: &[Axis; 3], pieces: &[Piece]
         end: of.end,
     };
     for piece in pieces.iter().filter(|piece| piece.ticks > 0) {
-        for (i, axis) in end.iter_mut().enumerate() {
-            *axis = axis.after(piece.ticks, piece.jerk[i], of.nudge[i]);
-        }
+        piece.run(&mut end, piece.ticks, &of.nudge);
         let _ = plan.pieces.push(*piece);
     }
     plan.end = end.map(|axis| axis.rounded());

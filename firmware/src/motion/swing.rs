@@ -112,6 +112,7 @@ impl Swing {
     }
 
     /// What is left of the pivots' acceleration when the platform moves at `pace` within `radius`.
+    #[inline(never)]
     pub fn room(&self, radius: f32, pace: Pace) -> f32 {
         let bound = Bound::new(radius);
         // Turning alone accelerates the centre towards the point.

@@ -22,9 +22,9 @@ use super::choice::Choice;
 use super::envelope::{Broken, Envelope, MOST_LOOKS};
 use super::fit::fit;
 use super::ground::Ground;
-use super::heading::{Plane, target};
+use super::heading::Plane;
 use super::line::check_target;
-use super::plan::{Plan, Position, Start};
+use super::plan::{Plan, Position, Start, after_all, nudge};
 use super::refusal::Refusal;
 use super::slower::Slower;
 use super::tracks::{Pieces, braked, merged};
@@ -43,6 +43,7 @@ pub enum NoTransition {
 const ATTEMPTS: usize = 3;
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
+#[inline(never)]
 pub fn plan_transition(
     id: u32,
     of: &Plan,
@@ -76,7 +77,8 @@ pub fn plan_transition(
         let plan = choice
             .pieces(&state, &to)
             .and_then(|pieces| {
-                let nudge = nudge(&pieces, &state, &to)?;
+                let ticks = pieces.iter().map(|piece| piece.ticks).sum();
+                let nudge = nudge(&after_all(&state, &pieces, &[0; 3]), &to, ticks)?;
                 let start = Start::Splice {
                     plan: of.id,
                     tick: at,
@@ -111,23 +113,4 @@ impl Choice {
         self.heading.turn_back(&mut pieces, seen, from);
         Some(pieces)
     }
-}
-
-/// The nudge that makes the end exact.
-fn nudge(pieces: &Pieces, state: &[Axis; 3], to: &Position) -> Option<[i64; 3]> {
-    let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
-    let mut nudge = [0; 3];
-    for i in 0..3 {
-        let mut axis = state[i];
-        for piece in pieces {
-            axis = axis.after(piece.ticks, piece.jerk[i], 0);
-        }
-        let rest = target(to[i]) - axis.position;
-        // In 64 bits a division is a tenth of one in 128.
-        nudge[i] = match i64::try_from(rest) {
-            Ok(rest) => rest / ticks.max(1) as i64,
-            Err(_) => i64::try_from(rest / i128::from(ticks.max(1))).ok()?,
-        };
-    }
-    Some(nudge)
 }

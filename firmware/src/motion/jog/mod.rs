@@ -24,7 +24,7 @@ use self::start::{Setting, State};
 use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
 use super::ground::Ground;
-use super::plan::{MAX_PIECES, Piece, Plan, Start};
+use super::plan::{MAX_PIECES, Piece, Plan, Start, after_all};
 use super::refusal::Refusal;
 use super::swing::{Pace, per_second};
 use super::transition::NoTransition;
@@ -36,6 +36,7 @@ use heapless::Vec;
 /// # Errors
 /// [`NoTransition::Refused`] when there is no such jog, with the reason; [`NoTransition::NeedsStop`] when there is, but not
 /// without a stop before.
+#[inline(never)]
 pub fn plan_jog(
     id: u32,
     start: Start,
@@ -91,7 +92,7 @@ impl Jog {
         let target = per_second(&wanted, hz);
         let (radius, force) = setting.force(now, &target)?;
         let mut pieces = release(state, Pace::of(&now.acceleration), force.jerk, hz);
-        let released = run(state, &pieces, [0; 3]);
+        let released = after_all(state, &pieces, &[0; 3]);
         let change = [0, 1, 2].map(|i| wanted[i] - released[i].velocity);
         let ramp = Ramp::new(Pace::of(&per_second(&change, hz)), &force, hz);
         for piece in ramp.pieces(change) {
@@ -103,7 +104,7 @@ impl Jog {
         }
         Ok(Self {
             wanted,
-            steady: run(state, &pieces, [0; 3]),
+            steady: after_all(state, &pieces, &[0; 3]),
             pieces,
             ramp: ramp.ticks(),
             brake: Ramp::new(Pace::of(&target), &force, hz),
@@ -127,19 +128,20 @@ impl Jog {
             at = end;
         }
         pieces.retain(|piece| piece.ticks > 0);
-        let rest = run(state, &pieces, [0; 3]);
+        let rest = after_all(state, &pieces, &[0; 3]);
         // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
         let nudge = rest.map(|axis| -axis.velocity);
         Plan {
             id,
             start,
-            end: run(state, &pieces, nudge).map(|axis| axis.rounded()),
+            end: after_all(state, &pieces, &nudge).map(|axis| axis.rounded()),
             pieces,
             nudge,
         }
     }
 
     /// From `at` on: until when all axes keep their jerks, and these; `None` when all are at rest.
+    #[inline(never)]
     fn next(&self, at: u64, hold: &[u64; 3], brakes: &[Piece; 3]) -> Option<(u64, [i64; 3])> {
         let mut jerk = [0; 3];
         let mut until = None;
@@ -163,15 +165,4 @@ impl Jog {
         }
         until.map(|until| (until, jerk))
     }
-}
-
-/// The state after some pieces.
-fn run(state: &[Axis; 3], pieces: &[Piece], nudge: [i64; 3]) -> [Axis; 3] {
-    let mut axes = *state;
-    for piece in pieces {
-        for (i, axis) in axes.iter_mut().enumerate() {
-            *axis = axis.after(piece.ticks, piece.jerk[i], nudge[i]);
-        }
-    }
-    axes
 }

@@ -119,6 +119,7 @@ impl Steady {
     }
 
     /// The platform's centre after so many seconds.
+    #[inline(never)]
     fn platform(&self, seconds: f32) -> [f32; 2] {
         let turned = (self.turning * seconds * UNITS_PER_RAD) as i64;
         let angle = Angle::from_units(self.theta.wrapping_add(turned));

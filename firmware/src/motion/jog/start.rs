@@ -162,9 +162,7 @@ impl<'a> Setting<'a> {
             let part = piece.ticks.div_ceil(PARTS).max(1);
             while left > 0 {
                 let ticks = part.min(left);
-                for (i, axis) in axes.iter_mut().enumerate() {
-                    *axis = axis.after(ticks, piece.jerk[i], 0);
-                }
+                piece.run(&mut axes, ticks, &[0; 3]);
                 left -= ticks;
                 if !self.can_stop(&axes, ticks, radius, force) {
                     return false;

@@ -2,9 +2,9 @@
 
 use super::super::axis::{Axis, SUB_BITS};
 use super::super::ground::Ground;
-use super::super::halt::{advance, halt};
+use super::super::halt::halt;
 use super::super::instant::{Instant, Limiter};
-use super::super::plan::{Piece, Plan, Position, Start};
+use super::super::plan::{Piece, Plan, Position, Start, nudge};
 use super::super::refusal::Refusal;
 use super::super::swing::{Pace, per_second};
 use super::spline::point;
@@ -41,7 +41,8 @@ impl Stream {
         let (state, now) = self.knots(&mut plan, from, &limiter)?;
         let splice = plan.ticks();
         if self.complete {
-            arrive(&mut plan, &state, self.target(2));
+            plan.end = self.target(2);
+            plan.nudge = nudge(&state, &plan.end, splice).ok_or(Refusal::Limits)?;
         } else {
             let (stop, end) = halt(&state, &now, &limiter)?;
             plan.pieces
@@ -77,7 +78,7 @@ impl Stream {
                 {
                     return Err(Refusal::Jerk);
                 }
-                advance(&mut state, &piece, piece.ticks);
+                piece.run(&mut state, piece.ticks, &[0; 3]);
                 let now = limiter.look(&state)?;
                 limiter.check(&before, &now, piece.ticks as f32 / limiter.hz)?;
                 before = now;
@@ -132,6 +133,7 @@ impl Stream {
     }
 
     /// A target of the window; the last one stands for those that are not there.
+    #[inline(never)]
     fn target(&self, place: usize) -> Position {
         let last = self.targets.len() - 1;
         // There is one always: the start, or the last.
@@ -151,13 +153,3 @@ impl Stream {
 /// Bits of a place on the curve below a position's unit.
 const FINE_BITS: u32 = 20;
 const FINE: f32 = (1_u32 << FINE_BITS) as f32;
-
-/// Makes the end of a plan exactly `to`: what rounding has left of the way is spread over it.
-fn arrive(plan: &mut Plan, end: &[Axis; 3], to: Position) {
-    let ticks = i128::from(plan.ticks().max(1));
-    for (i, axis) in end.iter().enumerate() {
-        let rest = (i128::from(to[i]) << SUB_BITS) - axis.position;
-        plan.nudge[i] = (rest / ticks) as i64;
-    }
-    plan.end = to;
-}
