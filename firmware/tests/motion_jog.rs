@@ -5,6 +5,7 @@ mod motion_bench;
 use firmware::motion::{Axis, Motion, NoTransition, Refusal, Start, plan_jog};
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::grounds::{Velocity, grounds, rest, velocities};
+use motion_bench::random::Random;
 use motion_bench::*;
 use proptest::prelude::*;
 
@@ -70,6 +71,53 @@ proptest! {
             prop_assert!(worst.is_kept(), "{worst:?}");
             prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
         }
+    }
+}
+
+/// Out of a line, or of another jog, at any tick.
+#[test]
+fn another_velocity_is_taken_in_motion() {
+    let mut random = Random::new(20_260_405);
+    let half = [
+        LIMITS.speed_mm_s,
+        LIMITS.speed_mm_s,
+        LIMITS.turn_speed_deg_s,
+    ];
+    let velocity = |random: &mut Random| {
+        half.map(|most| {
+            let none = random.unit() < 1.0 / 3.0;
+            let some = (random.unit() - 0.5) * most;
+            if none { 0.0 } else { some }
+        })
+    };
+    for (what, most) in [("a line", 0.02), ("a jog", 0.06)] {
+        let (mut made, mut stops) = (0, 0);
+        for _ in 0..3_000 {
+            let [from, to] = [0; 2].map(|_| random.place(&GROUND));
+            let axes = at_rest(from);
+            let plan = if what == "a line" {
+                line(from, to)
+            } else {
+                match plan_jog(7, start(&axes), &axes, &velocity(&mut random), &GROUND) {
+                    Ok(plan) if plan.ticks() > 0 => plan,
+                    _ => continue,
+                }
+            };
+            let tick = (random.unit() * plan.ticks().min(6_000) as f64) as u64;
+            let splice = Start::Splice { plan: 7, tick };
+            let state = plan.state_after(&axes, tick);
+            match plan_jog(8, splice, &state, &velocity(&mut random), &GROUND) {
+                Ok(_) => made += 1,
+                Err(NoTransition::NeedsStop) => stops += 1,
+                Err(refused) => panic!("{refused:?}"),
+            }
+        }
+        let part = f64::from(stops) / f64::from(made + stops);
+        println!(
+            "out of {what}: {made} and {stops} after a stop, {:.1} %",
+            100.0 * part
+        );
+        assert!(made > 1_000 && part < most);
     }
 }
 

@@ -140,9 +140,20 @@ impl Envelope {
 
     /// Whether `plan`, from `start`, stays inside. Of `looks`, the stretches that may be looked at, those looked at are taken.
     pub fn check(&self, plan: &Plan, start: &[Axis; 3], looks: &mut usize) -> Result<(), Broken> {
+        self.check_pieces(&plan.pieces, &plan.nudge, start, looks)
+    }
+
+    /// The same of the first pieces of a plan.
+    pub fn check_pieces(
+        &self,
+        pieces: &[Piece],
+        nudge: &[i64; 3],
+        start: &[Axis; 3],
+        looks: &mut usize,
+    ) -> Result<(), Broken> {
         let mut axes = *start;
         let (mut worst, mut glanced) = (None, false);
-        for piece in &plan.pieces {
+        for piece in pieces {
             let arc = Arc::new(&axes, piece, self.hz);
             let rooms = self.reach.rooms(&axes);
             self.check_jerk(&arc)?;
@@ -161,7 +172,7 @@ impl Envelope {
                     Err((broken, shorter)) => {
                         if broken.is_of_pivots() && !glanced {
                             // Where a limit is passed indeed, a glance tells by how much.
-                            self.glance(plan, start)?;
+                            self.glance(pieces, nudge, start)?;
                             glanced = true;
                         }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
@@ -174,7 +185,7 @@ impl Envelope {
                 }
                 ticks = ticks.max(SHORTEST);
             }
-            piece.run(&mut axes, piece.ticks, &plan.nudge);
+            piece.run(&mut axes, piece.ticks, nudge);
         }
         Ok(())
     }
@@ -189,10 +200,10 @@ impl Envelope {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces.
-    fn glance(&self, plan: &Plan, start: &[Axis; 3]) -> Result<(), Broken> {
+    fn glance(&self, pieces: &[Piece], nudge: &[i64; 3], start: &[Axis; 3]) -> Result<(), Broken> {
         let mut axes = *start;
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        for piece in &plan.pieces {
+        for piece in pieces {
             let arc = Arc::new(&axes, piece, self.hz);
             let seconds = float(piece.ticks) / self.hz;
             for t in [seconds / 2.0, seconds] {
@@ -200,7 +211,7 @@ impl Envelope {
                 rate = rate.larger(greatest(&rates));
                 acceleration = acceleration.larger(greatest(&accelerations));
             }
-            piece.run(&mut axes, piece.ticks, &plan.nudge);
+            piece.run(&mut axes, piece.ticks, nudge);
         }
         let [rate_limit, acceleration_limit] = self.pivots;
         within(acceleration / acceleration_limit, Broken::Acceleration)?;

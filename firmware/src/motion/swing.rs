@@ -38,15 +38,7 @@ impl Pace {
             turn: self.turn.larger(other.turn),
         }
     }
-
-    /// Whether no part is greater than that of a limit.
-    pub fn is_within(self, limit: Self) -> bool {
-        self.way <= limit.way * SLACK && self.turn <= limit.turn * SLACK
-    }
 }
-
-/// Slack of single precision.
-const SLACK: f32 = 1.0 + 1e-5;
 
 /// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
 pub(super) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {

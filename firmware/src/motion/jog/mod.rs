@@ -23,11 +23,13 @@ mod start;
 use self::start::{Setting, State};
 use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
+use super::envelope::{Envelope, MOST_LOOKS};
 use super::ground::Ground;
 use super::plan::{MAX_PIECES, Piece, Plan, Start, after_all};
 use super::refusal::Refusal;
 use super::swing::{Pace, per_second};
 use super::transition::NoTransition;
+use super::units::UnitLimits;
 use heapless::Vec;
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
@@ -99,8 +101,11 @@ impl Jog {
             let _ = pieces.push(piece);
         }
         // From rest the way there is the first part of the way on.
-        if !from_rest && !setting.way_holds(state, &pieces, radius, &force) {
-            return Err(NoTransition::NeedsStop);
+        if !from_rest {
+            let envelope = Envelope::new(setting.ground, UnitLimits::new(setting.ground), state);
+            envelope
+                .check_pieces(&pieces, &[0; 3], state, &mut { MOST_LOOKS })
+                .map_err(|_| NoTransition::NeedsStop)?;
         }
         Ok(Self {
             wanted,

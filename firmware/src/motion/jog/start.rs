@@ -1,10 +1,9 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
 use super::super::axis::{Axis, SUB_BITS};
-use super::super::change::{Force, Ramp, release_seconds};
+use super::super::change::{Force, release_seconds};
 use super::super::float::{Order, hypot};
 use super::super::ground::Ground;
-use super::super::plan::Piece;
 use super::super::refusal::Refusal;
 use super::super::swing::{Pace, Swing, per_second};
 use super::super::transition::NoTransition;
@@ -13,14 +12,10 @@ use super::reach::Steady;
 use crate::number::Fixed;
 use kinematics::{Angle, Scalar};
 
-/// Slack of single precision.
-const SLACK: f32 = 1.0 + 1e-5;
 /// 0.2 um on the reference stage.
 const RIM: f32 = 2e-6;
 /// A thousand million turns.
 const MOST_TURNS: i64 = 1_000_000_000 << 32;
-/// Parts of a piece that are looked at.
-const PARTS: u64 = 4;
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
 
@@ -32,14 +27,11 @@ pub(super) struct Setting<'a> {
     usable: f32,
     /// Wanted, 2^-72 units a tick.
     pub velocity: [i64; 3],
-    /// Limits.
-    speed: Pace,
     force: Force,
 }
 
 /// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
 pub(super) struct State {
-    pub point: [f32; 2],
     pub platform: [f32; 2],
     pub velocity: [f32; 3],
     pub acceleration: [f32; 3],
@@ -69,7 +61,6 @@ impl<'a> Setting<'a> {
             swing: Swing::new(ground),
             usable: ground.geometry.usable_radius() as f32,
             velocity: [x / mm, y / mm, turning / 360.0].map(|rate| (rate * units) as i64),
-            speed: pace(limits.speed_mm_s, limits.turn_speed_deg_s),
             force: Force {
                 acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
                 jerk: pace(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
@@ -102,11 +93,7 @@ impl<'a> Setting<'a> {
         let gained = speed.max(Pace::of(&released));
         let room = swing.room(radius, pace.max(gained));
         let part = room / swing.need(radius, self.force.acceleration);
-        if part < LEAST_FORCE
-            || !gained.is_within(speed.max(self.speed))
-            || !swing.rate_holds(radius, gained)
-            || swing.need(radius, force) > room * SLACK
-        {
+        if part < LEAST_FORCE {
             return Err(NoTransition::NeedsStop);
         }
         let part = part.smaller(1.0);
@@ -148,64 +135,6 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Whether the way of `pieces` keeps to the disk and the bounds, and a stop from anywhere on it does too.
-    pub fn way_holds(
-        &self,
-        axes: &[Axis; 3],
-        pieces: &[Piece],
-        radius: f32,
-        force: &Force,
-    ) -> bool {
-        let mut axes = *axes;
-        for piece in pieces {
-            let mut left = piece.ticks;
-            let part = piece.ticks.div_ceil(PARTS).max(1);
-            while left > 0 {
-                let ticks = part.min(left);
-                piece.run(&mut axes, ticks, &[0; 3]);
-                left -= ticks;
-                if !self.can_stop(&axes, ticks, radius, force) {
-                    return false;
-                }
-            }
-        }
-        true
-    }
-
-    /// Whether a stop from here, or from up to `ticks` before, ends inside.
-    fn can_stop(&self, axes: &[Axis; 3], ticks: u64, radius: f32, force: &Force) -> bool {
-        let state = State::new(axes, self);
-        let (speed, now) = (Pace::of(&state.velocity), Pace::of(&state.acceleration));
-        let arm = self.swing.arm();
-        let seconds = ticks as f32 / self.hz;
-        // Its way: the release of what acceleration there is, the braking; and the arc over the chord before.
-        let brake = Ramp::new(speed, force, self.hz).ticks() as f32 / (2.0 * self.hz)
-            + (now.way / force.jerk.way).larger(now.turn / force.jerk.turn);
-        let whole = speed.way + speed.turn * arm;
-        let bend = now.way + now.turn * arm + speed.turn * speed.turn * arm;
-        let arc = bend * seconds * seconds / 8.0;
-        let out = hypot(state.platform[0], state.platform[1]);
-        let [x, y] = [0, 1].map(|i| state.point[i] + state.velocity[i] * brake);
-        // The moved point goes straight; with the arm besides every orientation is inside.
-        let straight = hypot(state.point[0], state.point[1]).larger(hypot(x, y)) + arm;
-        if straight.smaller(out + whole * brake) + arc > radius {
-            return false;
-        }
-        (0..3).all(|i| {
-            let [low, high] = self.ground.bounds[i];
-            let way =
-                (state.velocity[i] * brake).abs() + now.way.larger(now.turn) * seconds * seconds;
-            let per_unit = if i < 2 {
-                PER_UNIT
-            } else {
-                PER_UNIT * core::f32::consts::TAU
-            };
-            let here = axes[i].rounded();
-            here.saturating_sub(low) as f32 * per_unit >= way
-                && high.saturating_sub(here) as f32 * per_unit >= way
-        })
-    }
-
     fn centre(&self) -> [f32; 2] {
         self.ground.centre.map(|radii| radii as f32)
     }
@@ -219,7 +148,6 @@ impl State {
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
         let [a, b] = setting.centre();
         Self {
-            point,
             platform: [
                 point[0] - (a * cos - b * sin),
                 point[1] - (a * sin + b * cos),
