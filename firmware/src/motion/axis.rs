@@ -97,7 +97,7 @@ impl Axis {
 
 /// The product modulo 2^128.
 #[inline]
-fn times(value: i128, factor: u32) -> i128 {
+pub(super) fn times(value: i128, factor: u32) -> i128 {
     let factor = u64::from(factor);
     let (low, high) = (value as u64, (value >> 64) as u64);
     let first = u64::from(low as u32) * factor;

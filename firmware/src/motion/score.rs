@@ -3,6 +3,7 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
 //! a few units, and two ticks more take those: the motion ends at rest to the bit.
 
+use super::axis::times;
 use super::float::Order;
 use super::pace::{Beat, Pace};
 use super::plan::MAX_PIECES;
@@ -114,7 +115,7 @@ impl Sum {
     fn push(&mut self, ticks: i64, jerk: i32) -> Option<()> {
         let bent = i64::from(jerk) * ticks;
         let way = 3 * self.speed + long(3 * self.force + bent, ticks);
-        self.sixfold += way * i128::from(ticks);
+        self.sixfold += times(way, u32::try_from(ticks).ok()?);
         self.speed += long(2 * self.force + bent, ticks);
         self.force += bent;
         let ticks = ticks as u64;

@@ -105,7 +105,6 @@ impl Node {
         self.bound(z, 1.0)
     }
 
-    #[inline(never)]
     fn bound(&self, z: f32, sign: f32) -> Bound {
         let mut best = Bound {
             offset: sign * self.acceleration,
