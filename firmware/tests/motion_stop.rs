@@ -2,8 +2,9 @@
 
 mod motion_bench;
 
-use firmware::motion::{Plan, Position, Stop, plan_stop};
-use motion_bench::exact::Worst;
+use firmware::motion::{Plan, Position, Start, Stop, plan_jog, plan_line, plan_stop};
+use motion_bench::exact::{Worst, ends_at_rest};
+use motion_bench::grounds::{grounds, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
 
@@ -92,6 +93,42 @@ proptest! {
         let plan = line(from, to);
         for at in [0, plan.ticks(), plan.ticks() + late] {
             prop_assert_eq!(stop(&plan, from, at, Stop::Urgent), None);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(settings(12_000))]
+
+    /// Out of lines and of jogs that end at an edge or a bound, with strong and weak drives, about any point.
+    #[test]
+    fn on_any_ground_pivots_and_workspace_are_kept(
+        platform in positions(0.3), target in positions(0.3), ground in grounds(), velocity in velocities(), [jogs, late] in any::<[bool; 2]>(), part in 0.0..1.0_f64,
+    ) {
+        let [from, to] = [platform, target].map(|platform| rest(platform, &ground));
+        let (Some(from), Some(to)) = (from, to) else { return Ok(()) };
+        let to = to.map(|axis| axis.rounded());
+        let at_start = from.map(|axis| axis.rounded());
+        let plan = if jogs {
+            plan_jog(7, Start::Rest(at_start), &from, &velocity, &ground).ok()
+        } else {
+            plan_line(7, at_start, to, &ground).ok()
+        };
+        let Some(plan) = plan else { return Ok(()) };
+        // Anywhere, or in the last 40 ms: there an axis may brake to an edge while theta goes on.
+        let ticks = plan.ticks();
+        let at = if late && ticks < 1 << 24 {
+            ticks.saturating_sub((part * 800.0) as u64)
+        } else {
+            (part * ticks.min(60_000) as f64) as u64
+        };
+        let seam = plan.state_after(&from, at);
+        for how in [Stop::Smooth, Stop::Urgent] {
+            let Some(stop) = plan_stop(8, &plan, &from, at, &ground, how) else { continue };
+            let mut worst = Worst::default();
+            let end = worst.walk(&stop, &seam, &ground);
+            let kept = worst.pivot_rate.max(worst.pivot_acceleration) <= 1.001 && worst.is_inside();
+            prop_assert!(kept && ends_at_rest(&stop, &end), "{how:?} {worst:?} {stop:?} {ground:?}");
         }
     }
 }

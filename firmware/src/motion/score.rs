@@ -205,6 +205,19 @@ mod tests {
         }
     }
 
+    /// Ramps of any lengths: what the integers leave goes in two ticks.
+    #[test]
+    fn whatever_the_lengths_it_ends_at_rest() {
+        for k in 1..200_i64 {
+            let mut odd = ramps(1_000 + 7 * k, 2 * k);
+            odd[1].middle += k;
+            odd[2].ticks += 2 * (k % 5);
+            odd[3].middle += 3 * k;
+            let (force, speed, _) = played(&Score::new(&odd).unwrap().pace().unwrap());
+            assert_eq!((force, speed), (0, 0), "{k}");
+        }
+    }
+
     #[test]
     fn what_ramps_leave_of_speed_is_taken_up_by_the_last_two() {
         let mut off = ramps(1_000, 200);
