@@ -71,6 +71,8 @@ pub struct State {
     supply: f32,
     commands: u32,
     refused: u32,
+    /// State and commands in the last snapshot.
+    told: (Mode, u32),
     interval: Interval,
     /// Late ticks, a hundred each, less those forgiven.
     lateness: u32,
@@ -100,10 +102,10 @@ pub fn tick(
 ) -> Outputs {
     state.tick = state.tick.wrapping_add(1);
     state.interval.count(inputs.tick_cycles, inputs.late);
-    let mut pivots = decode(config, &mut state.encoders, &inputs.frames);
+    let mut pivots = decode(config, &mut state.encoders, inputs.frames);
     // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
-    if state.tick == 1 {
+    if state.supply == 0.0 {
         state.supply = supply;
     }
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
@@ -111,6 +113,8 @@ pub fn tick(
     // Obeyed where it lies: a plan is too long to be moved twice.
     let command = link.commands.peek();
     let commanded = command.is_some();
+    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next one on.
+    let drives = state.servo_on();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
         state.obey(config, command, &pivots);
@@ -123,7 +127,7 @@ pub fn tick(
 
     let point = advance(config, state);
     let setpoint = state.motion.centre().platform(&point);
-    let driven = if state.servo_on() {
+    let driven = if drives && state.servo_on() {
         state.drive(config, &setpoint, &mut pivots)
     } else {
         None
@@ -131,7 +135,8 @@ pub fn tick(
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
-    state.turn = if state.turn < 2 { state.turn + 1 } else { 0 };
+    let turn = state.turn;
+    state.turn = (turn + 1) % TURN as usize;
     let outputs = Outputs {
         duty,
         awake: state.awake(),
@@ -159,23 +164,24 @@ pub fn tick(
     if link.recorder.is_wanted() {
         link.recorder.record(&sample());
     }
-    // Not in a tick that has taken a command, which is the longest as it is.
-    if !commanded && link.has_room() {
-        // There is room: only this side fills the queue.
-        let _ = link
-            .snapshots
-            .enqueue(state.snapshot(&pivots, &target, duty));
-        state.interval = Interval::default();
+    // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is.
+    let news = (state.mode, state.commands);
+    if (turn == SNAPSHOT_TURN || news != state.told) && !commanded {
+        state.leave_snapshot(link, &point.position, &pivots, &target, duty);
     }
     outputs
 }
+
+/// In turn, a tick each: a look at every pivot, and a snapshot.
+const SNAPSHOT_TURN: usize = 3;
+const _: () = assert!(TURN as usize == SNAPSHOT_TURN + 1);
 
 // The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
 // each between its symbols.
 
 /// Encoder frames to pivot angles.
 #[inline(never)]
-fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) -> [Angle; 3] {
+fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -> [Angle; 3] {
     for i in 0..3 {
         encoders[i].take(&config.encoders[i], &frames[i]);
     }
@@ -202,7 +208,8 @@ struct Pivots {
     angles: [Angle; 3],
     motion: PivotMotion<f32>,
     torques: [f32; 3],
-    guides: [Guide<f32>; 3],
+    /// Distances along the guides, track radii: all that is looked at of these later.
+    lengths: [f32; 3],
 }
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
@@ -215,7 +222,7 @@ fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
         angles: pivots,
         motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
         torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
-        guides,
+        lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
     })
 }
 
@@ -261,43 +268,25 @@ impl State {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
         }
-        let Some(Pivots {
-            angles: target,
-            motion,
-            torques,
-            guides,
-        }) = pivots_of(config, setpoint)
-        else {
+        // Looked at where it lies.
+        let Some(wanted) = &pivots_of(config, setpoint) else {
             self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
-        for i in 0..3 {
-            if self.lost == Some(i) {
-                // All that is known of it.
-                pivots[i] = target[i];
-            }
+        let target = &wanted.angles;
+        if let Some(lost) = self.lost
+            && let (Some(pivot), Some(target)) = (pivots.get_mut(lost), target.get(lost))
+        {
+            // All that is known of it.
+            *pivot = *target;
         }
-        let errors = self.following_errors(config, pivots, &target, &motion.rates)?;
-        let worst = self
-            .settling
-            .look(&config.limits, &errors, self.motion.moving());
+        let (errors, worst) = self.following_errors(config, pivots, wanted)?;
+        (self.settling).look(&config.limits, worst, self.motion.moving());
         self.interval.look(worst);
         if self.mode != Mode::Holding && !self.motion.moving() {
             self.come_to_rest();
         }
-        let counts_per_volt = config.servo.counts_per_volt(self.supply);
-        let mut duty = [Duty(0); 3];
-        let mut sum = 0.0;
-        for i in 0..3 {
-            let pivot = PivotSetpoint {
-                error: errors[i],
-                rate: motion.rates[i],
-                acceleration: motion.accelerations[i],
-                platform_torque: torques[i],
-            };
-            duty[i] = self.servo[i].step(&config.servo, &pivot, counts_per_volt);
-            sum += self.servo[i].wanted();
-        }
+        let (duty, sum) = self.servos(config, &errors, wanted);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
             self.fail(FaultKind::NotFinite, None, 0.0, 0.0);
@@ -305,9 +294,9 @@ impl State {
         }
         let i = self.turn;
         let after = if i < 2 { i + 1 } else { 0 };
-        // All are there: the turn is never more than 2.
-        if let (Some(guide), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
-            guides.get(i),
+        // All are there, but in the snapshot's turn none.
+        if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
+            wanted.lengths.get(i),
             target.get(i),
             pivots.get(i),
             pivots.get(after),
@@ -320,39 +309,105 @@ impl State {
                 next,
                 duty,
             };
-            if !(self.is_in_range(config, i, guide) && self.watch_pivot(config, &turn)) {
+            if !(self.is_in_range(config, i, length) && self.watch_pivot(config, &turn)) {
                 return None;
             }
         }
-        Some((target, motion.rates, duty))
+        Some((wanted.angles, wanted.motion.rates, duty))
     }
 
-    /// Measured minus setpoint, 2^-32 turns, if that is allowed.
+    /// Duties of the three servos, and the sum of what they asked for. The one whose turn it is learns.
+    #[inline(never)]
+    fn servos(&mut self, config: &Config, errors: &[i32; 3], wanted: &Pivots) -> ([Duty; 3], f32) {
+        let counts_per_volt = config.servo.counts_per_volt(self.supply);
+        let mut duty = [Duty(0); 3];
+        let mut sum = 0.0;
+        for i in 0..3 {
+            let setpoint = PivotSetpoint {
+                error: errors[i],
+                rate: wanted.motion.rates[i],
+                acceleration: wanted.motion.accelerations[i],
+                platform_torque: wanted.torques[i],
+            };
+            let servo = &mut self.servo[i];
+            duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
+            if i == self.turn {
+                servo.learn(&config.servo, &setpoint);
+            }
+            sum += servo.wanted();
+        }
+        (duty, sum)
+    }
+
+    /// Measured minus setpoint, 2^-32 turns, and the largest of the three by its size, if that is allowed.
     #[inline]
     fn following_errors(
         &mut self,
         config: &Config,
         pivots: &[Angle; 3],
-        target: &[Angle; 3],
-        rates: &[f32; 3],
-    ) -> Option<[i32; 3]> {
-        let mut errors = [0i32; 3];
+        wanted: &Pivots,
+    ) -> Option<([i32; 3], u32)> {
+        let errors = [0, 1, 2].map(|i| (pivots[i] - wanted.angles[i]).units());
+        let small = errors.map(|error| error as i32);
+        let (mut worst, mut beyond) = (0, 0);
         for i in 0..3 {
-            let error = (pivots[i] - target[i]).units();
-            errors[i] = error as i32;
-            let more = (rates[i].abs() * config.limits.following_per_rate) as i32;
+            worst = small[i].unsigned_abs().max(worst);
+            // Nothing but copies of the sign above 32 bits.
+            beyond |= (errors[i] >> 32) as i32 ^ small[i] >> 31;
+        }
+        // What any rate allows, as a rule; else each is looked at for itself.
+        let least = config.limits.following_error.unsigned_abs();
+        if (beyond != 0 || worst > least) && !self.may_follow_so(config, pivots, wanted) {
+            return None;
+        }
+        Some((small, worst))
+    }
+
+    /// Whether errors are allowed at these rates.
+    #[cold]
+    fn may_follow_so(&mut self, config: &Config, pivots: &[Angle; 3], wanted: &Pivots) -> bool {
+        let pivots = pivots.iter().zip(&wanted.angles);
+        for (i, ((&pivot, &target), rate)) in pivots.zip(&wanted.motion.rates).enumerate() {
+            let error = (pivot - target).units();
+            let more = (rate.abs() * config.limits.following_per_rate) as i32;
             let most = config.limits.following_error.saturating_add(more);
-            if i64::from(errors[i]) != error || errors[i].unsigned_abs() > most.unsigned_abs() {
+            if error.unsigned_abs() > u64::from(most.unsigned_abs()) {
                 const RAD: f32 = (1.0 / crate::config::UNITS_PER_RAD) as f32;
                 let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
                 self.fail(FaultKind::FollowingError, Some(i), value, limit);
-                return None;
+                return false;
             }
         }
-        Some(errors)
+        true
     }
 
-    fn snapshot(&self, pivots: &[Angle; 3], target: &[Angle; 3], duty: [Duty; 3]) -> Snapshot {
+    /// Tells the command side, if there is room.
+    #[inline(never)]
+    fn leave_snapshot(
+        &mut self,
+        link: &mut TickLink<'_>,
+        setpoint: &Position,
+        pivots: &[Angle; 3],
+        target: &[Angle; 3],
+        duty: [Duty; 3],
+    ) {
+        if link.has_room() {
+            // There is room: only this side fills the queue.
+            let snapshot = self.snapshot(setpoint, pivots, target, duty);
+            let _ = link.snapshots.enqueue(snapshot);
+            self.told = (self.mode, self.commands);
+            self.interval = Interval::default();
+        }
+    }
+
+    #[inline]
+    fn snapshot(
+        &self,
+        setpoint: &Position,
+        pivots: &[Angle; 3],
+        target: &[Angle; 3],
+        duty: [Duty; 3],
+    ) -> Snapshot {
         let (plan, plan_tick) = self.motion.progress();
         Snapshot {
             tick: self.tick,
@@ -366,7 +421,7 @@ impl State {
             // A difference that does not fit is a fault, and then the target is what is measured.
             pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
             duty,
-            setpoint: self.motion.position(),
+            setpoint: *setpoint,
             centre: self.motion.centre(),
             plan,
             plan_tick,

@@ -1,6 +1,6 @@
 //! From encoder frames to a multi-turn pivot angle: which frame is believed, what bridges one that is not.
 
-use crate::drivers::biss::{FrameError, POSITION_BITS, RawFrame, decode};
+use crate::drivers::biss::{FrameError, POSITION_BITS, RawFrame, Whole, decode, whole};
 use crate::fault::FaultKind;
 use crate::parameters::{EncoderSetup, Supervision};
 use kinematics::Angle;
@@ -12,10 +12,11 @@ const ALIGN: u32 = 32 - POSITION_BITS;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
     zero: u32,
-    reversed: bool,
+    /// 1, or -1 where the encoder counts against the pivot's direction.
+    sense: i32,
     bridged: u8,
     /// Largest believable change of the step from tick to tick, 2^-32 turns.
-    change: i32,
+    change: u32,
 }
 
 impl EncoderConfig {
@@ -24,9 +25,9 @@ impl EncoderConfig {
         let radians = supervision.plausible_acceleration_rad_s2 * period_s * period_s;
         Self {
             zero: setup.zero_counts << ALIGN,
-            reversed: setup.reversed,
+            sense: if setup.reversed { -1 } else { 1 },
             bridged: supervision.bridged_frames,
-            change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as i32,
+            change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
         }
     }
 }
@@ -34,26 +35,30 @@ impl EncoderConfig {
 impl EncoderConfig {
     /// Whether a reading means the same angle to both.
     pub fn reads_as(&self, other: &Self) -> bool {
-        self.zero == other.zero && self.reversed == other.reversed
+        self.zero == other.zero && self.sense == other.sense
     }
 
     /// What an ideal encoder shows at a pivot angle: for machines that are simulated.
     pub fn counts_at(&self, angle: Angle) -> u32 {
-        let fraction = if self.reversed {
-            angle.fraction().wrapping_neg()
-        } else {
-            angle.fraction()
-        };
         // To the nearest count.
-        fraction
+        (angle.fraction())
+            .wrapping_mul(self.sense as u32)
             .wrapping_add(self.zero)
             .wrapping_add(1 << (ALIGN - 1))
             >> ALIGN
     }
+
+    /// The fraction of a turn that a reading means, 2^-32 turns.
+    #[inline]
+    fn fraction(&self, counts: u32) -> u32 {
+        (counts << ALIGN)
+            .wrapping_sub(self.zero)
+            .wrapping_mul(self.sense as u32)
+    }
 }
 
 /// One encoder's state.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encoder {
     angle: Angle,
     step: i32,
@@ -62,11 +67,31 @@ pub struct Encoder {
     /// Bad frames in a row.
     bad: u8,
     warning: bool,
-    reason: Option<FaultKind>,
+    /// Ready, with no bad frame to make up for and no warning: the next frame need only be plausible.
+    usual: bool,
+    /// Why it is not ready, if it is not.
+    unusable: Option<FaultKind>,
     /// The last reading that decoded.
     reading: u32,
     /// Frames since then that have repeated it, and were believed.
     same: u16,
+}
+
+impl Default for Encoder {
+    fn default() -> Self {
+        Self {
+            angle: Angle::ZERO,
+            step: 0,
+            good: 0,
+            bad: 0,
+            warning: false,
+            usual: false,
+            // Until it has told of something else.
+            unusable: Some(FaultKind::EncoderSilent),
+            reading: 0,
+            same: 0,
+        }
+    }
 }
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
@@ -84,26 +109,33 @@ impl Encoder {
     /// the angle goes on by the last step, up to [`EncoderConfig`]'s count of them in a row.
     #[inline]
     pub fn take(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+        if let (true, Some(counts)) = (self.usual, whole(frame).ok().and_then(Whole::plain)) {
+            let fraction = config.fraction(counts);
+            let (moved, surprise) = self.moved(fraction);
+            if surprise <= config.change && !self.is_frozen(fraction) {
+                self.note(fraction);
+                self.go_on(moved);
+                self.step = moved;
+                return;
+            }
+        }
+        self.look_at(config, frame);
+    }
+
+    /// Takes a frame of any kind.
+    #[cold]
+    #[inline(never)]
+    fn look_at(&mut self, config: &EncoderConfig, frame: &RawFrame) {
         match decode(frame) {
             Ok(reading) => {
                 self.warning = reading.warning;
-                let fraction = (reading.counts << ALIGN).wrapping_sub(config.zero);
-                let fraction = if config.reversed {
-                    fraction.wrapping_neg()
+                let fraction = config.fraction(reading.counts);
+                if self.is_frozen(fraction) {
+                    self.miss(config, FaultKind::EncoderFrozen);
                 } else {
-                    fraction
-                };
-                if fraction == self.reading {
-                    if self.step.unsigned_abs() > STILL {
-                        self.miss(config, FaultKind::EncoderFrozen);
-                        return;
-                    }
-                    self.same = self.same.saturating_add(1);
-                } else {
-                    self.same = 0;
-                    self.reading = fraction;
+                    self.note(fraction);
+                    self.take_fraction(config, fraction);
                 }
-                self.take_fraction(config, fraction);
             }
             Err(error) => self.miss(
                 config,
@@ -114,14 +146,37 @@ impl Encoder {
                 },
             ),
         }
+        self.usual = self.good == READY && self.bad == 0 && !self.warning;
+    }
+
+    /// Whether a reading repeats the last one while the pivot turns.
+    #[inline]
+    fn is_frozen(&self, fraction: u32) -> bool {
+        fraction == self.reading && self.step.unsigned_abs() > STILL
     }
 
     #[inline]
-    fn take_fraction(&mut self, config: &EncoderConfig, fraction: u32) {
-        // After bridged frames the angle has gone on by itself: `moved` is from where it was expected to be.
+    fn note(&mut self, fraction: u32) {
+        if fraction == self.reading {
+            self.same = self.same.saturating_add(1);
+        } else {
+            self.same = 0;
+            self.reading = fraction;
+        }
+    }
+
+    /// How far a reading is from the angle, and how far that is from the last step. After bridged frames the angle has gone on
+    /// by itself: then it is from where it was expected to be.
+    #[inline]
+    fn moved(&self, fraction: u32) -> (i32, u32) {
         let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
-        let surprise = moved.wrapping_sub(self.step).unsigned_abs();
-        if self.bad == 0 && self.good == READY && surprise <= config.change.unsigned_abs() {
+        (moved, moved.wrapping_sub(self.step).unsigned_abs())
+    }
+
+    /// Takes a reading that may be one of the first, or after a bad one.
+    fn take_fraction(&mut self, config: &EncoderConfig, fraction: u32) {
+        let (moved, surprise) = self.moved(fraction);
+        if self.bad == 0 && self.good == READY && surprise <= config.change {
             self.go_on(moved);
             self.step = moved;
         } else {
@@ -132,18 +187,18 @@ impl Encoder {
     /// Takes a frame after a bad one, or one of the first.
     #[cold]
     fn regain(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, surprise: u32) {
-        let ticks = i32::from(self.bad) + 1;
+        let ticks = u32::from(self.bad) + 1;
         let allowed = config.change.saturating_mul(ticks.saturating_mul(ticks));
         if self.good == 0 {
             self.angle = Angle::from_units(i64::from(fraction));
             self.step = 0;
             self.good = 1;
-        } else if surprise <= allowed.unsigned_abs() {
+        } else if surprise <= allowed {
             self.go_on(moved);
             // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
             self.step = self
                 .step
-                .wrapping_add(moved.wrapping_sub(self.step) / ticks);
+                .wrapping_add(moved.wrapping_sub(self.step) / ticks as i32);
             self.good = (self.good + 1).min(READY);
         } else {
             self.miss(config, FaultKind::EncoderJump);
@@ -151,7 +206,7 @@ impl Encoder {
         }
         self.bad = 0;
         if self.good == READY {
-            self.reason = None;
+            self.unusable = None;
         }
     }
 
@@ -162,10 +217,10 @@ impl Encoder {
 
     #[cold]
     fn miss(&mut self, config: &EncoderConfig, reason: FaultKind) {
-        self.reason = Some(reason);
         self.bad = self.bad.saturating_add(1);
         if self.bad > config.bridged || self.good < READY {
             self.good = 0;
+            self.unusable = Some(reason);
         } else {
             self.go_on(self.step);
         }
@@ -174,18 +229,15 @@ impl Encoder {
     /// Why the encoder can not be used; `None` when it can (a few bad frames are bridged).
     #[inline]
     pub fn unusable(&self) -> Option<FaultKind> {
-        if self.good == READY {
-            None
-        } else {
-            Some(self.reason.unwrap_or(FaultKind::EncoderSilent))
-        }
+        self.unusable
     }
 
     /// Takes it for lost, whatever its frames say, until it has been ready anew.
     pub fn give_up(&mut self, reason: FaultKind) {
-        self.reason = Some(reason);
+        self.unusable = Some(reason);
         self.good = 0;
         self.same = 0;
+        self.usual = false;
     }
 
     /// How often in a row it has repeated one reading to the bit, and was believed: it may be at rest.

@@ -1,8 +1,8 @@
 //! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
-//! for one and it took no command: that tick is the longest as it is. [`PanelLink::snapshot`] throws away a snapshot that
-//! has been waiting, so that what it returns is new.
+//! for one, every fourth tick or when there is news, and not when it took a command: that tick is the longest as it is.
+//! [`PanelLink::snapshot`] throws away a snapshot that has been waiting, so that what it returns is new.
 
 use crate::blackbox::{BlackBox, History};
 use crate::config::Config;
@@ -219,8 +219,8 @@ impl PanelLink<'_> {
         self.commands.enqueue(command).map_err(|_| QueueFull)
     }
 
-    /// The oldest snapshot waiting, if any. The tick refills the slot at its next run; a caller that wants the present
-    /// and not the past empties the slot first and comes back a tick later.
+    /// The oldest snapshot waiting, if any. The tick refills the slot within four; a caller that wants the present
+    /// and not the past empties the slot first and comes back.
     pub fn snapshot(&mut self) -> Option<Snapshot> {
         self.snapshots.dequeue()
     }

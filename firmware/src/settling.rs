@@ -16,13 +16,9 @@ impl Settling {
         *self = Self::default();
     }
 
-    /// Takes the following errors of a tick, 2^-32 turns; gives the largest.
+    /// Takes the largest following error of a tick, 2^-32 turns.
     #[inline]
-    pub fn look(&mut self, limits: &SupervisionConfig, errors: &[i32; 3], moving: bool) -> u32 {
-        let mut worst = 0;
-        for error in errors {
-            worst = worst.max(error.unsigned_abs());
-        }
+    pub fn look(&mut self, limits: &SupervisionConfig, worst: u32, moving: bool) {
         self.peak = self.peak.max(worst);
         if moving || worst > limits.window.unsigned_abs() {
             self.inside = 0;
@@ -30,7 +26,6 @@ impl Settling {
             self.inside += 1;
         }
         self.settled = self.inside >= limits.dwell;
-        worst
     }
 
     /// Settled at the last tick.

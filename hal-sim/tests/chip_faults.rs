@@ -280,8 +280,8 @@ fn slow(instructions_per_second: u64) -> (String, usize) {
 #[test]
 fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counted() {
     for (rate, said) in [
-        (100_000_000, "control loop late too often"),
-        (140_000_000, "0 no fault"),
+        (80_000_000, "control loop late too often"),
+        (110_000_000, "0 no fault"),
     ] {
         let (told, resets) = slow(rate);
         println!("{rate}: {resets} resets, {told}");

@@ -153,7 +153,7 @@ impl Ideal {
     pub fn ask(&mut self, number: usize, line: &[u8]) -> Vec<u8> {
         self.connections[number].output.clear();
         self.connections[number].input.extend_from_slice(line);
-        self.run(4);
+        self.run(8);
         std::mem::take(&mut self.connections[number].output)
     }
 

@@ -91,7 +91,8 @@ fn the_machine_turns_about_the_chosen_point() {
     let mut furthest_mm = 0.0_f64;
     for tick in 0..ticks {
         let refused = (tick == 100).then_some(Command::Centre(Centre::PLATFORM));
-        let now = run.ticks(refused, 2);
+        // There is a snapshot in four ticks.
+        let now = run.ticks(refused, 4);
         assert_eq!(now.centre, centre, "in motion the point stays");
         assert_eq!(run.host.fault(), None);
         let [x, y] = run.true_point(point);

@@ -53,9 +53,12 @@ const fn crc_table() -> [u32; 128] {
 /// CRC of position and flags, not inverted, in the lowest six bits; what lies above them means nothing.
 #[inline]
 fn crc(covered: u32) -> u32 {
-    let part =
-        |group: u32| CRC_OF_SEVEN_BITS[(covered >> (7 * group) & 0x7F) as usize] >> (8 * group);
-    part(0) ^ part(1) ^ part(2) ^ part(3)
+    let part = |group: u32| CRC_OF_SEVEN_BITS[(covered >> (7 * group) & 0x7F) as usize];
+    // Each shift brings the byte that counts a place down.
+    let mut sum = part(3);
+    sum = sum >> 8 ^ part(2);
+    sum = sum >> 8 ^ part(1);
+    sum >> 8 ^ part(0)
 }
 
 /// The eight bytes of a transfer, as they came.
@@ -87,9 +90,43 @@ pub enum FrameError {
     Error,
 }
 
-/// Decodes one frame. A frame that is whole starts in the first 28 bits, so the chip looks for it in one register.
+/// Decodes one frame.
 #[inline]
 pub fn decode(frame: &RawFrame) -> Result<Reading, FrameError> {
+    whole(frame).and_then(Whole::reading)
+}
+
+/// What the CRC of a frame covers, and fits: position, error and warning, 28 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Whole(u32);
+
+impl Whole {
+    /// Error and warning, both active low.
+    const FLAGS: u32 = 0b11;
+
+    /// The position, if the encoder has nothing else to say.
+    #[inline]
+    pub fn plain(self) -> Option<u32> {
+        (self.0 & Self::FLAGS == Self::FLAGS).then_some(self.0 >> 2)
+    }
+
+    /// All of it.
+    #[inline]
+    pub fn reading(self) -> Result<Reading, FrameError> {
+        if self.0 & 0b10 == 0 {
+            return Err(FrameError::Error);
+        }
+        Ok(Reading {
+            counts: self.0 >> 2,
+            warning: self.0 & 0b01 == 0,
+        })
+    }
+}
+
+/// Finds a frame in the bits and checks its CRC. One that is whole starts in the first 28 bits, so the chip looks for it in one
+/// register.
+#[inline]
+pub fn whole(frame: &RawFrame) -> Result<Whole, FrameError> {
     let [a, b, c, d, e, f, g, h] = frame.0;
     let (first, second) = (
         u32::from_be_bytes([a, b, c, d]),
@@ -106,17 +143,11 @@ pub fn decode(frame: &RawFrame) -> Result<Reading, FrameError> {
     let head = first.wrapping_shl(start) | second.wrapping_shr(32 - start);
     let tail = second.wrapping_shl(start) >> 28;
     let covered = head << HEAD_BITS >> 4;
-    let sent = (head << 4 | tail) & CRC_MASK;
-    if head & ZERO_BIT != 0 || crc(covered) & CRC_MASK != sent ^ CRC_MASK {
+    let sent = head << 4 | tail;
+    if head & ZERO_BIT != 0 || (crc(covered) ^ sent) & CRC_MASK != CRC_MASK {
         return Err(FrameError::Crc);
     }
-    if covered & 0b10 == 0 {
-        return Err(FrameError::Error);
-    }
-    Ok(Reading {
-        counts: covered >> 2,
-        warning: covered & 0b01 == 0,
-    })
+    Ok(Whole(covered))
 }
 
 /// Reads a frame over a blocking bus: the host's way, and that of boards that have no DMA to spare.

@@ -83,19 +83,19 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::Overspeed,
-        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every third tick while driven, but not while a late tick is unforgiven, which makes steps too long",
+        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every fourth tick while driven, but not while a late tick is unforgiven, which makes steps too long",
         thresholds: &[0x5450_0505, 0x5450_0106],
         reason: "what lets a pivot run away cannot be trusted to stop it",
     },
     About {
         kind: FaultKind::PivotsTooClose,
-        detection: "the measured angle between two neighbours under the smallest one less a margin; each pair every third tick while driven",
+        detection: "the measured angle between two neighbours under the smallest one less a margin; each pair every fourth tick while driven",
         thresholds: &[0x5450_0203, 0x5450_050E],
         reason: "the carriages are about to touch: the shortest way to rest is the best",
     },
     About {
         kind: FaultKind::GuideRange,
-        detection: "the setpoint's place on a guide out of the guide's range by more than a margin; each guide every third tick while driven",
+        detection: "the setpoint's place on a guide out of the guide's range by more than a margin; each guide every fourth tick while driven",
         thresholds: &[0x5450_0201, 0x5450_0202, 0x5450_050D],
         reason: "the plan is wrong: its path leads on to the guide's end",
     },
@@ -107,13 +107,13 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::Stalled,
-        detection: "a bridge at its largest duty without a pause; each pivot every third tick while driven",
+        detection: "a bridge at its largest duty without a pause; each pivot every fourth tick while driven",
         thresholds: &[0x5450_0508],
         reason: "something holds the pivot, or the supply or the motor is too weak for the motion: a stop under control would need the same drive",
     },
     About {
         kind: FaultKind::MotorHot,
-        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every third tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 7.3 A the current is measured as 7.3 A",
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 7.3 A the current is measured as 7.3 A",
         thresholds: &[0x5450_0509, 0x5450_050A],
         reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
     },

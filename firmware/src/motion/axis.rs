@@ -28,6 +28,26 @@ pub struct Axis {
     pub acceleration: i64,
 }
 
+/// What drives an axis in every tick of a piece, so that a sixth is taken once a piece.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Push {
+    jerk: i64,
+    /// A sixth of the jerk, and the nudge.
+    sixth: i64,
+}
+
+impl Push {
+    /// Of a jerk and a nudge as [`Axis::advance`] takes them.
+    #[inline]
+    pub fn new(jerk: i64, nudge: i64) -> Self {
+        let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
+        Self {
+            jerk,
+            sixth: sixth.wrapping_add(nudge),
+        }
+    }
+}
+
 impl Axis {
     /// At rest at `position` (2^-32 track radii or turns).
     pub const fn at_rest(position: i64) -> Self {
@@ -42,19 +62,21 @@ impl Axis {
     /// besides; see [`Plan::nudge`](super::Plan::nudge).
     #[inline]
     pub fn advance(&mut self, jerk: i64, nudge: i64) {
-        // Both are even, so that the shifts are the halves; the sixth is exact as well.
-        let half_jerk = jerk >> 1;
-        let step = self
-            .velocity
+        self.push(&Push::new(jerk, nudge));
+    }
+
+    /// The state one tick later.
+    #[inline]
+    pub fn push(&mut self, push: &Push) {
+        // Both are even, so that the shifts are the halves.
+        let step = (self.velocity)
             .wrapping_add(self.acceleration >> 1)
-            .wrapping_add(half_jerk.wrapping_mul(INVERSE_OF_3))
-            .wrapping_add(nudge);
+            .wrapping_add(push.sixth);
         self.position = self.position.wrapping_add(i128::from(step));
-        self.velocity = self
-            .velocity
+        self.velocity = (self.velocity)
             .wrapping_add(self.acceleration)
-            .wrapping_add(half_jerk);
-        self.acceleration = self.acceleration.wrapping_add(jerk);
+            .wrapping_add(push.jerk >> 1);
+        self.acceleration = self.acceleration.wrapping_add(push.jerk);
     }
 
     /// The state `ticks` later, the same to the bit as that many calls of [`advance`](Self::advance).

@@ -4,9 +4,9 @@ mod slowing;
 
 pub use slowing::Slowdown;
 
-use super::axis::Axis;
+use super::axis::{Axis, Push};
 use super::centre::Centre;
-use super::plan::{Piece, Plan, Position, Start};
+use super::plan::{Plan, Position, Start};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
 
@@ -68,7 +68,9 @@ pub struct Motion {
     /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
     splice: Option<u64>,
     piece: usize,
+    /// Ticks of the piece that are left, and what drives the axes in it.
     left: u64,
+    pushes: [Push; 3],
     done: u64,
     slowing: slowing::Slowing,
 }
@@ -144,21 +146,31 @@ impl Motion {
         if self.splice == Some(self.done) {
             self.begin();
         }
-        let plan = &self.slots[self.current & 1];
-        if let Some(Piece { jerk, .. }) = plan.pieces.get(self.piece) {
-            for (axis, (jerk, nudge)) in self.axes.iter_mut().zip(jerk.iter().zip(&plan.nudge)) {
-                axis.advance(*jerk, *nudge);
+        // None are left where a plan has no pieces.
+        if self.left > 0 {
+            for (axis, push) in self.axes.iter_mut().zip(&self.pushes) {
+                axis.push(push);
             }
             self.done += 1;
             self.left -= 1;
         }
         if self.left == 0 {
             self.piece += 1;
-            match plan.pieces.get(self.piece) {
-                Some(piece) => self.left = piece.ticks,
-                None => self.finish(),
+            self.enter();
+            if self.left == 0 {
+                self.finish();
             }
         }
+    }
+
+    /// Enters a piece, if there is one.
+    fn enter(&mut self) {
+        let plan = &self.slots[self.current & 1];
+        let Some(piece) = plan.pieces.get(self.piece) else {
+            return;
+        };
+        self.left = piece.ticks;
+        self.pushes = [0, 1, 2].map(|i| Push::new(piece.jerk[i], plan.nudge[i]));
     }
 
     /// The setpoint now.
@@ -214,9 +226,9 @@ impl Motion {
         self.moving = true;
         self.splice = None;
         self.piece = 0;
-        let plan = &self.slots[self.current & 1];
-        self.left = plan.pieces.first().map_or(0, |piece| piece.ticks);
+        self.left = 0;
         self.done = 0;
+        self.enter();
     }
 
     /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.

@@ -40,9 +40,9 @@ pub(super) fn asin_cos(d: [Fixed; 3]) -> Option<[(Angle, Fixed); 3]> {
     let turns = horner(arguments.map(|argument| argument.square));
     Some([0, 1, 2].map(|i| {
         let Argument { s, offset, .. } = arguments[i];
-        // With the sign of `s` in the second form, 90 deg less the angle for one and more for the other is one difference.
-        let angle = (multiply::add_product(1 << 29, s, turns[i]) >> 30) as i32;
-        let angle = offset.wrapping_add(angle);
+        // With the sign of `s` in the second form, 90 deg less the angle for one and more for the other is one difference. The
+        // two bits that `s` has to spare bring the product to where its upper half is the angle.
+        let angle = multiply::add_high_rounded(offset, s << 2, turns[i]);
         (Angle::from_units(i64::from(angle)), arguments[i].cosine)
     }))
 }
@@ -70,10 +70,8 @@ impl Argument {
         let cosine = root::sqrt_fixed(rest);
         let (s, offset, square) = if size <= ROOT_OF_HALF {
             (d.bits(), 0, square)
-        } else if d.bits() < 0 {
-            (cosine.bits(), -QUARTER_TURN, rest)
         } else {
-            (-cosine.bits(), QUARTER_TURN, rest)
+            across(d, cosine, rest)
         };
         let square = (square >> 26) as i32;
         Some(Self {
@@ -82,6 +80,16 @@ impl Argument {
             square,
             cosine,
         })
+    }
+}
+
+/// The second form's part. In the outer third of the disk, and there for one pivot at a time as a rule: so it is branched to.
+#[cold]
+fn across(d: Fixed, cosine: Fixed, rest: i64) -> (i32, i32, i64) {
+    if d.bits() < 0 {
+        (cosine.bits(), -QUARTER_TURN, rest)
+    } else {
+        (-cosine.bits(), QUARTER_TURN, rest)
     }
 }
 

@@ -19,7 +19,7 @@
 //! | float to integer | `as` saturates, and makes 0 of what is no number, on both |
 //! | order of evaluation | as written: Rust does not reorder sums of floats; no loop's order depends on the target, and nothing hashes or sorts by address |
 //! | bits of what is no number | they do differ; a number gone wrong is tested for and goes no further |
-//! | the three instructions in assembly | `multiply` and `root` have each beside its equal in Rust |
+//! | the four instructions in assembly | `multiply` and `root` have each beside its equal in Rust |
 //!
 //! `cargo chip` compares the chip's run with the host's at every tick by a hash of state, setpoints and duties
 //! ([`crate::recorder::RunningHash`]); `cargo chip --ticks` does for as many ticks of motion from a seed, and with

@@ -26,6 +26,29 @@ pub(super) fn add_high(sum: i32, a: i32, b: i32) -> i32 {
     sum.wrapping_add(((i64::from(a) * i64::from(b)) >> 32) as i32)
 }
 
+/// The same, rounded to nearest (SMMLAR).
+#[inline(always)]
+pub(super) fn add_high_rounded(sum: i32, a: i32, b: i32) -> i32 {
+    #[cfg(target_arch = "arm")]
+    {
+        let result;
+        // SAFETY: one instruction, from registers to a register.
+        unsafe {
+            core::arch::asm!(
+                "smmlar {result}, {a}, {b}, {sum}",
+                a = in(reg) a,
+                b = in(reg) b,
+                sum = in(reg) sum,
+                result = lateout(reg) result,
+                options(pure, nomem, nostack, preserves_flags)
+            );
+        }
+        result
+    }
+    #[cfg(not(target_arch = "arm"))]
+    sum.wrapping_add(((i64::from(a) * i64::from(b) + (1 << 31)) >> 32) as i32)
+}
+
 /// `sum` plus the product (SMLAL).
 #[inline(always)]
 pub(super) fn add_product(sum: i64, a: i32, b: i32) -> i64 {

@@ -3,7 +3,8 @@
 use super::{Record, Sample};
 
 /// A running hash over state, setpoints, measured pivots and duties of every tick: two runs that agree in it agreed at
-/// every tick. FNV-1a over 32-bit words.
+/// every tick. The words of a tick are turned and added without carry, which no single difference survives unseen, and what
+/// comes of it is multiplied as in FNV-1a: once a tick, since every tick is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunningHash(pub u32);
 
@@ -16,7 +17,7 @@ impl Default for RunningHash {
 impl RunningHash {
     #[inline]
     fn word(&mut self, word: u32) {
-        self.0 = (self.0 ^ word).wrapping_mul(0x0100_0193);
+        self.0 = self.0.rotate_left(5) ^ word;
     }
 }
 
@@ -35,5 +36,6 @@ impl Record for RunningHash {
             self.word(sample.pivots[i].units() as u32);
             self.word(sample.duty[i].0 as u32);
         }
+        self.0 = self.0.wrapping_mul(0x0100_0193);
     }
 }

@@ -62,7 +62,8 @@ impl ServoConfig {
         // What makes each signal about 1 is taken into its weight: gains carry it twice, limits once.
         let scale = [1.0 / limits.pivot_rate_rad_s, 1.0 / torque_scale, 1.0];
         let share = [1.0, 1.0, servo.friction_learning];
-        let learning = servo.integral_v_rad * servo.learning * period_s;
+        // By the volt that the integral has collected.
+        let learning = servo.learning;
         let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
         let rad_per_unit = 1.0 / UNITS_PER_RAD;
         Self {
@@ -131,8 +132,9 @@ pub struct AxisServo {
     last_error: f32,
     last_torque: f32,
     friction: Presliding,
-    /// Weights of the signals, volts per unit.
+    /// Weights of the signals, volts per unit, and the integral when they were learnt last.
     learnt: [f32; FEATURES],
+    learnt_from: f32,
     /// Motor current over the dead time's knee.
     current: f32,
     carry: f32,
@@ -167,7 +169,7 @@ impl AxisServo {
     }
 
     /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
-    #[inline(never)]
+    #[inline]
     pub fn step(
         &mut self,
         config: &ServoConfig,
@@ -179,7 +181,7 @@ impl AxisServo {
         self.last_error = error;
 
         let contact = self.friction.advance(setpoint.rate * config.way_s);
-        let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
+        let inertial = inertial(config, setpoint);
         let torque = inertial + config.viscous * setpoint.rate + config.coulomb * contact;
         let model = config.volt_per_torque * torque
             + config.volt_per_torque_step * (torque - self.last_torque)
@@ -195,7 +197,7 @@ impl AxisServo {
         let over_emf = model + learnt + self.integral + config.velocity * r;
         self.current += (over_emf * config.share_per_volt - self.current) * config.current_step;
         let volts = over_emf + config.volt_per_rate * setpoint.rate;
-        let share = limit(self.current, 1.0);
+        let share = share(self.current);
         let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
         self.wanted = counts;
         let limited = limit(counts, config.full);
@@ -203,12 +205,25 @@ impl AxisServo {
         // Collecting stops while the bridge is at its end and the error asks for more.
         if counts == limited || counts * r < 0.0 {
             self.integral = limit(self.integral + config.integral * r, config.integral_limit);
-            for (k, feature) in features.into_iter().enumerate() {
-                let weight = self.learnt[k] + config.learning[k] * r * feature;
-                self.learnt[k] = limit(weight, config.learnt_limit[k]);
-            }
         }
         self.shape(limited)
+    }
+
+    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so that the
+    /// pivots can take turns.
+    #[inline]
+    pub fn learn(&mut self, config: &ServoConfig, setpoint: &PivotSetpoint) {
+        let collected = self.integral - self.learnt_from;
+        self.learnt_from = self.integral;
+        let features = [
+            setpoint.rate,
+            inertial(config, setpoint),
+            self.friction.deflection(),
+        ];
+        for (k, feature) in features.into_iter().enumerate() {
+            let weight = self.learnt[k] + config.learning[k] * collected * feature;
+            self.learnt[k] = limit(weight, config.learnt_limit[k]);
+        }
     }
 
     /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200 is
@@ -220,6 +235,19 @@ impl AxisServo {
         self.carry = wanted - rounded;
         Duty(whole as i16)
     }
+}
+
+/// Torque that the masses ask for, N m.
+#[inline]
+fn inertial(config: &ServoConfig, setpoint: &PivotSetpoint) -> f32 {
+    setpoint.platform_torque + config.inertia * setpoint.acceleration
+}
+
+/// The share of the dead time that counts: over the knee, where a motor at work is, all of it.
+#[inline]
+fn share(current: f32) -> f32 {
+    let share = if current > 1.0 { 1.0 } else { current };
+    if share < -1.0 { -1.0 } else { share }
 }
 
 /// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).

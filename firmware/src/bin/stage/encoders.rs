@@ -10,6 +10,7 @@ use crate::{
     dma::{Mode, Stream},
 };
 use core::cell::UnsafeCell;
+use firmware::drivers::biss::RawFrame;
 use stm32f4xx_hal::{
     pac::{self, spi1},
     rcc::{Enable, Rcc},
@@ -83,8 +84,9 @@ impl Encoders {
 
     /// The frames of the last latch, every bit of a missing one set.
     #[inline(always)]
-    pub fn frames(&mut self) -> [[u8; FRAME_BYTES]; 3] {
-        self.0.each_mut().map(Port::frame)
+    pub fn frames(&mut self) -> [RawFrame; 3] {
+        let [first, second, third] = &mut self.0;
+        [first.frame(), second.frame(), third.frame()]
     }
 }
 
@@ -128,14 +130,14 @@ impl Port {
     }
 
     #[inline(always)]
-    fn frame(&mut self) -> [u8; FRAME_BYTES] {
+    fn frame(&mut self) -> RawFrame {
         // A transfer that was not started is noticed as well: the one that kept it from starting has bytes left.
         if self.receive.remaining() != 0 {
             self.abandon();
-            return MISSING.to_ne_bytes();
+            return RawFrame::MISSING;
         }
         // SAFETY: the stream is done. Volatile, since the compiler does not know who wrote there.
-        unsafe { self.buffer.0.get().read_volatile() }.to_ne_bytes()
+        RawFrame(unsafe { self.buffer.0.get().read_volatile() }.to_ne_bytes())
     }
 
     /// Gives a transfer up, and leaves the port such that the next one begins with its own first byte.

@@ -77,7 +77,6 @@ mod app {
     use firmware::{
         config::Config,
         controller::{Inputs, State, tick},
-        drivers::biss::RawFrame,
         link::{Link, PanelLink, TickLink},
         panel::{Identity, Panel, Session},
         parameters::Parameters,
@@ -182,7 +181,7 @@ mod app {
         let (tick_cycles, late) = context.local.stopwatch.begin();
         let counts = control.analog.counts();
         let inputs = Inputs {
-            frames: control.encoders.frames().map(RawFrame),
+            frames: control.encoders.frames(),
             bridge_fault: control.bridges.faults(),
             emergency_stop: control.pwm.take_break(),
             current_counts: counts.current,

@@ -11,7 +11,21 @@ const SUPPLY_TICKS: u8 = 4;
 const FORGIVEN: u32 = 100;
 
 impl State {
+    /// Looks at what the inputs show. In a tick with nothing unusual that is one look at all of it.
+    #[inline]
     pub(in super::super) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
+        let [one, two, three] = inputs.bridge_fault;
+        let told = inputs.emergency_stop | inputs.late | one | two | three;
+        let kept = self.lateness | u32::from(self.low_supply);
+        let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
+        let has_power = inputs.supply_counts >= config.limits.supply_min;
+        if told || kept != 0 || !is_well || !has_power || self.mode == Mode::Fault {
+            self.look_at_inputs(config, inputs);
+        }
+    }
+
+    #[cold]
+    fn look_at_inputs(&mut self, config: &Config, inputs: &Inputs) {
         if self.mode == Mode::Fault {
             // An encoder that is lost loses its turns, whatever else is wrong already.
             self.referenced &= self.encoders.iter().all(|e| e.unusable().is_none());

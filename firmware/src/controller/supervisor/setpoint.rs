@@ -5,7 +5,6 @@ use crate::config::Config;
 use crate::fault::FaultKind;
 use crate::motion::Position;
 use crate::number::sqrt_f32;
-use kinematics::Guide;
 
 /// By how much a way back into the disk may go out again: what rounding does.
 const BACK: f32 = 1e-4;
@@ -39,15 +38,14 @@ impl State {
         false
     }
 
-    /// Whether a pivot is in its guide's range. Outside the disk it need not be: there the way back counts.
+    /// Whether a pivot at `rho` along its guide is in that guide's range. Outside the disk it need not be: there the way back counts.
     #[inline]
     pub(in super::super) fn is_in_range(
         &mut self,
         config: &Config,
         pivot: usize,
-        guide: &Guide<f32>,
+        rho: f32,
     ) -> bool {
-        let rho = guide.rho();
         let [least, most] = config.limits.guide;
         let within = rho >= least && rho <= most;
         if !within && self.reach_square <= config.limits.reach_square {

@@ -1,5 +1,5 @@
-//! Faults of a single pivot: one pivot is looked at in each tick, in turn, so that they are found at most three ticks (150 us)
-//! later than they could be, at a third of the cost.
+//! Faults of a single pivot: one pivot is looked at in a tick, in turn, and none in each fourth, which leaves a snapshot. So they
+//! are found at most four ticks (200 us) later than they could be, at a third of the cost.
 
 use super::super::{Inputs, State};
 use crate::config::{CURRENT_A_PER_COUNT, Config};
@@ -9,7 +9,7 @@ use crate::number::sqrt_f32;
 use kinematics::Angle;
 
 /// Ticks from one look at a pivot to the next.
-pub(crate) const TURN: u32 = 3;
+pub(crate) const TURN: u32 = 4;
 /// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the windings' own
 /// time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
 const SAME_READINGS: u16 = 20;

@@ -45,16 +45,16 @@ fn decoding(bench: &mut Bench, config: &Config) {
     );
 }
 
-/// The rings under the encoders, which turn at up to 10 rad/s.
+/// The rings under the encoders, which turn at 5 rad/s, a few counts more or less from tick to tick.
 #[derive(Default)]
 pub struct Rings([Angle; 3]);
 
 impl Rings {
     /// The frames a tick later; one in 64 times one of them is missing.
     pub fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
-        const FASTEST: f64 = 10.0 / core::f64::consts::TAU / 20_000.0 * 4_294_967_296.0;
+        const STEP: f64 = 5.0 / core::f64::consts::TAU / 20_000.0 * 4_294_967_296.0;
         for pivot in &mut self.0 {
-            *pivot += Angle::from_units(random.within(0.0, FASTEST) as i64);
+            *pivot += Angle::from_units((STEP + random.within(-250.0, 250.0)) as i64);
         }
         let mut frames = frames(&self.0);
         if random.once_in(64) {
@@ -75,6 +75,9 @@ fn servo(bench: &mut Bench, config: &Config) {
             let mut duty = [Duty(0); 3];
             for i in 0..3 {
                 duty[i] = servo[i].step(&config.servo, &pivots[i], counts_per_volt);
+                if i == 0 {
+                    servo[i].learn(&config.servo, &pivots[i]);
+                }
             }
             duty
         },
