@@ -222,7 +222,7 @@ impl Parameters {
             presliding_rad: 100e-6,
         },
         servo: Gains {
-            position_1_s: 300.0,
+            position_1_s: 400.0,
             velocity_v_s_rad: 40.0,
             integral_v_rad: 14_000.0,
             learning: 2.0,

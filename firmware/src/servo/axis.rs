@@ -19,12 +19,12 @@ pub struct ServoConfig {
     integral: f32,
     learning: [f32; FEATURES],
     inertia: f32,
-    volt_per_torque: f32,
-    volt_per_torque_step: f32,
+    /// Volts a signal asks for by the model: viscous friction's per rad/s, per torque, Coulomb friction's.
+    volts: [f32; FEATURES],
+    /// Back-EMF.
     volt_per_rate: f32,
-    volt_per_acceleration: f32,
-    viscous: f32,
-    coulomb: f32,
+    lead_ticks: f32,
+    latency_s: f32,
     way_s: f32,
     share_per_volt: f32,
     current_step: f32,
@@ -81,12 +81,11 @@ impl ServoConfig {
             integral: (servo.integral_v_rad * period_s) as f32,
             learning: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
             inertia: drive.inertia_kg_m2 as f32,
-            volt_per_torque: volt_per_torque as f32,
-            volt_per_torque_step: (volt_per_torque * torque_lead_s * limits.rate_hz) as f32,
+            volts: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
+                .map(|torque| (volt_per_torque * torque) as f32),
             volt_per_rate: torque_per_ampere as f32,
-            volt_per_acceleration: (torque_per_ampere * servo.latency_s) as f32,
-            viscous: drive.viscous_n_m_s as f32,
-            coulomb: drive.coulomb_n_m as f32,
+            lead_ticks: (torque_lead_s * limits.rate_hz) as f32,
+            latency_s: servo.latency_s as f32,
             way_s: (period_s / drive.presliding_rad) as f32,
             share_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
             current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
@@ -130,7 +129,9 @@ pub struct PivotSetpoint {
 pub struct AxisServo {
     integral: f32,
     last_error: f32,
-    last_torque: f32,
+    signals: [f32; FEATURES],
+    last_inertial: f32,
+    last_contact: f32,
     friction: Presliding,
     /// Weights of the signals, volts per unit, and the integral when they were learnt last.
     learnt: [f32; FEATURES],
@@ -182,21 +183,23 @@ impl AxisServo {
 
         let contact = self.friction.advance(setpoint.rate * config.way_s);
         let inertial = inertial(config, setpoint);
-        let torque = inertial + config.viscous * setpoint.rate + config.coulomb * contact;
-        let model = config.volt_per_torque * torque
-            + config.volt_per_torque_step * (torque - self.last_torque)
-            + config.volt_per_acceleration * setpoint.acceleration;
-        self.last_torque = torque;
-        let features = [setpoint.rate, inertial, contact];
-        let learnt = self.learnt[0] * features[0]
-            + self.learnt[1] * features[1]
-            + self.learnt[2] * features[2];
+        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
+        // needs a fifth more for the current's change as well.
+        let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
+        let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
+        let friction = contact + config.lead_ticks * (contact - self.last_contact);
+        self.last_inertial = inertial;
+        self.last_contact = contact;
+        self.signals = [rate, torque, friction];
+        let feedforward = (config.volts[0] + self.learnt[0]) * rate
+            + (config.volts[1] + self.learnt[1]) * torque
+            + (config.volts[2] + self.learnt[2]) * friction;
 
         // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead time
         // takes of it is made up for.
-        let over_emf = model + learnt + self.integral + config.velocity * r;
+        let over_emf = feedforward + self.integral + config.velocity * r;
         self.current += (over_emf * config.share_per_volt - self.current) * config.current_step;
-        let volts = over_emf + config.volt_per_rate * setpoint.rate;
+        let volts = over_emf + config.volt_per_rate * rate;
         let share = share(self.current);
         let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
         self.wanted = counts;
@@ -215,11 +218,7 @@ impl AxisServo {
     pub fn learn(&mut self, config: &ServoConfig, setpoint: &PivotSetpoint) {
         let collected = self.integral - self.learnt_from;
         self.learnt_from = self.integral;
-        let features = [
-            setpoint.rate,
-            inertial(config, setpoint),
-            self.friction.deflection(),
-        ];
+        let features = self.signals;
         for (k, feature) in features.into_iter().enumerate() {
             let weight = self.learnt[k] + config.learning[k] * collected * feature;
             self.learnt[k] = limit(weight, config.learnt_limit[k]);
