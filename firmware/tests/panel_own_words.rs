@@ -161,11 +161,12 @@ fn a_silent_host_stops_the_stage_and_one_that_is_heard_does_not() {
         let other = bench.connect();
         bench.say("MOV X 50 W 90\n");
         for _ in 0..60 {
-            // A connection is as good as any other, and a byte that asks for nothing is as good as a line.
+            // A byte that asks for nothing is as good as a line; somebody else's lines are not.
             if !silent {
-                bench.offer(other, b"\n");
+                bench.offer(0, b"\n");
             }
-            bench.run(200);
+            bench.say_to(other, "POS?\n");
+            bench.run(197);
         }
         assert!(bench.tick.now.settled);
         let told = events(&mut bench);
@@ -213,6 +214,78 @@ fn a_silent_host_ends_waits_and_macros_and_is_told_once() {
         ("HBT 10", "0"),
     ] {
         assert_eq!(bench.error_after(line), error, "{line}");
+    }
+}
+
+/// Whether a move goes on to its end while one connection sends something every 10 ms and another one nothing.
+fn goes_on(bench: &mut Bench, heard: usize) -> bool {
+    bench.say("ERR?\n");
+    bench.say("MOV X 0\n");
+    bench.run_to_rest();
+    for number in 0..3 {
+        bench.offer(number, b"\n");
+    }
+    bench.say("MOV X 30\n");
+    for _ in 0..40 {
+        bench.offer(heard, b"\n");
+        bench.run(200);
+    }
+    bench.value("MOV? X") == 30.0
+}
+
+#[test]
+fn who_has_promised_to_be_heard_has_to_be() {
+    let mut bench = Bench::ready();
+    let (other, third) = (bench.connect(), bench.connect());
+    bench.say_to(other, "HBT 20\n");
+    assert!(goes_on(&mut bench, other));
+    assert!(!goes_on(&mut bench, third), "it has promised nothing");
+    // Two that have promised stand for each other.
+    bench.say_to(third, "HBT 20\n");
+    assert!(goes_on(&mut bench, third));
+    assert!(goes_on(&mut bench, other));
+    // Switched off, and on by somebody else: the promises are void.
+    bench.say_to(other, "HBT 0\n");
+    bench.say_to(third, "HBT 20\n");
+    assert!(!goes_on(&mut bench, other));
+    assert!(goes_on(&mut bench, third));
+}
+
+/// It has stopped the stage once, and whoever comes then is not stopped for the sake of the one who has gone.
+#[test]
+fn who_has_gone_does_not_stop_those_who_come_after() {
+    let mut bench = Bench::ready();
+    let other = bench.connect();
+    bench.say_to(other, "HBT 20\nMOV X 50\n");
+    bench.run_to_rest();
+    assert!(bench.value("MOV? X") < 50.0);
+    bench.say("ERR?\nMOV X 50\n");
+    bench.run_to_rest();
+    assert_eq!(bench.value("MOV? X"), 50.0);
+    // Back again, and gone again.
+    bench.say_to(other, "\n");
+    bench.say("MOV X 0\n");
+    bench.run_to_rest();
+    assert!(bench.value("MOV? X") > 0.0);
+}
+
+#[test]
+fn a_heartbeat_that_no_connection_has_promised_is_anybodys() {
+    for way in [
+        "SPA 1 0x54500510 20\n",
+        "MAC BEG m\nHBT 20\nMAC END\nMAC START m\n",
+    ] {
+        let mut bench = Bench::ready();
+        let other = bench.connect();
+        bench.connect();
+        bench.say(way);
+        bench.run(10);
+        assert_eq!(bench.say("HBT?\n"), "20\n", "{way}");
+        assert!(goes_on(&mut bench, other), "{way}");
+        assert!(goes_on(&mut bench, 0), "{way}");
+        bench.say("MOV X 0\n");
+        bench.run(8_000);
+        assert!(bench.value("MOV? X") > 0.0, "{way}");
     }
 }
 

@@ -322,27 +322,58 @@ fn it_comes_back_when_the_controller_does() {
     viewer.reply("FRF");
 }
 
+/// A script's connection beside the page.
+struct Script(TcpStream);
+
+impl Script {
+    fn connect(stage: &Stage) -> Self {
+        let stream = TcpStream::connect(stage.address).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        Self(stream)
+    }
+
+    /// The error that lines leave.
+    fn error_after(&mut self, lines: &str) -> String {
+        self.0
+            .write_all(format!("{lines}ERR?\n").as_bytes())
+            .unwrap();
+        let mut answer = [0; 8];
+        let count = self.0.read(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer[..count]).trim().to_owned()
+    }
+
+    /// Starts a move of a minute, says nothing for far longer than the heartbeat, and tells whether the stage was stopped.
+    fn is_missed(&mut self, heartbeat: &str, waits_s: &[u64]) -> bool {
+        let lines = format!("FRF\nVLS 1\n{heartbeat}\nMOV X 60\n");
+        assert_eq!(self.error_after(&lines), "0");
+        // The stage's time may be slower than the clock's.
+        waits_s.iter().any(|&wait_s| {
+            thread::sleep(Duration::from_secs(wait_s));
+            self.error_after("") == "10"
+        })
+    }
+}
+
+#[test]
+fn a_page_that_looks_on_does_not_stand_for_a_script_that_has_died() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    assert!(Script::connect(&stage).is_missed("HBT 1200", &[3, 6, 12]));
+    viewer.wait(|message| message["kind"] == "status");
+}
+
 #[test]
 fn a_page_that_nobody_looks_at_is_no_host_that_is_heard() {
     let stage = Stage::start("127.0.0.1:0");
     let page = stage.page();
     // Somebody has looked, and has gone.
     drop(Viewer::ready(&page));
-    let mut host = TcpStream::connect(stage.address).unwrap();
-    host.set_read_timeout(Some(PATIENCE)).unwrap();
-    let mut error = |lines: &str| {
-        host.write_all(format!("{lines}ERR?\n").as_bytes()).unwrap();
-        let mut answer = [0; 8];
-        let count = host.read(&mut answer).unwrap();
-        answer[..count].to_vec()
-    };
-    assert_eq!(error("FRF\nVLS 1\nHBT 400\nMOV X 60\n"), b"0\n");
-    // The stage's time may be slower than the clock's.
-    let stopped = [1, 2, 4, 8].iter().any(|&wait_s| {
-        thread::sleep(Duration::from_secs(wait_s));
-        error("") == b"10\n"
-    });
-    assert!(stopped);
+    // Promised by nobody, so that anybody counts.
+    assert!(Script::connect(&stage).is_missed("SPA 1 0x54500510 1200", &[3, 6, 12]));
+    // As somebody who looks does.
+    let _viewer = Viewer::ready(&page);
+    assert!(!Script::connect(&stage).is_missed("SPA 1 0x54500510 1200", &[4]));
 }
 
 #[test]

@@ -67,7 +67,7 @@ impl Panel {
                 self.stage.stop(Stop::Smooth, link);
                 Err(ErrorCode::Stopped)
             }
-            Action::Heartbeat(ms) => self.set_heartbeat(ms),
+            Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
             Action::RestartStatistics => {
                 self.restart_statistics();
                 Ok(())

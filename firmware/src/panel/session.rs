@@ -31,6 +31,8 @@ pub struct Session {
     pub(super) room: Option<usize>,
     /// Bytes have come since it was last looked at.
     pub(super) heard: bool,
+    /// It has promised to be heard (`HBT`), and when: see `heartbeat`.
+    pub(super) promise: Option<u32>,
     /// The pivots when its position was last asked for.
     pub(super) told: Option<[Angle; 3]>,
     /// Command level, `CCL`.

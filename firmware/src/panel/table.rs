@@ -192,7 +192,7 @@ pub(super) const COMMANDS: &[Entry] = &[
     entry(
         "HBT",
         Syntax::Number(Action::Heartbeat),
-        "<milliseconds> stop when no host is heard for longer; 0: never",
+        "<milliseconds> stop when no connection that has sent this is heard for longer; 0: never",
     ),
     ask("HBT?", Query::Heartbeat, "get longest silence of the host"),
     entry(

@@ -163,7 +163,7 @@ pub const PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 20.0],
         Source::Kept(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
     SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
-    Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT)", "ms", [0.0, LONGEST_MS], at!(supervision.host_silence_ms)) },
+    Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT); heard is any connection where none has sent HBT", "ms", [0.0, LONGEST_MS], at!(supervision.host_silence_ms)) },
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
     ENCODER.int(0x5450_0601, "reading of encoder 2 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[1].zero_counts)),
