@@ -258,6 +258,11 @@ impl State {
         self.fault
     }
 
+    /// The fault that has ended the controlled stop of that one.
+    pub fn worse(&self) -> Option<Fault> {
+        self.worse
+    }
+
     /// Setpoint to duties; `None` when a fault came of it.
     fn drive(
         &mut self,

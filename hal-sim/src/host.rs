@@ -136,6 +136,12 @@ impl Host {
         self.state.fault()
     }
 
+    /// The fault that has ended the controlled stop of that one.
+    #[must_use]
+    pub fn worse(&self) -> Option<Fault> {
+        self.state.worse()
+    }
+
     fn inputs(&mut self) -> Inputs {
         let frames = self
             .stage

@@ -1,7 +1,7 @@
 //! The campaign of faults: it finds nothing wrong with the controller, and would if there were.
 
 use firmware::fault::FaultKind;
-use hal_sim::faults::{Campaign, Effect, Injection, NAMES, Outcome, Problem, Scenario, run, table};
+use hal_sim::faults::{Campaign, Injection, NAMES, Outcome, Problem, Scenario, run, table};
 
 const SHORT: Campaign = Campaign {
     runs: 12,
@@ -75,12 +75,55 @@ fn a_fault_that_is_not_reported_rightly_is_a_problem() {
 }
 
 #[test]
+fn a_fault_that_comes_before_its_reason_is_a_problem() {
+    let good = noticed(|injection| *injection == Injection::Jam);
+    assert!(good.is_founded, "{good}");
+    let unfounded = Outcome {
+        is_founded: false,
+        ..good
+    };
+    assert_eq!(unfounded.problem(), Some(Problem::Unfounded));
+}
+
+#[test]
+fn a_second_encoder_that_is_not_told_is_a_problem() {
+    // At rest the first one brakes at once, and there is no stop that a second one could end.
+    let good = (1..)
+        .map(Scenario::new)
+        .filter(|scenario| matches!(scenario.injection, Injection::TwoEncoders(_)))
+        .map(|scenario| run(scenario, false))
+        .find(|outcome| outcome.second.is_some())
+        .expect("one of so many");
+    assert!(good.second.is_some() && good.worse.is_some(), "{good}");
+    assert_eq!(good.problem(), None, "{good}");
+    let untold = Outcome {
+        worse: None,
+        ..good
+    };
+    assert_eq!(untold.problem(), Some(Problem::SecondMissed));
+}
+
+#[test]
+fn what_is_told_as_an_event_or_an_error_has_to_be_told() {
+    for of in [
+        |injection: &Injection| *injection == Injection::HostSilent,
+        |injection: &Injection| matches!(injection, Injection::Watchdog(_)),
+        |injection: &Injection| *injection == Injection::QueueFull,
+    ] {
+        let good = noticed(of);
+        assert_eq!(good.problem(), None, "{good}");
+        let untold = Outcome { told: None, ..good };
+        assert_eq!(untold.problem(), Some(Problem::Undetected), "{untold}");
+    }
+}
+
+#[test]
 fn an_alarm_without_a_fault_is_a_problem() {
     let fault = noticed(|injection| *injection == Injection::EmergencyStop).fault;
     for control in [true, false] {
         let scenario = (1..)
             .map(Scenario::new)
-            .find(|scenario| scenario.injection.expected().effect == Effect::Never)
+            .find(|scenario| scenario.injection.expected().causes.is_empty())
             .expect("one of so many");
         let quiet = run(scenario, control);
         assert_eq!((quiet.fault, quiet.problem()), (None, None));

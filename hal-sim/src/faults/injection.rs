@@ -1,11 +1,11 @@
-//! What is broken in a run: how the simulated hardware does it, and what the controller has to say about it.
+//! What is broken in a run, and how the simulated hardware does it.
 
-use firmware::fault::FaultKind;
+use firmware::parameters::Supervision;
 
 use super::random::Random;
 use crate::devices::EncoderFault;
 use crate::host::{Host, Wiring};
-use crate::plant::{External, Plant};
+use crate::plant::{AXES, External, Plant};
 
 /// Something that breaks, for good unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,16 +38,30 @@ pub enum Injection {
     Jam,
     /// A ring is hit with this torque, N m, more than its motor has, for some milliseconds.
     Knock(f64),
-    /// So many ticks do not come, one in five: no fault.
+    /// So many ticks do not come, one in five: no fault of the loop, but at speed the pivots lead by what was missed.
     FewMissedTicks(u8),
     /// One tick in five does not come.
     LateLoop,
     /// The host falls silent, which has promised a heartbeat: no fault, but the motion is stopped and that is told.
     HostSilent,
+    /// A ring is pulled at with this torque, N m, more than its motor bears for ever, until the motor lets it go.
+    HotMotor(f64),
+    /// A ring is driven with this torque, N m, by something else, on a stage that allows a large following error.
+    Runaway(f64),
+    /// Something hard gets in a pivot's way, on a stage that allows a large following error.
+    Wedged,
+    /// An encoder falls silent, and so many ticks later the next one, while the stage is being stopped.
+    TwoEncoders(u16),
+    /// The loop stands still for so many ticks until the watchdog bites, and the controller starts again.
+    Watchdog(u16),
+    /// A bit of the kept settings has flipped before the controller starts.
+    DamagedSettings,
+    /// Commands come faster than the tick can take them: they are refused, and the motion goes on.
+    QueueFull,
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 17] = [
+pub const NAMES: [&str; 24] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -65,43 +79,14 @@ pub const NAMES: [&str; 17] = [
     "few ticks missed",
     "loop late",
     "host silent",
+    "motor hot",
+    "pivot runs away",
+    "pivot wedged",
+    "two encoders",
+    "watchdog",
+    "settings damaged",
+    "queue full",
 ];
-
-/// When an injection takes effect, as the controller's thresholds have it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
-    /// In the tick that first sees it.
-    AtOnce,
-    /// In the tick that sees one bad frame more than are bridged.
-    BadFrames,
-    /// In the tick that sees a low supply often enough.
-    LowSupply,
-    /// In the tick that is told of one late tick more than are forgiven.
-    LateTicks,
-    /// In the tick in which what the encoders show is too far from the setpoint.
-    FollowingError,
-    /// In the tick in which the setpoint of the pivot has gone further than a reading may stay the same.
-    Frozen,
-    /// When nothing has been heard for as long as the host has promised.
-    Silence,
-    /// Never: the controller goes on.
-    Never,
-}
-
-/// What the controller has to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
-    /// When the effect begins.
-    pub effect: Effect,
-    /// Faults that name it rightly.
-    pub kinds: &'static [FaultKind],
-    /// Whether the fault names the pivot.
-    pub names_pivot: bool,
-    /// What `EVT?` tells of it where it is no fault.
-    pub event: Option<&'static str>,
-    /// Ticks after the effect at which the fault is latched, or the event is, at the latest.
-    pub within_ticks: u64,
-}
 
 /// How long a pivot is hit: 4 ms.
 const KNOCK_TICKS: u64 = 80;
@@ -110,8 +95,10 @@ pub(super) const MISSED_EVERY: u64 = 5;
 /// Longest silence that a host has promised, ms, and in ticks.
 pub(super) const HEARTBEAT_MS: u64 = 30;
 pub(super) const HEARTBEAT_TICKS: u64 = HEARTBEAT_MS * 20;
-/// Ticks until the command side, which has its turn every few, has told of something.
-const COMMAND_SIDE_TICKS: u64 = 20;
+/// How long a ring is driven by something else: 15 ms.
+const RUNAWAY_TICKS: u64 = 300;
+/// What the pivots may be off on a stage that is to notice something else, rad.
+const LARGE_ERROR_RAD: f64 = 0.2;
 /// Bits of the frame that a bad one may have flipped: position, flags and CRC behind a preamble of ten clocks.
 const COVERED: u32 = 34;
 const LOWEST: u32 = 18;
@@ -140,9 +127,18 @@ impl Injection {
             11 => Self::EmergencyStop,
             12 => Self::Jam,
             13 => Self::Knock(random.between(60.0, 120.0) * random.sign()),
-            14 => Self::FewMissedTicks(1 + random.below(3) as u8),
+            14 => Self::FewMissedTicks(1 + random.below(9) as u8),
             15 => Self::LateLoop,
-            _ => Self::HostSilent,
+            16 => Self::HostSilent,
+            17 => Self::HotMotor(random.between(22.0, 28.0) * random.sign()),
+            18 => Self::Runaway(random.between(100.0, 180.0) * random.sign()),
+            19 => Self::Wedged,
+            // A controlled stop takes 1,200 ticks.
+            20 => Self::TwoEncoders(1 + random.below(1_200) as u16),
+            // 20 ms, by an oscillator that is good to -30 and +50 %.
+            21 => Self::Watchdog(280 + random.below(320) as u16),
+            22 => Self::DamagedSettings,
+            _ => Self::QueueFull,
         }
     }
 
@@ -167,70 +163,30 @@ impl Injection {
             Self::FewMissedTicks(_) => 14,
             Self::LateLoop => 15,
             Self::HostSilent => 16,
+            Self::HotMotor(_) => 17,
+            Self::Runaway(_) => 18,
+            Self::Wedged => 19,
+            Self::TwoEncoders(_) => 20,
+            Self::Watchdog(_) => 21,
+            Self::DamagedSettings => 22,
+            Self::QueueFull => 23,
         }
     }
 
-    /// What the controller has to say.
-    #[must_use]
-    pub const fn expected(&self) -> Expected {
-        use FaultKind as Kind;
-        let (effect, kinds, names_pivot): (_, &[FaultKind], _) = match self {
-            Self::Silent(_) => (Effect::BadFrames, &[Kind::EncoderSilent], true),
-            Self::BadCrc => (Effect::BadFrames, &[Kind::EncoderCrc], true),
-            Self::ErrorBit => (Effect::BadFrames, &[Kind::EncoderError], true),
-            Self::Jump(_) => (Effect::BadFrames, &[Kind::EncoderJump], true),
-            // At speed it stops impossibly fast.
-            Self::Frozen => (
-                Effect::Frozen,
-                &[Kind::EncoderFrozen, Kind::EncoderJump],
-                true,
-            ),
-            Self::BridgeFault => (Effect::AtOnce, &[Kind::BridgeFault], true),
-            Self::SupplySag(_) => (Effect::LowSupply, &[Kind::SupplyLow], false),
-            Self::EmergencyStop => (Effect::AtOnce, &[Kind::EmergencyStop], false),
-            // At full speed the pivots lag by what was missed, which may be too far.
-            Self::LateLoop => (
-                Effect::LateTicks,
-                &[Kind::LoopLate, Kind::FollowingError],
-                false,
-            ),
-            // The platform ties the pivots together, so another one may be the first to be too far off.
-            // At rest too: what is driven and does not stir by a bit is taken for an encoder that is frozen.
-            Self::DriveLost => (
-                Effect::FollowingError,
-                &[Kind::FollowingError, Kind::Stalled, Kind::EncoderFrozen],
-                false,
-            ),
-            Self::DirectionStuck | Self::Knock(_) => (
-                Effect::FollowingError,
-                &[Kind::FollowingError, Kind::Stalled, Kind::Overspeed],
-                false,
-            ),
-            // Wedged to the last bit it cannot be told from an encoder that is frozen.
-            Self::Jam => (
-                Effect::FollowingError,
-                &[Kind::FollowingError, Kind::Stalled, Kind::EncoderFrozen],
-                false,
-            ),
-            Self::Warning => (Effect::AtOnce, &[], false),
-            Self::HostSilent => (Effect::Silence, &[], false),
-            Self::FewBadFrames(_) | Self::FewMissedTicks(_) => (Effect::Never, &[], false),
-        };
-        let (event, within_ticks) = match self {
-            Self::Warning => (Some("encoder warns"), COMMAND_SIDE_TICKS),
-            Self::HostSilent => (Some("no host heard"), COMMAND_SIDE_TICKS),
-            // Where the setpoint slows down, it is the drive that shows it.
-            Self::Frozen => (None, 30),
-            // The setpoint is compared in other numbers here.
-            _ if matches!(effect, Effect::FollowingError) => (None, 1),
-            _ => (None, 0),
-        };
-        Expected {
-            effect,
-            kinds,
-            names_pivot,
-            event,
-            within_ticks,
+    /// Sets the stage up so that this is what it notices: a following error comes before most that a pivot can do, and a motor
+    /// gets hot in 20 s.
+    pub const fn set_up(&self, supervision: &mut Supervision) {
+        match self {
+            Self::Runaway(_) => supervision.following_error_rad = LARGE_ERROR_RAD,
+            Self::Wedged => {
+                supervision.following_error_rad = LARGE_ERROR_RAD;
+                supervision.at_end_s = 0.02;
+                // Held as fast, its encoder need not show anything new.
+                supervision.frozen_rad = 1.0;
+                supervision.frozen_v = 60.0;
+            }
+            Self::HotMotor(_) => supervision.motor_heating_s = 0.15,
+            _ => {}
         }
     }
 
@@ -261,15 +217,28 @@ impl Injection {
                 }
             }
             Self::EmergencyStop => host.emergency_stop = true,
-            Self::Jam | Self::Knock(_) => self.push(&mut host.stage.plant, axis, age),
+            Self::TwoEncoders(ticks) => {
+                encoder.set_fault(EncoderFault::StuckHigh);
+                if age >= u64::from(ticks) {
+                    host.stage.encoders[second(axis)].set_fault(EncoderFault::StuckLow);
+                }
+            }
+            Self::Jam | Self::Knock(_) | Self::HotMotor(_) | Self::Runaway(_) | Self::Wedged => {
+                self.push(&mut host.stage.plant, axis, age)
+            }
             Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
             Self::FewMissedTicks(_) | Self::LateLoop => {
                 if age.is_multiple_of(MISSED_EVERY) {
                     host.miss_tick();
                 }
             }
-            // It is the command side that hears nothing.
-            Self::HostSilent => {}
+            Self::Watchdog(ticks) if age == 0 => {
+                for _ in 0..ticks {
+                    host.miss_tick();
+                }
+            }
+            // What is not of the loop's hardware: the run does it.
+            Self::HostSilent | Self::Watchdog(_) | Self::DamagedSettings | Self::QueueFull => {}
         }
     }
 
@@ -277,21 +246,38 @@ impl Injection {
     pub fn push(&self, plant: &mut Plant, axis: usize, age: u64) {
         let mut external = External::default();
         match *self {
-            Self::Jam if age == 0 => {
+            Self::Jam | Self::Wedged if age == 0 => {
                 external.jammed_at_rad[axis] = Some(plant.pivots_rad()[axis]);
             }
-            Self::Knock(torque_n_m) if age == 0 => external.ring_torque_n_m[axis] = torque_n_m,
+            Self::Knock(torque_n_m) | Self::Runaway(torque_n_m) | Self::HotMotor(torque_n_m)
+                if age == 0 =>
+            {
+                external.ring_torque_n_m[axis] = torque_n_m;
+            }
             Self::Knock(_) if age == KNOCK_TICKS => {}
+            Self::Runaway(_) if age == RUNAWAY_TICKS => {}
             _ => return,
         }
         plant.set_external(external);
     }
 
+    /// Whoever pulls at a ring that is held lets go when it is not held any more.
+    pub fn let_go(&self, plant: &mut Plant) {
+        if matches!(self, Self::HotMotor(_)) {
+            plant.set_external(External::default());
+        }
+    }
+
     /// The tick of age 0 is the first to see it: what breaks an encoder is seen with the next frame that is latched.
     #[must_use]
     pub const fn is_of_encoder(&self) -> bool {
-        self.index() <= 6
+        self.index() <= 6 || matches!(self, Self::TwoEncoders(_))
     }
+}
+
+/// The pivot whose encoder is lost after that of another one.
+pub(super) const fn second(axis: usize) -> usize {
+    (axis + 1) % AXES
 }
 
 /// A burst of one to six flipped bits, which a CRC of six bits always finds.

@@ -4,28 +4,36 @@
 //! of, a motion, a fault and the tick in which it comes. It is run twice, with the fault and without: the second must
 //! raise no alarm. The fault is done to the simulated hardware; the controller reads it through its own drivers.
 //!
-//! Not here, since no simulated hardware does it within half a second: hot motors, numbers that are none, setpoints out of reach,
-//! damaged settings, a full command queue, the watchdog. They have tests of their own.
+//! Not here, since nothing that reaches the controller brings them about: numbers that are none (frames and ADC counts are whole
+//! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach
+//! (the planner gives none). They have tests of their own, past the command side.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `injection` | what breaks, and what the controller has to say about it |
+//! | `injection`, `settings` | what breaks |
+//! | `expected`, `effect` | what the controller has to say about it, and when that has passed its threshold |
 //! | `scenario`, `random` | from a seed to a run |
-//! | `run` | one run |
+//! | `run`, `watch` | one run, and who looks on |
 //! | `truth` | what the machine really did |
 //! | `verdict` | whether the controller did what it has to |
 //! | `table`, `rows` | what is printed, and written |
 
+mod effect;
+mod expected;
 mod injection;
 mod random;
 mod rows;
 mod run;
 mod scenario;
+mod settings;
 mod table;
 mod truth;
 mod verdict;
+mod watch;
 
-pub use injection::{Effect, Expected, Injection, NAMES};
+pub use effect::Effect;
+pub use expected::{Cause, Expected};
+pub use injection::{Injection, NAMES};
 pub use rows::write;
 pub use run::{End, Outcome, run};
 pub use scenario::Scenario;

@@ -30,6 +30,8 @@ pub struct Scenario {
     pub seed: u64,
     /// The stage.
     pub stage: StageParameters,
+    /// The controller's parameters.
+    pub parameters: Parameters,
     /// Where it stands at first (m, m, rad).
     pub start: [f64; 3],
     /// Lines for the controller and the tick after which they are sent, in order.
@@ -62,14 +64,23 @@ impl Scenario {
         if injection == Injection::HostSilent {
             lines.insert(0, (REFERENCE, format!("HBT {HEARTBEAT_MS}")));
         }
+        let mut parameters = Parameters::REFERENCE;
+        injection.set_up(&mut parameters.supervision);
+        let axis = random.below(AXES as u32) as usize;
+        let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
+        let at = match injection {
+            Injection::DamagedSettings => 0,
+            _ => in_motion,
+        };
         Self {
             seed,
             stage,
+            parameters,
             start,
             lines,
             injection,
-            axis: random.below(AXES as u32) as usize,
-            at: FIRST_MOTION + u64::from(random.below(MOTION_TICKS)),
+            axis,
+            at,
         }
     }
 }

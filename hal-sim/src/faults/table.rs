@@ -1,5 +1,7 @@
 //! The campaign as a table, a row a fault.
 
+use std::collections::BTreeMap;
+
 use super::injection::NAMES;
 use super::run::{End, Outcome};
 
@@ -22,6 +24,26 @@ pub fn table(outcomes: &[Outcome]) -> String {
         .filter(|outcome| outcome.is_control)
         .collect();
     text += &row("none (control)", &control);
+    text + &names(outcomes)
+}
+
+/// Which faults were told under more than one name, and how often under each.
+fn names(outcomes: &[Outcome]) -> String {
+    let mut text = String::new();
+    for (index, name) in NAMES.iter().enumerate() {
+        let mut told: BTreeMap<&str, u32> = BTreeMap::new();
+        let of_it = (outcomes.iter())
+            .filter(|outcome| !outcome.is_control && outcome.scenario.injection.index() == index);
+        for fault in of_it.filter_map(|outcome| outcome.fault) {
+            *told.entry(fault.kind.text()).or_default() += 1;
+        }
+        if told.len() > 1 {
+            let each: Vec<_> = (told.iter())
+                .map(|(kind, count)| format!("{kind} {count}"))
+                .collect();
+            text += &format!("{name} is told as: {}\n", each.join(", "));
+        }
+    }
     text
 }
 

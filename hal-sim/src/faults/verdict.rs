@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use firmware::fault::FaultKind;
+
 use super::run::Outcome;
 
 /// What is wrong with a run.
@@ -15,8 +17,12 @@ pub enum Problem {
     Late(u64),
     /// Latched under a name that it does not have.
     WrongKind,
+    /// Latched before anything had passed the threshold of that.
+    Unfounded,
     /// The name of another pivot.
     WrongPivot,
+    /// A second encoder was lost in the controlled stop, and that was not told, or not in time.
+    SecondMissed,
     /// A guide was pressed into its end, mm, which the documented reaction in time would have prevented.
     LimitBroken(f64),
 }
@@ -48,27 +54,42 @@ impl Outcome {
     fn wrong_report(&self) -> Option<Problem> {
         let expected = self.scenario.injection.expected();
         let late = || {
-            let latency = self.latency_ticks().unwrap_or(0);
-            (latency > expected.within_ticks).then_some(Problem::Late(latency))
+            let (tick, deadline) = (self.detected()?, self.deadline?);
+            (tick > deadline).then(|| Problem::Late(tick - deadline))
         };
         let Some(fault) = self.fault else {
-            return match (self.effect, self.detected(), self.told) {
+            return match (self.deadline, self.detected(), self.told) {
                 (_, None, Some(_)) => Some(Problem::FalseAlarm),
                 (Some(_), None, _) => Some(Problem::Undetected),
                 _ => late(),
             };
         };
         let early = fault.tick < self.scenario.at;
-        if self.is_control || early || expected.kinds.is_empty() {
+        let mut kinds = expected.causes.iter().filter_map(|cause| cause.kind);
+        let is_one = kinds.clone().any(|kind| kind == fault.kind);
+        if self.is_control || early || kinds.next().is_none() {
             return Some(Problem::FalseAlarm);
         }
-        if !expected.kinds.contains(&fault.kind) {
+        if !is_one {
             return Some(Problem::WrongKind);
+        }
+        if !self.is_founded {
+            return Some(Problem::Unfounded);
         }
         if expected.names_pivot && fault.pivot != Some(self.scenario.axis as u8) {
             return Some(Problem::WrongPivot);
         }
-        late()
+        late().or_else(|| self.wrong_second())
+    }
+
+    /// A second encoder that is lost while the stage is being stopped has to end the stop in the tick in which it is found.
+    fn wrong_second(&self) -> Option<Problem> {
+        let (tick, pivot) = self.second?;
+        let is_right = self.worse.is_some_and(|worse| {
+            let told = (worse.kind, worse.pivot, worse.tick);
+            told == (FaultKind::EncoderSilent, Some(pivot as u8), tick)
+        });
+        (!is_right).then_some(Problem::SecondMissed)
     }
 }
 
@@ -79,6 +100,8 @@ impl fmt::Display for Problem {
             Self::Undetected => f.write_str("not detected"),
             Self::Late(ticks) => write!(f, "detected {ticks} ticks late"),
             Self::WrongKind => f.write_str("reported as another fault"),
+            Self::Unfounded => f.write_str("reported before anything had passed its threshold"),
+            Self::SecondMissed => f.write_str("the second lost encoder is not told"),
             Self::WrongPivot => f.write_str("reported for another pivot"),
             Self::LimitBroken(mm) => write!(f, "{mm:.3} mm into a guide's end, avoidably"),
         }
@@ -106,6 +129,9 @@ impl fmt::Display for Outcome {
         match &self.fault {
             Some(fault) => write!(f, "; {fault}")?,
             None => f.write_str("; no fault latched")?,
+        }
+        if let Some(worse) = &self.worse {
+            write!(f, ", then {worse}")?;
         }
         if let Some(tick) = self.told {
             write!(f, ", event at tick {tick}")?;

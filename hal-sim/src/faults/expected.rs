@@ -1,0 +1,149 @@
+//! What the controller has to say about what breaks: under which names it may be told, and from when to when.
+
+use firmware::fault::FaultKind as Kind;
+
+use super::effect::Effect;
+use super::injection::Injection;
+
+/// A reason for a fault, or for an event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cause {
+    /// What has to have passed its threshold.
+    pub effect: Effect,
+    /// What it may be called then; nothing where it is told by an event.
+    pub kind: Option<Kind>,
+    /// Ticks after that at which it is latched at the latest; `None`: it need not be.
+    pub within_ticks: Option<u64>,
+    /// Ticks by which it may be latched before, since the judge computes in other numbers.
+    pub early_ticks: u64,
+}
+
+/// What the controller has to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// Why it may latch a fault; none: it goes on.
+    pub causes: &'static [Cause],
+    /// Whether the fault names the pivot.
+    pub names_pivot: bool,
+    /// What `EVT?`, or the answer to `ERR?`, tells of it where it is no fault.
+    pub told: Option<&'static str>,
+}
+
+/// Ticks until the command side, which has its turn every few, has told of something.
+const COMMAND_SIDE_TICKS: u64 = 20;
+
+const fn cause(effect: Effect, kind: Kind, within_ticks: u64) -> Cause {
+    Cause {
+        effect,
+        kind: Some(kind),
+        within_ticks: Some(within_ticks),
+        early_ticks: 0,
+    }
+}
+
+const fn event(effect: Effect) -> Cause {
+    Cause {
+        effect,
+        kind: None,
+        within_ticks: Some(COMMAND_SIDE_TICKS),
+        early_ticks: 0,
+    }
+}
+
+/// A pivot that is further off than it may be, whatever put it there.
+const FOLLOWING: Cause = Cause {
+    effect: Effect::FollowingError,
+    kind: Some(Kind::FollowingError),
+    within_ticks: Some(1),
+    early_ticks: 1,
+};
+/// An encoder that repeats its reading, which one of a pivot that is held fast does too: nothing tells the two apart.
+const STILL: Cause = Cause {
+    effect: Effect::Still,
+    kind: Some(Kind::EncoderFrozen),
+    within_ticks: None,
+    early_ticks: 0,
+};
+const OVERSPEED: Cause = cause(Effect::Overspeed, Kind::Overspeed, 0);
+const BRIEFLY_OVERSPEED: Cause = Cause {
+    effect: Effect::BrieflyOverspeed,
+    within_ticks: None,
+    ..OVERSPEED
+};
+
+/// Pivots are looked at in turn, every third tick.
+const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 6);
+const NEARLY_STALLED: Cause = Cause {
+    effect: Effect::NearlyAtEnd,
+    within_ticks: None,
+    early_ticks: 6,
+    ..STALLED
+};
+const HOT: Cause = Cause {
+    early_ticks: 6,
+    ..cause(Effect::Hot, Kind::MotorHot, 6)
+};
+/// Found before the first tick.
+const DAMAGED: Cause = Cause {
+    early_ticks: 1,
+    ..cause(Effect::AtOnce, Kind::SettingsDamaged, 0)
+};
+
+/// Largest of the early ticks: for so long a fault may come before its cause.
+pub(super) const MOST_EARLY: u64 = 6;
+
+impl Injection {
+    /// What the controller has to say.
+    #[must_use]
+    pub const fn expected(&self) -> Expected {
+        let causes: &'static [Cause] = match self {
+            Self::Silent(_) | Self::TwoEncoders(_) => {
+                &const { [cause(Effect::BadFrames, Kind::EncoderSilent, 0)] }
+            }
+            Self::BadCrc => &const { [cause(Effect::BadFrames, Kind::EncoderCrc, 0)] },
+            Self::ErrorBit => &const { [cause(Effect::BadFrames, Kind::EncoderError, 0)] },
+            Self::Jump(_) => &const { [cause(Effect::BadFrames, Kind::EncoderJump, 0)] },
+            // Where the setpoint slows down, it is the drive that shows it.
+            Self::Frozen => &const { [cause(Effect::FrozenWay, Kind::EncoderFrozen, 30), STILL] },
+            Self::BridgeFault => &const { [cause(Effect::AtOnce, Kind::BridgeFault, 0)] },
+            Self::SupplySag(_) => &const { [cause(Effect::LowSupply, Kind::SupplyLow, 0)] },
+            Self::EmergencyStop => &const { [cause(Effect::AtOnce, Kind::EmergencyStop, 0)] },
+            // At full speed the pivots lead by what was missed, which may be too far.
+            Self::LateLoop => &const { [cause(Effect::LateTicks, Kind::LoopLate, 0), FOLLOWING] },
+            Self::FewMissedTicks(_) | Self::DirectionStuck => &[FOLLOWING],
+            Self::DriveLost | Self::Jam => &[FOLLOWING, STILL],
+            Self::Knock(_) | Self::Runaway(_) => &[FOLLOWING, OVERSPEED, BRIEFLY_OVERSPEED],
+            Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, STILL],
+            Self::HotMotor(_) => &[HOT, FOLLOWING],
+            Self::DamagedSettings => &[DAMAGED],
+            Self::Warning | Self::Watchdog(_) | Self::QueueFull => {
+                &const { [event(Effect::AtOnce)] }
+            }
+            Self::HostSilent => &const { [event(Effect::Silence)] },
+            Self::FewBadFrames(_) => &[],
+        };
+        let told = match self {
+            Self::Warning => Some("encoder warns"),
+            Self::HostSilent => Some("no host heard"),
+            Self::Watchdog(_) => Some("start by the watchdog"),
+            Self::QueueFull => Some("1005"),
+            _ => None,
+        };
+        // The platform ties the pivots together, so that another one may be the first that is too far off.
+        let names_pivot = matches!(
+            self,
+            Self::Silent(_)
+                | Self::BadCrc
+                | Self::ErrorBit
+                | Self::Frozen
+                | Self::Jump(_)
+                | Self::BridgeFault
+                | Self::TwoEncoders(_)
+        );
+        Expected {
+            causes,
+            names_pivot,
+            told,
+        }
+    }
+}
