@@ -5,6 +5,7 @@
 
 pub mod fuzz;
 pub mod ideal;
+pub mod trouble;
 
 use firmware::blackbox::BlackBox;
 use firmware::controller::Outputs;

@@ -4,7 +4,6 @@
 use firmware::fault::{FaultKind, Reaction};
 use firmware::link::Mode;
 use hal_sim::devices::EncoderFault;
-use hal_sim::plant::External;
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;
@@ -17,51 +16,6 @@ const AT_END: u32 = 0x5450_0508;
 const MOTOR_CURRENT: u32 = 0x5450_0509;
 const MOTOR_HEATING: u32 = 0x5450_050A;
 const LATE: u32 = 0x5450_050B;
-
-/// Sets parameters of the supervision.
-fn set(bench: &mut Bench, parameters: &[(u32, f64)]) {
-    assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
-    for (id, value) in parameters {
-        assert_eq!(bench.error_after(&format!("SPA 1 {id} {value}")), "0");
-    }
-}
-
-/// Holding, with these parameters.
-fn holding(parameters: &[(u32, f64)]) -> Bench {
-    let mut bench = Bench::ready();
-    set(&mut bench, parameters);
-    bench
-}
-
-/// Turning steadily.
-fn turning(parameters: &[(u32, f64)], deg_s: f64) -> Bench {
-    let mut bench = holding(parameters);
-    assert_eq!(bench.error_after(&format!("JOG W {deg_s}")), "0");
-    bench.run(8_000);
-    assert_eq!((bench.mode(), bench.fault()), (Mode::Moving, None));
-    bench
-}
-
-/// Pushes ring 2.
-fn push(bench: &mut Bench, torque_n_m: f64, ticks: u32) {
-    bench.host.stage.plant.set_external(External {
-        ring_torque_n_m: [0.0, torque_n_m, 0.0],
-        ..External::default()
-    });
-    bench.run(ticks);
-    bench.host.stage.plant.set_external(External::default());
-}
-
-/// Jams ring 2 where it is.
-fn jam(bench: &mut Bench, ticks: u32) {
-    let at_rad = bench.host.stage.plant.pivots_rad()[1];
-    bench.host.stage.plant.set_external(External {
-        jammed_at_rad: [None, Some(at_rad), None],
-        ..External::default()
-    });
-    bench.run(ticks);
-    bench.host.stage.plant.set_external(External::default());
-}
 
 #[track_caller]
 fn assert_fault(bench: &Bench, kind: FaultKind, pivot: Option<u8>) {
@@ -84,21 +38,21 @@ fn assert_at_rest(bench: &mut Bench) {
 fn the_following_error_may_be_larger_the_faster_it_goes() {
     // The same push leaves the same error at rest and in motion, over the limit of rest and under that of motion.
     let limits = [(FOLLOWING_ERROR, 5e-4), (FOLLOWING_ERROR_BY_RATE, 1e-3)];
-    let mut bench = holding(&limits);
-    push(&mut bench, 35.0, 2_000);
+    let mut bench = Bench::holding(&limits);
+    bench.push_for(35.0, 2_000);
     assert_fault(&bench, FaultKind::FollowingError, Some(1));
-    let mut twin = turning(&limits, 120.0);
-    push(&mut twin, 35.0, 2_000);
+    let mut twin = Bench::turning(&limits, 120.0);
+    twin.push_for(35.0, 2_000);
     assert_eq!(twin.fault(), None);
-    let mut twin = holding(&limits);
-    push(&mut twin, 8.0, 2_000);
+    let mut twin = Bench::holding(&limits);
+    twin.push_for(8.0, 2_000);
     assert_eq!(twin.fault(), None);
 }
 
 #[test]
 fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
     for (deg_s, most_ticks) in [(300.0, 6), (30.0, 6), (3.0, 6), (0.3, 1_000)] {
-        let mut bench = turning(&[], deg_s);
+        let mut bench = Bench::turning(&[], deg_s);
         bench.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
         let before = bench.sample().tick;
         bench.run_until("found", |bench| bench.fault().is_some());
@@ -111,7 +65,7 @@ fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
     }
     for deg_s in [300.0, 30.0, 3.0, 0.3] {
         // The twin: frozen for as many frames as are bridged.
-        let mut twin = turning(&[], deg_s);
+        let mut twin = Bench::turning(&[], deg_s);
         for _ in 0..20 {
             twin.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
             twin.run(4);
@@ -166,8 +120,8 @@ fn a_pivot_that_runs_away() {
         (OVERSPEED, 1.05),
     ];
     let pushed = |torque_n_m: f64| {
-        let mut bench = turning(&limits, 300.0);
-        push(&mut bench, torque_n_m, 100);
+        let mut bench = Bench::turning(&limits, 300.0);
+        bench.push_for(torque_n_m, 100);
         bench.run(100);
         bench
     };
@@ -180,13 +134,13 @@ fn pivots_that_come_too_close() {
     let pushed = |torque_n_m: f64, ticks: u32| {
         let mut bench = Bench::default();
         // A disk whose edge is where two pivots are 60 deg apart.
-        set(&mut bench, &[(FOLLOWING_ERROR, 0.2), (0x5450_0203, 60.0)]);
+        bench.set(&[(FOLLOWING_ERROR, 0.2), (0x5450_0203, 60.0)]);
         assert_eq!(bench.error_after("FRF"), "0");
         bench.settle();
         // Away from guide 1, and so between pivots 2 and 3.
         assert_eq!(bench.error_after("MOV X -49.8 Y 28.75 W 0"), "0");
         bench.settle();
-        push(&mut bench, torque_n_m, ticks);
+        bench.push_for(torque_n_m, ticks);
         bench
     };
     let mut bench = pushed(70.0, 400);
@@ -202,8 +156,8 @@ fn a_pivot_that_is_held_fast() {
     let jammed = |ticks: u32| {
         // Not to be taken for its encoder, which a jam holds as fast.
         let limits = [(FOLLOWING_ERROR, 0.2), (FROZEN, 1.0), (AT_END, 0.02)];
-        let mut bench = turning(&limits, 60.0);
-        jam(&mut bench, ticks);
+        let mut bench = Bench::turning(&limits, 60.0);
+        bench.jam_for(ticks);
         bench.run(400);
         bench
     };
@@ -217,25 +171,22 @@ fn a_pivot_that_is_held_fast() {
 #[test]
 fn a_motor_that_gets_too_hot() {
     let pushed = |torque_n_m: f64| {
-        let mut bench = holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
-        push(&mut bench, torque_n_m, 15_000);
+        let mut bench = Bench::holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
+        bench.push_for(torque_n_m, 15_000);
         bench
     };
     // The simulated motor gives 2.4 N m/A, and friction holds 0.12 N m of the push.
     assert_eq!(pushed(2.2).fault(), None);
-    let mut bench = holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
-    bench.host.stage.plant.set_external(External {
-        ring_torque_n_m: [0.0, 2.9, 0.0],
-        ..External::default()
-    });
+    let mut bench = Bench::holding(&[(MOTOR_CURRENT, 1.0), (MOTOR_HEATING, 0.1)]);
+    bench.push(2.9);
     bench.run_until("hot", |bench| bench.fault().is_some());
-    bench.host.stage.plant.set_external(External::default());
+    bench.push(0.0);
     assert_fault(&bench, FaultKind::MotorHot, Some(1));
     assert_eq!(bench.mode(), Mode::Fault, "nothing was to be stopped");
     // Acknowledged, it is as warm as before: what took 2,700 ticks when it was cold takes a few hundred.
     assert_eq!(bench.error_after(""), "1024");
     bench.say("FLC\nSVO W 1\n");
-    push(&mut bench, 2.9, 800);
+    bench.push_for(2.9, 800);
     assert_fault(&bench, FaultKind::MotorHot, Some(1));
     bench.run(5_000);
     assert_eq!(bench.error_after(""), "1024");
@@ -247,7 +198,7 @@ fn a_motor_that_gets_too_hot() {
 #[test]
 fn a_loop_that_is_late() {
     let late = |ticks: u32| {
-        let mut bench = turning(&[(LATE, 7.0)], 90.0);
+        let mut bench = Bench::turning(&[(LATE, 7.0)], 90.0);
         bench.host.late = true;
         bench.run(ticks);
         bench.host.late = false;
@@ -275,7 +226,7 @@ fn a_loop_that_is_late() {
 #[test]
 fn a_supply_that_sags() {
     let sagged = |supply_v: f64, ticks: u32| {
-        let mut bench = turning(&[], 90.0);
+        let mut bench = Bench::turning(&[], 90.0);
         bench.host.stage.set_supply_v(supply_v);
         bench.run(ticks);
         bench.host.stage.set_supply_v(48.0);
