@@ -112,6 +112,19 @@ fn settings_of_a_newer_firmware_are_refused() {
 }
 
 #[test]
+fn what_no_firmware_writes_is_damage() {
+    let mut noise = Flash::new();
+    noise.bytes.fill(0x5A);
+    let too_many = flash_with(&record(0x8000_0000, &image(1, &[(SPEED, 123.5)])));
+    for flash in [noise, too_many] {
+        assert_eq!(
+            restored(&flash),
+            (Some(FaultKind::SettingsDamaged), nothing_kept())
+        );
+    }
+}
+
+#[test]
 fn a_parameter_that_is_unknown_here_is_ignored_and_told() {
     let image = image(1, &[(0x5450_FFFF, 1.0), (SPEED, 123.5)]);
     let mut bench = KeptBench::start(flash_with(&record(7, &image)));
@@ -130,7 +143,13 @@ fn what_cannot_be_in_force_is_damage() {
     longer.push(0);
     let mut shorter = image(1, &[(SPEED, 123.5)]);
     shorter.pop();
+    // A macro, and a byte too many behind it.
+    let mut with_macro = image(1, &[]);
+    with_macro.pop();
+    with_macro.extend([1, 1, b'A', 8, 0]);
+    with_macro.extend(b"MOV X 1\n\0");
     let images = [
+        with_macro,
         image(1, &[(SPEED, 1e9)]),
         image(1, &[(SPEED, f64::NAN)]),
         image(1, &[(0x1600_0201, 100.0), (0x5450_0900, 200.0)]),
@@ -185,6 +204,24 @@ fn any_content_at_all_leaves_parameters_that_go_together() {
         // Whatever was there, settings can be kept from now on.
         assert_eq!(keeper.write(&panel), Ok(()), "case {case}");
         assert_eq!(keeper.restore(&mut fresh()), None, "case {case}");
+    }
+}
+
+/// A byte that does not take what is written is found by reading back, wherever it lies.
+#[test]
+fn a_byte_that_is_stuck_is_passed_over() {
+    for stuck in 0..80 {
+        let mut flash = Flash::<SECTOR>::new();
+        flash.stuck = Some(stuck);
+        let mut bench = KeptBench::start(flash);
+        let lines = format!("SPA 1 {SPEED} 123\nWPA 100");
+        assert_eq!(bench.error_after(&lines), "0", "byte {stuck}");
+        let (problem, found) = restored(bench.keeper.flash());
+        assert_eq!(
+            (problem, value(&found, SPEED)),
+            (None, 123.0),
+            "byte {stuck}"
+        );
     }
 }
 

@@ -59,6 +59,22 @@ fn the_ticks_around_a_fault_can_be_read_until_the_servo_is_on() {
     assert_eq!(bench.error_after("FLR?"), "77");
 }
 
+/// A controlled stop is longer than the record: it is the fault that counts, not the end of the stop.
+#[test]
+fn the_record_of_a_controlled_stop_is_that_of_its_beginning() {
+    let mut bench = Bench::ready();
+    bench.send("MOV X 40 W 100\n");
+    bench.run(2_000);
+    bench.host.late = true;
+    bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
+    bench.host.late = false;
+    let tick = bench.fault().expect("a fault").tick as f64;
+    bench.run_until("stopped", |bench| bench.mode() == Mode::Fault);
+    let rows = record(&mut bench);
+    let last = rows.last().map(|row| row[0]);
+    assert_eq!(last, Some(tick + f64::from(AFTER) - 1.0));
+}
+
 #[test]
 fn a_record_of_the_users_own_changes_nothing() {
     let mut bench = Bench::ready();

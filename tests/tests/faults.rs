@@ -108,6 +108,7 @@ fn bad_frames_beyond_the_bridged_are_a_fault() {
         bad_frames(&mut bench, encoder, fault, BRIDGED + 1);
         let latched = bench.fault().expect("a fault");
         assert_eq!((latched.kind, latched.pivot), (kind, Some(encoder as u8)));
+        assert_eq!(bench.mode(), Mode::Stopping, "on its path");
         coast(&mut bench);
         assert_safe_until_acknowledged(bench, kind, true);
     }

@@ -1,7 +1,7 @@
 //! Pivots that are no pose, and setpoints that no pivots can follow.
 
 use firmware::fault::FaultKind;
-use firmware::link::{Command, Link, Mode};
+use firmware::link::{Command, Link, Mode, Snapshot};
 use firmware::motion::{Ground, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
 use hal_sim::devices::StageParameters;
@@ -46,11 +46,12 @@ fn with_disk_margin(disk_margin_mm: f64) -> Parameters {
     }
 }
 
-/// A line along x to `end_mm`, further than any planner would go.
-fn line(parameters: &Parameters, from: [i64; 3], end_mm: f64) -> Plan {
-    let half = [(end_mm / 200.0 * 4_294_967_296.0) as i64, 0, 0];
+/// A line of `way_mm` along x, which may go further than any planner would.
+fn line(parameters: &Parameters, at: &Snapshot, way_mm: f64) -> Plan {
+    let from = at.setpoint;
+    let half = [(way_mm / 200.0 * 4_294_967_296.0) as i64, 0, 0];
     let mut plan = plan_line(
-        1,
+        at.plan + 1,
         [0; 3],
         half,
         &Ground::new(parameters.limits, parameters.geometry),
@@ -66,8 +67,14 @@ fn line(parameters: &Parameters, from: [i64; 3], end_mm: f64) -> Plan {
 }
 
 fn fault_of_a_line_to(end_mm: f64, theta_deg: f64, parameters: &Parameters) -> Option<FaultKind> {
+    fault_of_lines(&[0.0, end_mm], theta_deg, parameters)
+}
+
+/// What comes of lines along x from the first of these places to the others, one after the other.
+fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) -> Option<FaultKind> {
     let mut host = Host::new(&StageParameters::REFERENCE, parameters);
-    (host.stage).set_pose_at_rest([0.0, 0.0, theta_deg.to_radians()]);
+    let start_m = places_mm[0] / 1e3;
+    (host.stage).set_pose_at_rest([start_m, 0.0, theta_deg.to_radians()]);
     let mut link = Link::new();
     let (mut tick_link, mut commands) = link.split();
     for _ in 0..10 {
@@ -81,13 +88,28 @@ fn fault_of_a_line_to(end_mm: f64, theta_deg: f64, parameters: &Parameters) -> O
     }
     let at = at.expect("a snapshot");
     assert_eq!(at.mode, Mode::Holding);
-    commands
-        .send(Command::Move(line(parameters, at.setpoint, end_mm)))
-        .expect("room");
+    let mut now = Some(at);
+    let mut ways = places_mm.windows(2).map(|ends| ends[1] - ends[0]);
     for _ in 0..20_000 {
-        host.tick(&mut tick_link, &mut ());
+        if let Some(at) = now.as_ref().filter(|now| now.mode == Mode::Holding)
+            && let Some(way_mm) = ways.next()
+        {
+            let plan = line(parameters, at, way_mm);
+            commands.send(Command::Move(plan)).expect("room");
+            now = None;
+        }
+        let outputs = host.tick(&mut tick_link, &mut ());
+        now = commands.snapshot().or(now);
+        if let Some(fault) = host.fault() {
+            assert!(outputs.awake, "{fault}: it brakes");
+            assert!(outputs.duty.iter().all(|duty| duty.0 == 0), "{fault}");
+            if let Some(told) = now.as_ref().filter(|now| now.fault.is_some()) {
+                assert_eq!(told.mode, Mode::Fault, "{fault}: at once");
+                return Some(fault.kind);
+            }
+        }
     }
-    host.fault().map(|fault| fault.kind)
+    None
 }
 
 #[test]
@@ -114,6 +136,25 @@ fn a_setpoint_out_of_a_guide_is_a_fault() {
     assert_eq!(fault(80.4), None);
 }
 
+/// The nearer end: guide 1 points along x.
+#[test]
+fn a_setpoint_out_of_a_guides_start_is_a_fault() {
+    let fault = |end_mm| fault_of_a_line_to(end_mm, 30.0, &with_disk_margin(3.0));
+    assert_eq!(fault(80.6), Some(FaultKind::GuideRange));
+    assert_eq!(fault(80.4), None);
+}
+
+#[test]
+fn the_way_back_into_the_disk_leads_only_inwards() {
+    let parameters = Parameters::REFERENCE;
+    let fault = |places_mm: &[f64]| fault_of_lines(places_mm, 0.0, &parameters);
+    assert_eq!(fault(&[82.0, 81.0]), None);
+    assert_eq!(fault(&[82.0, 81.0, 70.0]), None);
+    assert_eq!(fault(&[82.0, 83.0]), Some(FaultKind::WorkspaceLeft));
+    assert_eq!(fault(&[82.0, 81.0, 81.8]), Some(FaultKind::WorkspaceLeft));
+    assert_eq!(fault(&[82.0, 70.0, 81.8]), Some(FaultKind::WorkspaceLeft));
+}
+
 /// A gain that no float holds: the servo's sums are no numbers from the first tick on.
 #[test]
 fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
@@ -127,12 +168,23 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
             host.tick(&mut tick_link, &mut ());
         }
         commands.send(Command::Reference).expect("room");
+        let mut last = None;
         for _ in 0..100 {
             let outputs = host.tick(&mut tick_link, &mut ());
             let largest = outputs.duty.iter().map(|duty| duty.0.abs()).max();
             assert!(largest < Some(500), "{largest:?}");
+            last = commands
+                .snapshot()
+                .map(|now| (now.mode, outputs.awake))
+                .or(last);
         }
         assert_eq!(host.fault().map(|fault| fault.kind), fault);
+        let mode = if fault.is_some() {
+            Mode::Fault
+        } else {
+            Mode::Holding
+        };
+        assert_eq!(last, Some((mode, true)), "it brakes");
     }
 }
 
@@ -160,7 +212,7 @@ fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
     host.emergency_stop = true;
     after(&mut host, None);
     host.emergency_stop = false;
-    let plan = line(&parameters, holding.setpoint, 10.0);
+    let plan = line(&parameters, &holding, 10.0);
     for command in [
         Command::Servo(true),
         Command::Reference,

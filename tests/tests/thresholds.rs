@@ -50,8 +50,9 @@ fn a_motor_heats_in_its_time_and_is_no_fault_while_nothing_drives_it() {
     // Hotter still at the end of a controlled stop.
     let mut bench = Bench::turning(&limits, 5.0);
     bench.push(2.9);
+    ticks_to(&mut bench, FaultKind::MotorHot);
+    assert_eq!(bench.mode(), Mode::Stopping, "on its path");
     bench.run_until("stopped", |bench| bench.mode() == Mode::Fault);
-    assert_eq!(bench.fault_kind(), Some(FaultKind::MotorHot));
     bench.say("ERR?\nFLC\n");
     bench.run(50);
     assert_eq!((bench.mode(), bench.fault()), (Mode::Off, None));
@@ -233,4 +234,24 @@ fn a_supply_is_low_only_in_ticks_in_a_row_and_while_it_is_used() {
     bench.say("FRF\n");
     bench.run(10);
     assert_eq!(bench.fault_kind(), Some(FaultKind::SupplyLow));
+}
+
+/// Pushed harder and harder, a pivot is at fault as soon as it is off by as much as it may.
+#[test]
+fn a_following_error_is_found_at_its_limit() {
+    for (deg_s, limit_rad) in [(0.0, 0.002), (120.0, 0.002 + 0.0001 * 120_f64.to_radians())] {
+        let mut bench = match deg_s {
+            0.0 => Bench::ready(),
+            _ => Bench::turning(&[], deg_s),
+        };
+        bench.push(70.0);
+        bench.run_until("found", |bench| bench.fault().is_some());
+        let fault = bench.fault().expect("found");
+        assert_eq!(fault.kind, FaultKind::FollowingError);
+        let [value, limit] = [fault.value, fault.limit].map(f64::from);
+        assert!((limit / limit_rad - 1.0).abs() < 0.001, "{fault}");
+        assert!((1.0..1.15).contains(&(value.abs() / limit)), "{fault}");
+        assert_eq!(bench.mode(), Mode::Fault, "it brakes at once");
+        assert!(bench.outputs.awake);
+    }
 }

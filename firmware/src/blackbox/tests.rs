@@ -114,3 +114,61 @@ fn a_flipped_bit_is_no_entry() {
     }
     assert_eq!(entries.read(1), Some(good));
 }
+
+#[test]
+fn words_that_have_changed_places_are_no_entry() {
+    let entries: Entries<2, 4> = Entries::new();
+    entries.write(1, &[1, 2, 3, 0]);
+    // The same words in another order, with the check of the first.
+    for bit in 0..2 {
+        entries.flip(1, 0, bit);
+        entries.flip(1, 1, bit);
+    }
+    assert_eq!(entries.read(1), None);
+}
+
+#[test]
+fn memory_that_is_marked_otherwise_is_empty() {
+    let memory = BlackBox::new();
+    run(&mut memory.begin(), 1..1_000, Mode::Moving);
+    memory.mark.store(MARK ^ 1, Ordering::Relaxed);
+    memory.begin();
+    assert_eq!(ticks(&memory), []);
+    assert_eq!(memory.start.load(Ordering::Relaxed), 1);
+}
+
+/// A row whose writing failed leaves an older one in its place.
+#[test]
+fn a_row_of_another_tick_or_start_is_left_out() {
+    for (tick, start) in [(900 - ROWS as u64, 1), (900, 0)] {
+        let memory = BlackBox::new();
+        run(&mut memory.begin(), 1..1_000, Mode::Moving);
+        let words = row::words(&sample(tick, Mode::Moving), start);
+        memory.rows.write(900, &words);
+        memory.begin();
+        let expected: Vec<u32> = (744..1_000).filter(|&tick| tick != 900).collect();
+        assert_eq!(ticks(&memory), expected, "tick {tick} of start {start}");
+    }
+}
+
+#[test]
+fn a_row_is_what_the_tick_was() {
+    let mut sample = sample(7, Mode::Stopping);
+    sample.fault = Some(crate::fault::FaultKind::EncoderSilent);
+    let angle = |units| kinematics::Angle::from_units(units);
+    sample.pivots = [10, 2_000, -30].map(angle);
+    sample.pivot_setpoints = [11, 2_200, -33].map(angle);
+    sample.duty = [-100, 200, -300].map(crate::drivers::bridge::Duty);
+    sample.current_counts = [4, 800, 1_200];
+    sample.tick_cycles = 70_000;
+    let row = row::row(&row::words(&sample, 1));
+    assert_eq!(
+        (row.tick, row.mode, row.fault),
+        (7, Mode::Stopping as u8, 1)
+    );
+    assert_eq!(row.pivots, [10, 2_000, 30_u32.wrapping_neg()]);
+    assert_eq!(row.errors, [-1, -200, 3]);
+    assert_eq!(row.duty, [-100, 200, -300]);
+    assert_eq!(row.current_counts, [4, 800, 1_200]);
+    assert_eq!((row.supply_counts, row.tick_cycles), (2_978, 0xFFFF));
+}

@@ -45,6 +45,8 @@ pub struct Flash<const SECTOR: usize> {
     random: Random,
     /// Writing and erasing fail and do nothing, as of a worn sector.
     pub worn: Option<usize>,
+    /// Writing does not change this byte.
+    pub stuck: Option<usize>,
 }
 
 impl<const SECTOR: usize> Flash<SECTOR> {
@@ -55,6 +57,7 @@ impl<const SECTOR: usize> Flash<SECTOR> {
             cut: None,
             random: Random(0),
             worn: None,
+            stuck: None,
         }
     }
 
@@ -158,7 +161,9 @@ impl<const SECTOR: usize> NorFlash for Flash<SECTOR> {
             assert!(free, "the word at {at} is written twice");
             for (place, &byte) in (at..).zip(word) {
                 let changed = self.torn(kind);
-                self.bytes[place] &= byte | !changed;
+                if self.stuck != Some(place) {
+                    self.bytes[place] &= byte | !changed;
+                }
             }
             if !whole {
                 return Err(PowerCut);
