@@ -4,10 +4,11 @@
 //!
 //! What the bench does not model, and what therefore is not here: flash (its contents do not change, so nothing can be damaged
 //! in it), a dip of the chip's own supply (brown-out), a broken crystal, single bits that flip in memory, bus errors of the
-//! peripherals, and a program that runs wild. What only the controller's own numbers can bring about (setpoints out of the disk
-//! or of a guide, numbers that are none), and what takes seconds to build up (heat, a drive at its end), is tested on the host,
-//! where the same code runs. The emergency stop within a PWM period, silent encoders at start, a halted loop and the restart by
-//! the watchdog are in `chip.rs`.
+//! peripherals, and a program that runs wild. What nothing at the chip's pins can bring about is tested on the host, where the
+//! same code runs: setpoints out of the disk or of a guide (the planner gives none), numbers that are none (frames and ADC
+//! counts are whole numbers, and a parameter that would make one is out of its range), pivots too close (a following error
+//! comes first), a full command queue (the tick empties it as fast as a serial line fills it). The emergency stop within a PWM
+//! period, silent encoders at start, a halted loop and the restart by the watchdog are in `chip.rs`.
 //!
 //! Needs `cargo stage` first, then `cargo chip-test`.
 #![cfg(feature = "chip")]
@@ -43,11 +44,13 @@ enum Trouble {
     Supply(f64),
     /// Somebody pushes a pivot's ring with so many N m, for so many ticks.
     Push(f64, u64),
+    /// Something hard gets in a pivot's way, for so many ticks.
+    Jam(u64),
     /// Nothing.
     Nothing,
 }
 
-use Trouble::{Bridge, EmergencyStop, Encoder, Nothing, Push, Supply};
+use Trouble::{Bridge, EmergencyStop, Encoder, Jam, Nothing, Push, Supply};
 
 /// What goes wrong, what does not quite, what is told, and whether the motors brake (or else coast).
 const FAULTS: [(Trouble, Trouble, &str, bool); 11] = [
@@ -139,7 +142,9 @@ impl Trouble {
             EmergencyStop if since == 0 => press(period, true),
             Supply(volts) => period.stage.set_supply_v(volts),
             Push(torque_n_m, ticks) => push(period, if since < ticks { torque_n_m } else { 0.0 }),
-            EmergencyStop | Nothing => {}
+            Jam(_) if since == 0 => jam(period),
+            Jam(ticks) if since == ticks => push(period, 0.0),
+            EmergencyStop | Jam(_) | Nothing => {}
         }
     }
 }
@@ -162,6 +167,12 @@ fn press(period: &mut Period<'_>, pressed: bool) {
 fn push(period: &mut Period<'_>, torque_n_m: f64) {
     let mut external = External::default();
     external.ring_torque_n_m[PIVOT] = torque_n_m;
+    period.stage.plant.set_external(external);
+}
+
+fn jam(period: &mut Period<'_>) {
+    let mut external = External::default();
+    external.jammed_at_rad[PIVOT] = Some(period.stage.plant.pivots_rad()[PIVOT]);
     period.stage.plant.set_external(external);
 }
 
@@ -252,6 +263,123 @@ fn what_stays_under_a_threshold_is_no_fault_and_the_stage_drives_on() {
             end.told
         );
         assert!(end.driven, "{twin:?}: {:?}", end.pins);
+    }
+}
+
+/// What a stage has to be set up for: lines before its motion, the motion, trouble and twin, and what is told. With the parameters
+/// as they are a following error comes first, or it takes too many seconds.
+const SETUPS: [(&str, &str, Trouble, Trouble, &str); 3] = [
+    (
+        "SPA 1 0x54500500 0.2 1 0x54500106 5.5 1 0x54500505 1.05",
+        "JOG W 300",
+        Push(40.0, 100),
+        Push(10.0, 100),
+        "pivot too fast, pivot 2",
+    ),
+    (
+        "SPA 1 0x54500500 0.2 1 0x54500506 1 1 0x54500507 60 1 0x54500508 0.02",
+        "JOG W 60",
+        Jam(1_000),
+        Jam(200),
+        "drive at its end for too long, pivot 2",
+    ),
+    // 3 N m ask for 1 A.
+    (
+        "SPA 1 0x54500509 1 1 0x5450050A 0.1",
+        "",
+        Push(3.7, 4_500),
+        Push(2.7, 4_500),
+        "motor too hot, pivot 2",
+    ),
+];
+
+/// What the chip says and does after trouble on a stage that is set up for it.
+fn set_up_with(setup: &'static str, motion: &'static str, trouble: Trouble) -> End {
+    const MOTION: u64 = 400;
+    const TROUBLE: u64 = 2_500;
+    const ASKED: u64 = TROUBLE + 4_500;
+    let (send, receive) = mpsc::channel();
+    let mut driven = false;
+    run(FULL_SPEED, move |period| {
+        match period.tick {
+            READY => period.send(format!("CCL 1 ADVANCED\n{setup}\nFRF X\n").as_bytes()),
+            MOTION => period.send(format!("{motion}\nERR?\n").as_bytes()),
+            TROUBLE => {
+                let answer = period.received();
+                assert_eq!(String::from_utf8_lossy(&answer), "0\n", "{setup}, {motion}");
+            }
+            ASKED => {
+                driven = false;
+                period.send(b"FLT?\n");
+            }
+            _ => {}
+        }
+        if period.tick == ASKED + 100 {
+            let told = String::from_utf8_lossy(&period.received()).into_owned();
+            let pins = period.pins.to_vec();
+            send.send(End { told, pins, driven })
+                .expect("the test waits");
+            return Break(());
+        }
+        if period.tick >= TROUBLE {
+            trouble.make(period, period.tick - TROUBLE);
+        }
+        let drives = |bridge: &BridgeState| bridge.awake && bridge.pulse > 0.0;
+        driven |= period.pins.iter().any(drives);
+        Continue(())
+    });
+    receive.recv().expect("the last period")
+}
+
+#[test]
+fn what_a_stage_has_to_be_set_up_for_is_told_and_brakes_and_its_twin_is_not() {
+    for (setup, motion, fires, twin, said) in SETUPS {
+        let end = set_up_with(setup, motion, fires);
+        println!("{fires:?}: {}", end.told.trim());
+        assert!(end.told.contains(said), "{fires:?}: {}", end.told);
+        assert!(
+            !end.driven && end.pins.iter().all(|bridge| bridge.awake),
+            "{fires:?}"
+        );
+        let end = set_up_with(setup, motion, twin);
+        assert_eq!(end.told.lines().next(), Some("0 no fault"), "{twin:?}");
+        assert!(end.driven, "{twin:?}: {:?}", end.pins);
+    }
+}
+
+/// No fault: the stage is stopped and held. The twin is heard just in time.
+#[test]
+fn a_host_that_falls_silent_has_the_stage_stopped() {
+    // 50 ms are 1,000 ticks; a byte may be heard some ticks after it was sent.
+    for (every, is_silent) in [(1_100, true), (900, false)] {
+        let (send, receive) = mpsc::channel();
+        run(FULL_SPEED, move |period| {
+            match period.tick {
+                READY => period.send(b"FRF X\n"),
+                400 => period.send(b"HBT 50\nJOG W 60\n"),
+                4_600 => period.send(b"EVT?\nFLT?\nERR?\nJOG? W\n"),
+                5_000 => {
+                    let told = String::from_utf8_lossy(&period.received()).into_owned();
+                    send.send(told).expect("the test waits");
+                    return Break(());
+                }
+                tick if tick > 400 && (tick - 400).is_multiple_of(every) => period.send(b"\n"),
+                _ => {}
+            }
+            Continue(())
+        });
+        let told = receive.recv().expect("the last period");
+        println!("every {every} ticks: {told}");
+        assert_eq!(
+            told.contains("no host heard for 50 ms"),
+            is_silent,
+            "{told}"
+        );
+        assert!(told.contains("0 no fault"), "{told}");
+        let ends = if is_silent { "10\nW=0.0" } else { "0\nW=60.0" };
+        let lines: Vec<_> = told.lines().collect();
+        let last = lines[lines.len() - 2..].join("\n");
+        assert!(last.starts_with(ends), "{told}");
     }
 }
 
