@@ -31,11 +31,16 @@ const BETWEEN: &str = "
 
 - **stop**: the plan under way is followed slower and slower, on its path, at rest after the time of parameter 0x5450050F; then the
   bridges brake. An encoder that is lost is replaced by its pivot's setpoint: feedforward and what the servo has learnt drive that
-  pivot, the other two stay under control. At rest already, the bridges brake at once. Whatever goes wrong on the way brakes.
+  pivot, the other two stay under control. At rest already, the bridges brake at once. Whatever goes wrong on the way brakes: a
+  second encoder that is lost leaves no pose to control, so the stop ends in the tick in which that is found, and both are told.
+  A stream or a waveform is followed as far as it has been sent, and then ends as a stream does that dries up: beside its curve.
 - **brake**: the bridges short the windings. A pivot of the reference drive slows down with a time constant of some 8 ms (computed).
 - **coast**: the sleep pins open the bridges.
 
-How far a lost encoder lets the platform be off its path: see \"Measured\" in the README.
+An encoder that was lost is ready for `FRF` with four good frames in a row, where its pivot is slower than 2.5 rad/s; until then `FRF`
+answers 45. A stage that coasts faster than that could not be held.
+
+How far one or two lost encoders let the platform be off its path: see \"Measured\" in the README.
 
 ## Kinds
 

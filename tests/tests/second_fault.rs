@@ -220,3 +220,34 @@ fn two_lost_encoders_leave_the_stage_inside_its_limits() {
     );
     assert!(offs.len() > cases / 3 && worst < 12.0, "{worst}");
 }
+
+/// An encoder that was lost while the stage coasts is ready again with four good frames, as soon as a pivot is slow enough for its
+/// first step to be plausible, 2.5 rad/s. Faster than that nothing could hold the stage anyway: the servo is refused.
+#[test]
+fn an_encoder_lost_while_coasting_is_ready_again_before_the_stage_can_be_held() {
+    let mut bench = Bench::turning(&[], 300.0);
+    bench.host.bridges[1].set_fault(true);
+    bench.run(2);
+    assert!(!bench.outputs.awake);
+    bench.host.bridges[1].set_fault(false);
+    lose(&mut bench, 0);
+    bench.run(2 * BRIDGED);
+    bench.host.stage.encoders[0].set_fault(None);
+    bench.run(10);
+    let rate = |bench: &Bench| bench.host.stage.plant.pivot_rates_rad_s()[0].abs();
+    assert!(rate(&bench) > 4.0, "{}", rate(&bench));
+    bench.say("ERR?\nFLC\n");
+    assert_eq!(bench.error_after("FRF"), "45");
+    assert_eq!((bench.mode(), bench.fault()), (Mode::Off, None));
+    bench.run_until("slow", |bench| rate(bench) < 2.4);
+    bench.run(10);
+    // Ready: it is the motion that is too fast to be held, which brakes it.
+    bench.say("FRF\n");
+    bench.run(200);
+    assert_eq!(bench.fault_kind(), Some(FaultKind::FollowingError));
+    bench.run(2_000);
+    bench.say("ERR?\n");
+    assert_eq!(bench.error_after("FLC\nFRF"), "0");
+    bench.settle();
+    assert_eq!((bench.mode(), bench.fault()), (Mode::Holding, None));
+}

@@ -119,7 +119,7 @@ pub const ABOUT: &[About] = &[
     },
     About {
         kind: FaultKind::LoopLate,
-        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state",
+        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state. At full speed pivots that lead by what a few missed ticks were worth may be too far off before",
         thresholds: &[0x5450_050B],
         reason: "encoders and drives still work, a late duty is an old one for 25 us",
     },
