@@ -151,6 +151,9 @@ fn pivots_that_come_too_close() {
         // Away from guide 1, and so between pivots 2 and 3.
         assert_eq!(bench.error_after("MOV X -49.8 Y 28.75 W 0"), "0");
         bench.settle();
+        // Slowly on its way: a controlled stop would take its time.
+        assert_eq!(bench.error_after("JOG W 0.5"), "0");
+        bench.run(1_000);
         bench.push_for(torque_n_m, ticks);
         bench
     };

@@ -78,10 +78,13 @@ fn a_second_encoder_that_is_bridged_does_not_end_the_stop() {
     lose(&mut bench, 2);
     bench.run(BRIDGED);
     bench.host.stage.encoders[2].set_fault(None);
+    // The first one comes back, and has lost its turns all the same.
+    bench.host.stage.encoders[0].set_fault(None);
     bench.run(STOP_TICKS - 400);
     assert_eq!((bench.mode(), bench.host.worse()), (Mode::Stopping, None));
     bench.run(200);
     assert_eq!((bench.mode(), bench.host.worse()), (Mode::Fault, None));
+    assert_eq!(bench.say("FRF? W\n"), "W=0\n");
 }
 
 /// An encoder that stays frozen in the stop is the one that is lost already.
