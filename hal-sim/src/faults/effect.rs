@@ -23,6 +23,8 @@ const SAME_TICKS: u64 = 20;
 const MOVING_RAD_S: f64 = 0.01;
 /// Ticks from one look at a pivot to the next: longer than that over a threshold, and it has been looked at.
 const LOOK_TICKS: u64 = 3;
+/// What the heat may be under its threshold for one who sees every third sample of the current.
+const NEARLY: f64 = 0.99;
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;
 
@@ -53,6 +55,8 @@ pub enum Effect {
     NearlyAtEnd,
     /// A motor has carried too much current for too long.
     Hot,
+    /// The same, but for what a third of the samples tells.
+    NearlyHot,
     /// Nothing has been heard for as long as the host has promised.
     Silence,
 }
@@ -140,6 +144,7 @@ impl<'a> Effects<'a> {
         let supervision = &self.parameters.supervision;
         let bridged = u64::from(supervision.bridged_frames);
         let longest = (supervision.at_end_s * self.parameters.limits.rate_hz) as u64;
+        let bearable = supervision.motor_current_a * supervision.motor_current_a;
         let first = scenario.at + u64::from(scenario.injection.is_of_encoder());
         match effect {
             Effect::AtOnce => tick >= first,
@@ -166,10 +171,8 @@ impl<'a> Effects<'a> {
             Effect::BrieflyOverspeed => self.fast.iter().any(|&ticks| ticks > 0),
             Effect::AtEnd => self.at_end.iter().any(|&ticks| ticks > longest),
             Effect::NearlyAtEnd => self.nearly.iter().any(|&ticks| ticks > longest),
-            Effect::Hot => {
-                let most = supervision.motor_current_a * supervision.motor_current_a;
-                self.heat.iter().any(|&heat| heat > most)
-            }
+            Effect::Hot => self.heat.iter().any(|&heat| heat > bearable),
+            Effect::NearlyHot => self.heat.iter().any(|&heat| heat > NEARLY * bearable),
             Effect::Silence => tick > now.heard + HEARTBEAT_TICKS,
         }
     }

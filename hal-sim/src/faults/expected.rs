@@ -83,6 +83,12 @@ const HOT: Cause = Cause {
     early_ticks: 6,
     ..cause(Effect::Hot, Kind::MotorHot, 6)
 };
+/// Each current is looked at every third tick only, and near the threshold it rises slowly.
+const NEARLY_HOT: Cause = Cause {
+    effect: Effect::NearlyHot,
+    within_ticks: None,
+    ..HOT
+};
 /// Found before the first tick.
 const DAMAGED: Cause = Cause {
     early_ticks: 1,
@@ -111,10 +117,10 @@ impl Injection {
             // At full speed the pivots lead by what was missed, which may be too far.
             Self::LateLoop => &const { [cause(Effect::LateTicks, Kind::LoopLate, 0), FOLLOWING] },
             Self::FewMissedTicks(_) | Self::DirectionStuck => &[FOLLOWING],
-            Self::DriveLost | Self::Jam => &[FOLLOWING, STILL],
+            Self::DriveLost | Self::Jam => &[FOLLOWING, STILL, STALLED, NEARLY_STALLED],
             Self::Knock(_) | Self::Runaway(_) => &[FOLLOWING, OVERSPEED, BRIEFLY_OVERSPEED],
             Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, STILL],
-            Self::HotMotor(_) => &[HOT, FOLLOWING],
+            Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
             Self::Warning | Self::Watchdog(_) | Self::QueueFull => {
                 &const { [event(Effect::AtOnce)] }

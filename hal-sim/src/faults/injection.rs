@@ -130,7 +130,7 @@ impl Injection {
             14 => Self::FewMissedTicks(1 + random.below(9) as u8),
             15 => Self::LateLoop,
             16 => Self::HostSilent,
-            17 => Self::HotMotor(random.between(22.0, 28.0) * random.sign()),
+            17 => Self::HotMotor(random.between(26.0, 30.0) * random.sign()),
             18 => Self::Runaway(random.between(100.0, 180.0) * random.sign()),
             19 => Self::Wedged,
             // A controlled stop takes 1,200 ticks.
@@ -185,7 +185,7 @@ impl Injection {
                 supervision.frozen_rad = 1.0;
                 supervision.frozen_v = 60.0;
             }
-            Self::HotMotor(_) => supervision.motor_heating_s = 0.15,
+            Self::HotMotor(_) => supervision.motor_heating_s = 0.25,
             _ => {}
         }
     }

@@ -22,6 +22,8 @@ use crate::run::IDENTITY;
 const HEARTBEAT_EVERY: u64 = 200;
 /// Ticks between two turns of the command side.
 const SERVICE_EVERY: u64 = 5;
+/// Ticks in which the queue is kept full until a line is refused: one on its way makes the others wait.
+const FLOOD_TICKS: u64 = 20;
 /// Periods from a reset to the first tick, in which the bridges sleep.
 const START_TICKS: u64 = 20;
 
@@ -122,6 +124,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
     let mut panel = Box::new(Panel::new(parameters, IDENTITY));
     let mut session = Session::new();
+    let mut flooding = Session::new();
     let mut seen = Seen::default();
     let mut answers = Vec::new();
     let mut lines = scenario.lines.iter().peekable();
@@ -151,8 +154,10 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             panel_link.clear();
             restarted_at = tick;
         }
-        if let (Injection::QueueFull, Some(0)) = (scenario.injection, age) {
-            let refused = flood(&mut panel, &mut session, &mut panel_link);
+        if let (Injection::QueueFull, Some(0..FLOOD_TICKS)) = (scenario.injection, age)
+            && watch.outcome.told.is_none()
+        {
+            let refused = flood(&mut panel, &mut flooding, &mut panel_link);
             watch.outcome.told = refused.then_some(tick);
         }
         let shown = host.stage.encoders.clone();
@@ -207,7 +212,9 @@ fn flood(panel: &mut Panel, session: &mut Session, link: &mut PanelLink<'_>) -> 
     // In no state but a fault does it do anything.
     while link.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();
-    session.receive(b"ERR?\nSVO X 0\nERR?\n");
+    if session.is_idle() {
+        session.receive(b"ERR?\nSVO X 0\nERR?\n");
+    }
     // Writing to a vector does not fail.
     let _ = panel.service(session, link, &mut answers);
     answers.ends_with(b"1005\n")
