@@ -185,7 +185,11 @@ impl Injection {
                 supervision.frozen_rad = 1.0;
                 supervision.frozen_v = 60.0;
             }
-            Self::HotMotor(_) => supervision.motor_heating_s = 0.25,
+            Self::HotMotor(_) => {
+                supervision.motor_heating_s = 0.12;
+                // Some of the weaker machines need 4 A for long in a motion of their own.
+                supervision.motor_current_a = 5.5;
+            }
             _ => {}
         }
     }

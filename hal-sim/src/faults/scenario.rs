@@ -70,6 +70,7 @@ impl Scenario {
         let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
         let at = match injection {
             Injection::DamagedSettings => 0,
+            Injection::QueueFull => between_lines(in_motion, &lines),
             _ => in_motion,
         };
         Self {
@@ -83,6 +84,15 @@ impl Scenario {
             at,
         }
     }
+}
+
+/// The first tick from `at` on in which no line is on its way: others would wait for it instead of being refused.
+fn between_lines(at: u64, lines: &[(u64, String)]) -> u64 {
+    const ON_ITS_WAY: u64 = 100;
+    let is_free = |tick: &u64| {
+        (lines.iter()).all(|(sent, _)| !(tick.saturating_sub(ON_ITS_WAY)..=*tick).contains(sent))
+    };
+    (at..).find(is_free).unwrap_or(at)
 }
 
 /// Every number of the machine off by its own share.
