@@ -20,7 +20,7 @@ const LATE: u32 = 0x5450_050B;
 /// The largest duty, and half a volt, PWM counts.
 const FULL: i16 = 4_116;
 const HALF_A_VOLT: i16 = 43;
-/// Ticks of one reading after which it is asked whether it should have changed, and what looking every third tick adds.
+/// Ticks of one reading after which it is asked whether it should have changed, and what looking every fourth tick adds.
 const SAME: u32 = 20;
 const LOOKS: u32 = 6;
 /// Noise of a duty at rest, in ticks of the rise of a voltage that moves nothing.
