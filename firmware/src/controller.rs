@@ -337,7 +337,7 @@ impl State {
             let servo = &mut self.servo[i];
             duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
             if i == self.turn {
-                servo.learn(&config.servo, &setpoint);
+                servo.learn(&config.servo);
             }
             sum += servo.wanted();
         }

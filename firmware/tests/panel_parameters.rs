@@ -204,7 +204,7 @@ fn settings_that_the_tick_refuses_are_taken_back() {
         "1 0x54500300=250\n"
     );
     bench.run(2);
-    assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=300\n");
+    assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=400\n");
     assert_eq!(bench.say("ERR?\n"), "1005\n");
 }
 
@@ -218,7 +218,7 @@ fn a_full_queue_refuses_the_line() {
     {}
     bench.offer(0, b"SPA 1 0x54500300 250\nERR?\n");
     assert_eq!(bench.answers_of(0), b"1005\n");
-    assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=300\n");
+    assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=400\n");
 }
 
 #[test]

@@ -122,8 +122,9 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
         assert!((bench.value("MOV? X") - after[0]).abs() < 1e-9);
         bench.run(500);
         assert_eq!(pose(bench.sample()), after, "it stays");
+        // At 300 rad/s^2, the model 20 % off and nothing learnt yet: 13 um on the track. The fault is at 21,000.
         assert!(
-            bench.worst_error_counts() < 1_000,
+            bench.worst_error_counts() < 1_500,
             "{} counts",
             bench.worst_error_counts()
         );

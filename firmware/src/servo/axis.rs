@@ -182,7 +182,7 @@ impl AxisServo {
         self.last_error = error;
 
         let contact = self.friction.advance(setpoint.rate * config.way_s);
-        let inertial = inertial(config, setpoint);
+        let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
         // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
         // needs a fifth more for the current's change as well.
         let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
@@ -215,12 +215,11 @@ impl AxisServo {
     /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so that the
     /// pivots can take turns.
     #[inline]
-    pub fn learn(&mut self, config: &ServoConfig, setpoint: &PivotSetpoint) {
+    pub fn learn(&mut self, config: &ServoConfig) {
         let collected = self.integral - self.learnt_from;
         self.learnt_from = self.integral;
-        let features = self.signals;
-        for (k, feature) in features.into_iter().enumerate() {
-            let weight = self.learnt[k] + config.learning[k] * collected * feature;
+        for (k, signal) in self.signals.into_iter().enumerate() {
+            let weight = self.learnt[k] + config.learning[k] * collected * signal;
             self.learnt[k] = limit(weight, config.learnt_limit[k]);
         }
     }
@@ -234,12 +233,6 @@ impl AxisServo {
         self.carry = wanted - rounded;
         Duty(whole as i16)
     }
-}
-
-/// Torque that the masses ask for, N m.
-#[inline]
-fn inertial(config: &ServoConfig, setpoint: &PivotSetpoint) -> f32 {
-    setpoint.platform_torque + config.inertia * setpoint.acceleration
 }
 
 /// The share of the dead time that counts: over the knee, where a motor at work is, all of it.

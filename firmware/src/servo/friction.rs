@@ -15,10 +15,4 @@ impl Presliding {
         self.deflection = (self.deflection + way) / (1.0 + way.abs());
         self.deflection
     }
-
-    /// The deflection now.
-    #[inline]
-    pub fn deflection(&self) -> f32 {
-        self.deflection
-    }
 }

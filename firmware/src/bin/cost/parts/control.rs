@@ -76,7 +76,7 @@ fn servo(bench: &mut Bench, config: &Config) {
             for i in 0..3 {
                 duty[i] = servo[i].step(&config.servo, &pivots[i], counts_per_volt);
                 if i == 0 {
-                    servo[i].learn(&config.servo, &pivots[i]);
+                    servo[i].learn(&config.servo);
                 }
             }
             duty
