@@ -188,7 +188,7 @@ impl Injection {
             Self::HotMotor(_) => {
                 supervision.motor_heating_s = 0.12;
                 // Some of the weaker machines need 4 A for long in a motion of their own.
-                supervision.motor_current_a = 5.5;
+                supervision.motor_current_a = 5.8;
             }
             _ => {}
         }
