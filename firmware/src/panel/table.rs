@@ -86,8 +86,8 @@ const fn byte(name: &'static str, byte: u8, request: Request, help: &'static str
     entry(name, Syntax::Byte(byte, request), help)
 }
 
-/// Every command there is, in the order of `HLP?`.
-pub(super) const COMMANDS: &[Entry] = &[
+/// Every command there is, in the order of `HLP?`. A static: a constant would stand in the image once for each use.
+pub(super) static COMMANDS: &[Entry] = &[
     byte(
         "#3",
         3,

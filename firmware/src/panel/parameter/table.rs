@@ -106,9 +106,9 @@ fn way_number(way: Way) -> f64 {
     place.map_or(0.0, |place| place as f64)
 }
 
-/// Every parameter, in the order of `HPA?`.
+/// Every parameter, in the order of `HPA?`. A static: a constant would stand in the image once for each use.
 #[rustfmt::skip]
-pub const PARAMETERS: &[Parameter] = &[
+pub static PARAMETERS: &[Parameter] = &[
     told(0x0700_0601, Kind::Char, "unit of the axis", "", Source::Axis(Axis::unit)),
     told(0x0E00_0200, Kind::Float, "servo update time", "s", Source::Told(|p| 1.0 / p.limits.rate_hz)),
     TARGET.int(0x1900_1900, "trajectory source: 0 moves to targets, 1 streamed targets", [0.0, 1.0], flag!(targets.streamed)),
