@@ -8,6 +8,7 @@ use super::arguments::CostRun;
 use super::error::CliError;
 use crate::chip::image;
 use crate::cost::{Counted, Figures, Growth, Order, Sizes, count, print, print_sizes};
+use crate::proof::{Code, NESTING, Stack, print_stack};
 
 /// Unless told otherwise.
 const STATES: u32 = 300;
@@ -37,6 +38,7 @@ pub(super) fn run(arguments: &CostRun) -> Result<ExitCode, CliError> {
         return Ok(ExitCode::SUCCESS);
     };
     println!("{}", print_sizes(&sizes));
+    print!("{}", stack()?);
     figures(arguments, path, kept.as_ref(), states, &counted, &sizes)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -48,6 +50,15 @@ fn sizes() -> Result<Option<Sizes>, CliError> {
     let sizes = Sizes::read(&path)
         .map_err(|error| CliError::Value(format!("{}: {error}", path.display())))?;
     Ok(Some(sizes))
+}
+
+/// The deepest stack that the image can have.
+fn stack() -> Result<String, CliError> {
+    let Some(path) = image::find() else {
+        return Ok(String::new());
+    };
+    let code = Code::read(&path)?;
+    Ok(print_stack(&code, &Stack::of(&code, NESTING)?))
 }
 
 /// Writes the figures, or compares with those kept.
