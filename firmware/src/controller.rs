@@ -80,7 +80,7 @@ pub struct State {
     low_supply: u8,
     /// Square of how far out the setpoint may be, track radii.
     reach_square: f32,
-    /// The pivot that is watched in this tick.
+    /// The pivot that is watched in this tick; in [`SNAPSHOT_TURN`] none is.
     turn: usize,
     watch: [Watch; 3],
 }

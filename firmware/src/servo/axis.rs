@@ -129,9 +129,9 @@ pub struct PivotSetpoint {
 pub struct AxisServo {
     integral: f32,
     last_error: f32,
-    signals: [f32; FEATURES],
     last_inertial: f32,
-    last_contact: f32,
+    /// The signals at the last tick, as far ahead as the drive takes to follow.
+    signals: [f32; FEATURES],
     friction: Presliding,
     /// Weights of the signals, volts per unit, and the integral when they were learnt last.
     learnt: [f32; FEATURES],
@@ -181,15 +181,15 @@ impl AxisServo {
         let r = config.drift * (error - self.last_error) + config.position * error;
         self.last_error = error;
 
+        let last_contact = self.friction.deflection();
         let contact = self.friction.advance(setpoint.rate * config.way_s);
         let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
         // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
         // needs a fifth more for the current's change as well.
         let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
         let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
-        let friction = contact + config.lead_ticks * (contact - self.last_contact);
+        let friction = contact + config.lead_ticks * (contact - last_contact);
         self.last_inertial = inertial;
-        self.last_contact = contact;
         self.signals = [rate, torque, friction];
         let feedforward = (config.volts[0] + self.learnt[0]) * rate
             + (config.volts[1] + self.learnt[1]) * torque

@@ -7,6 +7,12 @@ pub struct Presliding {
 }
 
 impl Presliding {
+    /// The deflection now.
+    #[inline]
+    pub fn deflection(&self) -> f32 {
+        self.deflection
+    }
+
     /// The deflection after the setpoint has moved by `way` (in presliding lengths).
     ///
     /// Dahl's `dz/ds = 1 - z sign(ds)`, one implicit step: stable and within +-1 for any way.

@@ -16,9 +16,9 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Symbols of the image.
-const TICK_BEGIN: &str = "TIM1_UP_TIM10";
-const TICK_END: &str = "stage_tick_end";
+/// Symbols of the image: the handler of the tick, where its cost ends, the record.
+pub(super) const TICK_BEGIN: &str = "TIM1_UP_TIM10";
+pub(super) const TICK_END: &str = "stage_tick_end";
 const TRACE: &str = "TRACE";
 
 /// An image, ready to boot.

@@ -1,15 +1,12 @@
 //! One tick, followed instruction by instruction.
 
+use super::bench::{TICK_BEGIN, TICK_END};
 use super::{Bench, ChipError, image};
 use crate::devices::{Stage, StageParameters};
 use crate::proof::{Decoded, listing};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::mpsc;
-
-/// The handler of the tick, and where its cost ends.
-const BEGIN: &str = "TIM1_UP_TIM10";
-const END: &str = "stage_tick_end";
 
 /// Lines that bring the stage into motion, and the ticks at which they are sent.
 const LINES: [(u64, &[u8]); 2] = [(20, b"FRF X\n"), (100, b"MOV X 40 Y 20 W 90\n")];
@@ -24,10 +21,10 @@ pub type Way = Vec<(u64, Decoded)>;
 pub fn follow(tick: u64) -> Result<Way, ChipError> {
     let path = image::find().ok_or(ChipError::NoImage)?;
     let no_bench = |error| ChipError::Bench(path.clone(), error);
-    let known = listing(&path, BEGIN).map_err(|error| ChipError::Proof(path.clone(), error))?;
+    let known =
+        listing(&path, TICK_BEGIN).map_err(|error| ChipError::Proof(path.clone(), error))?;
     let bench = Bench::load(&path, Stage::new(&StageParameters::REFERENCE)).map_err(no_bench)?;
-    let ends = [BEGIN, END].map(|name| bench.symbol(name));
-    let [begin, end] = ends;
+    let [begin, end] = [TICK_BEGIN, TICK_END].map(|name| bench.symbol(name));
     let (begin, end) = (begin.map_err(no_bench)?, end.map_err(no_bench)?);
     let watched: Vec<u64> = known.keys().copied().collect();
     let (tell, told) = mpsc::channel();

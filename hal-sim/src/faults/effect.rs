@@ -23,7 +23,7 @@ const SAME_TICKS: u64 = 20;
 const MOVING_RAD_S: f64 = 0.01;
 /// Ticks from one look at a pivot to the next: longer than that over a threshold, and it has been looked at.
 const LOOK_TICKS: u64 = 4;
-/// What the heat may be under its threshold for one who sees every third sample of the current.
+/// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;

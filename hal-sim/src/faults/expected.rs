@@ -71,7 +71,7 @@ const BRIEFLY_OVERSPEED: Cause = Cause {
     ..OVERSPEED
 };
 
-/// Pivots are looked at in turn, every third tick.
+/// Pivots are looked at in turn, every fourth tick.
 const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 6);
 const NEARLY_STALLED: Cause = Cause {
     effect: Effect::NearlyAtEnd,
@@ -83,7 +83,7 @@ const HOT: Cause = Cause {
     early_ticks: 6,
     ..cause(Effect::Hot, Kind::MotorHot, 6)
 };
-/// Each current is looked at every third tick only, and near the threshold it rises slowly.
+/// Each current is looked at every fourth tick only, and near the threshold it rises slowly.
 const NEARLY_HOT: Cause = Cause {
     effect: Effect::NearlyHot,
     within_ticks: None,
