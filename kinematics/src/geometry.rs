@@ -93,12 +93,25 @@ impl Geometry {
 
     /// Radius, in track radii, of the disk in which the platform reaches every orientation: the smallest of what the
     /// guides' starts, their ends and the carriages' width leave.
-    pub fn usable_radius(&self) -> f64 {
+    pub const fn usable_radius(&self) -> f64 {
         let by_start = 1.0 - self.guide_start;
         let by_end = self.guide_start + self.guide_length - 1.0;
-        let by_separation = libm::sin((EVEN_SPACING_RAD - self.separation_rad) / 2.0) / f64::SIN_60;
+        let by_separation = sine((EVEN_SPACING_RAD - self.separation_rad) / 2.0) / f64::SIN_60;
         by_start.min(by_end).min(by_separation)
     }
+}
+
+/// Sine of an angle up to 60 deg, to the last bit or two: libm's can not be had in a constant.
+const fn sine(angle_rad: f64) -> f64 {
+    const TERMS: u32 = 10;
+    let square = angle_rad * angle_rad;
+    let (mut sum, mut k) = (1.0, TERMS);
+    while k > 0 {
+        let n = (2 * k * (2 * k + 1)) as f64;
+        sum = 1.0 - sum * square / n;
+        k -= 1;
+    }
+    angle_rad * sum
 }
 
 /// Closest angle between two pivots, rad, over all orientations with the centre `radius` track radii from the track's

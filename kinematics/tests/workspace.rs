@@ -147,6 +147,19 @@ fn the_reference_disk_is_80_mm() {
 }
 
 #[test]
+fn wide_carriages_leave_a_disk_as_their_sine_says() {
+    for deg in 0..120 {
+        let half = f64::from(120 - deg).to_radians() / 2.0;
+        let by_sine = half.sin() / 60.0_f64.to_radians().sin();
+        let usable = geometry(1e-9, 3.0, f64::from(deg)).usable_radius();
+        assert!(
+            (usable - by_sine.min(1.0 - 1e-9)).abs() < 1e-15,
+            "{deg} deg: {usable} {by_sine}"
+        );
+    }
+}
+
+#[test]
 fn a_bad_proportion_is_named() {
     let refused = |radius: f64, start: f64, length: f64, separation: f64| {
         Geometry::new(radius, start, length, separation).err()

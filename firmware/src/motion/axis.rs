@@ -98,16 +98,17 @@ impl Axis {
 
     /// The way of `ticks`: `t (v + t (a / 2 + t j / 6))`.
     fn way(&self, ticks: u64, jerk: i64, nudge: i64) -> i128 {
-        let sixth = i128::from((jerk >> 1).wrapping_mul(INVERSE_OF_3));
-        let half = i128::from(self.acceleration >> 1);
-        let once = i128::from(self.velocity.wrapping_add(nudge));
-        // A product of 128 bits by 32 is a fourth of one by 128, and only jogs and the slowest moves have pieces of days.
-        if let Ok(t) = u32::try_from(ticks) {
-            return times(once + times(half + times(sixth, t), t), t);
+        let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
+        let half = self.acceleration >> 1;
+        let t = ticks as i64;
+        // The mean velocity lies between those that are met, so it has 64 bits like them, whatever its terms have.
+        let mean = half.wrapping_add(sixth.wrapping_mul(t)).wrapping_mul(t);
+        let mean = i128::from(mean.wrapping_add(self.velocity).wrapping_add(nudge));
+        // A product with 32 bits is a fourth of one with 64, and only jogs and the slowest moves have pieces of days.
+        match u32::try_from(ticks) {
+            Ok(t) => times(mean, t),
+            Err(_) => mean.wrapping_mul(i128::from(ticks)),
         }
-        let t = i128::from(ticks);
-        once.wrapping_add(half.wrapping_add(sixth.wrapping_mul(t)).wrapping_mul(t))
-            .wrapping_mul(t)
     }
 
     /// Position in 2^-32 track radii or turns, rounded down.

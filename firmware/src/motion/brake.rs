@@ -15,7 +15,7 @@
 //! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 use super::axis::{Axis, JERK_STEP};
-use super::float::{Order, float, hypot, ticks_up};
+use super::float::{Order, float, hypot, rough, ticks_up};
 use super::plan::Piece;
 use super::sample::Sample;
 use super::units::{AXIS_UNITS, UnitLimits};
@@ -39,8 +39,8 @@ impl Brake {
     /// Of a state, with acceleration and jerk limited to this much of the limits.
     pub fn new(state: &[Axis; 3], limits: &UnitLimits, acceleration: f32, jerk: f32) -> Self {
         Self::of(
-            state.map(|axis| axis.velocity as f32),
-            state.map(|axis| axis.acceleration as f32),
+            state.map(|axis| rough(axis.velocity)),
+            state.map(|axis| rough(axis.acceleration)),
             limits,
             [acceleration, jerk],
         )

@@ -18,36 +18,6 @@ const RIM_TURNED: f64 = 1e-8;
 
 /// Whether `target` can be moved to, from anywhere.
 pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
-    check_end(target, ground, ground.geometry.usable_radius())
-}
-
-/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](super::plan_line).
-pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
-    check(from, to, ground, ground.geometry.usable_radius())
-}
-
-/// The same, with the disk's radius at hand.
-pub(super) fn check(
-    from: &Position,
-    to: &Position,
-    ground: &Ground,
-    usable: f64,
-) -> Result<(), Refusal> {
-    check_end(to, ground, usable)?;
-    if !ground.limits.all_positive() {
-        return Err(Refusal::Limits);
-    }
-    match disk::exit(from, to, ground, usable as f32) {
-        Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
-            usable_mm: usable * ground.geometry.radius_mm,
-            share: f64::from(exit.share),
-        }),
-        None => Ok(()),
-    }
-}
-
-pub(super) fn check_end(target: &Position, ground: &Ground, usable: f64) -> Result<(), Refusal> {
     if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
@@ -61,12 +31,12 @@ pub(super) fn check_end(target: &Position, ground: &Ground, usable: f64) -> Resu
         y -= sin * p + cos * q;
         rim = RIM_TURNED;
     }
-    let most = usable + rim;
+    let most = ground.usable + rim;
     let square = x * x + y * y;
     if square > most * most {
         return Err(Refusal::OutsideDisk {
             radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
-            usable_mm: usable * ground.geometry.radius_mm,
+            usable_mm: ground.usable * ground.geometry.radius_mm,
         });
     }
     let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
@@ -74,4 +44,20 @@ pub(super) fn check_end(target: &Position, ground: &Ground, usable: f64) -> Resu
         return Err(Refusal::OutOfBounds { axis });
     }
     Ok(())
+}
+
+/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](super::plan_line).
+pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
+    check_target(to, ground)?;
+    if !ground.limits.all_positive() {
+        return Err(Refusal::Limits);
+    }
+    match disk::exit(from, to, ground) {
+        Some(exit) => Err(Refusal::LeavesDisk {
+            radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
+            usable_mm: ground.usable * ground.geometry.radius_mm,
+            share: f64::from(exit.share),
+        }),
+        None => Ok(()),
+    }
 }

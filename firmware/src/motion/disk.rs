@@ -31,13 +31,14 @@ const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
 const LOOKS: usize = 48;
 
-/// Where the line leaves the disk of radius `usable`; or gets further out than it starts, when it starts outside.
-pub(super) fn exit(from: &Position, to: &Position, ground: &Ground, usable: f32) -> Option<Exit> {
+/// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
+pub(super) fn exit(from: &Position, to: &Position, ground: &Ground) -> Option<Exit> {
+    let usable = ground.usable as f32;
     // A line of no length has no bend to walk along.
     if ground.centre == [0.0; 2] || from == to {
         return None;
     }
-    let path = Path::new(from, to, ground, usable);
+    let path = Path::new(from, to, ground);
     let there = Walk::new(&path, from[2], ground, false);
     let back = Walk::new(&path, to[2], ground, true);
     let start = there.square(0.0).0;

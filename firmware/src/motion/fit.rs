@@ -12,7 +12,7 @@
 use super::axis::Axis;
 use super::axis_profile::{AxisLimits, AxisProfile, SEGMENTS, Task};
 use super::brake::{jerks, stepped};
-use super::float::{Order, float, nearest, ticks_up};
+use super::float::{Order, float, nearest, rough_long, ticks_up};
 use super::hats::Hats;
 use crate::number::sqrt_f32;
 use heapless::Vec;
@@ -66,7 +66,7 @@ pub(super) fn fit(
         track.truncate(begun);
         shape.run(&mut track, &mut end, peak)?;
         if closing < CLOSINGS {
-            let missing = (target - end.position) as f32;
+            let missing = rough_long(target - end.position);
             peak = peak.wrapping_add(nearest(missing / Hats::new(&shape).gain));
         }
     }

@@ -13,6 +13,8 @@ pub struct Ground {
     pub limits: Limits,
     /// Mechanism, and with it the usable disk, which the platform centre never leaves.
     pub geometry: Geometry,
+    /// Radius of that disk, track radii: [`Geometry::usable_radius`], which takes long to compute.
+    pub usable: f64,
     /// Where the point that is moved may go.
     pub bounds: Bounds,
     /// The point that is moved and about which the platform turns (the centre of rotation): x and y in the platform's own
@@ -26,6 +28,7 @@ impl Ground {
         Self {
             limits,
             geometry,
+            usable: geometry.usable_radius(),
             bounds: ANYWHERE,
             centre: [0.0; 2],
         }

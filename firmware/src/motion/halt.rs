@@ -122,7 +122,7 @@ mod tests {
     }
 
     fn halted(axes: &[Axis; 3], ground: &Ground) -> Result<(Pieces, [Axis; 3]), Refusal> {
-        let limiter = Limiter::new(ground, ground.geometry.usable_radius() as f32);
+        let limiter = Limiter::new(ground);
         halt(axes, &limiter.look(axes)?, &limiter)
     }
 

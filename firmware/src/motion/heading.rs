@@ -4,7 +4,7 @@
 //! It turns integers by integers (30 fraction bits), so that turning there and back leaves 1e-9 of them.
 
 use super::axis::{Axis, JERK_STEP};
-use super::float::hypot;
+use super::float::{hypot, rough, rough_long};
 use super::plan::{Piece, Position};
 use super::tracks::{AxisWay, Pieces};
 
@@ -35,9 +35,9 @@ const WAY_CUT: u32 = 20;
 impl Plane {
     pub fn new(state: &[Axis; 3], to: &Position) -> Self {
         Self {
-            way: [0, 1].map(|i| (target(to[i]) - state[i].position) as f32),
-            v: [0, 1].map(|i| state[i].velocity as f32),
-            a: [0, 1].map(|i| state[i].acceleration as f32),
+            way: [0, 1].map(|i| rough_long(target(to[i]) - state[i].position)),
+            v: [0, 1].map(|i| rough(state[i].velocity)),
+            a: [0, 1].map(|i| rough(state[i].acceleration)),
         }
     }
 
@@ -62,7 +62,7 @@ impl Heading {
                 sin: 0,
             };
         }
-        let scale = ONE as f32 / length;
+        let scale = (1 << POINT) as f32 / length;
         let (cos, sin) = ((x * scale) as i64, (y * scale) as i64);
         // Floats leave 1e-7 of length, half of which is taken off each.
         let long = (cos * cos + sin * sin - ONE * ONE) >> (POINT + 1);

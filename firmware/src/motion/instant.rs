@@ -46,8 +46,7 @@ pub(super) struct Instant {
 }
 
 impl<'a> Limiter<'a> {
-    /// `usable` is the radius of the usable disk, which takes long to compute.
-    pub fn new(ground: &'a Ground, usable: f32) -> Self {
+    pub fn new(ground: &'a Ground) -> Self {
         let limits = &ground.limits;
         let mm = ground.geometry.radius_mm as f32;
         let hz = limits.rate_hz as f32;
@@ -58,7 +57,7 @@ impl<'a> Limiter<'a> {
         Self {
             ground,
             hz,
-            usable,
+            usable: ground.usable as f32,
             centre: ground.centre.map(|radii| radii as f32),
             speed: pace(limits.speed_mm_s, limits.turn_speed_deg_s),
             force: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),

@@ -6,7 +6,6 @@
 //! ([`under`]) and limited in jerk ([`pace`]). What roundings and corners still leave over a limit is taken off the whole
 //! motion. The profile, slowed down until the pivots follow, competes: the shorter of the two is taken.
 
-use super::check::check;
 pub use super::check::{check_line, check_target};
 use super::float::Order;
 use super::grid::{Grid, Moment};
@@ -26,8 +25,7 @@ use heapless::Vec;
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
 #[inline(never)]
 pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Result<Plan, Refusal> {
-    let usable = ground.geometry.usable_radius();
-    check(&from, &to, ground, usable)?;
+    check_line(&from, &to, ground)?;
     if from == to {
         return Ok(Plan {
             id,
@@ -42,7 +40,7 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
     let out = |[x, y, _]: Position| (x as f32) * (x as f32) + (y as f32) * (y as f32);
     let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
-    let path = Path::new(&first, &last, ground, usable as f32);
+    let path = Path::new(&first, &last, ground);
     let mut pace = Way::new(&path, ground).pace().ok_or(Refusal::Limits)?;
     if turned_round {
         pace.beats.reverse();

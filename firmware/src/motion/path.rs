@@ -18,7 +18,7 @@
 //! `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a` solves
 //! `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
 
-use super::float::Order;
+use super::float::{Order, rough};
 use super::ground::Ground;
 use super::plan::Position;
 use super::units::PER_UNIT;
@@ -59,22 +59,22 @@ pub(super) struct Demand {
 }
 
 impl Path {
-    pub fn new(from: &Position, to: &Position, ground: &Ground, usable: f32) -> Self {
-        let way = [0, 1].map(|i| to[i].wrapping_sub(from[i]) as f32 * PER_UNIT);
+    pub fn new(from: &Position, to: &Position, ground: &Ground) -> Self {
+        let way = [0, 1].map(|i| rough(to[i].wrapping_sub(from[i])) * PER_UNIT);
         let turn_units = to[2].wrapping_sub(from[2]);
         let [x, y] = ground.centre.map(|part| part as f32);
         // n_i of the platform's own axes: its guides point at -30, 90 and 210 deg.
         let half = 0.5;
         let wide = f32::SIN_60;
         Self {
-            from: [0, 1].map(|i| from[i] as f32 * PER_UNIT),
+            from: [0, 1].map(|i| rough(from[i]) * PER_UNIT),
             way,
             length: sqrt_f32(way[0] * way[0] + way[1] * way[1]),
-            turn: turn_units as f32 * (PER_UNIT * core::f32::consts::TAU),
+            turn: rough(turn_units) * (PER_UNIT * core::f32::consts::TAU),
             theta: from[2],
             turn_units,
             offsets: [half * x + wide * y, -x, half * x - wide * y],
-            usable,
+            usable: ground.usable as f32,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::brake::Brake;
 use super::envelope::Broken;
-use super::float::{Order, hypot};
+use super::float::{Order, hypot, rough};
 use super::ground::{Bounds, Ground};
 use super::sample::{Arc, Sample};
 use super::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
@@ -25,7 +25,7 @@ impl Reach {
     pub fn new(ground: &Ground) -> Self {
         let centre = ground.centre.map(|value| value as f32);
         Self {
-            radius: ground.geometry.usable_radius() as f32,
+            radius: ground.usable as f32,
             bounds: ground.bounds,
             centre,
             arm: hypot(centre[0], centre[1]),
@@ -37,7 +37,7 @@ impl Reach {
         let unit = [PER_UNIT, PER_UNIT, TAU * PER_UNIT];
         [0, 1, 2].map(|i| {
             let here = axes[i].rounded();
-            self.bounds[i].map(|bound| bound.saturating_sub(here) as f32 * unit[i])
+            self.bounds[i].map(|bound| rough(bound.saturating_sub(here)) * unit[i])
         })
     }
 

@@ -1,9 +1,10 @@
 //! The state of a motion at an instant of a stretch, in floats: track radii, radians and seconds.
 
 use super::axis::Axis;
+use super::float::rough;
 use super::plan::Piece;
 use super::platform::Platform;
-use super::units::{PER_AXIS_UNIT, UNITS};
+use super::units::{PER_AXIS_UNIT, PER_UNIT, UNITS};
 use crate::number::Fixed;
 use core::f32::consts::TAU;
 use kinematics::{Angle, Scalar};
@@ -36,14 +37,14 @@ impl Arc {
         let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
         let thrice = twice * hz;
         Self {
-            from: [0, 1].map(|i| axes[i].rounded() as f32 / UNITS),
+            from: [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT),
             theta: axes[2].rounded() as u32,
             start: Sample {
                 way: [0.0; 3],
-                v: [0, 1, 2].map(|i| axes[i].velocity as f32 * (once * RADIANS[i])),
-                a: [0, 1, 2].map(|i| axes[i].acceleration as f32 * (twice * RADIANS[i])),
+                v: [0, 1, 2].map(|i| rough(axes[i].velocity) * (once * RADIANS[i])),
+                a: [0, 1, 2].map(|i| rough(axes[i].acceleration) * (twice * RADIANS[i])),
             },
-            jerk: [0, 1, 2].map(|i| piece.jerk[i] as f32 * (thrice * RADIANS[i])),
+            jerk: [0, 1, 2].map(|i| rough(piece.jerk[i]) * (thrice * RADIANS[i])),
         }
     }
 

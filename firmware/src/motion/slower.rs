@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::choice::Choice;
 use super::envelope::Broken;
-use super::float::{Order, hypot};
+use super::float::{Order, hypot, rough};
 use super::ground::Ground;
 use super::plan::Position;
 use super::sizes::Sizes;
@@ -62,7 +62,7 @@ impl Slower {
         let hz = ground.limits.rate_hz as f32;
         let [along, rotation] = choice.limits;
         let ticks = choice.duration();
-        let place = |position: i64| position as f32 / UNITS;
+        let place = |position: i64| rough(position) / UNITS;
         let way = [0, 1, 2].map(|i| place(to[i].wrapping_sub(state[i].rounded())));
         // Twice the mean speed at most, whatever the limit.
         let mean = |way: f32| 2.0 * way * hz / ticks.larger(1.0);
@@ -80,7 +80,7 @@ impl Slower {
         ];
         let radius = hypot(place(state[0].rounded()), place(state[1].rounded()))
             .larger(hypot(place(to[0]), place(to[1])))
-            .smaller(ground.geometry.usable_radius() as f32);
+            .smaller(ground.usable as f32);
         let bound = Bound::new(radius);
         let arm = hypot(ground.centre[0] as f32, ground.centre[1] as f32);
         let sizes = Sizes {

@@ -10,7 +10,7 @@
 //!
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
-use super::float::{Order, hypot};
+use super::float::{Order, hypot, rough};
 use super::ground::Ground;
 use super::units::PER_AXIS_UNIT;
 use crate::number::sqrt_f32;
@@ -43,7 +43,7 @@ impl Pace {
 /// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
 pub(super) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
     let unit = PER_AXIS_UNIT * hz;
-    let [x, y, theta] = rates.map(|rate| rate as f32 * unit);
+    let [x, y, theta] = rates.map(|rate| rough(rate) * unit);
     [x, y, theta * core::f32::consts::TAU]
 }
 

@@ -59,7 +59,7 @@ impl<'a> Setting<'a> {
             ground,
             hz: limits.rate_hz as f32,
             swing: Swing::new(ground),
-            usable: ground.geometry.usable_radius() as f32,
+            usable: ground.usable as f32,
             velocity: [x / mm, y / mm, turning / 360.0].map(|rate| (rate * units) as i64),
             force: Force {
                 acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),

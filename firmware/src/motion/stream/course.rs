@@ -22,7 +22,7 @@ impl Stream {
         sent: Option<Sent>,
         ground: &Ground,
     ) -> Result<Planned, Refusal> {
-        let limiter = Limiter::new(ground, self.usable(ground) as f32);
+        let limiter = Limiter::new(ground);
         let rest = self.target(2);
         let (start, from) = match sent {
             Some(Sent { id, splice, state }) => {

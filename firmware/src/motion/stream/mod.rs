@@ -32,7 +32,7 @@ pub use self::kinds::{Clock, End, Next, NotTaken, Progress};
 use self::knot::Knot;
 use self::spline::WINDOW;
 use super::axis::Axis;
-use super::check::check_end;
+use super::check::check_target;
 use super::ground::Ground;
 use super::plan::Position;
 use heapless::Deque;
@@ -91,8 +91,6 @@ pub struct Stream {
     announced: bool,
     /// The curve has come to its last target.
     complete: bool,
-    /// Radius of the usable disk, once it has been computed: the mechanism stays the same while something moves.
-    usable: Option<f64>,
     end: Option<End>,
 }
 
@@ -122,7 +120,6 @@ impl Stream {
             before: None,
             announced: false,
             complete: false,
-            usable: None,
             end: None,
         })
     }
@@ -148,16 +145,11 @@ impl Stream {
         if self.announced || self.end.is_some() {
             return Err(NotTaken::Over);
         }
-        let usable = self.usable(ground);
-        if let Err(refusal) = check_end(&target, ground, usable) {
+        if let Err(refusal) = check_target(&target, ground) {
             self.end = Some(End::Refused(refusal));
             return Err(NotTaken::Refused(refusal));
         }
         self.targets.push_back(target).map_err(|_| NotTaken::Full)
-    }
-
-    fn usable(&mut self, ground: &Ground) -> f64 {
-        *(self.usable).get_or_insert_with(|| ground.geometry.usable_radius())
     }
 
     /// The last target has been sent: the motion ends there.

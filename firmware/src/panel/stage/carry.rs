@@ -144,7 +144,10 @@ impl Stage {
     /// What plans keep to now.
     pub(super) fn ground(&self) -> Ground {
         let radius_mm = self.geometry.radius_mm;
-        let mut ground = Ground::new(self.limits, self.geometry);
+        let mut ground = Ground {
+            limits: self.limits,
+            ..self.base
+        };
         ground.centre = self.radii(self.view.tool.origin());
         let [x, y] = self.view.zero;
         for (bounds, (axis, zero, per_unit)) in (ground.bounds.iter_mut()).zip([

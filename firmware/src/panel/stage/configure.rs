@@ -5,7 +5,7 @@ use super::super::target::travel;
 use super::{Flight, Stage};
 use crate::config::Config;
 use crate::link::{Command, Mode, PanelLink};
-use crate::motion::Limits;
+use crate::motion::{Ground, Limits};
 use crate::parameters::Parameters;
 
 impl Stage {
@@ -41,6 +41,7 @@ impl Stage {
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.geometry = parameters.geometry;
+        self.base = Ground::new(parameters.limits, parameters.geometry);
         self.targets = parameters.targets;
         self.set_limits(parameters.limits);
     }

@@ -40,7 +40,7 @@ use super::soft::SoftLimits;
 use super::target::{Coordinates, coordinates};
 use super::wave::Waves;
 use crate::link::{Command, Mode, PanelLink, Snapshot};
-use crate::motion::{Limits, Position, Stop};
+use crate::motion::{Ground, Limits, Position, Stop};
 use crate::parameters::{Parameters, Targets};
 use kinematics::Geometry;
 
@@ -52,6 +52,8 @@ const LOOK_AHEAD_MOST: u64 = 20_000;
 /// See the module.
 pub(super) struct Stage {
     pub geometry: Geometry,
+    /// What plans keep to with the limits and the frames at the start: its disk takes long to compute.
+    base: Ground,
     limits: Limits,
     /// Limits of the parameters: those of full system velocity.
     full: Limits,
@@ -113,6 +115,7 @@ impl Stage {
     pub fn new(parameters: &Parameters) -> Self {
         Self {
             geometry: parameters.geometry,
+            base: Ground::new(parameters.limits, parameters.geometry),
             limits: parameters.limits,
             full: parameters.limits,
             soft: SoftLimits::new(),
