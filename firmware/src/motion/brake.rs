@@ -16,13 +16,13 @@
 
 use super::axis::{Axis, JERK_STEP};
 use super::float::{Order, float, hypot, rough, ticks_up};
-use super::plan::Piece;
 use super::sample::Sample;
 use super::units::{AXIS_UNITS, UnitLimits};
 use crate::number::sqrt_f32;
 
-/// Rounds for n1 and the peak.
+/// Rounds for n1 and the peak at most, and the change of n1, ticks, after which there is none.
 const ROUNDS: usize = 8;
+const SETTLED: f32 = 1e-3;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
 pub(super) const SLACK: f32 = 1.0 + 5e-7;
@@ -106,7 +106,12 @@ impl Brake {
             };
             let scale = peak / size;
             let change = [0, 1, 2].map(|i| w[i] * scale + self.acceleration[i]);
-            times = [self.jerk_ticks(&change), hold, peak * back];
+            let next = [self.jerk_ticks(&change), hold, peak * back];
+            let settled = (next[0] - times[0]).abs() < SETTLED;
+            times = next;
+            if settled {
+                break;
+            }
         }
         times
     }
@@ -123,9 +128,9 @@ impl Brake {
         self.after(n1 / 2.0).map(|w| w * scale)
     }
 
-    /// The part of the limit that P comes to: jerk alone may end at less than all of it.
-    pub fn part(&self) -> f32 {
-        size(&self.peak(self.ticks())).smaller(1.0)
+    /// The part of the limit that P comes to in so many ticks: jerk alone may end at less than all of it.
+    pub fn part(&self, ticks: [u64; 3]) -> f32 {
+        size(&self.peak(ticks)).smaller(1.0)
     }
 
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
@@ -138,18 +143,6 @@ impl Brake {
             self.jerk_ticks(&change) > n1 * SLACK,
             size(&peak) > hardest * SLACK,
             self.jerk_ticks(&peak) > n3 * SLACK,
-        ]
-    }
-
-    /// The pieces that bring `state` to rest.
-    pub fn pieces(&self, state: &[Axis; 3]) -> [Piece; 3] {
-        let n = self.ticks();
-        let jerks = state.map(|axis| jerks(&axis, n));
-        let piece = |k: usize, jerk: [i64; 3]| Piece { ticks: n[k], jerk };
-        [
-            piece(0, jerks.map(|[first, _]| first)),
-            piece(1, [0; 3]),
-            piece(2, jerks.map(|[_, last]| last)),
         ]
     }
 

@@ -20,7 +20,7 @@ use super::axis::Axis;
 use super::brake::Brake;
 use super::float::{Order, float, hypot};
 use super::ground::Ground;
-use super::plan::{Piece, Plan};
+use super::plan::{MAX_PIECES, Piece};
 use super::platform::greatest;
 use super::reach::Reach;
 use super::sample::{Arc, Sample};
@@ -28,6 +28,7 @@ use super::sizes::Sizes;
 use super::swing::Bound;
 use super::units::UnitLimits;
 use crate::number::sqrt_f32;
+use heapless::Vec;
 
 /// What a plan is held against.
 pub(super) struct Envelope {
@@ -138,32 +139,35 @@ impl Envelope {
         }
     }
 
-    /// Whether `plan`, from `start`, stays inside. Of `looks`, the stretches that may be looked at, those looked at are taken.
-    pub fn check(&self, plan: &Plan, start: &[Axis; 3], looks: &mut usize) -> Result<(), Broken> {
-        self.check_pieces(&plan.pieces, &plan.nudge, start, looks)
+    /// Writes pieces as they are looked at, from `start`; where they lead to. A plan's nudge does not show in them.
+    pub fn legs(&self, pieces: &[Piece], start: &[Axis; 3], legs: &mut Legs) -> [Axis; 3] {
+        let mut axes = *start;
+        legs.clear();
+        for piece in pieces {
+            // Room for all pieces of a plan.
+            let _ = legs.push(Leg {
+                arc: Arc::new(&axes, piece, self.hz),
+                rooms: self.reach.rooms(&axes),
+                ticks: piece.ticks,
+            });
+            piece.run(&mut axes, piece.ticks, &[0; 3]);
+        }
+        axes
     }
 
-    /// The same of the first pieces of a plan.
-    pub fn check_pieces(
-        &self,
-        pieces: &[Piece],
-        nudge: &[i64; 3],
-        start: &[Axis; 3],
-        looks: &mut usize,
-    ) -> Result<(), Broken> {
-        let mut axes = *start;
+    /// Whether these stay inside. Of `looks`, the stretches that may be looked at, those looked at are taken.
+    pub fn check(&self, legs: &[Leg], looks: &mut usize) -> Result<(), Broken> {
         let (mut worst, mut glanced) = (None, false);
-        for piece in pieces {
-            let arc = Arc::new(&axes, piece, self.hz);
-            let rooms = self.reach.rooms(&axes);
-            self.check_jerk(&arc)?;
-            let (mut done, mut ticks) = (0, piece.ticks);
-            let mut from = self.look(&arc, 0);
-            while done < piece.ticks {
-                ticks = ticks.min(piece.ticks - done);
-                let mut to = self.look(&arc, done + ticks);
+        for leg in legs {
+            let Leg { arc, rooms, .. } = leg;
+            self.check_jerk(arc)?;
+            let (mut done, mut ticks) = (0, leg.ticks);
+            let mut from = self.look(arc, 0);
+            while done < leg.ticks {
+                ticks = ticks.min(leg.ticks - done);
+                let mut to = self.look(arc, done + ticks);
                 *looks = looks.saturating_sub(1);
-                match self.stretch(&arc, &rooms, [&mut from, &mut to], float(ticks) / self.hz) {
+                match self.stretch(arc, rooms, [&mut from, &mut to], float(ticks) / self.hz) {
                     Ok(longer) => {
                         from = to;
                         done += ticks;
@@ -172,7 +176,7 @@ impl Envelope {
                     Err((broken, shorter)) => {
                         if broken.is_of_pivots() && !glanced {
                             // Where a limit is passed indeed, a glance tells by how much.
-                            self.glance(pieces, nudge, start)?;
+                            self.glance(legs)?;
                             glanced = true;
                         }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
@@ -185,7 +189,6 @@ impl Envelope {
                 }
                 ticks = ticks.max(SHORTEST);
             }
-            piece.run(&mut axes, piece.ticks, nudge);
         }
         Ok(())
     }
@@ -200,18 +203,15 @@ impl Envelope {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces.
-    fn glance(&self, pieces: &[Piece], nudge: &[i64; 3], start: &[Axis; 3]) -> Result<(), Broken> {
-        let mut axes = *start;
+    fn glance(&self, legs: &[Leg]) -> Result<(), Broken> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        for piece in pieces {
-            let arc = Arc::new(&axes, piece, self.hz);
-            let seconds = float(piece.ticks) / self.hz;
+        for Leg { arc, ticks, .. } in legs {
+            let seconds = float(*ticks) / self.hz;
             for t in [seconds / 2.0, seconds] {
                 let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
                 rate = rate.larger(greatest(&rates));
                 acceleration = acceleration.larger(greatest(&accelerations));
             }
-            piece.run(&mut axes, piece.ticks, nudge);
         }
         let [rate_limit, acceleration_limit] = self.pivots;
         within(acceleration / acceleration_limit, Broken::Acceleration)?;
@@ -332,6 +332,17 @@ impl Envelope {
         Ok(once.smaller(twice).smaller(ALL))
     }
 }
+
+/// A piece as it is looked at.
+pub(super) struct Leg {
+    arc: Arc,
+    /// How far each axis may go from its start.
+    rooms: [[f32; 2]; 3],
+    ticks: u64,
+}
+
+/// The pieces of a plan.
+pub(super) type Legs = Vec<Leg, MAX_PIECES>;
 
 /// One end of a stretch.
 #[derive(Clone, Copy)]

@@ -227,7 +227,7 @@ mod tests {
         for bits in 0..64 {
             for value in [
                 1_i64 << bits,
-                (1 << bits) - 1,
+                (1_i64 << bits).wrapping_sub(1),
                 (5 << bits) / 7,
                 0x5A5A_5A5A_5A5A_5A5A >> bits,
             ] {

@@ -6,7 +6,7 @@
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::envelope::{Broken, Envelope, MOST_LOOKS};
+use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
 use super::float::Order;
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
@@ -70,26 +70,33 @@ pub fn plan_stop(
         Stop::Smooth => [1.0, 1.0],
         Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
     };
-    let mut plan = None;
-    let mut apart = false;
+    let mut plan = Plan {
+        id,
+        start,
+        pieces: Vec::new(),
+        nudge: of.nudge,
+        end: of.end,
+    };
+    let (mut apart, mut legs) = (false, Legs::new());
     for _ in 0..ATTEMPTS {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
-        let pieces = if apart {
-            pieces_apart(&state, &limits, hardness)
+        let ticks = brake.ticks();
+        if apart {
+            lay_apart(&state, &limits, hardness, &mut plan.pieces);
         } else {
-            Pieces::from_iter(brake.pieces(&state))
-        };
+            let [x, y, theta] = state.map(|axis| braked(&axis, ticks));
+            merged(&[x, y, theta], &mut plan.pieces);
+        }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it. So
         // may one that had to be made softer.
-        let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
-        if at + ticks >= whole {
+        let lasts = plan.ticks();
+        if at + lasts >= whole {
             return None;
         }
-        let stopped = stopped(id, of, start, &state, &pieces);
+        let end = envelope.legs(&plan.pieces, &state, &mut legs);
+        plan.end = [0, 1, 2].map(|i| at_rest(&end[i]).after(lasts, 0, plan.nudge[i]).rounded());
         // A stop has to be found: none is left unlooked at because others have been looked at before.
-        let checked = envelope.check(&stopped, &state, &mut { MOST_LOOKS });
-        plan = Some(stopped);
-        match checked {
+        match envelope.check(&legs, &mut { MOST_LOOKS }) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Broken::Reach) if !apart => apart = true,
@@ -102,38 +109,33 @@ pub fn plan_stop(
                 | Broken::Speed(over)
                 | Broken::Force(over),
             ) => {
-                let used = hardness[0] * brake.part();
+                let used = hardness[0] * brake.part(ticks);
                 hardness[0] = (used * (0.98 / over).larger(0.5)).larger(GENTLEST);
             }
         }
     }
-    plan
+    Some(plan)
 }
 
-/// The pieces that brake translation and rotation each as soon as it can.
-fn pieces_apart(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2]) -> Pieces {
+/// Without what rounding leaves of a velocity.
+const fn at_rest(axis: &Axis) -> Axis {
+    Axis {
+        position: axis.position,
+        velocity: 0,
+        acceleration: 0,
+    }
+}
+
+/// Writes the pieces that brake translation and rotation each as soon as it can.
+fn lay_apart(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2], pieces: &mut Pieces) {
     let [x, y, theta] = *state;
     let still = Axis::default();
     let ticks = |state: [Axis; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
     let (way, turn) = (ticks([x, y, still]), ticks([still, still, theta]));
-    merged(&[braked(&x, way), braked(&y, way), braked(&theta, turn)])
-}
-
-fn stopped(id: u32, of: &Plan, start: Start, state: &[Axis; 3], pieces: &[Piece]) -> Plan {
-    let mut end = *state;
-    let mut plan = Plan {
-        id,
-        start,
-        pieces: Vec::new(),
-        nudge: of.nudge,
-        end: of.end,
-    };
-    for piece in pieces.iter().filter(|piece| piece.ticks > 0) {
-        piece.run(&mut end, piece.ticks, &of.nudge);
-        let _ = plan.pieces.push(*piece);
-    }
-    plan.end = end.map(|axis| axis.rounded());
-    plan
+    merged(
+        &[braked(&x, way), braked(&y, way), braked(&theta, turn)],
+        pieces,
+    );
 }
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of

@@ -37,7 +37,9 @@ pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Optio
         let (axis, way) = ways[i];
         *track = fit(axis, way, &limits[i], longest)?;
     }
-    Some(merged(&tracks))
+    let mut pieces = Pieces::new();
+    merged(&tracks, &mut pieces);
+    Some(pieces)
 }
 
 /// The track of one axis that takes so many ticks to rest, wherever that is.
@@ -55,15 +57,15 @@ pub(super) fn braked(axis: &Axis, ticks: [u64; 3]) -> Track {
 }
 
 /// One list of pieces from three tracks: a new one wherever a jerk changes. It has room for all segments of all axes.
-pub(super) fn merged(tracks: &[Track; 3]) -> Pieces {
-    let mut pieces = Pieces::new();
+pub(super) fn merged(tracks: &[Track; 3], pieces: &mut Pieces) {
+    pieces.clear();
     let mut at = [0; 3];
     let mut done = [0; 3];
     loop {
         let now = [0, 1, 2].map(|i| tracks[i].get(at[i]).copied());
         let left = [0, 1, 2].map(|i| now[i].map(|(ticks, _)| ticks - done[i]));
         let Some(ticks) = left.into_iter().flatten().min() else {
-            return pieces;
+            return;
         };
         let _ = pieces.push(Piece {
             ticks,

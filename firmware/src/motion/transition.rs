@@ -19,12 +19,12 @@
 
 use super::axis::Axis;
 use super::choice::Choice;
-use super::envelope::{Broken, Envelope, MOST_LOOKS};
+use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
 use super::fit::fit;
 use super::ground::Ground;
 use super::heading::Plane;
 use super::line::check_target;
-use super::plan::{Plan, Position, Start, after_all, nudge};
+use super::plan::{Plan, Position, Start, nudge};
 use super::refusal::Refusal;
 use super::slower::Slower;
 use super::tracks::{Pieces, braked, merged};
@@ -65,6 +65,16 @@ pub fn plan_transition(
     let envelope = Envelope::new(ground, limits, &state);
     let mut slower = Slower::NOT;
     let (mut before, mut looks) = (None, MOST_LOOKS);
+    let mut plan = Plan {
+        id,
+        start: Start::Splice {
+            plan: of.id,
+            tick: at,
+        },
+        end: to,
+        ..Plan::default()
+    };
+    let mut legs = Legs::new();
     for _ in 0..ATTEMPTS {
         let choice = Choice::new(&state, &to, &plane, &limits, &slower, before.as_ref())
             .and_then(|choice| match before {
@@ -74,26 +84,15 @@ pub fn plan_transition(
             .filter(|choice| choice.is_sooner_than_a_stop(&state, &to, &limits, &slower))
             .ok_or(NoTransition::NeedsStop)?;
         before = Some(choice);
-        let plan = choice
-            .pieces(&state, &to)
-            .and_then(|pieces| {
-                let ticks = pieces.iter().map(|piece| piece.ticks).sum();
-                let nudge = nudge(&after_all(&state, &pieces, &[0; 3]), &to, ticks)?;
-                let start = Start::Splice {
-                    plan: of.id,
-                    tick: at,
-                };
-                Some(Plan {
-                    id,
-                    start,
-                    pieces,
-                    nudge,
-                    end: to,
-                })
-            })
+        choice
+            .lay(&state, &to, &mut plan.pieces)
             .ok_or(NoTransition::NeedsStop)?;
-        match envelope.check(&plan, &state, &mut looks) {
-            Ok(()) => return Ok(plan),
+        let end = envelope.legs(&plan.pieces, &state, &mut legs);
+        match envelope.check(&legs, &mut looks) {
+            Ok(()) => {
+                plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
+                return Ok(plan);
+            }
             Err(Broken::Reach) => return Err(NoTransition::NeedsStop),
             Err(broken) => slower.by(&broken),
         }
@@ -102,15 +101,15 @@ pub fn plan_transition(
 }
 
 impl Choice {
-    /// The pieces of this choice.
-    fn pieces(&self, state: &[Axis; 3], to: &Position) -> Option<Pieces> {
+    /// Writes the pieces of this choice.
+    fn lay(&self, state: &[Axis; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
         let view = self.heading.view(state, to);
         let fit = |i: usize| fit(view[i].0, view[i].1, &self.limits[i / 2], self.duration());
         let tracks = [fit(0)?, braked(&view[1].0, self.across), fit(2)?];
-        let mut pieces = merged(&tracks);
+        merged(&tracks, pieces);
         let seen = [0, 1].map(|i| view[i].0.acceleration);
         let from = [0, 1].map(|i| state[i].acceleration);
-        self.heading.turn_back(&mut pieces, seen, from);
-        Some(pieces)
+        self.heading.turn_back(pieces, seen, from);
+        Some(())
     }
 }

@@ -23,7 +23,7 @@ mod start;
 use self::start::{Setting, State};
 use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
-use super::envelope::{Envelope, MOST_LOOKS};
+use super::envelope::{Envelope, Legs, MOST_LOOKS};
 use super::ground::Ground;
 use super::plan::{MAX_PIECES, Piece, Plan, Start, after_all};
 use super::refusal::Refusal;
@@ -101,15 +101,20 @@ impl Jog {
             let _ = pieces.push(piece);
         }
         // From rest the way there is the first part of the way on.
-        if !from_rest {
+        let steady = if from_rest {
+            after_all(state, &pieces, &[0; 3])
+        } else {
             let envelope = Envelope::new(setting.ground, UnitLimits::new(setting.ground), state);
+            let mut legs = Legs::new();
+            let steady = envelope.legs(&pieces, state, &mut legs);
             envelope
-                .check_pieces(&pieces, &[0; 3], state, &mut { MOST_LOOKS })
+                .check(&legs, &mut { MOST_LOOKS })
                 .map_err(|_| NoTransition::NeedsStop)?;
-        }
+            steady
+        };
         Ok(Self {
             wanted,
-            steady: after_all(state, &pieces, &[0; 3]),
+            steady,
             pieces,
             ramp: ramp.ticks(),
             brake: Ramp::new(Pace::of(&target), &force, hz),
