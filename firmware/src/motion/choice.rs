@@ -5,7 +5,6 @@ use super::axis_brake::AxisBrake;
 use super::axis_profile::{AxisLimits, AxisProfile, Task};
 use super::brake::{Brake, gains};
 use super::float::{Order, float, hypot};
-use super::ground::Ground;
 use super::heading::{Heading, Plane, SMALLER, target};
 use super::plan::Position;
 use super::slower::Slower;
@@ -23,7 +22,7 @@ pub(super) struct Choice {
     /// Ticks in which each axis can arrive.
     shortest: [f32; 3],
     /// Acceleration across over that along.
-    ratio: f32,
+    pub ratio: f32,
 }
 
 /// Distance to the limits, for what rounding to ticks costs.
@@ -40,14 +39,14 @@ const LEAST_SPEED: f32 = 0.3;
 const COMMANDING: f32 = 40.0;
 
 impl Choice {
-    /// The soonest of some; or the one with the shares of `like`, as for a second attempt at what differs little.
+    /// The soonest of some; or the one with these shares across over along, as for a second try at what differs little.
     pub fn new(
         state: &[Axis; 3],
         to: &Position,
         plane: &Plane,
         limits: &UnitLimits,
         slower: &Slower,
-        like: Option<&Self>,
+        like: Option<f32>,
     ) -> Option<Self> {
         let translation = limits.translation.times(
             MARGIN * slower.path * slower.speed,
@@ -71,8 +70,7 @@ impl Choice {
         let chord = chord(&ahead.seen(&released), translation.velocity);
         let [a, b, c] = RATIOS;
         let all = [chord, a, b, c];
-        let one = like.map(|like| like.ratio);
-        for &ratio in one.as_ref().map_or(&all[..], core::slice::from_ref) {
+        for &ratio in like.as_ref().map_or(&all[..], core::slice::from_ref) {
             let Some(mut choice) = turned(plane, &released, ahead, &translation, ratio) else {
                 continue;
             };
@@ -88,23 +86,6 @@ impl Choice {
     /// Ticks of the whole.
     pub fn duration(&self) -> f32 {
         self.shortest.into_iter().fold(0.0, Order::larger)
-    }
-
-    /// This, or a slower one where the pivots would pass their limits at the speeds to be expected.
-    pub fn or_slower(
-        self,
-        state: &[Axis; 3],
-        to: &Position,
-        plane: &Plane,
-        limits: &UnitLimits,
-        slower: &mut Slower,
-        ground: &Ground,
-    ) -> Option<Self> {
-        if slower.expect(state, to, &self, ground) {
-            Self::new(state, to, plane, limits, slower, Some(&self))
-        } else {
-            Some(self)
-        }
     }
 
     /// Whether this arrives before a stop and a straight line would. A line is slowed down for the pivots only where they ask

@@ -37,13 +37,31 @@ pub enum NoTransition {
     Refused(Refusal),
     /// It can, but not without a stop before, or not as soon.
     NeedsStop,
+    /// Not so fast: the next of the [`Tries`] may find one.
+    TooFast,
 }
 
-/// Plans that may be made before the stage has to stop.
-const ATTEMPTS: usize = 3;
+/// What has been tried of a transition, so that the next try is as much slower as the last one asked for. The next may leave
+/// the motion at another tick, or leave what has taken its place: as a rule a stop that has just begun.
+#[derive(Clone, Copy, Debug)]
+pub struct Tries {
+    slower: Slower,
+    /// What was chosen first: it serves for what differs little.
+    ratio: Option<f32>,
+    left: usize,
+}
 
-/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
-#[inline(never)]
+impl Tries {
+    /// Nothing yet.
+    pub const NONE: Self = Self {
+        slower: Slower::NOT,
+        ratio: None,
+        left: 3,
+    };
+}
+
+/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
+/// takes.
 pub fn plan_transition(
     id: u32,
     of: &Plan,
@@ -51,6 +69,26 @@ pub fn plan_transition(
     at: u64,
     to: Position,
     ground: &Ground,
+) -> Result<Plan, NoTransition> {
+    let mut tries = Tries::NONE;
+    loop {
+        let tried = try_transition(id, of, from, at, to, ground, &mut tries);
+        if tried != Err(NoTransition::TooFast) {
+            return tried;
+        }
+    }
+}
+
+/// The same with one try: a slice of the planning. What is left can be planned while the motion brakes.
+#[inline(never)]
+pub fn try_transition(
+    id: u32,
+    of: &Plan,
+    from: &[Axis; 3],
+    at: u64,
+    to: Position,
+    ground: &Ground,
+    tries: &mut Tries,
 ) -> Result<Plan, NoTransition> {
     check_target(&to, ground).map_err(NoTransition::Refused)?;
     if !ground.limits.all_positive() {
@@ -61,10 +99,9 @@ pub fn plan_transition(
     }
     let state = of.state_after(from, at);
     let limits = UnitLimits::new(ground);
-    let plane = Plane::new(&state, &to);
-    let envelope = Envelope::new(ground, limits, &state);
-    let mut slower = Slower::NOT;
-    let (mut before, mut looks) = (None, MOST_LOOKS);
+    let choice = tries
+        .choice(&state, &to, &limits, ground)
+        .ok_or(NoTransition::NeedsStop)?;
     let mut plan = Plan {
         id,
         start: Start::Splice {
@@ -74,30 +111,51 @@ pub fn plan_transition(
         end: to,
         ..Plan::default()
     };
+    choice
+        .lay(&state, &to, &mut plan.pieces)
+        .ok_or(NoTransition::NeedsStop)?;
+    let envelope = Envelope::new(ground, limits, &state);
     let mut legs = Legs::new();
-    for _ in 0..ATTEMPTS {
-        let choice = Choice::new(&state, &to, &plane, &limits, &slower, before.as_ref())
-            .and_then(|choice| match before {
-                None => choice.or_slower(&state, &to, &plane, &limits, &mut slower, ground),
-                Some(_) => Some(choice),
-            })
-            .filter(|choice| choice.is_sooner_than_a_stop(&state, &to, &limits, &slower))
-            .ok_or(NoTransition::NeedsStop)?;
-        before = Some(choice);
+    let end = envelope.legs(&plan.pieces, &state, &mut legs);
+    plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
+    match envelope.check(&legs, &mut { MOST_LOOKS }) {
+        Ok(()) => Ok(plan),
+        Err(Broken::Reach) => Err(NoTransition::NeedsStop),
+        Err(broken) => Err(tries.slower_by(&broken)),
+    }
+}
+
+impl Tries {
+    /// What is tried next.
+    fn choice(
+        &mut self,
+        state: &[Axis; 3],
+        to: &Position,
+        limits: &UnitLimits,
+        ground: &Ground,
+    ) -> Option<Choice> {
+        let plane = Plane::new(state, to);
+        let first = self.ratio.is_none();
+        let mut choice = Choice::new(state, to, &plane, limits, &self.slower, self.ratio)?;
+        if first && self.slower.expect(state, to, &choice, ground) {
+            choice = Choice::new(state, to, &plane, limits, &self.slower, Some(choice.ratio))?;
+        }
+        self.ratio = Some(choice.ratio);
         choice
-            .lay(&state, &to, &mut plan.pieces)
-            .ok_or(NoTransition::NeedsStop)?;
-        let end = envelope.legs(&plan.pieces, &state, &mut legs);
-        match envelope.check(&legs, &mut looks) {
-            Ok(()) => {
-                plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
-                return Ok(plan);
-            }
-            Err(Broken::Reach) => return Err(NoTransition::NeedsStop),
-            Err(broken) => slower.by(&broken),
+            .is_sooner_than_a_stop(state, to, limits, &self.slower)
+            .then_some(choice)
+    }
+
+    /// After a try that broke something.
+    fn slower_by(&mut self, broken: &Broken) -> NoTransition {
+        self.slower.by(broken);
+        self.left = self.left.saturating_sub(1);
+        if self.left > 0 {
+            NoTransition::TooFast
+        } else {
+            NoTransition::NeedsStop
         }
     }
-    Err(NoTransition::NeedsStop)
 }
 
 impl Choice {

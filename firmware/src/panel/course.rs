@@ -2,8 +2,8 @@
 
 use super::error::ErrorCode;
 use crate::motion::{
-    Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, plan_jog, plan_line,
-    plan_stop, plan_transition,
+    Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, Tries, plan_jog, plan_line,
+    plan_stop, try_transition,
 };
 
 /// What a motion is for.
@@ -47,7 +47,7 @@ impl Course {
                 plan_jog(id, Start::Rest(from), &start, &velocity, ground).map_err(|no| match no {
                     NoTransition::Refused(refusal) => code(&refusal),
                     // At rest there is nothing to stop.
-                    NoTransition::NeedsStop => ErrorCode::PositionLimit,
+                    NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
                 })
             }
         };
@@ -69,18 +69,20 @@ impl Course {
         }
     }
 
-    /// The way to another goal that leaves this course at its tick `at`; `Ok(None)` when there is none without a stop before.
+    /// The way to another goal that leaves this course at its tick `at`, by the next of `tries`.
     pub fn left_for(
         &self,
         goal: Goal,
         id: u32,
         at: u64,
         ground: &Ground,
-    ) -> Result<Option<Self>, ErrorCode> {
+        tries: &mut Tries,
+    ) -> Result<Self, NoTransition> {
         let start = self.plan.state_after(&self.start, at);
         let planned = match goal {
-            Goal::Stream => return Err(ErrorCode::Busy),
-            Goal::Place(to) => plan_transition(id, &self.plan, &self.start, at, to, ground),
+            // It makes its plans itself.
+            Goal::Stream => Err(NoTransition::NeedsStop),
+            Goal::Place(to) => try_transition(id, &self.plan, &self.start, at, to, ground, tries),
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
             Goal::Velocity(velocity) => {
@@ -91,16 +93,12 @@ impl Course {
                 plan_jog(id, splice, &start, &velocity, ground)
             }
         };
-        match planned {
-            Ok(plan) => Ok(Some(Self {
-                plan,
-                goal,
-                stop: None,
-                start,
-            })),
-            Err(NoTransition::Refused(refusal)) => Err(code(&refusal)),
-            Err(NoTransition::NeedsStop) => Ok(None),
-        }
+        Ok(Self {
+            plan: planned?,
+            goal,
+            stop: None,
+            start,
+        })
     }
 
     /// Whether it takes over from another one in motion.

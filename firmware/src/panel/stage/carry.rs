@@ -1,12 +1,12 @@
 //! Wishes whose time has come: a stop or another target for the motion under way, a move for the stage at rest.
 
 use super::super::axis::Axis;
-use super::super::course::{Course, Goal};
+use super::super::course::{Course, Goal, code};
 use super::super::error::ErrorCode;
 use super::super::target::UNITS;
 use super::{Flight, Stage};
 use crate::link::{Command, Mode, PanelLink};
-use crate::motion::{Ground, Stop};
+use crate::motion::{Ground, NoTransition, Stop, Tries};
 
 const DEGREES_A_TURN: f64 = 360.0;
 
@@ -41,15 +41,15 @@ impl Stage {
 
     /// Makes `goal` what is wanted, at once as far as that can be; with an error everything is as it was.
     pub(super) fn want(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        let before = (self.wanted, self.rest_first, self.stop_wanted);
-        (self.wanted, self.rest_first) = (Some(goal), false);
+        let before = (self.wanted, self.rest_first, self.stop_wanted, self.tries);
+        (self.wanted, self.rest_first, self.tries) = (Some(goal), false, Tries::NONE);
         let result = match (self.mode(), self.stop_wanted) {
             (Mode::Holding, _) => self.start(goal, link),
             (Mode::Moving, None) => self.leave_for(goal, link),
             _ => Ok(()),
         };
         if result.is_err() {
-            (self.wanted, self.rest_first, self.stop_wanted) = before;
+            (self.wanted, self.rest_first, self.stop_wanted, self.tries) = before;
         }
         result
     }
@@ -70,7 +70,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Sends the way to another goal; where there is none the stage stops first.
+    /// Sends the way to another goal, by one try a time; where there is none the stage stops first. It also brakes while it is to
+    /// be tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
     fn leave_for(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
         let ground = match goal {
             Goal::Place(_) => self.ground_of_curve(),
@@ -81,19 +82,21 @@ impl Stage {
         let Some((course, at)) = self.under_way().filter(|_| self.next.is_none()) else {
             return Ok(());
         };
-        match course.left_for(goal, id, at, &ground)? {
-            Some(left) => {
+        let (mut tries, stops) = (self.tries, course.stop.is_some());
+        match course.left_for(goal, id, at, &ground, &mut tries) {
+            Ok(left) => {
                 self.send_course(left, link)?;
                 self.wanted = None;
             }
-            None => {
-                let stops = course.stop.is_some();
-                self.rest_first = true;
+            Err(NoTransition::Refused(refusal)) => return Err(code(&refusal)),
+            Err(no) => {
+                self.rest_first = no == NoTransition::NeedsStop;
                 if !stops {
                     self.stop_wanted = Some(Stop::Smooth);
                 }
             }
         }
+        self.tries = tries;
         Ok(())
     }
 

@@ -6,8 +6,8 @@ use crate::bench::Bench;
 use crate::random::Random;
 use crate::table::Came;
 use firmware::motion::{
-    Axis, Next, NoTransition, Plan, Position, Start, Stop, plan_jog, plan_line, plan_stop,
-    plan_transition,
+    Axis, Next, NoTransition, Plan, Position, Start, Stop, Tries, plan_jog, plan_line, plan_stop,
+    try_transition,
 };
 
 /// Counts the planners.
@@ -67,7 +67,7 @@ fn jog(now: &Moving, velocity: &[f64; 3]) -> Option<Plan> {
     };
     match plan_jog(3, start, &state, velocity, ground()) {
         Ok(plan) => Some(plan),
-        Err(NoTransition::NeedsStop) => stopped(now, Stop::Smooth),
+        Err(NoTransition::NeedsStop | NoTransition::TooFast) => stopped(now, Stop::Smooth),
         Err(NoTransition::Refused(_)) => None,
     }
 }
@@ -111,11 +111,12 @@ pub fn run_stream(bench: &mut Bench) {
     }
 }
 
-/// To a new target, or to a stop where there is no way to it without one.
+/// To a new target, or to a stop where there is no way to it without one, or not with the first try.
 fn retarget(now: &Moving, to: Position) -> Option<Plan> {
-    match plan_transition(3, &now.plan, &now.start, now.at, to, ground()) {
+    let mut tries = Tries::NONE;
+    match try_transition(3, &now.plan, &now.start, now.at, to, ground(), &mut tries) {
         Ok(plan) => Some(plan),
-        Err(NoTransition::NeedsStop) => stopped(now, Stop::Smooth),
+        Err(NoTransition::NeedsStop | NoTransition::TooFast) => stopped(now, Stop::Smooth),
         Err(NoTransition::Refused(_)) => None,
     }
 }
