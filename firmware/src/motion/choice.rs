@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::axis_brake::AxisBrake;
 use super::axis_profile::{AxisLimits, AxisProfile, Task};
 use super::brake::{Brake, gains};
-use super::float::{Order, float, hypot};
+use super::float::{Order, float, hypot, rough, rough_long};
 use super::heading::{Heading, Plane, SMALLER, target};
 use super::plan::Position;
 use super::slower::Slower;
@@ -56,9 +56,9 @@ impl Choice {
         let rotation =
             (limits.rotation).times(MARGIN * slower.speed, MARGIN * slower.force, MARGIN);
         let turn = Task {
-            distance: (target(to[2]) - state[2].position) as f64,
-            velocity: state[2].velocity as f64,
-            acceleration: state[2].acceleration as f64,
+            distance: rough_long(target(to[2]) - state[2].position),
+            velocity: rough(state[2].velocity),
+            acceleration: rough(state[2].acceleration),
         };
         let turning = shortest(&turn, &rotation)?;
         let mut best: Option<Self> = None;
@@ -101,8 +101,8 @@ impl Choice {
         let times = brake.times();
         let [by_velocity, by_acceleration] = gains(times);
         let left = [0, 1, 2].map(|i| {
-            let (v, a) = (state[i].velocity as f32, state[i].acceleration as f32);
-            (target(to[i]) - state[i].position) as f32 - by_velocity * v - by_acceleration * a
+            let (v, a) = (rough(state[i].velocity), rough(state[i].acceleration));
+            rough_long(target(to[i]) - state[i].position) - by_velocity * v - by_acceleration * a
         });
         let line = [
             (
@@ -114,7 +114,7 @@ impl Choice {
         .into_iter()
         .map(|(way, limits)| {
             let task = Task {
-                distance: f64::from(way),
+                distance: way,
                 ..Task::default()
             };
             shortest(&task, limits).unwrap_or(0.0)
@@ -154,7 +154,7 @@ fn turned(
         return None;
     }
     along.velocity *= top;
-    let seen = |vector: &[f32; 2]| f64::from(heading.seen(vector)[0]);
+    let seen = |vector: &[f32; 2]| heading.seen(vector)[0];
     let task = Task {
         distance: seen(&plane.way),
         velocity: seen(&plane.v),
@@ -223,9 +223,9 @@ fn top_speed(ahead: f32, aside: f32, ratio: f32) -> f32 {
     (ahead + gained).smaller(1.0)
 }
 
-fn shortest(task: &Task, limits: &AxisLimits<f32>) -> Option<f32> {
+fn shortest(task: &Task<f32>, limits: &AxisLimits<f32>) -> Option<f32> {
     if task.distance == 0.0 && task.velocity == 0.0 && task.acceleration == 0.0 {
         return Some(0.0);
     }
-    Some(AxisProfile::fastest(task, limits).ok()?.duration())
+    AxisProfile::shortest(task, limits).ok()
 }

@@ -22,7 +22,7 @@ use super::float::{Order, float, hypot};
 use super::ground::Ground;
 use super::plan::{MAX_PIECES, Piece};
 use super::platform::greatest;
-use super::reach::Reach;
+use super::reach::{Braking, Reach};
 use super::sample::{Arc, Sample};
 use super::sizes::Sizes;
 use super::swing::Bound;
@@ -45,8 +45,9 @@ struct Own {
     speed: [f32; 2],
     acceleration: [f32; 2],
     jerk: [f32; 2],
-    /// With which a stop brakes.
+    /// With which a stop brakes, and the same for a bound of its way.
     stop: UnitLimits,
+    braking: Braking,
 }
 
 /// What a plan breaks.
@@ -118,6 +119,7 @@ impl Envelope {
             ),
             jerk: pair(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
             stop,
+            braking: Braking::new(&stop, hz),
         };
         Self {
             own: Some(own),
@@ -144,9 +146,11 @@ impl Envelope {
         let mut axes = *start;
         legs.clear();
         for piece in pieces {
+            let arc = Arc::new(&axes, piece, self.hz);
             // Room for all pieces of a plan.
             let _ = legs.push(Leg {
-                arc: Arc::new(&axes, piece, self.hz),
+                jerk: [hypot(arc.jerk[0], arc.jerk[1]), arc.jerk[2].abs()],
+                arc,
                 rooms: self.reach.rooms(&axes),
                 ticks: piece.ticks,
             });
@@ -159,15 +163,14 @@ impl Envelope {
     pub fn check(&self, legs: &[Leg], looks: &mut usize) -> Result<(), Broken> {
         let (mut worst, mut glanced) = (None, false);
         for leg in legs {
-            let Leg { arc, rooms, .. } = leg;
-            self.check_jerk(arc)?;
+            self.check_jerk(leg)?;
             let (mut done, mut ticks) = (0, leg.ticks);
-            let mut from = self.look(arc, 0);
+            let mut from = self.look(&leg.arc, 0);
             while done < leg.ticks {
                 ticks = ticks.min(leg.ticks - done);
-                let mut to = self.look(arc, done + ticks);
+                let mut to = self.look(&leg.arc, done + ticks);
                 *looks = looks.saturating_sub(1);
-                match self.stretch(arc, rooms, [&mut from, &mut to], float(ticks) / self.hz) {
+                match self.stretch(leg, [&mut from, &mut to], float(ticks) / self.hz) {
                     Ok(longer) => {
                         from = to;
                         done += ticks;
@@ -195,8 +198,18 @@ impl Envelope {
 
     fn look(&self, arc: &Arc, ticks: u64) -> Look {
         let sample = arc.at(float(ticks) / self.hz);
+        let [x, y] = arc.place(&sample);
+        let far = hypot(x, y);
+        let Sample { v, a, .. } = sample;
         Look {
-            out: self.reach.distance(arc, &sample),
+            far,
+            out: if self.reach.arm > 0.0 {
+                self.reach.distance(arc, &sample)
+            } else {
+                far
+            },
+            v: [hypot(v[0], v[1]), v[2].abs()],
+            a: [hypot(a[0], a[1]), a[2].abs()],
             sample,
             pivots: None,
         }
@@ -218,37 +231,30 @@ impl Envelope {
         within(rate / rate_limit, Broken::Rate)
     }
 
-    fn check_jerk(&self, arc: &Arc) -> Result<(), Broken> {
+    fn check_jerk(&self, leg: &Leg) -> Result<(), Broken> {
         let Some(own) = &self.own else { return Ok(()) };
-        let [x, y, theta] = arc.jerk;
+        let [way, turn] = leg.jerk;
         within(
-            (hypot(x, y) / own.jerk[0]).larger(theta.abs() / own.jerk[1]),
+            (way / own.jerk[0]).larger(turn / own.jerk[1]),
             Broken::Force,
         )
     }
 
     /// By how much the next stretch may be longer than this; or what is broken, and by how much shorter a stretch to try.
-    fn stretch(
-        &self,
-        arc: &Arc,
-        rooms: &[[f32; 2]; 3],
-        [from, to]: [&mut Look; 2],
-        t: f32,
-    ) -> Result<f32, (Broken, f32)> {
+    fn stretch(&self, leg: &Leg, [from, to]: [&mut Look; 2], t: f32) -> Result<f32, (Broken, f32)> {
         const HALF: f32 = 0.5;
-        let sizes = Sizes::new(arc, &from.sample, &to.sample, t);
+        let sizes = Sizes::new(leg.jerk, from, to, t);
         let moving = sizes.at_arm(self.reach.arm);
         let radius = self
-            .path(arc, rooms, [from, to], t, [&sizes, &moving])
+            .path(leg, [from, to], t, [&sizes, &moving])
             .map_err(|broken| (broken, HALF))?;
-        self.check_pivots(arc, [from, to], t, &moving, radius)
+        self.check_pivots(&leg.arc, [from, to], t, &moving, radius)
     }
 
     /// All but the pivots; the greatest distance of the platform's centre from the track's.
     fn path(
         &self,
-        arc: &Arc,
-        rooms: &[[f32; 2]; 3],
+        leg: &Leg,
         [from, to]: [&Look; 2],
         t: f32,
         [sizes, moving]: [&Sizes; 2],
@@ -267,28 +273,23 @@ impl Envelope {
         }
         let eighth = t * t / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
-        (self.reach).check_way(rooms, &from.sample, &to.sample, rise)?;
+        (self.reach).check_way(&leg.rooms, &from.sample, &to.sample, rise)?;
         let furthest = from.out.larger(to.out) + moving.a[0] * eighth;
         let radius = self.reach.inside(furthest)?;
         if let Some(own) = &self.own {
-            self.check_stop(arc, rooms, &to.sample, &own.stop)?;
+            self.check_stop(leg, to, own)?;
         }
         Ok(radius)
     }
 
     /// A stop from here.
-    fn check_stop(
-        &self,
-        arc: &Arc,
-        rooms: &[[f32; 2]; 3],
-        at: &Sample,
-        limits: &UnitLimits,
-    ) -> Result<(), Broken> {
-        if self.reach.far_inside(arc, rooms, at, limits, self.hz) {
+    fn check_stop(&self, leg: &Leg, at: &Look, own: &Own) -> Result<(), Broken> {
+        if self.reach.far_inside(&leg.rooms, at, &own.braking) {
             return Ok(());
         }
-        let brake = Brake::in_seconds(at, limits, self.hz);
-        self.reach.check_stop(arc, rooms, at, &brake, self.hz)
+        let brake = Brake::in_seconds(&at.sample, &own.stop, self.hz);
+        self.reach
+            .check_stop(&leg.arc, &leg.rooms, &at.sample, &brake, self.hz)
     }
 
     fn check_pivots(
@@ -336,6 +337,8 @@ impl Envelope {
 /// A piece as it is looked at.
 pub(super) struct Leg {
     arc: Arc,
+    /// Of translation and of rotation.
+    jerk: [f32; 2],
     /// How far each axis may go from its start.
     rooms: [[f32; 2]; 3],
     ticks: u64,
@@ -346,9 +349,15 @@ pub(super) type Legs = Vec<Leg, MAX_PIECES>;
 
 /// One end of a stretch.
 #[derive(Clone, Copy)]
-struct Look {
-    sample: Sample,
-    /// Distance of the platform's centre from the track's.
+pub(super) struct Look {
+    pub sample: Sample,
+    /// Velocity of translation and of rotation.
+    pub v: [f32; 2],
+    /// Their acceleration.
+    pub a: [f32; 2],
+    /// Distance of the moved point from the track's centre.
+    pub far: f32,
+    /// Distance of the platform's centre from it.
     out: f32,
     /// The greatest rate and acceleration of a pivot, once they have been asked for.
     pivots: Option<[f32; 2]>,

@@ -12,7 +12,7 @@
 use super::axis::Axis;
 use super::axis_profile::{AxisLimits, AxisProfile, SEGMENTS, Task};
 use super::brake::{jerks, stepped};
-use super::float::{Order, float, nearest, rough_long, ticks_up};
+use super::float::{Order, float, nearest, rough, rough_long, ticks_up};
 use super::hats::Hats;
 use crate::number::sqrt_f32;
 use heapless::Vec;
@@ -33,17 +33,18 @@ const CLOSINGS: usize = 1;
 /// How much of a limit is granted to the roundings of floats.
 const SLACK: f32 = 1.0 + 5e-7;
 
-/// The track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None` where the
-/// state allows none.
+/// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None` where
+/// the state allows none.
 pub(super) fn fit(
+    track: &mut Track,
     mut axis: Axis,
     way: i128,
     limits: &AxisLimits<f32>,
     duration: f32,
-) -> Option<Track> {
-    let mut track = Track::new();
+) -> Option<()> {
+    track.clear();
     if axis.velocity == 0 && axis.acceleration == 0 && way == 0 {
-        return Some(track);
+        return Some(());
     }
     let target = axis.position + way;
     let mut task = task(&axis, target);
@@ -52,25 +53,25 @@ pub(super) fn fit(
     if braking != [0, 0] {
         let jerk = stepped(nearest(profile.jerks[0]), 1);
         for (ticks, jerk) in [(braking[0], jerk), (braking[1], 0)] {
-            run(&mut track, &mut axis, ticks, jerk)?;
+            run(track, &mut axis, ticks, jerk)?;
         }
         task = self::task(&axis, target);
         let left = duration - float(braking[0] + braking[1]);
         profile = AxisProfile::lasting(&task, limits, left).ok()?;
     }
     let mut shape = Shape::new(&profile);
-    let mut peak = shape.solve(&task, limits)?;
+    let mut peak = shape.solve(&rough_task(&axis, target), limits)?;
     let begun = track.len();
     for closing in 0..=CLOSINGS {
         let mut end = axis;
         track.truncate(begun);
-        shape.run(&mut track, &mut end, peak)?;
+        shape.run(track, &mut end, peak)?;
         if closing < CLOSINGS {
             let missing = rough_long(target - end.position);
             peak = peak.wrapping_add(nearest(missing / Hats::new(&shape).gain));
         }
     }
-    Some(track)
+    Some(())
 }
 
 /// What is to be done, in 2^-72 units and ticks.
@@ -79,6 +80,15 @@ pub(super) fn task(axis: &Axis, target: i128) -> Task {
         distance: (target - axis.position) as f64,
         velocity: axis.velocity as f64,
         acceleration: axis.acceleration as f64,
+    }
+}
+
+/// The same in single precision.
+fn rough_task(axis: &Axis, target: i128) -> Task<f32> {
+    Task {
+        distance: rough_long(target - axis.position),
+        velocity: rough(axis.velocity),
+        acceleration: rough(axis.acceleration),
     }
 }
 
@@ -120,13 +130,13 @@ impl Shape {
     }
 
     /// The peak of acceleration, after lengthening what is over a limit.
-    fn solve(&mut self, task: &Task, limits: &AxisLimits<f32>) -> Option<i64> {
+    fn solve(&mut self, task: &Task<f32>, limits: &AxisLimits<f32>) -> Option<i64> {
         for _ in 0..MOST_ROUNDS {
             let hats = Hats::new(self);
             let solution = hats.solution(task)?;
             if !self.lengthen(task, limits, &solution) {
                 // A brake that is only released in part has no peak to lengthen.
-                let most = limits.acceleration.larger((task.acceleration as f32).abs());
+                let most = limits.acceleration.larger(task.acceleration.abs());
                 return (solution.peak.abs() <= most * SLACK).then(|| nearest(solution.peak));
             }
         }
@@ -161,9 +171,14 @@ impl Shape {
     }
 
     /// Whether something had to be lengthened.
-    fn lengthen(&mut self, task: &Task, limits: &AxisLimits<f32>, solution: &Solution) -> bool {
+    fn lengthen(
+        &mut self,
+        task: &Task<f32>,
+        limits: &AxisLimits<f32>,
+        solution: &Solution,
+    ) -> bool {
         let Solution { peak, brake, top } = *solution;
-        let start = task.acceleration as f32;
+        let start = task.acceleration;
         let part = self.released_in_part;
         let mut longer = false;
         let (release, press) = if part {
@@ -195,7 +210,7 @@ impl Shape {
             }
         }
         // The brake released in part leads to no speed in between.
-        let fastest = limits.velocity.larger((task.velocity as f32).abs()) * SLACK;
+        let fastest = limits.velocity.larger(task.velocity.abs()) * SLACK;
         if !part && top.abs() > fastest && !longer {
             let whole: u64 = self.n.iter().sum();
             let over = top.abs() / limits.velocity - 1.0;
@@ -242,7 +257,8 @@ mod tests {
         let (axis, way) = state(velocity, acceleration, way);
         let target = axis.position + way;
         let profile = AxisProfile::fastest(&task(&axis, target), &LIMITS).unwrap();
-        let track = fit(axis, way, &LIMITS, profile.duration())?;
+        let mut track = Track::new();
+        fit(&mut track, axis, way, &LIMITS, profile.duration())?;
         let mut end = axis;
         for &(ticks, jerk) in &track {
             assert!((jerk as f32).abs() <= LIMITS.jerk * 1.000_01, "{track:?}");
@@ -270,14 +286,17 @@ mod tests {
     #[test]
     fn nothing_to_do_is_no_track() {
         let axis = Axis::at_rest(3);
-        assert!(fit(axis, 0, &LIMITS, 100.0).unwrap().is_empty());
+        let mut track = Track::new();
+        fit(&mut track, axis, 0, &LIMITS, 100.0).unwrap();
+        assert!(track.is_empty());
     }
 
     #[test]
     fn a_longer_duration_is_kept() {
         let (axis, way) = state(0.3, -0.2, 8.0);
         for duration in [20_000.0, 30_000.0] {
-            let track = fit(axis, way, &LIMITS, duration).unwrap();
+            let mut track = Track::new();
+            fit(&mut track, axis, way, &LIMITS, duration).unwrap();
             let ticks: u64 = track.iter().map(|(ticks, _)| ticks).sum();
             assert!(ticks.abs_diff(duration as u64) < 10, "{ticks}");
         }

@@ -183,6 +183,17 @@ fn ticks_of_long(duration: f32) -> u64 {
     duration as u64
 }
 
+/// A float without its fraction; it has to be within 63 bits.
+#[inline]
+pub(super) fn cut(value: f32) -> i64 {
+    const MOST: f32 = UPPER / 2.0;
+    if Float::abs(value) < MOST {
+        i64::from(value as i32)
+    } else {
+        value as i64
+    }
+}
+
 /// A float rounded to nearest; it has to be within 63 bits.
 #[inline]
 pub(super) fn nearest(value: f32) -> i64 {

@@ -52,12 +52,8 @@ impl Hats {
     }
 
     /// The heights that lead to rest at the target.
-    pub fn solution(&self, task: &Task) -> Option<Solution> {
-        let (d, v, a) = (
-            task.distance as f32,
-            task.velocity as f32,
-            task.acceleration as f32,
-        );
+    pub fn solution(&self, task: &Task<f32>) -> Option<Solution> {
+        let (d, v, a) = (task.distance, task.velocity, task.acceleration);
         let peak = (d - v * self.by_start[0] - a * self.by_start[1]) / self.gain;
         let top = v + a * self.area[0] + peak * self.area[1];
         let brake = -top / self.area[2];

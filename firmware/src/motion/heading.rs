@@ -63,7 +63,7 @@ impl Heading {
             };
         }
         let scale = (1 << POINT) as f32 / length;
-        let (cos, sin) = ((x * scale) as i64, (y * scale) as i64);
+        let [cos, sin] = [x, y].map(|part| i64::from((part * scale) as i32));
         // Floats leave 1e-7 of length, half of which is taken off each.
         let long = (cos * cos + sin * sin - ONE * ONE) >> (POINT + 1);
         let exact = |value: i64| (value - ((value * long) >> POINT)) as i32;

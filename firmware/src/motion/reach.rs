@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::envelope::Broken;
+use super::envelope::{Broken, Look};
 use super::float::{Order, hypot, rough};
 use super::ground::{Bounds, Ground};
 use super::sample::{Arc, Sample};
@@ -16,6 +16,29 @@ pub(super) struct Reach {
     /// The moved point in the platform's axes, and its distance from the platform's centre.
     pub centre: [f32; 2],
     pub arm: f32,
+}
+
+/// What translation and rotation brake with, per second.
+pub(super) struct Braking {
+    /// Acceleration, and its inverse.
+    most: [f32; 2],
+    over_most: [f32; 2],
+    /// Inverse of the jerk.
+    over_jerk: [f32; 2],
+}
+
+impl Braking {
+    /// Of limits at `hz` ticks a second.
+    pub fn new(limits: &UnitLimits, hz: f32) -> Self {
+        let units = [PER_AXIS_UNIT * hz * hz, PER_AXIS_UNIT * TAU * hz * hz];
+        let each = [&limits.translation, &limits.rotation];
+        let most = [0, 1].map(|i| each[i].acceleration * units[i]);
+        Self {
+            most,
+            over_most: most.map(|most| 1.0 / most),
+            over_jerk: [0, 1].map(|i| 1.0 / (each[i].jerk * units[i] * hz)),
+        }
+    }
 }
 
 /// Slack of single precision: 0.02 um on the reference stage.
@@ -82,37 +105,15 @@ impl Reach {
     }
 
     /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few operations.
-    pub fn far_inside(
-        &self,
-        arc: &Arc,
-        rooms: &[[f32; 2]; 3],
-        at: &Sample,
-        limits: &UnitLimits,
-        hz: f32,
-    ) -> bool {
-        let speed = [hypot(at.v[0], at.v[1]), at.v[2].abs()];
-        let force = [hypot(at.a[0], at.a[1]), at.a[2].abs()];
-        let (mut seconds, mut gained) = (0.0_f32, [0.0; 2]);
-        for (i, limits) in [&limits.translation, &limits.rotation]
-            .into_iter()
-            .enumerate()
-        {
-            let unit = if i == 0 {
-                PER_AXIS_UNIT
-            } else {
-                PER_AXIS_UNIT * TAU
-            };
-            let most = limits.acceleration * unit * hz * hz;
-            let release = (force[i] + most) / (limits.jerk * unit * hz * hz * hz);
-            gained[i] = speed[i] + force[i] * release;
-            seconds = seconds.larger(2.0 * release + gained[i] / most);
-        }
-        let [way, turn] = gained.map(|speed| speed * seconds);
+    pub fn far_inside(&self, rooms: &[[f32; 2]; 3], at: &Look, braking: &Braking) -> bool {
+        let release = [0, 1].map(|i| (at.a[i] + braking.most[i]) * braking.over_jerk[i]);
+        let gained = [0, 1].map(|i| at.v[i] + at.a[i] * release[i]);
+        let lasts = [0, 1].map(|i| 2.0 * release[i] + gained[i] * braking.over_most[i]);
+        let [way, turn] = gained.map(|speed| speed * lasts[0].larger(lasts[1]));
         let ways = [way, way, turn];
-        let [x, y] = arc.place(at);
-        let clear =
-            |i: usize| rooms[i][0] <= at.way[i] - ways[i] && at.way[i] + ways[i] <= rooms[i][1];
-        hypot(x, y) + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
+        let here = &at.sample.way;
+        let clear = |i: usize| rooms[i][0] <= here[i] - ways[i] && here[i] + ways[i] <= rooms[i][1];
+        at.far + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
     }
 
     /// Holds a stop from a state against disk and bounds: at the ends of its three segments.

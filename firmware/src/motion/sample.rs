@@ -1,7 +1,7 @@
 //! The state of a motion at an instant of a stretch, in floats: track radii, radians and seconds.
 
 use super::axis::Axis;
-use super::float::rough;
+use super::float::{cut, rough};
 use super::plan::Piece;
 use super::platform::Platform;
 use super::units::{PER_AXIS_UNIT, PER_UNIT, UNITS};
@@ -71,7 +71,7 @@ impl Arc {
     /// Sine and cosine of theta after a way of so many radians.
     pub fn direction(&self, way: f32) -> (f32, f32) {
         const UNITS_A_RADIAN: f32 = UNITS / TAU;
-        let theta = i64::from(self.theta).wrapping_add((way * UNITS_A_RADIAN) as i64);
+        let theta = i64::from(self.theta).wrapping_add(cut(way * UNITS_A_RADIAN));
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
         (sin.to_f32(), cos.to_f32())
     }

@@ -1,7 +1,8 @@
 //! How large velocity, acceleration and jerk are over a stretch, and what the pivots can make of them at most.
 
+use super::envelope::Look;
 use super::float::{Order, hypot};
-use super::sample::{Arc, Sample};
+use super::sample::Sample;
 use super::swing::{Bound, Pace};
 
 /// Of translation (track radii) and of rotation (rad), per second, squared and cubed.
@@ -13,18 +14,14 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// Over the `t` seconds from one state to the other.
-    pub fn new(arc: &Arc, from: &Sample, to: &Sample, t: f32) -> Self {
-        let [x, y, theta] = [0, 1, 2].map(|i| fastest(from, to, i, t));
-        let j = [hypot(arc.jerk[0], arc.jerk[1]), arc.jerk[2].abs()];
+    /// Over the `t` seconds from one state to the other, with jerks of these sizes.
+    pub fn new(j: [f32; 2], from: &Look, to: &Look, t: f32) -> Self {
+        let [x, y, theta] = [0, 1, 2].map(|i| fastest(&from.sample, &to.sample, i, t));
         // By its ends too: the greatest speeds of x and y need not come together.
-        let ends = hypot(from.v[0], from.v[1]).larger(hypot(to.v[0], to.v[1]));
+        let ends = from.v[0].larger(to.v[0]);
         Self {
             v: [hypot(x, y).smaller(ends + j[0] * t * t / 8.0), theta],
-            a: [
-                hypot(from.a[0], from.a[1]).larger(hypot(to.a[0], to.a[1])),
-                from.a[2].abs().larger(to.a[2].abs()),
-            ],
+            a: [0, 1].map(|i| from.a[i].larger(to.a[i])),
             j,
         }
     }

@@ -7,11 +7,12 @@
 use super::axis::Axis;
 use super::brake::Brake;
 use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
+use super::fit::Track;
 use super::float::Order;
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
 use super::sample::Arc;
-use super::tracks::{Pieces, braked, merged};
+use super::tracks::{Pieces, brake, merged};
 use super::units::UnitLimits;
 use heapless::Vec;
 
@@ -82,10 +83,13 @@ pub fn plan_stop(
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
         let ticks = brake.ticks();
         if apart {
-            lay_apart(&state, &limits, hardness, &mut plan.pieces);
+            lay(
+                &state,
+                apart_ticks(&state, &limits, hardness),
+                &mut plan.pieces,
+            );
         } else {
-            let [x, y, theta] = state.map(|axis| braked(&axis, ticks));
-            merged(&[x, y, theta], &mut plan.pieces);
+            lay(&state, [ticks; 3], &mut plan.pieces);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it. So
         // may one that had to be made softer.
@@ -126,16 +130,22 @@ const fn at_rest(axis: &Axis) -> Axis {
     }
 }
 
-/// Writes the pieces that brake translation and rotation each as soon as it can.
-fn lay_apart(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2], pieces: &mut Pieces) {
+/// Ticks in which translation and rotation each brake as soon as they can.
+fn apart_ticks(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2]) -> [[u64; 3]; 3] {
     let [x, y, theta] = *state;
     let still = Axis::default();
     let ticks = |state: [Axis; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
-    let (way, turn) = (ticks([x, y, still]), ticks([still, still, theta]));
-    merged(
-        &[braked(&x, way), braked(&y, way), braked(&theta, turn)],
-        pieces,
-    );
+    let way = ticks([x, y, still]);
+    [way, way, ticks([still, still, theta])]
+}
+
+/// Writes the pieces that brake the axes in so many ticks.
+fn lay(state: &[Axis; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
+    let mut tracks: [Track; 3] = Default::default();
+    for (track, (axis, ticks)) in tracks.iter_mut().zip(state.iter().zip(ticks)) {
+        brake(track, axis, ticks);
+    }
+    merged(&tracks, pieces);
 }
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of

@@ -21,7 +21,7 @@ pub(super) fn shortest(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Op
         // An axis that has nothing to do needs no limits.
         if *way != 0 || axis.velocity != 0 || axis.acceleration != 0 {
             let task = task(axis, axis.position + way);
-            *least = AxisProfile::fastest(&task, limits).ok()?.duration();
+            *least = AxisProfile::shortest(&task, limits).ok()?;
         }
     }
     Some(shortest)
@@ -35,16 +35,16 @@ pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Optio
     let mut tracks: [Track; 3] = Default::default();
     for (i, track) in tracks.iter_mut().enumerate() {
         let (axis, way) = ways[i];
-        *track = fit(axis, way, &limits[i], longest)?;
+        fit(track, axis, way, &limits[i], longest)?;
     }
     let mut pieces = Pieces::new();
     merged(&tracks, &mut pieces);
     Some(pieces)
 }
 
-/// The track of one axis that takes so many ticks to rest, wherever that is.
-pub(super) fn braked(axis: &Axis, ticks: [u64; 3]) -> Track {
-    let mut track = Track::new();
+/// Writes the track of one axis that takes so many ticks to rest, wherever that is.
+pub(super) fn brake(track: &mut Track, axis: &Axis, ticks: [u64; 3]) {
+    track.clear();
     if axis.velocity != 0 || axis.acceleration != 0 {
         let [first, last] = jerks(axis, ticks);
         for segment in [(ticks[0], first), (ticks[1], 0), (ticks[2], last)] {
@@ -53,7 +53,6 @@ pub(super) fn braked(axis: &Axis, ticks: [u64; 3]) -> Track {
             }
         }
     }
-    track
 }
 
 /// One list of pieces from three tracks: a new one wherever a jerk changes. It has room for all segments of all axes.

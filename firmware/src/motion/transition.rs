@@ -20,14 +20,14 @@
 use super::axis::Axis;
 use super::choice::Choice;
 use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
-use super::fit::fit;
+use super::fit::{Track, fit};
 use super::ground::Ground;
 use super::heading::Plane;
 use super::line::check_target;
 use super::plan::{Plan, Position, Start, nudge};
 use super::refusal::Refusal;
 use super::slower::Slower;
-use super::tracks::{Pieces, braked, merged};
+use super::tracks::{Pieces, brake, merged};
 use super::units::UnitLimits;
 
 /// Why there is no transition. Nothing has changed.
@@ -162,8 +162,18 @@ impl Choice {
     /// Writes the pieces of this choice.
     fn lay(&self, state: &[Axis; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
         let view = self.heading.view(state, to);
-        let fit = |i: usize| fit(view[i].0, view[i].1, &self.limits[i / 2], self.duration());
-        let tracks = [fit(0)?, braked(&view[1].0, self.across), fit(2)?];
+        let mut tracks: [Track; 3] = Default::default();
+        brake(&mut tracks[1], &view[1].0, self.across);
+        for i in [0, 2] {
+            let (axis, way) = view[i];
+            fit(
+                &mut tracks[i],
+                axis,
+                way,
+                &self.limits[i / 2],
+                self.duration(),
+            )?;
+        }
         merged(&tracks, pieces);
         let seen = [0, 1].map(|i| view[i].0.acceleration);
         let from = [0, 1].map(|i| state[i].acceleration);

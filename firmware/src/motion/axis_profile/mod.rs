@@ -64,15 +64,15 @@ pub struct AxisLimits<F> {
     pub jerk: F,
 }
 
-/// What an axis is to do, in the units of its limits.
+/// What an axis is to do, in the units of its limits. In doubles where the last digits of a distance count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Task {
+pub struct Task<T = f64> {
     /// Way to the target, where it is to be at rest.
-    pub distance: f64,
+    pub distance: T,
     /// Velocity now.
-    pub velocity: f64,
+    pub velocity: T,
     /// Acceleration now.
-    pub acceleration: f64,
+    pub acceleration: T,
 }
 
 /// Why there is no profile.
@@ -103,6 +103,18 @@ impl<F: Float> AxisProfile<F> {
     pub fn fastest(task: &Task, limits: &AxisLimits<F>) -> Result<Self, Unusable> {
         let start = Start::new(task, limits)?;
         start.profile(&start.fastest(), limits.jerk)
+    }
+
+    /// The duration of the fastest profile.
+    pub fn shortest<T: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> Result<F, Unusable> {
+        let start = Start::new(task, limits)?;
+        let main = start.fastest().t.into_iter();
+        let duration = main.fold(start.braked(), |sum, t| sum + t);
+        if duration.is_finite() {
+            Ok(duration)
+        } else {
+            Err(Unusable::Task)
+        }
     }
 
     /// The profile that arrives after `duration`, or the fastest where there is none. It never arrives later, unless the

@@ -33,7 +33,7 @@ pub(super) struct Main<F> {
 const NEAR: f64 = 1.0 / 64.0;
 
 impl<F: Float> Start<F> {
-    pub fn new(task: &Task, limits: &AxisLimits<F>) -> Result<Self, Unusable> {
+    pub fn new<T: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> Result<Self, Unusable> {
         let scaled = scaled(limits)?;
         let mut state = State::new(task, limits.jerk);
         let brake = state.brake(&scaled);
@@ -119,7 +119,7 @@ impl<F: Float> State<F> {
 
 /// Distance beyond the stop and released speed.
 #[inline(never)]
-fn from_doubles<F: Float>(task: &Task, limits: &AxisLimits<F>) -> (F, F) {
+fn from_doubles<T: Float, F: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> (F, F) {
     let jerk = limits.jerk.exact();
     let state = State::<f64>::new(task, jerk);
     let beyond = state.d - state.stop(limits.acceleration.exact() / jerk);

@@ -39,11 +39,12 @@ pub(super) fn peak<F: Float>(u: F, most: F) -> (F, F) {
 
 impl<F: Float> State<F> {
     /// Of a task in the units of its limits.
-    pub fn new(task: &Task, jerk: F) -> Self {
+    pub fn new<T: Float>(task: &Task<T>, jerk: F) -> Self {
+        let over = |value: T| F::of(value.exact()) / jerk;
         Self {
-            d: F::of(task.distance) / jerk,
-            v: F::of(task.velocity) / jerk,
-            a: F::of(task.acceleration) / jerk,
+            d: over(task.distance),
+            v: over(task.velocity),
+            a: over(task.acceleration),
         }
     }
 
