@@ -8,7 +8,8 @@ mod optimum;
 
 use firmware::motion::{Ground, Plan, Position, plan_line};
 use motion_bench::exact::Worst;
-use motion_bench::random::{Random, setting};
+use motion_bench::random::Random;
+use motion_bench::setting::setting;
 use motion_bench::*;
 use optimum::Optimum;
 use std::f64::consts::TAU;

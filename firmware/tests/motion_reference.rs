@@ -9,7 +9,8 @@ use firmware::motion::{
     Axis, AxisLimits, JERK_STEP, Limits, Plan, Position, plan_line, plan_transition, synchronised,
 };
 use motion_bench::exact::ends_at_rest;
-use motion_bench::random::{Random, setting};
+use motion_bench::random::Random;
+use motion_bench::setting::setting;
 use motion_bench::*;
 use rsruckig::prelude::*;
 

@@ -3,8 +3,12 @@
 //! `cargo test` draws 20,000; the full run is
 //! `PROFILE_CASES=200000 cargo test --release -p firmware --test profile_reference -- --nocapture`, and another seed `PROFILE_SEED`.
 
+#[path = "motion_bench/setting.rs"]
+mod setting;
+
 use firmware::motion::{AxisLimits, AxisProfile, Task, Unusable, stop_distance};
 use rsruckig::prelude::*;
+use setting::setting;
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).
 struct Random(u64);
@@ -35,11 +39,6 @@ impl Random {
     fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         10_f64.powf(self.within(low, high))
     }
-}
-
-fn setting(name: &str, default: u64) -> u64 {
-    let value = std::env::var(name).ok().and_then(|text| text.parse().ok());
-    value.unwrap_or(default)
 }
 
 /// Limits and a state, in any relation to each other: idle, at the limits, far over them, far or near or nowhere to go.

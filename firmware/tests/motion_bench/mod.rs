@@ -4,6 +4,7 @@
 pub mod exact;
 pub mod grounds;
 pub mod random;
+pub mod setting;
 pub mod streaming;
 
 use firmware::motion::{Axis, Ground, Limits, Plan, Position, plan_line};

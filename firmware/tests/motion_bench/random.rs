@@ -4,12 +4,6 @@ use super::UNIT;
 use firmware::motion::{Ground, Position};
 use std::f64::consts::TAU;
 
-/// A number from the environment.
-pub fn setting(name: &str, otherwise: u64) -> u64 {
-    let set = std::env::var(name).ok().and_then(|text| text.parse().ok());
-    set.unwrap_or(otherwise)
-}
-
 /// SplitMix64 (Steele, Lea and Flood, 2014).
 pub struct Random(u64);
 

@@ -4,7 +4,7 @@ use super::states::{Moving, ground};
 use crate::bench::{Bench, plain};
 use crate::random::Random;
 use crate::table::Came;
-use firmware::motion::{Motion, Plan, Position, Scale, Start};
+use firmware::motion::{Motion, Scale};
 
 /// Counts taking a plan, and a tick of it.
 #[inline(never)]
@@ -15,7 +15,7 @@ pub fn run(bench: &mut Bench) {
         1,
         &mut motion,
         |motion, random| {
-            let (plan, from) = from_rest(random);
+            let (plan, from) = Moving::new(random).begun_at_rest();
             motion.rest_at(from);
             plan
         },
@@ -45,21 +45,11 @@ pub fn run(bench: &mut Bench) {
 
 /// Pieces of two ticks or fewer, so that many change.
 fn begin_one_of_short_pieces(motion: &mut Motion, random: &mut Random) {
-    let (mut plan, from) = from_rest(random);
+    let (mut plan, from) = Moving::new(random).begun_at_rest();
     for piece in &mut plan.pieces {
         piece.ticks = piece.ticks.min(2);
     }
     motion.rest_at(from);
     // It starts where the motion rests, so it is taken.
     let _ = motion.accept(plan);
-}
-
-/// A plan as if it began at rest, and where: following it takes the same.
-fn from_rest(random: &mut Random) -> (Plan, Position) {
-    let Moving {
-        mut plan, start, ..
-    } = Moving::new(random);
-    let from = start.map(|axis| axis.rounded());
-    plan.start = Start::Rest(from);
-    (plan, from)
 }

@@ -5,10 +5,7 @@ use super::streaming::Streaming;
 use crate::bench::Bench;
 use crate::random::Random;
 use crate::table::Came;
-use firmware::motion::{
-    Axis, Next, NoTransition, Plan, Position, Start, Stop, Tries, plan_jog, plan_line, plan_stop,
-    try_transition,
-};
+use firmware::motion::{Axis, Next, NoTransition, Plan, Start, Stop, plan_jog, plan_line};
 
 /// Counts the planners.
 #[inline(never)]
@@ -24,7 +21,7 @@ pub fn run(bench: &mut Bench) {
         "motion: new target in motion",
         1,
         |random| (Moving::new(random), position(random)),
-        |(now, to)| retarget(now, *to),
+        |(now, to)| now.retargeted(*to),
         |_, plan| of_plan(plan.as_ref()),
     );
     bench.part(
@@ -52,7 +49,7 @@ pub fn run(bench: &mut Bench) {
             name,
             1,
             Moving::new,
-            |now| stopped(now, stop),
+            |now| now.stopped(stop),
             |_, plan| of_plan(plan.as_ref()),
         );
     }
@@ -60,14 +57,14 @@ pub fn run(bench: &mut Bench) {
 
 /// On at another velocity, or to a stop where that is no way.
 fn jog(now: &Moving, velocity: &[f64; 3]) -> Option<Plan> {
-    let state = now.plan.state_after(&now.start, now.at);
+    let state = now.state();
     let start = Start::Splice {
         plan: now.plan.id,
         tick: now.at,
     };
     match plan_jog(3, start, &state, velocity, ground()) {
         Ok(plan) => Some(plan),
-        Err(NoTransition::NeedsStop | NoTransition::TooFast) => stopped(now, Stop::Smooth),
+        Err(NoTransition::NeedsStop | NoTransition::TooFast) => now.stopped(Stop::Smooth),
         Err(NoTransition::Refused(_)) => None,
     }
 }
@@ -109,20 +106,6 @@ pub fn run_stream(bench: &mut Bench) {
             },
         );
     }
-}
-
-/// To a new target, or to a stop where there is no way to it without one, or not with the first try.
-fn retarget(now: &Moving, to: Position) -> Option<Plan> {
-    let mut tries = Tries::NONE;
-    match try_transition(3, &now.plan, &now.start, now.at, to, ground(), &mut tries) {
-        Ok(plan) => Some(plan),
-        Err(NoTransition::NeedsStop | NoTransition::TooFast) => stopped(now, Stop::Smooth),
-        Err(NoTransition::Refused(_)) => None,
-    }
-}
-
-fn stopped(now: &Moving, stop: Stop) -> Option<Plan> {
-    plan_stop(3, &now.plan, &now.start, now.at, ground(), stop)
 }
 
 fn of_plan(plan: Option<&Plan>) -> Came {

@@ -2,7 +2,10 @@
 
 use crate::random::Random;
 use core::hint::black_box;
-use firmware::motion::{Axis, Ground, Plan, Position, plan_line, plan_transition};
+use firmware::motion::{
+    Axis, Ground, NoTransition, Plan, Position, Start, Stop, Tries, plan_line, plan_stop,
+    plan_transition, try_transition,
+};
 use firmware::number::Fixed;
 use firmware::parameters::Parameters;
 use kinematics::{Acceleration, Angle, Geometry, Pose, Twist};
@@ -112,12 +115,40 @@ impl Moving {
         let to = position(random);
         match plan_transition(2, &line.plan, &line.start, line.at, to, ground()) {
             Ok(plan) => Self {
-                start: line.plan.state_after(&line.start, line.at),
+                start: line.state(),
                 at: random.up_to(plan.ticks() - 1),
                 plan,
             },
             Err(_) => line,
         }
+    }
+
+    /// To a new target, or to a stop where there is no way to it without one, or not with the first try.
+    pub fn retargeted(&self, to: Position) -> Option<Plan> {
+        let mut tries = Tries::NONE;
+        let (plan, start, at) = (&self.plan, &self.start, self.at);
+        match try_transition(3, plan, start, at, to, ground(), &mut tries) {
+            Ok(plan) => Some(plan),
+            Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
+            Err(NoTransition::Refused(_)) => None,
+        }
+    }
+
+    /// To a stop.
+    pub fn stopped(&self, stop: Stop) -> Option<Plan> {
+        plan_stop(3, &self.plan, &self.start, self.at, ground(), stop)
+    }
+
+    /// The axes where it is left.
+    pub fn state(&self) -> [Axis; 3] {
+        self.plan.state_after(&self.start, self.at)
+    }
+
+    /// The plan as if it began at rest, and where: following it takes the same.
+    pub fn begun_at_rest(self) -> (Plan, Position) {
+        let from = self.start.map(|axis| axis.rounded());
+        let start = Start::Rest(from);
+        (Plan { start, ..self.plan }, from)
     }
 
     fn on_a_line(random: &mut Random) -> Self {

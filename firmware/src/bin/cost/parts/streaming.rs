@@ -3,7 +3,7 @@
 use super::states::ground;
 use crate::random::Random;
 use core::f64::consts::TAU;
-use firmware::motion::{Clock, Next, Position, Progress, Stream};
+use firmware::motion::{Axis, Clock, Next, Position, Progress, Stream};
 
 const UNIT: f64 = 4_294_967_296.0;
 /// Seconds in which a path is brought to its rate.
@@ -11,11 +11,12 @@ const START_S: f64 = 0.05;
 /// Plans after which the stream is looked at, at most: well into the path at its rate.
 const MOST_PLANS: u32 = 40;
 
-/// A stream, and what the tick says.
+/// A stream, what the tick says, and where the axes are.
 #[derive(Default)]
 pub struct Streaming {
     stream: Option<Stream>,
     id: u32,
+    pub state: [Axis; 3],
 }
 
 /// A circle, its centre and radius in track radii, turned by `rate` turns a second, and theta with it.
@@ -75,12 +76,13 @@ impl Streaming {
             let mut trial = stream.clone();
             trial.push(target, ground()).ok()?;
             let next = trial.next(self.id + 1, &self.progress(), ground());
-            if matches!(next, Next::Send(..)) {
+            if let Next::Send(plan, start) = &next {
                 if self.id == plans {
                     self.stream = Some(stream);
                     return Some(target);
                 }
                 self.id += 1;
+                self.state = plan.state_after(start, 1);
             } else if matches!(next, Next::Over(_)) {
                 return None;
             }
