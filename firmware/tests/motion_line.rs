@@ -29,18 +29,18 @@ proptest! {
 
     #[test]
     fn limits_hold((from, to) in moves()) {
-        let worst = worst_shares(&line(from, to), at_rest(from));
-        prop_assert!(worst.iter().all(|&share| share <= SLACK), "{worst:?}");
+        let worst = Worst::of_corners(&line(from, to), at_rest(from));
+        prop_assert!(worst.is_kept(), "{worst:?}");
     }
 
     #[test]
     fn one_limit_is_used_up_in_a_long_move((from, to) in (positions(2.0), positions(2.0))) {
         let plan = line(from, to);
         let start = at_rest(from);
-        let worst = worst_shares(&plan, start);
+        let worst = Worst::of_corners(&plan, start);
         let pivots = (0..=400).map(|k| pivot_rate(&plan.state_after(&start, plan.ticks() * k / 400)));
         let pivots = pivots.fold(0.0, f64::max);
-        prop_assert!(worst[2] > 0.9 || pivots > 0.97, "{worst:?} {pivots}");
+        prop_assert!(worst.jerk > 0.9 || pivots > 0.97, "{worst:?} {pivots}");
     }
 
     #[test]
@@ -158,8 +158,8 @@ fn ten_thousand_turns_arrive_exactly() {
         for axes in corners(&plan, at_rest(from)) {
             assert!(off_line(&axes, &from, &to) < 0.1);
         }
-        let worst = worst_shares(&plan, at_rest(from));
-        assert!(worst.iter().all(|&share| share <= SLACK), "{worst:?}");
+        let worst = Worst::of_corners(&plan, at_rest(from));
+        assert!(worst.is_kept(), "{worst:?}");
         assert_eq!(plan.state_after(&at_rest(from), plan.ticks()), at_rest(to));
     }
 }

@@ -1,6 +1,6 @@
 //! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
 
-use super::{AXIS_UNIT, UNIT};
+use super::{AXIS_UNIT, GROUND, UNIT, corners};
 use firmware::motion::{Axis, Ground, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
@@ -14,6 +14,33 @@ pub fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
             && axis.velocity.unsigned_abs() < 1 << 32
             && axis.acceleration.unsigned_abs() < 1 << 24
     })
+}
+
+/// Pose and motion of a platform whose point `centre` is at a place and has these velocities and accelerations: track radii, rad.
+pub fn platform(
+    [x, y, theta]: [f64; 3],
+    v: [f64; 3],
+    a: [f64; 3],
+    [p, q]: [f64; 2],
+) -> (Pose<f64>, Twist<f64>, Acceleration<f64>) {
+    let (sin, cos) = theta.sin_cos();
+    let arm = [p * cos - q * sin, p * sin + q * cos];
+    let pose = Pose {
+        x: x - arm[0],
+        y: y - arm[1],
+        theta,
+    };
+    let twist = Twist {
+        x: v[0] + v[2] * arm[1],
+        y: v[1] - v[2] * arm[0],
+        theta: v[2],
+    };
+    let acceleration = Acceleration {
+        x: a[0] + a[2] * arm[1] + v[2] * v[2] * arm[0],
+        y: a[1] - a[2] * arm[0] + v[2] * v[2] * arm[1],
+        theta: a[2],
+    };
+    (pose, twist, acceleration)
 }
 
 /// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or turns.
@@ -60,24 +87,7 @@ impl Worst {
             &mut self.acceleration,
         );
 
-        let (sin, cos) = theta.sin_cos();
-        let [p, q] = ground.centre;
-        let arm = [p * cos - q * sin, p * sin + q * cos];
-        let pose = Pose {
-            x: at[0] - arm[0],
-            y: at[1] - arm[1],
-            theta,
-        };
-        let twist = Twist {
-            x: v[0] + v[2] * arm[1],
-            y: v[1] - v[2] * arm[0],
-            theta: v[2],
-        };
-        let acceleration = Acceleration {
-            x: a[0] + a[2] * arm[1] + v[2] * v[2] * arm[0],
-            y: a[1] - a[2] * arm[0] + v[2] * v[2] * arm[1],
-            theta: a[2],
-        };
+        let (pose, twist, acceleration) = platform([at[0], at[1], theta], v, a, ground.centre);
         self.outside = self
             .outside
             .max(pose.x.hypot(pose.y) - ground.geometry.usable_radius());
@@ -109,6 +119,26 @@ impl Worst {
         worst
     }
 
+    fn look_at_jerk(&mut self, jerk: &[i64; 3], ground: &Ground) {
+        let limits = &ground.limits;
+        let jerk = jerk.map(|jerk| jerk as f64 / AXIS_UNIT * limits.rate_hz.powi(3));
+        let path = jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / limits.jerk_mm_s3;
+        let turn = jerk[2].abs() * 360.0 / limits.turn_jerk_deg_s3;
+        self.jerk = self.jerk.max(path).max(turn);
+    }
+
+    /// Of a plan on the usual ground, looked at where its pieces meet and in their middles only.
+    pub fn of_corners(plan: &Plan, start: [Axis; 3]) -> Self {
+        let mut worst = Self::default();
+        for axes in corners(plan, start) {
+            worst.look(&axes, &GROUND);
+        }
+        for piece in &plan.pieces {
+            worst.look_at_jerk(&piece.jerk, &GROUND);
+        }
+        worst
+    }
+
     /// Takes every tick of a plan from `start`; the state at its end, as the integers give it.
     pub fn walk(&mut self, plan: &Plan, start: &[Axis; 3], ground: &Ground) -> [Axis; 3] {
         self.walk_ends(plan, start, ground, u64::MAX)
@@ -122,17 +152,10 @@ impl Worst {
         ground: &Ground,
         most: u64,
     ) -> [Axis; 3] {
-        let hz = ground.limits.rate_hz;
         let mut axes = *start;
         self.look(&axes, ground);
         for piece in &plan.pieces {
-            let jerk = piece.jerk.map(|jerk| jerk as f64 / AXIS_UNIT * hz.powi(3));
-            let path =
-                jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / ground.limits.jerk_mm_s3;
-            self.jerk = self
-                .jerk
-                .max(path)
-                .max(jerk[2].abs() * 360.0 / ground.limits.turn_jerk_deg_s3);
+            self.look_at_jerk(&piece.jerk, ground);
             let skipped = piece.ticks.saturating_sub(most);
             for tick in 0..piece.ticks - skipped {
                 for (i, axis) in axes.iter_mut().enumerate() {

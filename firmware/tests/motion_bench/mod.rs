@@ -110,37 +110,6 @@ pub fn velocity(axes: &[Axis; 3]) -> [f64; 3] {
     axes.map(|axis| axis.velocity as f64 / AXIS_UNIT * LIMITS.rate_hz)
 }
 
-/// Acceleration in track radii and turns per second squared.
-pub fn acceleration(axes: &[Axis; 3]) -> [f64; 3] {
-    axes.map(|axis| axis.acceleration as f64 / AXIS_UNIT * LIMITS.rate_hz.powi(2))
-}
-
-/// Part of what is allowed, of a rate in track radii and turns: along the path, and of rotation.
-pub fn share(rate: [f64; 3], path_mm: f64, turn_deg: f64) -> f64 {
-    let path = rate[0].hypot(rate[1]) * GEOMETRY.radius_mm / path_mm;
-    path.max(rate[2].abs() * 360.0 / turn_deg)
-}
-
-/// Largest part of its limit that speed, acceleration and jerk reach in a plan.
-pub fn worst_shares(plan: &Plan, start: [Axis; 3]) -> [f64; 3] {
-    let hz = LIMITS.rate_hz;
-    let mut worst = [0.0_f64; 3];
-    for axes in corners(plan, start) {
-        let speed = share(velocity(&axes), LIMITS.speed_mm_s, LIMITS.turn_speed_deg_s);
-        let force = share(
-            acceleration(&axes),
-            LIMITS.acceleration_mm_s2,
-            LIMITS.turn_acceleration_deg_s2,
-        );
-        worst = [worst[0].max(speed), worst[1].max(force), worst[2]];
-    }
-    for piece in &plan.pieces {
-        let jerk = piece.jerk.map(|jerk| jerk as f64 / AXIS_UNIT * hz.powi(3));
-        worst[2] = worst[2].max(share(jerk, LIMITS.jerk_mm_s3, LIMITS.turn_jerk_deg_s3));
-    }
-    worst
-}
-
 /// Distance of a state from the line `from` -> `to`, units: how far its axes disagree on how much of the way is done.
 pub fn off_line(axes: &[Axis; 3], from: &Position, to: &Position) -> f64 {
     let way = [0, 1, 2].map(|i| (to[i] - from[i]) as f64);

@@ -10,9 +10,10 @@
 //!
 //! A motion under all limits keeps those of each of the two, so it can not be shorter than either.
 
+use super::motion_bench::exact::platform;
 use super::motion_bench::{UNIT, optimum_ticks};
 use firmware::motion::{Ground, Position};
-use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
+use kinematics::{inverse, pivot_motion};
 use std::f64::consts::TAU;
 
 /// Durations of the two motions; see the module.
@@ -57,26 +58,11 @@ impl Optimum {
     }
 }
 
-fn demand(start: &[f64; 3], way: &[f64; 3], s: f64, [p, q]: [f64; 2]) -> Demand {
-    let theta = (start[2] + way[2] * s).fract() * TAU;
-    let turn = way[2] * TAU;
-    let (sin, cos) = theta.sin_cos();
-    let arm = [cos * p - sin * q, sin * p + cos * q];
-    let pose = Pose {
-        x: start[0] + way[0] * s - arm[0],
-        y: start[1] + way[1] * s - arm[1],
-        theta,
-    };
-    let twist = Twist {
-        x: way[0] + turn * arm[1],
-        y: way[1] - turn * arm[0],
-        theta: turn,
-    };
-    let bend = Acceleration {
-        x: turn * turn * arm[0],
-        y: turn * turn * arm[1],
-        theta: 0.0,
-    };
+fn demand(start: &[f64; 3], way: &[f64; 3], s: f64, centre: [f64; 2]) -> Demand {
+    let at = [0, 1, 2].map(|i| start[i] + way[i] * s);
+    let theta = at[2].fract() * TAU;
+    let rate = [way[0], way[1], way[2] * TAU];
+    let (pose, twist, bend) = platform([at[0], at[1], theta], rate, [0.0; 3], centre);
     let guides = inverse(&pose).expect("inside the track").guides;
     let motion = pivot_motion(&guides, &twist, &bend);
     [0, 1, 2].map(|i| (motion.rates[i], motion.accelerations[i]))
