@@ -170,6 +170,14 @@ impl Shape {
         more > 0
     }
 
+    /// Rounding a long brake up can turn a short peak over: it brakes too, and lengthening it would only add to the way that it
+    /// has to make up for. From it the acceleration then goes on to the brake's, not by way of zero.
+    fn go_on_to_the_brake(&mut self) {
+        self.released_in_part = true;
+        self.n[0] += self.n[2] + self.n[3];
+        self.n[2..4].fill(0);
+    }
+
     /// Whether something had to be lengthened.
     fn lengthen(
         &mut self,
@@ -191,8 +199,13 @@ impl Shape {
                 let now = self.n[k];
                 let enough = change.abs() / limits.jerk;
                 let longest = ticks_up(sqrt_f32(enough * float(now))).max(now + 1);
-                let down = k == 0 && peak * start > 0.0 && peak.abs() < start.abs();
                 longer = true;
+                let turned = !part && self.n[1] == 0 && peak * brake > 0.0;
+                if k < 4 && turned && self.n[3] < longest - now {
+                    self.go_on_to_the_brake();
+                    return true;
+                }
+                let down = k == 0 && peak * start > 0.0 && peak.abs() < start.abs();
                 if down && self.take_from_peak(longest - now) {
                     continue;
                 }
@@ -206,6 +219,10 @@ impl Shape {
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
+                // Where the peak brakes, another tick of it is more way to be made up for, unless it is one less at speed.
+                if k == 1 && peak * brake > 0.0 {
+                    self.n[3] = self.n[3].saturating_sub(1);
+                }
                 longer = true;
             }
         }
@@ -283,6 +300,17 @@ mod tests {
         ))
     }
 
+    /// From -1 to 1, the same every time.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut random = 7_u64;
+        move || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
     #[test]
     fn nothing_to_do_is_no_track() {
         let axis = Axis::at_rest(3);
@@ -302,15 +330,24 @@ mod tests {
         }
     }
 
+    /// Braking first, which rounding may put over the limit of acceleration.
+    #[test]
+    fn a_slower_one_is_found_as_well() {
+        let mut next = numbers();
+        let mut none = 0;
+        for _ in 0..40_000 {
+            let (axis, way) = state(next() * 0.9, next() * 0.4, 2.0 * next());
+            let fastest = AxisProfile::fastest(&task(&axis, axis.position + way), &LIMITS).unwrap();
+            let duration = fastest.duration() * (2.0 + next() as f32);
+            none += u32::from(fit(&mut Track::new(), axis, way, &LIMITS, duration).is_none());
+        }
+        println!("{none} not at all");
+        assert!(none < 5);
+    }
+
     #[test]
     fn in_whole_ticks_it_takes_a_few_ticks_more() {
-        let mut random = 7_u64;
-        let mut next = move || {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut next = numbers();
         let (mut more, mut none) = (Vec::new(), 0);
         for _ in 0..4_000 {
             let (v, a) = (next(), next());
@@ -329,8 +366,25 @@ mod tests {
         let [middle, late, last] = [more.len() / 2, more.len() * 99 / 100, more.len() - 1];
         let [middle, late, last] = [middle, late, last].map(|k| more[k]);
         println!("ticks more: median {middle}, 99 % {late}, worst {last}; {none} not at all");
-        // Just beyond the fastest stop there is little to choose from.
-        assert!(middle < 3.0 && late < 10.0 && last < 300.0 && none < 20);
+        // Just beyond the fastest stop, out of an acceleration, there is little to choose from.
+        assert!(middle < 3.0 && late < 10.0 && last < 150.0 && none < 5);
+    }
+
+    /// There the short peak before a long brake has to make up for what rounding adds to the brake.
+    #[test]
+    fn just_beyond_the_fastest_stop_it_takes_a_few_ticks_more() {
+        let [v, a, j] = [LIMITS.velocity, LIMITS.acceleration, LIMITS.jerk].map(f64::from);
+        let (mut most, mut none) = (0.0_f32, 0);
+        for (speed, beyond) in (1..=20).flat_map(|v| (10..200).map(move |ticks| (v, ticks))) {
+            let speed = f64::from(speed) / 20.0;
+            let stop = speed * (speed * v / a + a / j) + speed * f64::from(beyond);
+            match fitted(speed, 0.0, stop / (v / a + a / j)) {
+                Some((ticks, least)) => most = most.max(ticks as f32 - least),
+                None => none += 1,
+            }
+        }
+        println!("worst {most} ticks more; {none} not at all");
+        assert!(most < 5.0 && none < 5);
     }
 
     /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two ticks.
