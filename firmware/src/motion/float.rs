@@ -1,45 +1,19 @@
 //! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with references.
 
 use crate::number::sqrt_f32;
-use core::fmt::Debug;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use kinematics::Real;
 
-/// What a profile asks of its numbers. All of it is correctly rounded, or the same integer arithmetic everywhere: the chip
-/// and a desktop get the same bits.
-pub trait Float:
-    Copy
-    + Debug
-    + Default
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// 0.
-    const ZERO: Self;
-    /// 1.
-    const ONE: Self;
-    /// Distance of the next number after 1.
-    const EPSILON: Self;
+/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same integer
+/// arithmetic everywhere: the chip and a desktop get the same bits.
+pub trait Float: Real + Default {
     /// Whether differences of large numbers are worth more digits than this float has.
     const COARSE: bool;
 
-    /// The nearest number. Free for a constant.
-    fn of(value: f64) -> Self;
-
-    /// The same number.
-    fn exact(self) -> f64;
-
-    /// Square root.
-    fn sqrt(self) -> Self;
+    /// Square root by the chip's instruction, where it has one: that of [`Real`] is a program there.
+    fn root(self) -> Self;
 
     /// Cube root of a number that is not negative, right to some percent at least: a first guess.
     fn rough_cbrt(self) -> Self;
-
-    /// Neither NaN nor infinite.
-    fn is_finite(self) -> bool;
 
     /// Size.
     fn abs(self) -> Self {
@@ -56,11 +30,6 @@ pub trait Float:
         if other < self { other } else { self }
     }
 
-    /// Half of it.
-    fn half(self) -> Self {
-        self * Self::of(0.5)
-    }
-
     /// Its square.
     fn square(self) -> Self {
         self * self
@@ -68,22 +37,10 @@ pub trait Float:
 }
 
 impl Float for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const EPSILON: Self = f32::EPSILON;
     const COARSE: bool = true;
 
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-
-    fn exact(self) -> f64 {
-        f64::from(self)
-    }
-
     #[inline]
-    fn sqrt(self) -> Self {
+    fn root(self) -> Self {
         sqrt_f32(self)
     }
 
@@ -93,37 +50,17 @@ impl Float for f32 {
         let guess = Self::from_bits(self.to_bits() / 3 + 0x2A51_37A0);
         (2.0 * guess + self / (guess * guess)) / 3.0
     }
-
-    #[inline]
-    fn is_finite(self) -> bool {
-        Self::is_finite(self)
-    }
 }
 
 impl Float for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const EPSILON: Self = f64::EPSILON;
     const COARSE: bool = false;
 
-    fn of(value: f64) -> Self {
-        value
-    }
-
-    fn exact(self) -> f64 {
-        self
-    }
-
-    fn sqrt(self) -> Self {
+    fn root(self) -> Self {
         libm::sqrt(self)
     }
 
     fn rough_cbrt(self) -> Self {
         libm::cbrt(self)
-    }
-
-    fn is_finite(self) -> bool {
-        Self::is_finite(self)
     }
 }
 

@@ -20,7 +20,7 @@ impl<F: Float> Start<F> {
             beyond = beyond - most;
         }
         let touching = Touching::new(self);
-        let s = (self.limits.v - self.v_s).max(F::ZERO).sqrt();
+        let s = (self.limits.v - self.v_s).max(F::ZERO).root();
         let full = (s - touching.least).max(F::ZERO);
         let longest = touching.way(full).0;
         if beyond >= longest {
@@ -45,13 +45,14 @@ impl<F: Float> Start<F> {
         let (v_z, most) = (self.v_z, self.limits.a);
         let w = v_z + q.square();
         if w <= most.square() {
-            let r = w.sqrt();
+            let r = w.root();
             let g = v_z / (r + q);
             return (g * (g.square() + g * q - q.square()), -(g * (r + g)));
         }
-        let two = F::of(2.0);
+        let two = F::from_f64(2.0);
         let room = q * (most - q);
-        let way = v_z * (v_z + two * q.square() + most * (most - F::of(4.0) * q)) + room.square();
+        let way =
+            v_z * (v_z + two * q.square() + most * (most - F::from_f64(4.0) * q)) + room.square();
         let slope = two * (v_z * (q - most) * two + room * (most - two * q));
         (way / (most + most), slope / (most + most))
     }
@@ -102,7 +103,7 @@ impl<F: Float> Touching<F> {
         let least = if start.v_z > F::ZERO {
             start.state.a.max(F::ZERO)
         } else {
-            (-start.v_s).max(F::ZERO).sqrt()
+            (-start.v_s).max(F::ZERO).root()
         };
         let base = start.v_z.max(F::ZERO);
         Self {
@@ -141,7 +142,7 @@ impl<F: Float> Touching<F> {
     }
 
     fn jerk_slope(&self, s: F) -> F {
-        self.v_s + self.v_s + F::of(3.0) * s.square()
+        self.v_s + self.v_s + F::from_f64(3.0) * s.square()
     }
 
     /// `(v_s + s^2 / 2) (s^2 / A + A)` from `low` to `s`, and its derivative.
@@ -157,13 +158,13 @@ impl<F: Float> Touching<F> {
     fn solve(&self, beyond: F, full: F) -> F {
         // Exact from rest.
         let most = self.most;
-        let from_rest = if beyond <= F::of(2.0) * most.square() * most {
+        let from_rest = if beyond <= F::from_f64(2.0) * most.square() * most {
             beyond.half().rough_cbrt().square()
         } else {
-            let root = (most.square() + F::of(4.0) * beyond / most).sqrt();
+            let root = (most.square() + F::from_f64(4.0) * beyond / most).root();
             most.half() * (root - most)
         };
-        let guess = (from_rest - self.v_s).max(F::ZERO).sqrt() - self.least;
+        let guess = (from_rest - self.v_s).max(F::ZERO).root() - self.least;
         newton(F::ZERO, full, guess, |more| {
             let (way, slope) = self.way(more);
             (way - beyond, slope)
@@ -174,8 +175,8 @@ impl<F: Float> Touching<F> {
 /// Distance of the ramp from speed `u` to rest, and its derivative.
 fn down<F: Float>(u: F, most: F) -> (F, F) {
     if u <= most.square() {
-        let root = u.max(F::ZERO).sqrt();
-        (u * root, F::of(1.5) * root)
+        let root = u.max(F::ZERO).root();
+        (u * root, F::from_f64(1.5) * root)
     } else {
         let held = u / most;
         (u.half() * (held + most), held + most.half())
@@ -197,7 +198,7 @@ fn newton<F: Float>(mut low: F, mut high: F, guess: F, f: impl Fn(F) -> (F, F)) 
         let next = x - value / slope;
         let inside = next > low && next < high;
         let next = if inside { next } else { (low + high).half() };
-        if (next - x).abs() <= F::of(2.0) * F::EPSILON * next.abs() {
+        if (next - x).abs() <= F::from_f64(2.0) * F::EPSILON * next.abs() {
             return next;
         }
         x = next;

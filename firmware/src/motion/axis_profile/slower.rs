@@ -28,7 +28,7 @@ impl<F: Float> Start<F> {
         }
         for round in 0..MOST_ROUNDS {
             // Early by so little is as good as in time.
-            if f_high <= high * duration * F::of(EARLY) {
+            if f_high <= high * duration * F::from_f64(EARLY) {
                 break;
             }
             let middle = if round % 3 == 2 {

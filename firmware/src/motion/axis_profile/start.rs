@@ -109,7 +109,7 @@ fn scaled<F: Float>(limits: &AxisLimits<F>) -> Result<Scaled<F>, Unusable> {
 impl<F: Float> State<F> {
     /// Whether one of the two differences is small.
     fn is_near(&self, beyond: F, v_z: F, stop: F) -> bool {
-        let near = F::of(NEAR);
+        let near = F::from_f64(NEAR);
         let (v, a) = (self.v.abs(), self.a.abs());
         let moving = v > F::ZERO || a > F::ZERO;
         let terms = self.d.abs() + stop.abs() + a * (v + a.square());
@@ -120,8 +120,8 @@ impl<F: Float> State<F> {
 /// Distance beyond the stop and released speed.
 #[inline(never)]
 fn from_doubles<T: Float, F: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> (F, F) {
-    let jerk = limits.jerk.exact();
+    let jerk = limits.jerk.to_f64();
     let state = State::<f64>::new(task, jerk);
-    let beyond = state.d - state.stop(limits.acceleration.exact() / jerk);
-    (F::of(beyond), F::of(state.released()))
+    let beyond = state.d - state.stop(limits.acceleration.to_f64() / jerk);
+    (F::from_f64(beyond), F::from_f64(state.released()))
 }

@@ -21,7 +21,7 @@ pub(super) struct State<F> {
 /// The time in which speed changes by `u` from zero acceleration to zero acceleration.
 pub(super) fn ramp<F: Float>(u: F, most: F) -> F {
     if u <= most.square() {
-        let root = u.sqrt();
+        let root = u.root();
         root + root
     } else {
         u / most + most
@@ -31,7 +31,7 @@ pub(super) fn ramp<F: Float>(u: F, most: F) -> F {
 /// Peak and duration of the peak in such a change.
 pub(super) fn peak<F: Float>(u: F, most: F) -> (F, F) {
     if u <= most.square() {
-        (u.sqrt(), F::ZERO)
+        (u.root(), F::ZERO)
     } else {
         (most, u / most - most)
     }
@@ -40,7 +40,7 @@ pub(super) fn peak<F: Float>(u: F, most: F) -> (F, F) {
 impl<F: Float> State<F> {
     /// Of a task in the units of its limits.
     pub fn new<T: Float>(task: &Task<T>, jerk: F) -> Self {
-        let over = |value: T| F::of(value.exact()) / jerk;
+        let over = |value: T| F::from_f64(value.to_f64()) / jerk;
         Self {
             d: over(task.distance),
             v: over(task.velocity),
@@ -49,7 +49,7 @@ impl<F: Float> State<F> {
     }
 
     fn run(&mut self, t: F, jerk: F) {
-        self.d = self.d - t * (self.v + t * (self.a.half() + jerk * t / F::of(6.0)));
+        self.d = self.d - t * (self.v + t * (self.a.half() + jerk * t / F::from_f64(6.0)));
         self.v = self.v + t * (self.a + jerk * t.half());
         self.a = self.a + jerk * t;
     }
@@ -72,7 +72,7 @@ impl<F: Float> State<F> {
         let half = self.a.square().half();
         (
             self.v - half,
-            -(self.a * (self.v - half * F::of(2.0 / 3.0))),
+            -(self.a * (self.v - half * F::from_f64(2.0 / 3.0))),
         )
     }
 
@@ -103,7 +103,7 @@ impl<F: Float> State<F> {
         if over > F::ZERO {
             let way = way_of(released);
             let a = self.a * way;
-            let peak = (over + a.min(F::ZERO).square()).sqrt().min(limits.a);
+            let peak = (over + a.min(F::ZERO).square()).root().min(limits.a);
             let more = (peak + a).max(F::ZERO);
             if more > F::ZERO {
                 sign = -way;
