@@ -26,7 +26,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use asked::asked;
-use firmware::motion::{Axis, Motion, Next, Plan, Scale, plan_line};
+use firmware::motion::{Axis, Motion, Next, Plan, Scale, plan_line, plan_transition};
 use random::Random;
 use rsruckig::prelude::*;
 use setting::setting;
@@ -74,7 +74,10 @@ fn main() {
             let input = asked(&now.state(), &to);
             (now, to, input)
         },
-        |(now, to, _)| now.retargeted(*to).is_some(),
+        |(now, to, _)| {
+            let (plan, start) = (&now.plan, &now.start);
+            plan_transition(3, plan, start, now.at, *to, ground()).is_ok()
+        },
         |(.., input)| asks(input),
     );
     run.compare(

@@ -18,7 +18,7 @@ mod tests;
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::float::{Order, float, hypot};
+use super::float::{Order, cut, float, hypot};
 use super::ground::Ground;
 use super::plan::{MAX_PIECES, Piece};
 use super::platform::greatest;
@@ -63,6 +63,8 @@ pub(super) enum Broken {
     Rate(f32),
     /// The pivots' acceleration, by this factor.
     Acceleration(f32),
+    /// Nothing yet: not all has been looked at.
+    Unseen,
 }
 
 impl Broken {
@@ -86,8 +88,12 @@ impl Broken {
 
 /// Slack of single precision.
 const SLACK: f32 = 1.0 + 1e-4;
-/// Stretches that may be looked at until there is a plan, failed ones included.
-pub(super) const MOST_LOOKS: usize = 60;
+/// Stretches that may be looked at, failed ones included, before the next failure counts.
+const MOST_LOOKS: usize = 60;
+/// Stretches in the first slice.
+const SLICE: usize = 16;
+/// What has to have been seen by then, ticks, for the rest to be left for later.
+const LEAST_SEEN: u64 = 100;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
@@ -159,35 +165,44 @@ impl Envelope {
         axes
     }
 
-    /// Whether these stay inside. Of `looks`, the stretches that may be looked at, those looked at are taken.
-    pub fn check(&self, legs: &[Leg], looks: &mut usize) -> Result<(), Broken> {
+    /// Whether these stay inside, from what `looks` have seen of them before.
+    pub fn check(&self, legs: &[Leg], looks: &mut Looks) -> Result<(), Broken> {
         let (mut worst, mut glanced) = (None, false);
+        let mut before = looks.seen;
         for leg in legs {
+            if before >= leg.ticks {
+                before -= leg.ticks;
+                continue;
+            }
             self.check_jerk(leg)?;
-            let (mut done, mut ticks) = (0, leg.ticks);
-            let mut from = self.look(&leg.arc, 0);
+            let (mut done, mut ticks) = (core::mem::take(&mut before), leg.ticks);
+            let mut first = self.look(&leg.arc, done);
+            let mut second = first;
+            let (mut from, mut to) = (&mut first, &mut second);
             while done < leg.ticks {
                 ticks = ticks.min(leg.ticks - done);
-                let mut to = self.look(&leg.arc, done + ticks);
-                *looks = looks.saturating_sub(1);
-                match self.stretch(leg, [&mut from, &mut to], float(ticks) / self.hz) {
+                looks.take()?;
+                *to = self.look(&leg.arc, done + ticks);
+                match self.stretch(leg, [from, to], float(ticks) / self.hz) {
                     Ok(longer) => {
-                        from = to;
+                        core::mem::swap(&mut from, &mut to);
                         done += ticks;
-                        ticks = (float(ticks) * longer) as u64;
+                        looks.seen += ticks;
+                        ticks = cut(float(ticks) * longer) as u64;
                     }
                     Err((broken, shorter)) => {
                         if broken.is_of_pivots() && !glanced {
+                            looks.leave_for_later()?;
                             // Where a limit is passed indeed, a glance tells by how much.
                             self.glance(legs)?;
                             glanced = true;
                         }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
                         worst = Some(broken.or_worse(worst));
-                        if ticks <= SHORTEST || *looks == 0 {
+                        if ticks <= SHORTEST || looks.left == 0 {
                             return worst.map_or(Ok(()), Err);
                         }
-                        ticks = (float(ticks) * shorter) as u64;
+                        ticks = cut(float(ticks) * shorter) as u64;
                     }
                 }
                 ticks = ticks.max(SHORTEST);
@@ -331,6 +346,52 @@ impl Envelope {
             Broken::Acceleration,
         )?;
         Ok(once.smaller(twice).smaller(ALL))
+    }
+}
+
+/// How a motion is looked at.
+pub(super) struct Looks {
+    left: usize,
+    /// Stretches until the rest is left for later.
+    slice: usize,
+    /// Ticks from the start on that have been found inside.
+    pub seen: u64,
+}
+
+impl Looks {
+    /// At all of it, at once.
+    pub const ALL: Self = Self {
+        left: MOST_LOOKS,
+        slice: usize::MAX,
+        seen: 0,
+    };
+
+    /// At the start of it.
+    pub const SLICE: Self = Self {
+        slice: SLICE,
+        ..Self::ALL
+    };
+
+    /// At the rest of it.
+    pub const fn after(seen: u64) -> Self {
+        Self { seen, ..Self::ALL }
+    }
+
+    fn take(&mut self) -> Result<(), Broken> {
+        if self.slice == 0 {
+            self.leave_for_later()?;
+        }
+        self.slice = self.slice.saturating_sub(1);
+        self.left = self.left.saturating_sub(1);
+        Ok(())
+    }
+
+    fn leave_for_later(&self) -> Result<(), Broken> {
+        if self.slice <= SLICE && self.seen >= LEAST_SEEN {
+            Err(Broken::Unseen)
+        } else {
+            Ok(())
+        }
     }
 }
 

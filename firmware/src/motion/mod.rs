@@ -5,6 +5,7 @@
 //! at low priority ([`plan_line`], [`plan_stop`]); a plan reaches the tick through the command queue and is taken only if it
 //! starts where the motion is.
 
+mod ahead;
 mod axis;
 mod axis_brake;
 mod axis_profile;
@@ -49,6 +50,7 @@ mod transition;
 mod units;
 mod way;
 
+pub use ahead::Ahead;
 pub use axis::{Axis, JERK_STEP, SUB_BITS};
 pub use axis_profile::{AxisLimits, AxisProfile, Task, Unusable, stop_distance};
 pub use centre::{Centre, FURTHEST};

@@ -6,7 +6,7 @@
 
 use super::axis::Axis;
 use super::brake::Brake;
-use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
+use super::envelope::{Broken, Envelope, Legs, Looks};
 use super::fit::Track;
 use super::float::Order;
 use super::ground::Ground;
@@ -67,9 +67,10 @@ pub fn plan_stop(
         plan: of.id,
         tick: at,
     };
+    let most = hardest(&state, &limits, ground);
     let mut hardness = match stop {
-        Stop::Smooth => [1.0, 1.0],
-        Stop::Urgent => [hardest(&state, &limits, ground), factor * factor],
+        Stop::Smooth => [most.smaller(1.0), 1.0],
+        Stop::Urgent => [most, factor * factor],
     };
     let mut plan = Plan {
         id,
@@ -100,8 +101,8 @@ pub fn plan_stop(
         let end = envelope.legs(&plan.pieces, &state, &mut legs);
         plan.end = [0, 1, 2].map(|i| at_rest(&end[i]).after(lasts, 0, plan.nudge[i]).rounded());
         // A stop has to be found: none is left unlooked at because others have been looked at before.
-        match envelope.check(&legs, &mut { MOST_LOOKS }) {
-            Ok(()) => break,
+        match envelope.check(&legs, &mut { Looks::ALL }) {
+            Ok(()) | Err(Broken::Unseen) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Broken::Reach) if !apart => apart = true,
             Err(Broken::Reach) => {

@@ -17,9 +17,10 @@
 //! ([`Envelope`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
 //! where a stop and a straight line are sooner, the stage has to stop first.
 
+use super::ahead::Ahead;
 use super::axis::Axis;
 use super::choice::Choice;
-use super::envelope::{Broken, Envelope, Legs, MOST_LOOKS};
+use super::envelope::{Broken, Envelope, Legs, Looks};
 use super::fit::{Track, fit};
 use super::ground::Ground;
 use super::heading::Plane;
@@ -61,7 +62,7 @@ impl Tries {
 }
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
-/// takes.
+/// takes, all of it at once.
 pub fn plan_transition(
     id: u32,
     of: &Plan,
@@ -72,15 +73,22 @@ pub fn plan_transition(
 ) -> Result<Plan, NoTransition> {
     let mut tries = Tries::NONE;
     loop {
-        let tried = try_transition(id, of, from, at, to, ground, &mut tries);
+        let mut ahead = None;
+        let tried = try_transition(id, of, from, at, to, ground, &mut tries, &mut ahead);
+        let tried = match ahead {
+            Some(ahead) => ahead.whole(ground, &mut tries),
+            None => tried,
+        };
         if tried != Err(NoTransition::TooFast) {
             return tried;
         }
     }
 }
 
-/// The same with one try: a slice of the planning. What is left can be planned while the motion brakes.
+/// The first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
+/// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
 #[inline(never)]
+#[allow(clippy::too_many_arguments)]
 pub fn try_transition(
     id: u32,
     of: &Plan,
@@ -89,6 +97,7 @@ pub fn try_transition(
     to: Position,
     ground: &Ground,
     tries: &mut Tries,
+    ahead: &mut Option<Ahead>,
 ) -> Result<Plan, NoTransition> {
     check_target(&to, ground).map_err(NoTransition::Refused)?;
     if !ground.limits.all_positive() {
@@ -118,11 +127,17 @@ pub fn try_transition(
     let mut legs = Legs::new();
     let end = envelope.legs(&plan.pieces, &state, &mut legs);
     plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
-    match envelope.check(&legs, &mut { MOST_LOOKS }) {
-        Ok(()) => Ok(plan),
-        Err(Broken::Reach) => Err(NoTransition::NeedsStop),
-        Err(broken) => Err(tries.slower_by(&broken)),
+    let mut looks = Looks::SLICE;
+    let mut looked = envelope.check(&legs, &mut looks);
+    if looked == Err(Broken::Unseen) {
+        if let Some((rest, head)) = Ahead::new(&plan, &state, looks.seen, ground) {
+            *ahead = Some(rest);
+            return Ok(head);
+        }
+        looked = envelope.check(&legs, &mut Looks::after(looks.seen));
     }
+    looked.map_err(|broken| tries.after(&broken))?;
+    Ok(plan)
 }
 
 impl Tries {
@@ -147,10 +162,10 @@ impl Tries {
     }
 
     /// After a try that broke something.
-    fn slower_by(&mut self, broken: &Broken) -> NoTransition {
+    pub(super) fn after(&mut self, broken: &Broken) -> NoTransition {
         self.slower.by(broken);
         self.left = self.left.saturating_sub(1);
-        if self.left > 0 {
+        if self.left > 0 && *broken != Broken::Reach {
             NoTransition::TooFast
         } else {
             NoTransition::NeedsStop

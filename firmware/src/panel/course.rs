@@ -2,8 +2,8 @@
 
 use super::error::ErrorCode;
 use crate::motion::{
-    Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, Tries, plan_jog, plan_line,
-    plan_stop, try_transition,
+    Ahead, Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, Tries, plan_jog,
+    plan_line, plan_stop, try_transition,
 };
 
 /// What a motion is for.
@@ -69,7 +69,8 @@ impl Course {
         }
     }
 
-    /// The way to another goal that leaves this course at its tick `at`, by the next of `tries`.
+    /// The way to another goal that leaves this course at its tick `at`, by the next of `tries`; what of it is not planned yet is
+    /// left `ahead`.
     pub fn left_for(
         &self,
         goal: Goal,
@@ -77,12 +78,15 @@ impl Course {
         at: u64,
         ground: &Ground,
         tries: &mut Tries,
+        ahead: &mut Option<Ahead>,
     ) -> Result<Self, NoTransition> {
         let start = self.plan.state_after(&self.start, at);
         let planned = match goal {
             // It makes its plans itself.
             Goal::Stream => Err(NoTransition::NeedsStop),
-            Goal::Place(to) => try_transition(id, &self.plan, &self.start, at, to, ground, tries),
+            Goal::Place(to) => {
+                try_transition(id, &self.plan, &self.start, at, to, ground, tries, ahead)
+            }
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
             Goal::Velocity(velocity) => {
@@ -98,6 +102,22 @@ impl Course {
             goal,
             stop: None,
             start,
+        })
+    }
+
+    /// What lies `ahead` of this course, which is its head, from tick `at` on.
+    pub fn gone_on(
+        &self,
+        ahead: &Ahead,
+        id: u32,
+        at: u64,
+        ground: &Ground,
+        tries: &mut Tries,
+    ) -> Result<Self, NoTransition> {
+        Ok(Self {
+            plan: ahead.go_on(id, at, ground, tries)?,
+            start: self.plan.state_after(&self.start, at),
+            ..*self
         })
     }
 

@@ -23,7 +23,7 @@ mod start;
 use self::start::{Setting, State};
 use super::axis::Axis;
 use super::change::{Force, Pieces, Ramp, release};
-use super::envelope::{Envelope, Legs, MOST_LOOKS};
+use super::envelope::{Envelope, Legs, Looks};
 use super::ground::Ground;
 use super::plan::{MAX_PIECES, Piece, Plan, Start, after_all};
 use super::refusal::Refusal;
@@ -108,7 +108,7 @@ impl Jog {
             let mut legs = Legs::new();
             let steady = envelope.legs(&pieces, state, &mut legs);
             envelope
-                .check(&legs, &mut { MOST_LOOKS })
+                .check(&legs, &mut { Looks::ALL })
                 .map_err(|_| NoTransition::NeedsStop)?;
             steady
         };

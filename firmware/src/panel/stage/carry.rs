@@ -43,6 +43,7 @@ impl Stage {
     pub(super) fn want(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
         let before = (self.wanted, self.rest_first, self.stop_wanted, self.tries);
         (self.wanted, self.rest_first, self.tries) = (Some(goal), false, Tries::NONE);
+        let ahead = self.ahead.take();
         let result = match (self.mode(), self.stop_wanted) {
             (Mode::Holding, _) => self.start(goal, link),
             (Mode::Moving, None) => self.leave_for(goal, link),
@@ -50,6 +51,7 @@ impl Stage {
         };
         if result.is_err() {
             (self.wanted, self.rest_first, self.stop_wanted, self.tries) = before;
+            self.ahead = ahead;
         }
         result
     }
@@ -70,8 +72,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Sends the way to another goal, by one try a time; where there is none the stage stops first. It also brakes while it is to
-    /// be tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
+    /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while it is to be
+    /// tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
     fn leave_for(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
         let ground = match goal {
             Goal::Place(_) => self.ground_of_curve(),
@@ -82,11 +84,19 @@ impl Stage {
         let Some((course, at)) = self.under_way().filter(|_| self.next.is_none()) else {
             return Ok(());
         };
-        let (mut tries, stops) = (self.tries, course.stop.is_some());
-        match course.left_for(goal, id, at, &ground, &mut tries) {
+        let (mut tries, mut ahead) = (self.tries, None);
+        let before = (self.ahead.as_ref()).filter(|ahead| ahead.follows(course.plan.id, at));
+        // A stop that has begun, and a head, come to rest by themselves.
+        let stops = course.stop.is_some() || before.is_some();
+        let left = match before {
+            Some(before) => course.gone_on(before, id, at, &ground, &mut tries),
+            None => course.left_for(goal, id, at, &ground, &mut tries, &mut ahead),
+        };
+        self.ahead = ahead;
+        match left {
             Ok(left) => {
                 self.send_course(left, link)?;
-                self.wanted = None;
+                self.wanted = self.wanted.filter(|_| self.ahead.is_some());
             }
             Err(NoTransition::Refused(refusal)) => return Err(code(&refusal)),
             Err(no) => {

@@ -40,7 +40,7 @@ use super::soft::SoftLimits;
 use super::target::{Coordinates, coordinates};
 use super::wave::Waves;
 use crate::link::{Command, Mode, PanelLink, Snapshot};
-use crate::motion::{Ground, Limits, Position, Stop, Tries};
+use crate::motion::{Ahead, Ground, Limits, Position, Stop, Tries};
 use crate::parameters::{Parameters, Targets};
 use kinematics::Geometry;
 
@@ -84,8 +84,9 @@ pub(super) struct Stage {
     wanted: Option<Goal>,
     /// What is wanted can not be had without a stop before.
     rest_first: bool,
-    /// What has been tried to get to it in motion.
+    /// What has been tried to get to it in motion, and what follows the head that has been sent.
     tries: Tries,
+    ahead: Option<Ahead>,
     /// Velocities that `JOG` has set and that are kept, mm/s and deg/s in the frames in force.
     jog: Coordinates,
     target: Coordinates,
@@ -141,6 +142,7 @@ impl Stage {
             jog: [0.0; 6],
             rest_first: false,
             tries: Tries::NONE,
+            ahead: None,
             target: Coordinates::default(),
             target_is_rest: true,
             moving: AxisSet::EMPTY,

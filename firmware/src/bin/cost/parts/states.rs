@@ -125,9 +125,9 @@ impl Moving {
 
     /// To a new target, or to a stop where there is no way to it without one, or not with the first try.
     pub fn retargeted(&self, to: Position) -> Option<Plan> {
-        let mut tries = Tries::NONE;
+        let (mut tries, mut ahead) = (Tries::NONE, None);
         let (plan, start, at) = (&self.plan, &self.start, self.at);
-        match try_transition(3, plan, start, at, to, ground(), &mut tries) {
+        match try_transition(3, plan, start, at, to, ground(), &mut tries, &mut ahead) {
             Ok(plan) => Some(plan),
             Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
             Err(NoTransition::Refused(_)) => None,

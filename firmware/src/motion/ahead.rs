@@ -1,0 +1,120 @@
+//! What lies ahead of a transition that has been handed over before all of it was looked at.
+//!
+//! ```text
+//! velocity    ______________ _ _ _ _ _ _ _        The head is the transition's start, and a stop from where it ends: all of
+//!          __/      head    \             \       that has been looked at, so what moves can always come to rest. The rest is
+//!   ______/                  \   ahead     \      looked at in the next slice of the planning, and takes over from the head at
+//!                             \_ stop       \_    any of its ticks: it is the same motion.
+//! ```
+
+use super::axis::Axis;
+use super::envelope::{Broken, Envelope, Legs, Looks};
+use super::ground::Ground;
+use super::plan::{Piece, Plan, Start};
+use super::stop::{Stop, plan_stop};
+use super::transition::{NoTransition, Tries};
+use super::units::UnitLimits;
+use heapless::Vec;
+
+/// Ticks of a head: enough for the slices that follow, 10 ms at 20 kHz.
+const HEAD: u64 = 200;
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub struct Ahead {
+    /// All of the transition.
+    whole: Plan,
+    /// The axes at its start.
+    start: [Axis; 3],
+    /// Ticks that have been looked at.
+    seen: u64,
+    /// Ticks of the head before it stops.
+    head: u64,
+}
+
+impl Ahead {
+    /// Divides the transition `whole`, of which so many ticks have been looked at; and its head.
+    pub(super) fn new(
+        whole: &Plan,
+        start: &[Axis; 3],
+        seen: u64,
+        ground: &Ground,
+    ) -> Option<(Self, Plan)> {
+        let head = seen.min(HEAD);
+        let stop = plan_stop(whole.id, whole, start, head, ground, Stop::Smooth)?;
+        let mut plan = Plan {
+            pieces: Vec::new(),
+            end: stop.end,
+            ..*whole
+        };
+        let pieces = between(&whole.pieces, 0, head).chain(stop.pieces);
+        for piece in pieces {
+            plan.pieces.push(piece).ok()?;
+        }
+        let ahead = Self {
+            whole: whole.clone(),
+            start: *start,
+            seen,
+            head,
+        };
+        Some((ahead, plan))
+    }
+
+    /// Whether it goes on from tick `at` of plan `id`.
+    pub fn follows(&self, id: u32, at: u64) -> bool {
+        self.whole.id == id && at <= self.head
+    }
+
+    /// Looks at the rest, and plans it from tick `at` of the head on.
+    ///
+    /// # Errors
+    /// As of the transition, of which this was one of the `tries`.
+    pub fn go_on(
+        &self,
+        id: u32,
+        at: u64,
+        ground: &Ground,
+        tries: &mut Tries,
+    ) -> Result<Plan, NoTransition> {
+        self.look(ground).map_err(|broken| tries.after(&broken))?;
+        let mut plan = Plan {
+            id,
+            start: Start::Splice {
+                plan: self.whole.id,
+                tick: at,
+            },
+            pieces: Vec::new(),
+            ..self.whole
+        };
+        for piece in between(&self.whole.pieces, at, u64::MAX) {
+            // They are no more than before.
+            let _ = plan.pieces.push(piece);
+        }
+        Ok(plan)
+    }
+
+    #[inline(never)]
+    fn look(&self, ground: &Ground) -> Result<(), Broken> {
+        let envelope = Envelope::new(ground, UnitLimits::new(ground), &self.start);
+        let mut legs = Legs::new();
+        envelope.legs(&self.whole.pieces, &self.start, &mut legs);
+        envelope.check(&legs, &mut Looks::after(self.seen))
+    }
+
+    /// All of the transition, looked at.
+    pub(super) fn whole(self, ground: &Ground, tries: &mut Tries) -> Result<Plan, NoTransition> {
+        self.look(ground).map_err(|broken| tries.after(&broken))?;
+        Ok(self.whole)
+    }
+}
+
+/// What of the pieces lies between two ticks.
+fn between(pieces: &[Piece], from: u64, to: u64) -> impl Iterator<Item = Piece> {
+    let mut begins = 0;
+    pieces.iter().filter_map(move |piece| {
+        let ends = begins + piece.ticks;
+        let ticks = ends.min(to).saturating_sub(begins.max(from));
+        begins = ends;
+        (ticks > 0).then_some(Piece { ticks, ..*piece })
+    })
+}
