@@ -10,8 +10,8 @@
 use super::axis::Axis;
 use super::envelope::{Broken, Envelope, Legs, Looks};
 use super::ground::Ground;
-use super::plan::{Piece, Plan, Start};
-use super::stop::{Stop, plan_stop};
+use super::plan::{MAX_PIECES, Piece, Plan, Start};
+use super::stop::{Stop, stop_in};
 use super::transition::{NoTransition, Tries};
 use super::units::UnitLimits;
 use heapless::Vec;
@@ -33,31 +33,34 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Divides the transition `whole`, of which so many ticks have been looked at; and its head.
-    pub(super) fn new(
-        whole: &Plan,
+    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head; `None`, and the plan as it was, when
+    /// there is none that ends inside.
+    pub(super) fn divide(
+        plan: &mut Plan,
         start: &[Axis; 3],
         seen: u64,
         ground: &Ground,
-    ) -> Option<(Self, Plan)> {
+    ) -> Option<Self> {
         let head = seen.min(HEAD);
-        let stop = plan_stop(whole.id, whole, start, head, ground, Stop::Smooth)?;
-        let mut plan = Plan {
-            pieces: Vec::new(),
-            end: stop.end,
-            ..*whole
-        };
-        let pieces = between(&whole.pieces, 0, head).chain(stop.pieces);
-        for piece in pieces {
-            plan.pieces.push(piece).ok()?;
+        let mut stop = Plan::default();
+        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, 1)?;
+        let pieces = between(&plan.pieces, 0, head).count() + stop.pieces.len();
+        if stopped == Err(Broken::Reach) || pieces > MAX_PIECES {
+            return None;
         }
         let ahead = Self {
-            whole: whole.clone(),
+            whole: plan.clone(),
             start: *start,
             seen,
             head,
         };
-        Some((ahead, plan))
+        plan.pieces.clear();
+        for piece in between(&ahead.whole.pieces, 0, head).chain(stop.pieces) {
+            // There is room for them.
+            let _ = plan.pieces.push(piece);
+        }
+        plan.end = stop.end;
+        Some(ahead)
     }
 
     /// Whether it goes on from tick `at` of plan `id`.

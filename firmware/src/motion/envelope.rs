@@ -176,13 +176,13 @@ impl Envelope {
             }
             self.check_jerk(leg)?;
             let (mut done, mut ticks) = (core::mem::take(&mut before), leg.ticks);
-            let mut first = self.look(&leg.arc, done);
-            let mut second = first;
+            let [mut first, mut second] = [Look::default(); 2];
             let (mut from, mut to) = (&mut first, &mut second);
+            self.look(&leg.arc, done, from);
             while done < leg.ticks {
                 ticks = ticks.min(leg.ticks - done);
                 looks.take()?;
-                *to = self.look(&leg.arc, done + ticks);
+                self.look(&leg.arc, done + ticks, to);
                 match self.stretch(leg, [from, to], float(ticks) / self.hz) {
                     Ok(longer) => {
                         core::mem::swap(&mut from, &mut to);
@@ -211,12 +211,12 @@ impl Envelope {
         Ok(())
     }
 
-    fn look(&self, arc: &Arc, ticks: u64) -> Look {
+    fn look(&self, arc: &Arc, ticks: u64, look: &mut Look) {
         let sample = arc.at(float(ticks) / self.hz);
         let [x, y] = arc.place(&sample);
         let far = hypot(x, y);
         let Sample { v, a, .. } = sample;
-        Look {
+        *look = Look {
             far,
             out: if self.reach.arm > 0.0 {
                 self.reach.distance(arc, &sample)
@@ -227,7 +227,7 @@ impl Envelope {
             a: [hypot(a[0], a[1]), a[2].abs()],
             sample,
             pivots: None,
-        }
+        };
     }
 
     /// What the pivots do at the ends and in the middle of the pieces.
@@ -409,7 +409,7 @@ pub(super) struct Leg {
 pub(super) type Legs = Vec<Leg, MAX_PIECES>;
 
 /// One end of a stretch.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Look {
     pub sample: Sample,
     /// Velocity of translation and of rotation.

@@ -11,10 +11,10 @@ use super::fit::Track;
 use super::float::Order;
 use super::ground::Ground;
 use super::plan::{Piece, Plan, Start};
+use super::platform::greatest;
 use super::sample::Arc;
 use super::tracks::{Pieces, brake, merged};
 use super::units::UnitLimits;
-use heapless::Vec;
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,6 @@ const GENTLEST: f32 = 0.1;
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the workspace
 /// asks for.
-#[inline(never)]
 pub fn plan_stop(
     id: u32,
     of: &Plan,
@@ -48,6 +47,24 @@ pub fn plan_stop(
     ground: &Ground,
     stop: Stop,
 ) -> Option<Plan> {
+    let mut plan = Plan::default();
+    // A stop has to be found: what is still broken after the last attempt can not be helped.
+    let _ = stop_in(&mut plan, of, axes, at, ground, stop, ATTEMPTS)?;
+    plan.id = id;
+    Some(plan)
+}
+
+/// Writes the same, found in so many attempts, and what is broken even so.
+#[inline(never)]
+pub(super) fn stop_in(
+    plan: &mut Plan,
+    of: &Plan,
+    axes: &[Axis; 3],
+    at: u64,
+    ground: &Ground,
+    stop: Stop,
+    attempts: usize,
+) -> Option<Result<(), Broken>> {
     let whole = of.ticks();
     let last = of.pieces.last().map_or(0, |piece| piece.ticks);
     if at + last >= whole {
@@ -63,24 +80,19 @@ pub fn plan_stop(
     let limits = UnitLimits::new(ground);
     let envelope = Envelope::of_stop(ground);
     let factor = ground.limits.stop_factor as f32;
-    let start = Start::Splice {
+    plan.start = Start::Splice {
         plan: of.id,
         tick: at,
     };
-    let most = hardest(&state, &limits, ground);
+    plan.nudge = of.nudge;
+    let (most, asked) = hardest(&state, &limits, ground);
     let mut hardness = match stop {
         Stop::Smooth => [most.smaller(1.0), 1.0],
         Stop::Urgent => [most, factor * factor],
     };
-    let mut plan = Plan {
-        id,
-        start,
-        pieces: Vec::new(),
-        nudge: of.nudge,
-        end: of.end,
-    };
     let (mut apart, mut legs) = (false, Legs::new());
-    for _ in 0..ATTEMPTS {
+    let mut checked = Ok(());
+    for _ in 0..attempts {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
         let ticks = brake.ticks();
         if apart {
@@ -101,7 +113,8 @@ pub fn plan_stop(
         let end = envelope.legs(&plan.pieces, &state, &mut legs);
         plan.end = [0, 1, 2].map(|i| at_rest(&end[i]).after(lasts, 0, plan.nudge[i]).rounded());
         // A stop has to be found: none is left unlooked at because others have been looked at before.
-        match envelope.check(&legs, &mut { Looks::ALL }) {
+        checked = envelope.check(&legs, &mut { Looks::ALL });
+        match checked {
             Ok(()) | Err(Broken::Unseen) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Broken::Reach) if !apart => apart = true,
@@ -114,12 +127,16 @@ pub fn plan_stop(
                 | Broken::Speed(over)
                 | Broken::Force(over),
             ) => {
+                // What the motion asks of the pivots already, no brake takes from them.
+                if over <= asked {
+                    break;
+                }
                 let used = hardness[0] * brake.part(ticks);
                 hardness[0] = (used * (0.98 / over).larger(0.5)).larger(GENTLEST);
             }
         }
     }
-    Some(plan)
+    Some(checked)
 }
 
 /// Without what rounding leaves of a velocity.
@@ -150,8 +167,8 @@ fn lay(state: &[Axis; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
 }
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of
-/// the motion itself is taken off.
-fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> f32 {
+/// the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
+fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> (f32, f32) {
     let hz = ground.limits.rate_hz as f32;
     let centre = ground.centre.map(|value| value as f32);
     let most = ground.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
@@ -171,5 +188,8 @@ fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> f32 {
             hardest = left / part.abs();
         }
     }
-    hardest.larger(GENTLEST)
+    let [rates, accelerations] = arc.platform(&arc.start, centre).pivots();
+    let rate = greatest(&rates) / ground.limits.pivot_rate_rad_s as f32;
+    let acceleration = greatest(&accelerations) / ground.limits.pivot_acceleration_rad_s2 as f32;
+    (hardest.larger(GENTLEST), rate.larger(acceleration))
 }

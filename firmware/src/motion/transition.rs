@@ -130,9 +130,9 @@ pub fn try_transition(
     let mut looks = Looks::SLICE;
     let mut looked = envelope.check(&legs, &mut looks);
     if looked == Err(Broken::Unseen) {
-        if let Some((rest, head)) = Ahead::new(&plan, &state, looks.seen, ground) {
-            *ahead = Some(rest);
-            return Ok(head);
+        *ahead = Ahead::divide(&mut plan, &state, looks.seen, ground);
+        if ahead.is_some() {
+            return Ok(plan);
         }
         looked = envelope.check(&legs, &mut Looks::after(looks.seen));
     }
