@@ -17,7 +17,7 @@ use super::units::UnitLimits;
 use heapless::Vec;
 
 /// Ticks of a head: enough for the slices that follow, 10 ms at 20 kHz.
-const HEAD: u64 = 200;
+pub(super) const HEAD: u64 = 200;
 
 /// See the module.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@
 //! ([`Envelope`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
 //! where a stop and a straight line are sooner, the stage has to stop first.
 
-use super::ahead::Ahead;
+use super::ahead::{Ahead, HEAD};
 use super::axis::Axis;
 use super::choice::Choice;
 use super::envelope::{Broken, Envelope, Legs, Looks};
@@ -25,7 +25,7 @@ use super::fit::{Track, fit};
 use super::ground::Ground;
 use super::heading::Plane;
 use super::line::check_target;
-use super::plan::{Plan, Position, Start, nudge};
+use super::plan::{Piece, Plan, Position, Start, after_all, nudge};
 use super::refusal::Refusal;
 use super::slower::Slower;
 use super::tracks::{Pieces, brake, merged};
@@ -125,20 +125,44 @@ pub fn try_transition(
         .ok_or(NoTransition::NeedsStop)?;
     let envelope = Envelope::new(ground, limits, &state);
     let mut legs = Legs::new();
-    let end = envelope.legs(&plan.pieces, &state, &mut legs);
+    let first = first_slice(&plan.pieces);
+    let (now, later) = plan.pieces.split_at(first);
+    let then = envelope.legs(now, &state, &mut legs);
+    let end = after_all(&then, later, &[0; 3]);
     plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
     let mut looks = Looks::SLICE;
-    let mut looked = envelope.check(&legs, &mut looks);
-    if looked == Err(Broken::Unseen) {
+    let looked = envelope.check(&legs, &mut looks);
+    if looked == Ok(()) && first == plan.pieces.len() {
+        return Ok(plan);
+    }
+    if matches!(looked, Ok(()) | Err(Broken::Unseen)) {
         *ahead = Ahead::divide(&mut plan, &state, looks.seen, ground);
         if ahead.is_some() {
             return Ok(plan);
         }
-        looked = envelope.check(&legs, &mut Looks::after(looks.seen));
+        envelope.legs(&plan.pieces, &state, &mut legs);
+        let looked = envelope.check(&legs, &mut Looks::after(looks.seen));
+        return looked.map(|()| plan).map_err(|broken| tries.after(&broken));
     }
-    looked.map_err(|broken| tries.after(&broken))?;
-    Ok(plan)
+    looked.map(|()| plan).map_err(|broken| tries.after(&broken))
 }
+
+/// How many pieces are looked at in the first slice: all of a few, or as many as a head takes.
+fn first_slice(pieces: &[Piece]) -> usize {
+    if pieces.len() <= FEW {
+        return pieces.len();
+    }
+    let mut ticks = 0;
+    let reaches = |piece: &Piece| {
+        ticks += piece.ticks;
+        ticks >= HEAD
+    };
+    let before = pieces.iter().position(reaches);
+    before.map_or(pieces.len(), |before| before + 1)
+}
+
+/// So many pieces are looked at at once.
+const FEW: usize = 12;
 
 impl Tries {
     /// What is tried next.
