@@ -71,8 +71,9 @@ pub struct State {
     supply: f32,
     commands: u32,
     refused: u32,
-    /// State and commands in the last snapshot.
-    told: (Mode, u32),
+    /// State and commands at the end of the last tick, and whether they are news that no snapshot has been due for yet.
+    known: (Mode, u32),
+    news: bool,
     interval: Interval,
     /// Late ticks, a hundred each, less those forgiven.
     lateness: u32,
@@ -164,9 +165,13 @@ pub fn tick(
     if link.recorder.is_wanted() {
         link.recorder.record(&sample());
     }
-    // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is.
-    let news = (state.mode, state.commands);
-    if (turn == SNAPSHOT_TURN || news != state.told) && !commanded {
+    // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is. Where there is
+    // no room then, the next turn serves: so the ticks that can leave one do not depend on when the command side looks.
+    let now = (state.mode, state.commands);
+    state.news |= now != state.known;
+    state.known = now;
+    if (turn == SNAPSHOT_TURN || state.news) && !commanded {
+        state.news = false;
         state.leave_snapshot(link, &point.position, &pivots, &target, duty);
     }
     outputs
@@ -400,7 +405,6 @@ impl State {
             // There is room: only this side fills the queue.
             let snapshot = self.snapshot(setpoint, pivots, target, duty);
             let _ = link.snapshots.enqueue(snapshot);
-            self.told = (self.mode, self.commands);
             self.interval = Interval::default();
         }
     }

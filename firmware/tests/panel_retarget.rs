@@ -98,3 +98,64 @@ fn near_the_rim_it_stops_first() {
     bench.run_to_rest();
     assert!((bench.value("POS? Y") - 30.0).abs() < 1e-6);
 }
+
+/// Off to the side and round: a target that is planned in slices.
+const FAR: &str = "MOV X -30 Y 50 W 200\n";
+
+#[test]
+fn what_lies_ahead_takes_over_from_its_head() {
+    let mut bench = Bench::ready();
+    bench.say("MOV X 60 W 90\n");
+    bench.run(3_000);
+    bench.say(FAR);
+    bench.run_to_rest();
+    // The line, the head, and what goes on from it.
+    assert_eq!(bench.tick.log, ["move", "move", "move"]);
+    for (axis, value) in [("X", -30.0), ("Y", 50.0), ("W", 200.0)] {
+        let off = bench.value(&format!("POS? {axis}")) - value;
+        assert!(off.abs() < 1e-6, "{axis} {off}");
+    }
+    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+}
+
+/// A command side that is busy with something else, as with writing to flash: the stage comes to rest in the head, and goes on.
+#[test]
+fn a_head_that_nothing_follows_comes_to_rest() {
+    let mut bench = Bench::ready();
+    bench.say("MOV X 60 W 90\n");
+    bench.run(3_000);
+    bench.say(FAR);
+    bench.run(2);
+    for _ in 0..6_000 {
+        bench.tick.run();
+    }
+    assert_eq!(bench.tick.now.mode, Mode::Holding);
+    assert_eq!(bench.tick.log, ["move", "move"]);
+    bench.run_to_rest();
+    assert!((bench.value("POS? Y") - 50.0).abs() < 1e-6);
+    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+}
+
+/// While a head is under way: a stop, and a target that is refused, which changes nothing.
+#[test]
+fn in_a_head_commands_are_taken_as_ever() {
+    let mut bench = Bench::ready();
+    bench.say("MOV X 60 W 90\n");
+    bench.run(3_000);
+    bench.say(FAR);
+    bench.run(20);
+    assert_eq!(bench.error_after("MOV X 200"), "7");
+    bench.run(60);
+    bench.run_to_rest();
+    assert!((bench.value("POS? Y") - 50.0).abs() < 1e-6);
+
+    let mut bench = Bench::ready();
+    bench.say("MOV X 60 W 90\n");
+    bench.run(3_000);
+    bench.say(FAR);
+    bench.run(20);
+    assert_eq!(bench.error_after("HLT"), "10");
+    bench.run_to_rest();
+    let [at, target] = ["POS? Y", "MOV? Y"].map(|ask| bench.value(ask));
+    assert!((at - target).abs() < 1e-6 && at < 45.0, "{at} {target}");
+}

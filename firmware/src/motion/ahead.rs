@@ -19,6 +19,9 @@ use heapless::Vec;
 /// Ticks of a head: enough for the slices that follow, 10 ms at 20 kHz.
 pub(super) const HEAD: u64 = 200;
 
+/// How often a head's stop is tried.
+const ATTEMPTS: usize = 2;
+
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Ahead {
@@ -43,9 +46,9 @@ impl Ahead {
     ) -> Option<Self> {
         let head = seen.min(HEAD);
         let mut stop = Plan::default();
-        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, 1)?;
+        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, ATTEMPTS)?;
         let pieces = between(&plan.pieces, 0, head).count() + stop.pieces.len();
-        if stopped == Err(Broken::Reach) || pieces > MAX_PIECES {
+        if stopped.is_err() || pieces > MAX_PIECES {
             return None;
         }
         let ahead = Self {
