@@ -111,6 +111,16 @@ impl Axis {
         }
     }
 
+    /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a velocity does not
+    /// count.
+    pub(super) fn end(&self, ticks: u64, nudge: i64) -> i64 {
+        let rest = Self {
+            position: self.position,
+            ..Self::default()
+        };
+        rest.after(ticks, 0, nudge).rounded()
+    }
+
     /// Position in 2^-32 track radii or turns, rounded down.
     #[inline]
     pub fn rounded(&self) -> i64 {

@@ -111,7 +111,7 @@ pub(super) fn stop_in(
             return None;
         }
         let end = envelope.legs(&plan.pieces, &state, &mut legs);
-        plan.end = [0, 1, 2].map(|i| at_rest(&end[i]).after(lasts, 0, plan.nudge[i]).rounded());
+        plan.end = [0, 1, 2].map(|i| end[i].end(lasts, plan.nudge[i]));
         // A stop has to be found: none is left unlooked at because others have been looked at before.
         checked = envelope.check(&legs, &mut { Looks::ALL });
         match checked {
@@ -137,15 +137,6 @@ pub(super) fn stop_in(
         }
     }
     Some(checked)
-}
-
-/// Without what rounding leaves of a velocity.
-const fn at_rest(axis: &Axis) -> Axis {
-    Axis {
-        position: axis.position,
-        velocity: 0,
-        acceleration: 0,
-    }
 }
 
 /// Ticks in which translation and rotation each brake as soon as they can.

@@ -139,12 +139,13 @@ impl Jog {
         }
         pieces.retain(|piece| piece.ticks > 0);
         let rest = after_all(state, &pieces, &[0; 3]);
+        let ticks = pieces.iter().map(|piece| piece.ticks).sum();
         // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
         let nudge = rest.map(|axis| -axis.velocity);
         Plan {
             id,
             start,
-            end: after_all(state, &pieces, &nudge).map(|axis| axis.rounded()),
+            end: rest.map(|axis| axis.end(ticks, -axis.velocity)),
             pieces,
             nudge,
         }
