@@ -103,11 +103,11 @@ impl Axis {
         let t = ticks as i64;
         // The mean velocity lies between those that are met, so it has 64 bits like them, whatever its terms have.
         let mean = half.wrapping_add(sixth.wrapping_mul(t)).wrapping_mul(t);
-        let mean = i128::from(mean.wrapping_add(self.velocity).wrapping_add(nudge));
+        let mean = mean.wrapping_add(self.velocity).wrapping_add(nudge);
         // A product with 32 bits is a fourth of one with 64, and only jogs and the slowest moves have pieces of days.
         match u32::try_from(ticks) {
-            Ok(t) => times(mean, t),
-            Err(_) => mean.wrapping_mul(i128::from(ticks)),
+            Ok(t) => product(mean, t),
+            Err(_) => i128::from(mean).wrapping_mul(i128::from(ticks)),
         }
     }
 
@@ -126,6 +126,14 @@ impl Axis {
     pub fn rounded(&self) -> i64 {
         (self.position >> SUB_BITS) as i64
     }
+}
+
+/// The product.
+#[inline]
+pub(super) fn product(value: i64, factor: u32) -> i128 {
+    let low = u64::from(value as u32) * u64::from(factor);
+    let high = (value >> 32) * i64::from(factor) + (low >> 32) as i64;
+    (i128::from(high) << 32) | i128::from(low as u32)
 }
 
 /// The product modulo 2^128.

@@ -34,6 +34,7 @@ mod plan;
 mod platform;
 mod polygon;
 mod profile;
+mod quotient;
 mod ramps;
 mod reach;
 mod refusal;

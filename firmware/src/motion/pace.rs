@@ -4,9 +4,15 @@
 //! integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What rounding takes from
 //! the acceleration in one piece is given back in the next, and what is left at the end is spread as the plan's nudge.
 
-use super::axis::{Axis, JERK_STEP, SUB_BITS};
+use super::axis::{JERK_STEP, SUB_BITS};
+use super::float::{float, rough, rough_long};
 use super::plan::{MAX_PIECES, Piece, Plan, Position, Start};
+use super::quotient::quotient;
+use crate::number::round;
 use heapless::Vec;
+
+/// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
+pub(super) const BITS: u32 = 30;
 
 /// A stretch of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +30,7 @@ pub(super) struct Pace {
     pub beats: Vec<Beat, MAX_PIECES>,
     /// Six times the way that the jerks make: positive.
     pub sixfold: i128,
-    /// Fraction bits of the jerks.
+    /// Fraction bits of the jerks: [`BITS`] or none.
     pub bits: u32,
 }
 
@@ -36,7 +42,7 @@ impl Pace {
 
     /// What the path parameter's jerk is, per tick cubed, for one unit of a beat's.
     pub fn unit(&self) -> f32 {
-        6.0 / self.sixfold as f32
+        6.0 / rough_long(self.sixfold)
     }
 
     /// The plan from `from` to `to`; `None` where a number would be too large.
@@ -58,37 +64,86 @@ impl Pace {
                 .ok()?;
         }
         let duration = self.ticks().max(1);
+        let levers = self.levers(duration);
         for i in 0..3 {
             let way = i128::from(to[i]) - i128::from(from[i]);
             if way != 0 {
-                plan.nudge[i] = self.axis(i, way, duration, &mut plan)?;
+                let rest = self.axis(i, way << SUB_BITS, &levers, &mut plan)?;
+                // In 64 bits a division is a tenth of one in 128.
+                plan.nudge[i] = rest / duration as i64;
             }
         }
         Some(plan)
     }
 
-    /// Writes the jerks of an axis; its nudge.
+    /// How far a sixth of a jerk of 1 in each of the beats leads until the end, modulo 2^64: the cube of the time from the beat's
+    /// start to the end, less that from its end.
+    fn levers(&self, duration: u64) -> [u64; MAX_PIECES] {
+        let cube = |ticks: u64| ticks.wrapping_mul(ticks).wrapping_mul(ticks);
+        let mut levers = [0; MAX_PIECES];
+        let mut left = duration;
+        let mut before = cube(left);
+        for (lever, beat) in levers.iter_mut().zip(&self.beats) {
+            left = left.wrapping_sub(beat.ticks);
+            let after = cube(left);
+            *lever = before.wrapping_sub(after);
+            before = after;
+        }
+        levers
+    }
+
+    /// Writes the jerks of an axis; what they leave of its way, 2^-72 track radii or turns.
     #[inline(never)]
-    fn axis(&self, i: usize, way: i128, duration: u64, plan: &mut Plan) -> Option<i64> {
-        let way = way << SUB_BITS;
-        let factor = i64::try_from((way << self.bits) / self.sixfold).ok()?;
-        let mut axis = Axis::default();
+    fn axis(
+        &self,
+        i: usize,
+        way: i128,
+        levers: &[u64; MAX_PIECES],
+        plan: &mut Plan,
+    ) -> Option<i64> {
+        let (factor, left) = quotient(way << self.bits, self.sixfold)?;
+        // Rounding the jerks leaves little more than this: what is within 64 bits can be summed up in them.
+        i64::try_from(left >> self.bits).ok()?;
+        let mut rest = way as u64;
         // What the acceleration lacks, in steps of a jerk.
         let mut owed = 0.0;
-        for (piece, beat) in plan.pieces.iter_mut().zip(&self.beats) {
-            let product = i128::from(factor) * i128::from(beat.jerk);
-            let whole = (product >> self.bits) as i64;
-            let fraction =
-                (product - (i128::from(whole) << self.bits)) as f32 / (1u64 << self.bits) as f32;
-            let ticks = beat.ticks as f32;
-            let more = libm::rintf(fraction + owed / ticks);
-            owed += (fraction - more) * ticks;
-            let jerk = whole.wrapping_add(more as i64).wrapping_mul(JERK_STEP);
-            axis = axis.after(beat.ticks, jerk, 0);
-            piece.jerk[i] = jerk;
+        for ((piece, beat), lever) in plan.pieces.iter_mut().zip(&self.beats).zip(levers) {
+            let (whole, fraction) = self.share(factor, beat.jerk);
+            let ticks = float(beat.ticks);
+            let (more, rounded) = rounded(fraction + owed / ticks);
+            owed += (fraction - rounded) * ticks;
+            let sixth = whole.wrapping_add(more);
+            rest = rest.wrapping_sub((sixth as u64).wrapping_mul(*lever));
+            piece.jerk[i] = sixth.wrapping_mul(JERK_STEP);
         }
-        // In 64 bits a division is a tenth of one in 128.
-        let rest = i64::try_from(way - axis.position).ok()?;
-        Some(rest / duration as i64)
+        Some(rest as i64)
+    }
+
+    /// A beat's jerk times an axis' factor: whole, rounded down, and the fraction.
+    #[inline]
+    fn share(&self, factor: i64, jerk: i32) -> (i64, f32) {
+        const PART: f32 = 1.0 / (1_u32 << BITS) as f32;
+        let jerk = i64::from(jerk);
+        if self.bits == 0 {
+            return (factor.wrapping_mul(jerk), 0.0);
+        }
+        // In two parts, each of them within 64 bits.
+        let (high, low) = ((factor >> 32) * jerk, i64::from(factor as u32) * jerk);
+        let fraction = low as u32 & ((1 << BITS) - 1);
+        let whole = (high << (32 - BITS)).wrapping_add(low >> BITS);
+        (whole, fraction as f32 * PART)
+    }
+}
+
+/// The nearest whole number, as one and as a float.
+#[inline]
+fn rounded(value: f32) -> (i64, f32) {
+    const MOST: f32 = 2_097_152.0;
+    if value.abs() < MOST {
+        let (whole, float) = round(value);
+        (i64::from(whole), float)
+    } else {
+        let whole = value as i64;
+        (whole, rough(whole))
     }
 }

@@ -12,7 +12,7 @@
 //! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
 //! themselves, a millionth.
 
-use super::float::Order;
+use super::float::{Order, float, ticks_up};
 use super::limits::PathLimits;
 use super::pace::{Beat, Pace};
 use crate::number::{cbrt_f32, sqrt_f32};
@@ -47,7 +47,7 @@ impl Profile {
 
     /// The same motion, `slower` (1 or more).
     pub(super) fn slowed(&self, slower: f32) -> Option<Self> {
-        Self::lasting([self.jerk, self.ramp, self.way].map(|ticks| ticks as f32 * slower))
+        Self::lasting([self.jerk, self.ramp, self.way].map(|ticks| float(ticks) * slower))
     }
 
     fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
@@ -127,6 +127,7 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
 fn ticks(duration: f32) -> Option<u64> {
     const LONGEST: f32 = 4_503_599_627_370_496.0;
     // A duration that is whole but for its rounding errors is not rounded up.
-    let whole = libm::ceilf(duration * (1.0 - 1e-6)).larger(1.0);
-    (whole <= LONGEST).then_some(whole as u64)
+    let duration = duration * (1.0 - 1e-6);
+    // A NaN is not that short either.
+    (duration <= LONGEST).then(|| ticks_up(duration).max(1))
 }

@@ -5,7 +5,7 @@
 
 use super::axis::times;
 use super::float::Order;
-use super::pace::{Beat, Pace};
+use super::pace::{BITS, Beat, Pace};
 use super::plan::MAX_PIECES;
 use super::polygon::STRETCHES;
 use super::ramps::{Ramp, Ramps};
@@ -18,9 +18,6 @@ pub(super) struct Score {
     start: i64,
     end: i64,
 }
-
-/// Bits of the largest jerk. Times the cube of the longest duration it is within 128 bits.
-const BITS: u32 = 30;
 
 impl Score {
     pub fn new(ramps: &Ramps) -> Option<Self> {
