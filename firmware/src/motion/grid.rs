@@ -3,7 +3,7 @@
 use super::float::Order;
 use super::limits::PathLimits;
 use super::path::{Demand, Path};
-use crate::number::sqrt_f32;
+use heapless::Vec;
 
 /// Most stretches between places.
 const MOST: usize = 64;
@@ -16,17 +16,24 @@ const KEPT_OF_SQUARE: f32 = 0.1;
 /// With less than this of it on the whole line, half a turn, half of the places do.
 const FEW: f32 = 10.0;
 
-/// The demands along a line, and the limits.
+/// What a place asks of a motion: each of these, times what the motion does there, is at most 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Times s'': the pivots' shares of their acceleration.
+    pub first: [f32; 3],
+    /// Times s'^2.
+    pub second: [f32; 3],
+    /// Times s': the share of the rate, a pivot's or the line's own.
+    pub rate: f32,
+}
+
+/// The demands along a line, as shares of the limits.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    bits: u32,
-    demands: [Demand; MOST + 1],
-    /// Limits on s, per second.
-    pub limits: PathLimits,
-    /// Rate of a pivot.
-    pub pivot_rate: f32,
-    /// Acceleration of a pivot.
-    pub pivot_acceleration: f32,
+    places: Vec<Place, { MOST + 1 }>,
+    /// Limit of s'', per second squared, and the inverse.
+    pub acceleration: f32,
+    over_acceleration: f32,
 }
 
 /// Speed, acceleration and place of a motion along a line, per second.
@@ -38,74 +45,74 @@ pub(super) struct Moment {
 }
 
 impl Grid {
-    pub fn new(path: &Path, limits: PathLimits, pivot_rate: f32, pivot_acceleration: f32) -> Self {
+    pub fn new(path: &Path, limits: &PathLimits, pivot_rate: f32, pivot_acceleration: f32) -> Self {
         let square = path.turn * path.turn + path.length * path.length;
-        let bits = if path.is_wound() || square < FEW {
-            5
+        let stretches = if path.is_wound() || square < FEW {
+            MOST / 2
         } else {
-            6
+            MOST
         };
-        let spacing = 1.0 / (1u32 << bits) as f32;
-        let kept = KEPT + KEPT_OF_SQUARE * square * (spacing * spacing);
-        let granted = if path.is_wound() {
-            1.0 - KEPT
+        let spacing = 1.0 / stretches as f32;
+        let kept = if path.is_wound() {
+            KEPT
         } else {
-            1.0 - kept
+            KEPT + KEPT_OF_SQUARE * square * (spacing * spacing)
         };
-        let mut demands = [Demand::default(); MOST + 1];
-        for (k, demand) in demands.iter_mut().enumerate().take((1 << bits) + 1) {
-            *demand = path.demand(k, bits);
+        let granted = 1.0 - kept;
+        let over_rate = 1.0 / (pivot_rate * granted);
+        let over_acceleration = 1.0 / (pivot_acceleration * granted);
+        let least = 1.0 / limits.rate;
+        let mut grid = Self {
+            places: Vec::new(),
+            acceleration: limits.acceleration,
+            over_acceleration: 1.0 / limits.acceleration,
+        };
+        let mut demands = path.places(stretches);
+        for _ in 0..=stretches {
+            let Demand { first, second } = demands.next();
+            let fastest = (first[0].abs())
+                .larger(first[1].abs())
+                .larger(first[2].abs());
+            // There is room for all.
+            let _ = grid.places.push(Place {
+                first: first.map(|first| first * over_acceleration),
+                second: second.map(|second| second * over_acceleration),
+                rate: (fastest * over_rate).larger(least),
+            });
         }
-        Self {
-            bits,
-            demands,
-            limits,
-            pivot_rate: pivot_rate * granted,
-            pivot_acceleration: pivot_acceleration * granted,
-        }
+        grid
     }
 
     /// Number of stretches.
     pub fn stretches(&self) -> usize {
-        1 << self.bits
+        self.places.len() - 1
     }
 
-    /// The demand at a place.
-    pub fn at(&self, place: usize) -> &Demand {
-        &self.demands[place.min(MOST)]
+    /// All places.
+    pub fn places(&self) -> &[Place] {
+        &self.places
     }
 
-    /// The demand at s, between places a straight line.
-    fn between(&self, s: f32) -> Demand {
-        let places = s.clamp(0.0, 1.0) * (1u32 << self.bits) as f32;
-        let before = (places as usize).min(self.stretches() - 1);
-        let part = places - before as f32;
-        let (a, b) = (self.at(before), self.at(before + 1));
-        let mixed = |a: &[f32; 3], b: &[f32; 3]| [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * part);
-        Demand {
-            first: mixed(&a.first, &b.first),
-            second: mixed(&a.second, &b.second),
-        }
-    }
-
-    /// The factor by which a motion would have to take longer for this moment of it to keep every limit; 1 and less when it does.
+    /// The square of the factor by which a motion would have to take longer for this moment of it to keep every limit; 1 and less
+    /// when it does. Between places the demand goes straight.
     pub fn excess(&self, moment: &Moment) -> f32 {
-        let demand = self.between(moment.s);
+        let stretches = self.stretches();
+        let at = moment.s.larger(0.0).smaller(1.0) * stretches as f32;
+        let before = (at as usize).min(stretches - 1);
+        let Some([a, b]) = self.places.get(before..before + 2) else {
+            return 0.0;
+        };
+        let part = at - before as f32;
+        let between = |a: f32, b: f32| a + (b - a) * part;
         let square = moment.rate * moment.rate;
-        let mut rate = 0.0_f32;
-        let mut acceleration = 0.0_f32;
-        for (first, second) in demand.first.iter().zip(&demand.second) {
-            rate = rate.larger(first.abs());
-            acceleration =
-                acceleration.larger((first * moment.acceleration + second * square).abs());
+        let rate = between(a.rate, b.rate);
+        let mut worst =
+            (rate * rate * square).larger(moment.acceleration.abs() * self.over_acceleration);
+        for i in 0..3 {
+            let first = between(a.first[i], b.first[i]);
+            let second = between(a.second[i], b.second[i]);
+            worst = worst.larger((first * moment.acceleration + second * square).abs());
         }
-        let rate = moment.rate.abs() * (rate / self.pivot_rate).larger(1.0 / self.limits.rate);
-        let force = (acceleration / self.pivot_acceleration)
-            .larger(moment.acceleration.abs() / self.limits.acceleration);
-        if force > rate * rate {
-            sqrt_f32(force)
-        } else {
-            rate
-        }
+        worst
     }
 }

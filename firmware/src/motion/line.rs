@@ -7,7 +7,7 @@
 //! motion. The profile, slowed down until the pivots follow, competes: the shorter of the two is taken.
 
 pub use super::check::{check_line, check_target};
-use super::float::Order;
+use super::float::{Order, float, rough};
 use super::grid::{Grid, Moment};
 use super::ground::Ground;
 use super::limits::PathLimits;
@@ -19,7 +19,7 @@ use super::profile::Profile;
 use super::ramps::pace;
 use super::refusal::Refusal;
 use super::speed::fastest;
-use crate::number::cbrt_f32;
+use crate::number::{cbrt_f32, sqrt_f32};
 use heapless::Vec;
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
@@ -37,7 +37,7 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
     }
     // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so that
     // it does not matter either where on the mechanism it is.
-    let out = |[x, y, _]: Position| (x as f32) * (x as f32) + (y as f32) * (y as f32);
+    let out = |[x, y, _]: Position| rough(x) * rough(x) + rough(y) * rough(y);
     let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
     let path = Path::new(&first, &last, ground);
@@ -66,8 +66,6 @@ enum Looks {
     All,
 }
 
-/// How often a motion is slowed down because a limit is passed: what is left then is far below a thousandth.
-const ROUNDS: usize = 2;
 /// Room that a motion gets for roundings when it is slowed down.
 const SPARE: f32 = 1.001_5;
 
@@ -93,7 +91,7 @@ impl<'a> Way<'a> {
         }
         let grid = Grid::new(
             self.path,
-            self.limits,
+            &self.limits,
             self.pivot_rate,
             self.pivot_acceleration,
         );
@@ -120,22 +118,24 @@ impl<'a> Way<'a> {
         let z = fastest(grid);
         let polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
         let polygon = thinned(polygon, &self.limits);
-        let mut slower = SPARE;
-        for _ in 0..ROUNDS {
-            let pace = pace(&polygon, slower, &self.limits, self.hz)?;
-            let excess = self.excess(&pace, grid, Looks::All);
-            if excess <= 1.0 {
-                return Some(pace);
-            }
-            slower *= excess * SPARE;
+        let first = pace(&polygon, SPARE, &self.limits, self.hz)?;
+        let excess = self.excess(&first, grid, Looks::All);
+        if excess <= 1.0 {
+            return Some(first);
         }
-        None
+        // With the jerk of the same motion played slower it is just that, and needs no second look.
+        let slower = excess * SPARE;
+        let limits = PathLimits {
+            jerk: self.limits.jerk / (slower * slower * slower),
+            ..self.limits
+        };
+        pace(&polygon, SPARE * slower, &limits, self.hz)
     }
 
     /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.
     fn pivots_follow_anywhere(&self, profile: &Profile) -> bool {
-        let rate = self.hz / profile.way as f32;
-        let acceleration = rate * self.hz / profile.ramp as f32;
+        let rate = self.hz / float(profile.way);
+        let acceleration = rate * self.hz / float(profile.ramp);
         let (first, second) = self.path.worst();
         first * rate <= self.pivot_rate
             && first * acceleration + second * rate * rate <= self.pivot_acceleration
@@ -152,7 +152,7 @@ impl<'a> Way<'a> {
         let mut worst = 0.0_f32;
         let mut jerk = 0.0_f32;
         for beat in &pace.beats {
-            let seconds = beat.ticks as f32 / self.hz;
+            let seconds = float(beat.ticks) / self.hz;
             let push = beat.jerk as f32 * unit;
             jerk = jerk.larger(push.abs());
             let way = now.after(seconds, push).s - now.s;
@@ -164,10 +164,12 @@ impl<'a> Way<'a> {
             }
         }
         let jerk = jerk / self.limits.jerk;
+        let worst = sqrt_f32(worst);
         if jerk > 1.0 {
-            worst = worst.larger(cbrt_f32(jerk));
+            worst.larger(cbrt_f32(jerk))
+        } else {
+            worst
         }
-        worst
     }
 }
 

@@ -111,15 +111,26 @@ impl Path {
         [0, 1].map(|i| self.from[i] + self.way[i] * s)
     }
 
-    /// The demand at s = `part` / 2^`bits`.
-    pub fn demand(&self, part: usize, bits: u32) -> Demand {
-        let s = part as f32 / (1u32 << bits) as f32;
-        if self.is_wound() {
-            return self.demand_of_any_orientation(s);
+    /// The demands at places evenly spaced, from s = 0 on, with so many stretches in all.
+    pub fn places(&self, stretches: usize) -> Places<'_> {
+        let step = 1.0 / stretches as f32;
+        // A direction is worth nothing on a line that is wound, and not looked at.
+        let turn = (rough(self.turn_units) * step) as i32;
+        let direction = |theta: i64| {
+            let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
+            [cos.to_f32(), sin.to_f32()]
+        };
+        Places {
+            path: self,
+            s: 0.0,
+            step,
+            direction: direction(self.theta),
+            turn: direction(i64::from(turn)),
         }
-        let theta = self.theta + ((self.turn_units * part as i64) >> bits);
-        let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
-        let (sin, cos) = (sin.to_f32(), cos.to_f32());
+    }
+
+    /// The demand at s, where the platform's x axis points in this direction (cosine and sine).
+    fn demand(&self, s: f32, [cos, sin]: [f32; 2]) -> Demand {
         let (half, wide) = (0.5, f32::SIN_60);
         let directions = [
             [wide * cos + half * sin, wide * sin - half * cos],
@@ -185,6 +196,33 @@ impl Path {
             first: [first; 3],
             second: [second, -second, second],
         }
+    }
+}
+
+/// Places along a line; see [`Path::places`].
+pub(super) struct Places<'a> {
+    path: &'a Path,
+    s: f32,
+    step: f32,
+    /// Cosine and sine of theta, and of what it turns from place to place: turned by a product, which is a fourth of what sine
+    /// and cosine cost, and off by some 1e-7 a place.
+    direction: [f32; 2],
+    turn: [f32; 2],
+}
+
+impl Places<'_> {
+    /// The demand at the next place.
+    pub fn next(&mut self) -> Demand {
+        let path = self.path;
+        let demand = if path.is_wound() {
+            path.demand_of_any_orientation(self.s)
+        } else {
+            path.demand(self.s, self.direction)
+        };
+        let ([cos, sin], [a, b]) = (self.direction, self.turn);
+        self.direction = [cos * a - sin * b, sin * a + cos * b];
+        self.s += self.step;
+        demand
     }
 }
 

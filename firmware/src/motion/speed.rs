@@ -7,8 +7,8 @@
 //! based on reachability analysis").
 
 use super::float::Order;
-use super::grid::Grid;
-use super::path::Demand;
+use super::grid::{Grid, Place};
+use heapless::Vec;
 
 /// Most stretches and one.
 pub(super) const PLACES: usize = 65;
@@ -31,25 +31,33 @@ impl Bound {
 
 /// Rounds in which the largest z of a place is found: it is a corner of a few straight lines.
 const ROUNDS: usize = 6;
-/// What is no rate of a pivot, to divide by.
-const STILL: f32 = 1e-12;
+/// What is no demand on a pivot, to divide by.
+const STILL: f32 = 1e-15;
 
 /// See the module.
 pub(super) fn fastest(grid: &Grid) -> Squares {
     let n = grid.stretches();
+    let half = 0.5 * n as f32;
     // A slope of z over a stretch is this many times an acceleration.
     let double = 2.0 / n as f32;
     let mut z = [0.0; PLACES];
-    let mut nodes = [Node::NONE; PLACES];
-    for k in (0..n).rev() {
-        nodes[k] = Node::new(grid, k);
-        z[k] = nodes[k].largest(z[k + 1], double);
+    let mut nodes: Vec<Node, PLACES> = Vec::new();
+    let mut next = 0.0;
+    for (place, z) in grid.places().iter().zip(&mut z).take(n).rev() {
+        let node = Node::new(place, grid.acceleration);
+        next = node.largest(next, half);
+        *z = next;
+        // There is room for all.
+        let _ = nodes.push(node);
     }
-    z[0] = 0.0;
-    for k in 0..n {
-        let node = &nodes[k];
-        let up = node.highest(z[k]).at(z[k]);
-        z[k + 1] = z[k + 1].smaller((z[k] + double * up).larger(0.0));
+    let mut now = 0.0;
+    z[0] = now;
+    for z in z.iter_mut().skip(1) {
+        let Some(node) = nodes.pop() else {
+            break;
+        };
+        now = z.smaller((now + double * node.highest(now)).larger(0.0));
+        *z = now;
     }
     z
 }
@@ -59,66 +67,55 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
 struct Node {
     most: f32,
     acceleration: f32,
-    /// Half-widths and slopes of the pivots' bounds.
+    /// Of the pivots' bounds.
     widths: [f32; 3],
     slopes: [f32; 3],
 }
 
 impl Node {
-    const NONE: Self = Self {
-        most: 0.0,
-        acceleration: 0.0,
-        widths: [0.0; 3],
-        slopes: [0.0; 3],
-    };
-
-    fn new(grid: &Grid, place: usize) -> Self {
-        let Demand { first, second } = grid.at(place);
-        let mut rate = 0.0_f32;
+    fn new(place: &Place, acceleration: f32) -> Self {
         let mut widths = [0.0; 3];
         let mut slopes = [0.0; 3];
         for i in 0..3 {
-            let size = first[i].abs();
-            rate = rate.larger(size);
-            let over = 1.0 / size.larger(STILL);
-            widths[i] = grid.pivot_acceleration * over;
-            slopes[i] = if first[i] < 0.0 {
-                second[i] * over
+            let first = place.first[i];
+            let width = 1.0 / first.abs().larger(STILL);
+            widths[i] = width;
+            slopes[i] = if first < 0.0 {
+                place.second[i] * width
             } else {
-                -second[i] * over
+                -place.second[i] * width
             };
         }
-        let speed = grid
-            .limits
-            .rate
-            .smaller(grid.pivot_rate / rate.larger(STILL));
         Self {
-            most: speed * speed,
-            acceleration: grid.limits.acceleration,
+            most: 1.0 / (place.rate * place.rate),
+            acceleration,
             widths,
             slopes,
         }
     }
 
-    /// The upper bound that counts at z.
-    fn highest(&self, z: f32) -> Bound {
-        self.bound(z, 1.0)
+    /// The largest acceleration at z.
+    fn highest(&self, z: f32) -> f32 {
+        (self.widths.iter().zip(&self.slopes)).fold(self.acceleration, |most, (width, slope)| {
+            most.smaller(width + slope * z)
+        })
     }
 
+    /// The upper bound that counts at z, or the lower one, with a `sign` of -1.
     fn bound(&self, z: f32, sign: f32) -> Bound {
         let mut best = Bound {
             offset: sign * self.acceleration,
             slope: 0.0,
         };
-        let mut value = best.at(z) * sign;
+        let mut value = self.acceleration;
         for (width, slope) in self.widths.iter().zip(&self.slopes) {
-            let bound = Bound {
-                offset: sign * width,
-                slope: *slope,
-            };
-            let other = bound.at(z) * sign;
+            let other = width + slope * z * sign;
             if other < value {
-                (best, value) = (bound, other);
+                value = other;
+                best = Bound {
+                    offset: sign * width,
+                    slope: *slope,
+                };
             }
         }
         best
@@ -126,10 +123,10 @@ impl Node {
 
     /// The largest z from which the next place's `next` is not exceeded: the last z at which the lowest upper bound is not
     /// below the highest lower one. Newton's method from above: exact after as many rounds as there are lines on the way.
-    fn largest(&self, next: f32, double: f32) -> f32 {
+    fn largest(&self, next: f32, half: f32) -> f32 {
         let onwards = Bound {
-            offset: next / double,
-            slope: -1.0 / double,
+            offset: next * half,
+            slope: -half,
         };
         let mut z = self.most;
         for _ in 0..ROUNDS {
