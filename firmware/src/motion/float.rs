@@ -144,6 +144,23 @@ pub(super) fn nearest(value: f32) -> i64 {
     }
 }
 
+/// The same within 31 bits, which is hardware.
+#[inline]
+pub(super) fn nearest_short(value: f32) -> i32 {
+    if Float::abs(value) < 8_388_608.0 {
+        (value + if value < 0.0 { -0.5 } else { 0.5 }) as i32
+    } else {
+        value as i32
+    }
+}
+
+/// A float rounded up, within 31 bits.
+#[inline]
+pub(super) fn up_short(value: f32) -> i32 {
+    let down = value as i32;
+    down + i32::from(value > down as f32)
+}
+
 /// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no instruction for
 /// what the standard asks of it. What is not a number stays what it is on the left, and counts for nothing on the right.
 pub(super) trait Order: PartialOrd + Sized {

@@ -97,7 +97,7 @@ impl Grid {
     /// when it does. Between places the demand goes straight.
     pub fn excess(&self, moment: &Moment) -> f32 {
         let stretches = self.stretches();
-        let at = moment.s.larger(0.0).smaller(1.0) * stretches as f32;
+        let at = moment.s * stretches as f32;
         let before = (at as usize).min(stretches - 1);
         let Some([a, b]) = self.places.get(before..before + 2) else {
             return 0.0;

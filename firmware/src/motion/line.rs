@@ -41,7 +41,8 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
     let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
     let path = Path::new(&first, &last, ground);
-    let mut pace = Way::new(&path, ground).pace().ok_or(Refusal::Limits)?;
+    let mut pace = Pace::default();
+    (Way::new(&path, ground).write(&mut pace)).ok_or(Refusal::Limits)?;
     if turned_round {
         pace.beats.reverse();
     }
@@ -82,12 +83,12 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// The fastest motion found.
-    fn pace(&self) -> Option<Pace> {
+    /// Writes the fastest motion found.
+    fn write(&self, pace: &mut Pace) -> Option<()> {
         let profile = Profile::new(&self.limits, self.hz)?;
-        let plain = profile.pace();
+        profile.write(pace);
         if self.pivots_follow_anywhere(&profile) {
-            return Some(plain);
+            return Some(());
         }
         let grid = Grid::new(
             self.path,
@@ -96,32 +97,42 @@ impl<'a> Way<'a> {
             self.pivot_acceleration,
         );
         // As a rule a few places show that it is too fast, and no match when slowed down for those alone.
-        let seen = self.excess(&plain, &grid, Looks::Few);
-        let shaped = if seen > 1.0 { self.shaped(&grid) } else { None };
-        let shaped = match shaped {
-            Some(shaped) if shaped.ticks() <= profile.slowed(seen)?.ticks() => return Some(shaped),
-            shaped => shaped,
-        };
+        let seen = self.excess(pace, &grid, Looks::Few);
+        let mut shaped = None;
+        if seen > 1.0 {
+            let slowed = profile.slowed(seen)?.ticks();
+            shaped = self.shape(&grid, pace).map(|()| pace.ticks());
+            if shaped.is_some_and(|ticks| ticks <= slowed) {
+                return Some(());
+            }
+        }
+        let mut plain = Pace::default();
+        profile.write(&mut plain);
         let excess = self.excess(&plain, &grid, Looks::All);
-        if excess <= 1.0 {
-            return Some(plain);
+        let slowed = if excess > 1.0 {
+            profile.slowed(excess)?
+        } else {
+            profile
+        };
+        // Few looks may have found nothing.
+        if seen <= 1.0 && excess > 1.0 {
+            shaped = self.shape(&grid, pace).map(|()| pace.ticks());
         }
-        let slowed = profile.slowed(excess)?;
-        match shaped.or_else(|| self.shaped(&grid)) {
-            Some(shaped) if shaped.ticks() < slowed.ticks() => Some(shaped),
-            _ => Some(slowed.pace()),
+        if shaped.is_none_or(|ticks| ticks >= slowed.ticks()) {
+            slowed.write(pace);
         }
+        Some(())
     }
 
-    /// The motion that follows the pivots' limits.
-    fn shaped(&self, grid: &Grid) -> Option<Pace> {
+    /// Writes the motion that follows the pivots' limits.
+    fn shape(&self, grid: &Grid, paced: &mut Pace) -> Option<()> {
         let z = fastest(grid);
         let polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
         let polygon = thinned(polygon, &self.limits);
-        let first = pace(&polygon, SPARE, &self.limits, self.hz)?;
-        let excess = self.excess(&first, grid, Looks::All);
+        pace(&polygon, SPARE, &self.limits, self.hz, paced)?;
+        let excess = self.excess(paced, grid, Looks::All);
         if excess <= 1.0 {
-            return Some(first);
+            return Some(());
         }
         // With the jerk of the same motion played slower it is just that, and needs no second look.
         let slower = excess * SPARE;
@@ -129,7 +140,7 @@ impl<'a> Way<'a> {
             jerk: self.limits.jerk / (slower * slower * slower),
             ..self.limits
         };
-        pace(&polygon, SPARE * slower, &limits, self.hz)
+        pace(&polygon, SPARE * slower, &limits, self.hz, paced)
     }
 
     /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.

@@ -24,7 +24,7 @@ pub(super) struct Beat {
 }
 
 /// See the module.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Pace {
     /// The stretches, from rest to rest.
     pub beats: Vec<Beat, MAX_PIECES>,

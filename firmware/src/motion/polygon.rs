@@ -24,10 +24,11 @@ pub(super) struct Corner {
 /// Corners of a motion from rest to rest.
 pub(super) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
 
-/// Shares of z that are given away, one after the other.
-const LOSSES: [f32; 11] = [
-    0.01, 0.015, 0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.22, 0.3,
-];
+/// The share of z that is given away, the least and the most.
+const LEAST: f32 = 0.01;
+const MOST: f32 = 0.3;
+/// What is given away more when that was too little, at least.
+const STEP: f32 = 1.7;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
@@ -36,26 +37,20 @@ const ALIKE: f32 = 1e-5;
 /// `None` where it takes too many stretches.
 pub(super) fn under(z: &Squares, stretches: usize, acceleration: f32) -> Option<Polygon> {
     let z = z.get(..=stretches)?;
-    let laid = |k: usize| lay(z, acceleration, 1.0 - LOSSES[k]);
-    if let Some(polygon) = laid(0) {
-        return Some(polygon);
-    }
-    // The smallest share that serves, if the largest does: halving takes four tries where one by one may take eleven.
-    let (mut low, mut high) = (0, LOSSES.len() - 1);
-    let mut best = None;
-    while high - low > 1 || best.is_none() {
-        let middle = if high - low > 1 {
-            (low + high) / 2
-        } else {
-            high
-        };
-        match laid(middle) {
-            Some(polygon) => (high, best) = (middle, Some(polygon)),
-            None if middle == high => return None,
-            None => low = middle,
+    let mut loss = LEAST;
+    loop {
+        match lay(z, acceleration, 1.0 - loss) {
+            Ok(polygon) => return Some(polygon),
+            Err(_) if loss >= MOST => return None,
+            // As much longer as the stretches have to be on average, and half as much as curves would take for that: what is
+            // straight takes no more.
+            Err(place) => {
+                let longer = stretches as f32 / place as f32;
+                let longer = longer * longer;
+                loss = (loss * longer.larger(STEP)).smaller(MOST);
+            }
         }
     }
-    best
 }
 
 /// Without the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
@@ -97,13 +92,15 @@ impl Stretch {
     }
 }
 
-fn lay(z: &[f32], acceleration: f32, share: f32) -> Option<Polygon> {
+/// One pass; an error is the place up to which the stretches suffice.
+fn lay(z: &[f32], acceleration: f32, share: f32) -> Result<Polygon, usize> {
     let last = z.len() - 1;
     let spacing = 1.0 / last as f32;
     let steepest = 2.0 * acceleration * spacing;
     let mut polygon = Polygon::new();
     let (mut from, mut start) = (0, 0.0);
-    polygon.push(Corner { s: 0.0, rate: 0.0 }).ok()?;
+    // There is room for one more than there are stretches.
+    let _ = polygon.push(Corner { s: 0.0, rate: 0.0 });
     while from < last {
         let (mut low, mut high) = (-steepest, steepest);
         let mut to = from + 1;
@@ -123,16 +120,17 @@ fn lay(z: &[f32], acceleration: f32, share: f32) -> Option<Polygon> {
         }
         start = (start + high * (to - from) as f32).larger(0.0);
         from = to;
-        polygon
-            .push(Corner {
-                s: from as f32 * spacing,
-                rate: sqrt_f32(start),
-            })
-            .ok()?;
+        let corner = Corner {
+            s: from as f32 * spacing,
+            rate: sqrt_f32(start),
+        };
+        if polygon.push(corner).is_err() {
+            return Err(from);
+        }
     }
     // At the end z is 0, and so is the polygon but for roundings.
     if let Some(corner) = polygon.last_mut() {
         corner.rate = 0.0;
     }
-    Some(polygon)
+    Ok(polygon)
 }

@@ -16,7 +16,6 @@ use super::float::{Order, float, ticks_up};
 use super::limits::PathLimits;
 use super::pace::{Beat, Pace};
 use crate::number::{cbrt_f32, sqrt_f32};
-use heapless::Vec;
 
 /// Lengths of the three moving averages in ticks: `jerk <= ramp`, `way >= jerk + ramp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,20 +82,17 @@ impl Profile {
         i128::from(self.jerk * self.ramp) * i128::from(self.way)
     }
 
-    /// As a pace: its jerks are 1 and -1.
-    pub(super) fn pace(&self) -> Pace {
-        let mut beats = Vec::new();
+    /// Writes it as a pace: its jerks are 1 and -1.
+    pub(super) fn write(&self, pace: &mut Pace) {
+        pace.beats.clear();
         for (ticks, jerk) in self.segments() {
             if ticks > 0 {
                 // Seven segments, room for more.
-                let _ = beats.push(Beat { ticks, jerk });
+                let _ = pace.beats.push(Beat { ticks, jerk });
             }
         }
-        Pace {
-            beats,
-            sixfold: 6 * self.volume(),
-            bits: 0,
-        }
+        pace.sixfold = 6 * self.volume();
+        pace.bits = 0;
     }
 }
 

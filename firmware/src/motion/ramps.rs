@@ -14,7 +14,7 @@
 //!
 //! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by it.
 
-use super::float::Order;
+use super::float::{Order, up_short};
 use super::limits::PathLimits;
 use super::pace::Pace;
 use super::polygon::{Polygon, STRETCHES};
@@ -25,9 +25,9 @@ use heapless::Vec;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ramp {
     /// Where its middle is, ticks.
-    pub middle: i64,
+    pub middle: i32,
     /// How long it is, ticks: even.
-    pub ticks: i64,
+    pub ticks: i32,
     /// How much the acceleration changes, s per tick squared.
     pub change: f32,
 }
@@ -36,14 +36,21 @@ pub(super) struct Ramp {
 pub(super) type Ramps = Vec<Ramp, { STRETCHES + 1 }>;
 
 /// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
-const LONGEST: i64 = 1 << 21;
+const LONGEST: i32 = 1 << 21;
 
-/// The pace along `polygon`, with everything `slower` than it is there (1 or more). `None` where it would last too long.
-pub(super) fn pace(polygon: &Polygon, slower: f32, limits: &PathLimits, hz: f32) -> Option<Pace> {
+/// Writes the pace along `polygon`, with everything `slower` than it is there (1 or more). `None` where it would last too long.
+#[inline(never)]
+pub(super) fn pace(
+    polygon: &Polygon,
+    slower: f32,
+    limits: &PathLimits,
+    hz: f32,
+    pace: &mut Pace,
+) -> Option<()> {
     let mut ramps = corners(polygon, slower, hz)?;
     let most = limits.jerk / (hz * hz * hz);
     widen(&mut ramps, most);
-    Score::new(&ramps)?.pace()
+    Score::new(&ramps)?.write(pace)
 }
 
 /// The corners, with ramps of no length yet.
@@ -52,13 +59,13 @@ fn corners(polygon: &Polygon, slower: f32, hz: f32) -> Option<Ramps> {
     let (mut middle, mut before) = (0, 0.0);
     for pair in polygon.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let ticks = libm::ceilf(2.0 * (b.s - a.s) / (a.rate + b.rate) * hz * slower * SHORT);
+        let ticks = 2.0 * (b.s - a.s) / (a.rate + b.rate) * (hz * slower * SHORT);
         // Nor is a NaN in it.
         if !(0.0..LONGEST as f32).contains(&ticks) {
             return None;
         }
-        let ticks = ticks.larger(1.0);
-        let acceleration = (b.rate - a.rate) / (hz * slower * ticks);
+        let ticks = up_short(ticks).max(1);
+        let acceleration = (b.rate - a.rate) / (hz * slower * ticks as f32);
         let change = acceleration - before;
         ramps
             .push(Ramp {
@@ -67,7 +74,7 @@ fn corners(polygon: &Polygon, slower: f32, hz: f32) -> Option<Ramps> {
                 change,
             })
             .ok()?;
-        middle += ticks as i64;
+        middle += ticks;
         before = acceleration;
     }
     let change = -before;
@@ -86,7 +93,9 @@ const SHORT: f32 = 1.0 - 1e-6;
 
 /// Gives the ramps their lengths.
 fn widen(ramps: &mut Ramps, most: f32) {
-    let even = |change: f32| 2 * libm::ceilf(change / (2.0 * most) * SHORT).larger(1.0) as i64;
+    let half = SHORT / (2.0 * most);
+    // Longer than anything when nearly nothing is allowed, and still within 31 bits.
+    let even = |change: f32| 2 * up_short((change * half).smaller(LONGEST as f32)).max(1);
     for ramp in ramps.iter_mut() {
         ramp.ticks = even(ramp.change.abs());
     }
@@ -119,6 +128,11 @@ mod tests {
             .collect()
     }
 
+    fn paced(polygon: &Polygon, slower: f32) -> Option<Pace> {
+        let mut paced = Pace::default();
+        pace(polygon, slower, &LIMITS, HZ, &mut paced).map(|()| paced)
+    }
+
     /// Speed (per second) in the middle of the way, the largest jerk, and the duration in seconds.
     fn measured(pace: &Pace) -> (f32, f32, f32) {
         let unit = pace.unit() * HZ * HZ * HZ;
@@ -144,7 +158,7 @@ mod tests {
     fn corners_are_rounded_within_the_jerk_and_speeds_are_kept() {
         // 50 ms up to 2/s at 40/s^2, on, and down.
         let polygon = polygon(&[(0.0, 0.0), (0.05, 2.0), (0.95, 2.0), (1.0, 0.0)]);
-        let (middle, jerk, seconds) = measured(&pace(&polygon, 1.0, &LIMITS, HZ).unwrap());
+        let (middle, jerk, seconds) = measured(&paced(&polygon, 1.0).unwrap());
         assert!((middle - 2.0).abs() < 2e-3, "{middle}");
         assert!(jerk <= LIMITS.jerk * 1.000_1, "{jerk}");
         // Half a ramp of 10 ms at either end.
@@ -154,7 +168,7 @@ mod tests {
     #[test]
     fn slower_is_as_much_longer() {
         let polygon = polygon(&[(0.0, 0.0), (0.05, 2.0), (0.95, 2.0), (1.0, 0.0)]);
-        let (middle, _, _) = measured(&pace(&polygon, 2.0, &LIMITS, HZ).unwrap());
+        let (middle, _, _) = measured(&paced(&polygon, 2.0).unwrap());
         assert!((middle - 1.0).abs() < 1e-3, "{middle}");
     }
 
@@ -170,15 +184,15 @@ mod tests {
             (0.95, 0.4),
             (1.0, 0.0),
         ]);
-        let (_, jerk, _) = measured(&pace(&polygon, 1.0, &LIMITS, HZ).unwrap());
+        let (_, jerk, _) = measured(&paced(&polygon, 1.0).unwrap());
         assert!(jerk <= LIMITS.jerk * 1.001, "{jerk}");
     }
 
     #[test]
     fn too_long_or_no_number_is_no_pace() {
         let never = polygon(&[(0.0, 0.0), (0.5, 1e-3), (1.0, 0.0)]);
-        assert!(pace(&never, 1.0, &LIMITS, HZ).is_none());
+        assert!(paced(&never, 1.0).is_none());
         let none = polygon(&[(0.0, 0.0), (0.5, f32::NAN), (1.0, 0.0)]);
-        assert!(pace(&none, 1.0, &LIMITS, HZ).is_none());
+        assert!(paced(&none, 1.0).is_none());
     }
 }

@@ -3,8 +3,8 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
 //! a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::axis::times;
-use super::float::Order;
+use super::axis::{product, times};
+use super::float::{Order, nearest_short, rough, rough_long};
 use super::pace::{BITS, Beat, Pace};
 use super::plan::MAX_PIECES;
 use super::polygon::STRETCHES;
@@ -13,10 +13,28 @@ use heapless::Vec;
 
 /// The ramps in integers.
 pub(super) struct Score {
-    /// Start and end of each, and its jerk.
-    ramps: Vec<(i64, i64, i32), { STRETCHES + 1 }>,
-    start: i64,
-    end: i64,
+    ramps: Vec<Note, { STRETCHES + 1 }>,
+    start: i32,
+    end: i32,
+}
+
+/// A ramp: start, end and jerk.
+#[derive(Clone, Copy)]
+struct Note {
+    start: i32,
+    end: i32,
+    jerk: i32,
+}
+
+impl Note {
+    fn ticks(&self) -> i32 {
+        self.end - self.start
+    }
+
+    /// Twice the distance of its middle from the end of all.
+    fn lever(&self, end: i32) -> i32 {
+        2 * end - self.start - self.end
+    }
 }
 
 impl Score {
@@ -27,17 +45,20 @@ impl Score {
             .fold(0.0_f32, |most, r| most.larger(jerk(r).abs()));
         let mut score = Self {
             ramps: Vec::new(),
-            start: i64::MAX,
-            end: i64::MIN,
+            start: i32::MAX,
+            end: i32::MIN,
         };
-        let scale = (1u32 << BITS) as f32 / largest;
+        let scale = (1_u32 << BITS) as f32 / largest;
         for ramp in ramps {
             let half = ramp.ticks / 2;
-            let (start, end) = (ramp.middle - half, ramp.middle + half);
-            score.start = score.start.min(start);
-            score.end = score.end.max(end);
-            let whole = libm::rintf(jerk(ramp) * scale) as i32;
-            score.ramps.push((start, end, whole)).ok()?;
+            let note = Note {
+                start: ramp.middle - half,
+                end: ramp.middle + half,
+                jerk: nearest_short(jerk(ramp) * scale),
+            };
+            score.start = score.start.min(note.start);
+            score.end = score.end.max(note.end);
+            score.ramps.push(note).ok()?;
         }
         score.close()?;
         Some(score)
@@ -45,61 +66,55 @@ impl Score {
 
     /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
     fn left(&self) -> (i64, i128) {
-        self.ramps
-            .iter()
-            .fold((0, 0), |(force, speed), (start, end, jerk)| {
-                let step = i64::from(*jerk) * (end - start);
-                let lever = 2 * self.end - start - end;
-                (force + step, speed + long(step, lever))
-            })
+        self.ramps.iter().fold((0, 0), |(force, speed), note| {
+            let step = i64::from(note.jerk) * i64::from(note.ticks());
+            let lever = note.lever(self.end) as u32;
+            (force + step, speed + product(step, lever))
+        })
     }
 
     /// Lets the last two ramps take up what is left.
     fn close(&mut self) -> Option<()> {
-        let n = self.ramps.len();
-        let [.., (a_start, a_end, _), (b_start, b_end, _)] = self.ramps[..] else {
+        let (force, speed) = self.left();
+        let [.., a, b] = &mut self.ramps[..] else {
             return None;
         };
-        let (force, speed) = self.left();
-        let lever = |start: i64, end: i64| 2 * self.end - start - end;
-        let (a, b) = (lever(a_start, a_end), lever(b_start, b_end));
-        let a_step = -(speed - long(force, b)) as f32 / (a - b) as f32;
-        let a_jerk = libm::rintf(a_step / (a_end - a_start) as f32) as i32;
-        self.ramps[n - 2].2 += a_jerk;
-        let force = force + i64::from(a_jerk) * (a_end - a_start);
-        self.ramps[n - 1].2 -= libm::rintf(force as f32 / (b_end - b_start) as f32) as i32;
+        let (far, near) = (a.lever(self.end), b.lever(self.end));
+        let a_step = -rough_long(speed - product(force, near as u32)) / (far - near) as f32;
+        let a_jerk = nearest_short(a_step / a.ticks() as f32);
+        a.jerk = a.jerk.wrapping_add(a_jerk);
+        let force = force + i64::from(a_jerk) * i64::from(a.ticks());
+        b.jerk = (b.jerk).wrapping_sub(nearest_short(rough(force) / b.ticks() as f32));
         Some(())
     }
 
-    /// The pieces between all starts and ends.
-    pub fn pace(&self) -> Option<Pace> {
-        let mut times: Vec<(i64, i32), { 2 * (STRETCHES + 1) }> = Vec::new();
-        for &(start, end, jerk) in &self.ramps {
-            insert(&mut times, (start, jerk))?;
-            insert(&mut times, (end, -jerk))?;
+    /// Writes the pieces between all starts and ends.
+    pub fn write(&self, pace: &mut Pace) -> Option<()> {
+        let mut times: Vec<(i32, i32), { 2 * (STRETCHES + 1) }> = Vec::new();
+        for note in &self.ramps {
+            insert(&mut times, (note.start, note.jerk))?;
+            insert(&mut times, (note.end, -note.jerk))?;
         }
+        pace.beats.clear();
+        pace.bits = BITS;
         let mut sum = Sum::default();
-        let mut jerk = 0;
+        let mut jerk = 0_i32;
         for pair in times.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            jerk += from.1;
+            jerk = jerk.wrapping_add(from.1);
             if to.0 > from.0 {
-                sum.push(to.0 - from.0, jerk)?;
+                sum.push(&mut pace.beats, (to.0 - from.0) as u32, jerk)?;
             }
         }
-        sum.close()?;
-        (sum.sixfold > 0).then_some(Pace {
-            beats: sum.beats,
-            sixfold: sum.sixfold,
-            bits: BITS,
-        })
+        sum.close(&mut pace.beats)?;
+        pace.sixfold = sum.sixfold;
+        (sum.sixfold > 0).then_some(())
     }
 }
 
-/// Beats, and the state they lead to.
+/// The state that beats lead to.
 #[derive(Default)]
 struct Sum {
-    beats: Vec<Beat, MAX_PIECES>,
     /// Acceleration.
     force: i64,
     /// Twice the speed.
@@ -109,36 +124,30 @@ struct Sum {
 }
 
 impl Sum {
-    fn push(&mut self, ticks: i64, jerk: i32) -> Option<()> {
-        let bent = i64::from(jerk) * ticks;
-        let way = 3 * self.speed + long(3 * self.force + bent, ticks);
-        self.sixfold += times(way, u32::try_from(ticks).ok()?);
-        self.speed += long(2 * self.force + bent, ticks);
+    fn push(&mut self, beats: &mut Vec<Beat, MAX_PIECES>, ticks: u32, jerk: i32) -> Option<()> {
+        let bent = i64::from(jerk) * i64::from(ticks);
+        let way = 3 * self.speed + product(3 * self.force + bent, ticks);
+        self.sixfold += times(way, ticks);
+        self.speed += product(2 * self.force + bent, ticks);
         self.force += bent;
-        let ticks = ticks as u64;
-        self.beats.push(Beat { ticks, jerk }).ok()
+        let ticks = u64::from(ticks);
+        beats.push(Beat { ticks, jerk }).ok()
     }
 
     /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the acceleration is.
-    fn close(&mut self) -> Option<()> {
+    fn close(&mut self, beats: &mut Vec<Beat, MAX_PIECES>) -> Option<()> {
         if self.force == 0 && self.speed == 0 {
             return Some(());
         }
         let first = i32::try_from(-(self.speed + i128::from(3 * self.force)) / 2).ok()?;
         let second = i32::try_from(-self.force - i64::from(first)).ok()?;
-        self.push(1, first)?;
-        self.push(1, second)
+        self.push(beats, 1, first)?;
+        self.push(beats, 1, second)
     }
 }
 
-/// The whole product.
-#[inline]
-fn long(a: i64, b: i64) -> i128 {
-    i128::from(a) * i128::from(b)
-}
-
 /// Inserts in order of time; nearly always at the end.
-fn insert<const N: usize>(times: &mut Vec<(i64, i32), N>, event: (i64, i32)) -> Option<()> {
+fn insert<const N: usize>(times: &mut Vec<(i32, i32), N>, event: (i32, i32)) -> Option<()> {
     times.push(event).ok()?;
     let mut k = times.len() - 1;
     while k > 0 && times[k - 1].0 > event.0 {
@@ -154,7 +163,7 @@ mod tests {
     use super::*;
 
     /// Up, along, and down, with ramps that overlap or not.
-    fn ramps(length: i64, ticks: i64) -> Ramps {
+    fn ramps(length: i32, ticks: i32) -> Ramps {
         [
             (0, 1.0),
             (length, -1.0),
@@ -168,6 +177,11 @@ mod tests {
             change: change * 1e-6,
         })
         .collect()
+    }
+
+    fn paced(ramps: &Ramps) -> Option<Pace> {
+        let mut pace = Pace::default();
+        Score::new(ramps)?.write(&mut pace).map(|()| pace)
     }
 
     /// Every tick of it, in the integers of the beats.
@@ -193,7 +207,7 @@ mod tests {
             (1_000, 1_400),
             (300_000, 2_000),
         ] {
-            let pace = Score::new(&ramps(length, ticks)).unwrap().pace().unwrap();
+            let pace = paced(&ramps(length, ticks)).unwrap();
             let (force, speed, sixfold) = played(&pace);
             assert_eq!((force, speed), (0, 0), "{length} {ticks}");
             assert_eq!(sixfold, pace.sixfold, "{length} {ticks}");
@@ -205,12 +219,12 @@ mod tests {
     /// Ramps of any lengths: what the integers leave goes in two ticks.
     #[test]
     fn whatever_the_lengths_it_ends_at_rest() {
-        for k in 1..200_i64 {
+        for k in 1..200_i32 {
             let mut odd = ramps(1_000 + 7 * k, 2 * k);
             odd[1].middle += k;
             odd[2].ticks += 2 * (k % 5);
             odd[3].middle += 3 * k;
-            let (force, speed, _) = played(&Score::new(&odd).unwrap().pace().unwrap());
+            let (force, speed, _) = played(&paced(&odd).unwrap());
             assert_eq!((force, speed), (0, 0), "{k}");
         }
     }
@@ -219,7 +233,7 @@ mod tests {
     fn what_ramps_leave_of_speed_is_taken_up_by_the_last_two() {
         let mut off = ramps(1_000, 200);
         off[3].change *= 1.01;
-        let pace = Score::new(&off).unwrap().pace().unwrap();
+        let pace = paced(&off).unwrap();
         let (force, speed, _) = played(&pace);
         assert_eq!((force, speed), (0, 0));
     }
@@ -230,6 +244,6 @@ mod tests {
         for ramp in &mut backwards {
             ramp.change = -ramp.change;
         }
-        assert!(Score::new(&backwards).unwrap().pace().is_none());
+        assert!(paced(&backwards).is_none());
     }
 }
