@@ -2,7 +2,7 @@
 
 use super::float::Order;
 use super::limits::PathLimits;
-use super::path::{Demand, Path};
+use super::path::Path;
 use heapless::Vec;
 
 /// Most stretches between places.
@@ -25,7 +25,12 @@ pub(super) struct Place {
     pub second: [f32; 3],
     /// Times s': the share of the rate, a pivot's or the line's own.
     pub rate: f32,
+    /// Whether whatever keeps the rate and the line's own acceleration keeps that of the pivots too.
+    pub calm: bool,
 }
+
+/// The part of the pivots' acceleration up to which a place is calm: between two of them a little more may be asked for.
+const CALM: f32 = 0.9;
 
 /// The demands along a line, as shares of the limits.
 #[derive(Clone, Debug)]
@@ -69,15 +74,16 @@ impl Grid {
         };
         let mut demands = path.places(stretches);
         for _ in 0..=stretches {
-            let Demand { first, second } = demands.next();
-            let fastest = (first[0].abs())
-                .larger(first[1].abs())
-                .larger(first[2].abs());
+            let demand = demands.next();
+            let (first, second) = (largest(&demand.first), largest(&demand.second));
+            let rate = (first * over_rate).larger(least);
+            let asked = first * limits.acceleration + second / (rate * rate);
             // There is room for all.
             let _ = grid.places.push(Place {
-                first: first.map(|first| first * over_acceleration),
-                second: second.map(|second| second * over_acceleration),
-                rate: (fastest * over_rate).larger(least),
+                first: demand.first.map(|first| first * over_acceleration),
+                second: demand.second.map(|second| second * over_acceleration),
+                rate,
+                calm: asked * over_acceleration <= CALM,
             });
         }
         grid
@@ -108,6 +114,9 @@ impl Grid {
         let rate = between(a.rate, b.rate);
         let mut worst =
             (rate * rate * square).larger(moment.acceleration.abs() * self.over_acceleration);
+        if a.calm && b.calm {
+            return worst;
+        }
         for i in 0..3 {
             let first = between(a.first[i], b.first[i]);
             let second = between(a.second[i], b.second[i]);
@@ -115,4 +124,10 @@ impl Grid {
         }
         worst
     }
+}
+
+/// The largest size.
+fn largest(values: &[f32; 3]) -> f32 {
+    let [a, b, c] = values.map(f32::abs);
+    a.larger(b).larger(c)
 }

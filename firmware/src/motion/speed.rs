@@ -41,22 +41,31 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
     // A slope of z over a stretch is this many times an acceleration.
     let double = 2.0 / n as f32;
     let mut z = [0.0; PLACES];
+    // Of the places that are not calm, the last first.
     let mut nodes: Vec<Node, PLACES> = Vec::new();
+    let steepest = double * grid.acceleration;
     let mut next = 0.0;
     for (place, z) in grid.places().iter().zip(&mut z).take(n).rev() {
-        let node = Node::new(place, grid.acceleration);
-        next = node.largest(next, half);
+        let most = 1.0 / (place.rate * place.rate);
+        next = if place.calm {
+            most.smaller(next + steepest)
+        } else {
+            let node = Node::new(place, grid.acceleration);
+            // There is room for all.
+            let _ = nodes.push(node);
+            node.largest(most, next, half)
+        };
         *z = next;
-        // There is room for all.
-        let _ = nodes.push(node);
     }
     let mut now = 0.0;
     z[0] = now;
-    for z in z.iter_mut().skip(1) {
-        let Some(node) = nodes.pop() else {
-            break;
+    for (place, z) in grid.places().iter().zip(z.iter_mut().skip(1)).take(n) {
+        let up = if place.calm {
+            steepest
+        } else {
+            (nodes.pop()).map_or(0.0, |node| double * node.highest(now))
         };
-        now = z.smaller((now + double * node.highest(now)).larger(0.0));
+        now = z.smaller((now + up).larger(0.0));
         *z = now;
     }
     z
@@ -65,7 +74,6 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
 /// The bounds of a place.
 #[derive(Clone, Copy)]
 struct Node {
-    most: f32,
     acceleration: f32,
     /// Of the pivots' bounds.
     widths: [f32; 3],
@@ -87,7 +95,6 @@ impl Node {
             };
         }
         Self {
-            most: 1.0 / (place.rate * place.rate),
             acceleration,
             widths,
             slopes,
@@ -121,14 +128,14 @@ impl Node {
         best
     }
 
-    /// The largest z from which the next place's `next` is not exceeded: the last z at which the lowest upper bound is not
+    /// The largest z up to `most` from which the next place's `next` is not exceeded: the last z at which the lowest upper bound is not
     /// below the highest lower one. Newton's method from above: exact after as many rounds as there are lines on the way.
-    fn largest(&self, next: f32, half: f32) -> f32 {
+    fn largest(&self, most: f32, next: f32, half: f32) -> f32 {
         let onwards = Bound {
             offset: next * half,
             slope: -half,
         };
-        let mut z = self.most;
+        let mut z = most;
         for _ in 0..ROUNDS {
             let low = self.bound(z, -1.0);
             let own = self.bound(z, 1.0);
