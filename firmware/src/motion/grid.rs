@@ -36,9 +36,8 @@ const CALM: f32 = 0.9;
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     places: Vec<Place, { MOST + 1 }>,
-    /// Limit of s'', per second squared, and the inverse.
-    pub acceleration: f32,
-    over_acceleration: f32,
+    /// Limits on s, per second.
+    pub limits: PathLimits,
 }
 
 /// Speed, acceleration and place of a motion along a line, per second.
@@ -50,7 +49,16 @@ pub(super) struct Moment {
 }
 
 impl Grid {
-    pub fn new(path: &Path, limits: &PathLimits, pivot_rate: f32, pivot_acceleration: f32) -> Self {
+    /// Without places yet.
+    pub fn new(limits: &PathLimits) -> Self {
+        Self {
+            places: Vec::new(),
+            limits: *limits,
+        }
+    }
+
+    /// Lays out the places of a line.
+    pub fn fill(&mut self, path: &Path, pivot_rate: f32, pivot_acceleration: f32) {
         let square = path.turn * path.turn + path.length * path.length;
         let stretches = if path.is_wound() || square < FEW {
             MOST / 2
@@ -66,27 +74,21 @@ impl Grid {
         let granted = 1.0 - kept;
         let over_rate = 1.0 / (pivot_rate * granted);
         let over_acceleration = 1.0 / (pivot_acceleration * granted);
-        let least = 1.0 / limits.rate;
-        let mut grid = Self {
-            places: Vec::new(),
-            acceleration: limits.acceleration,
-            over_acceleration: 1.0 / limits.acceleration,
-        };
+        let least = 1.0 / self.limits.rate;
         let mut demands = path.places(stretches);
         for _ in 0..=stretches {
             let demand = demands.next();
             let (first, second) = (largest(&demand.first), largest(&demand.second));
             let rate = (first * over_rate).larger(least);
-            let asked = first * limits.acceleration + second / (rate * rate);
+            let asked = first * self.limits.acceleration + second / (rate * rate);
             // There is room for all.
-            let _ = grid.places.push(Place {
+            let _ = self.places.push(Place {
                 first: demand.first.map(|first| first * over_acceleration),
                 second: demand.second.map(|second| second * over_acceleration),
                 rate,
                 calm: asked * over_acceleration <= CALM,
             });
         }
-        grid
     }
 
     /// Number of stretches.
@@ -99,8 +101,8 @@ impl Grid {
         &self.places
     }
 
-    /// The square of the factor by which a motion would have to take longer for this moment of it to keep every limit; 1 and less
-    /// when it does. Between places the demand goes straight.
+    /// The square of the factor by which a motion would have to take longer for this moment of it to keep every limit but that of
+    /// the line's own acceleration; 1 and less when it does. Between places the demand goes straight.
     pub fn excess(&self, moment: &Moment) -> f32 {
         let stretches = self.stretches();
         let at = moment.s * stretches as f32;
@@ -112,8 +114,7 @@ impl Grid {
         let between = |a: f32, b: f32| a + (b - a) * part;
         let square = moment.rate * moment.rate;
         let rate = between(a.rate, b.rate);
-        let mut worst =
-            (rate * rate * square).larger(moment.acceleration.abs() * self.over_acceleration);
+        let mut worst = rate * rate * square;
         if a.calm && b.calm {
             return worst;
         }

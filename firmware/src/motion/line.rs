@@ -26,14 +26,15 @@ use heapless::Vec;
 #[inline(never)]
 pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Result<Plan, Refusal> {
     check_line(&from, &to, ground)?;
+    let mut plan = Plan {
+        id,
+        start: Start::Rest(from),
+        pieces: Vec::new(),
+        nudge: [0; 3],
+        end: to,
+    };
     if from == to {
-        return Ok(Plan {
-            id,
-            start: Start::Rest(from),
-            pieces: Vec::new(),
-            nudge: [0; 3],
-            end: to,
-        });
+        return Ok(plan);
     }
     // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so that
     // it does not matter either where on the mechanism it is.
@@ -46,7 +47,8 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
     if turned_round {
         pace.beats.reverse();
     }
-    pace.plan(id, from, to).ok_or(Refusal::Limits)
+    pace.play(&mut plan, &from).ok_or(Refusal::Limits)?;
+    Ok(plan)
 }
 
 /// A line and what limits motion along it.
@@ -90,12 +92,8 @@ impl<'a> Way<'a> {
         if self.pivots_follow_anywhere(&profile) {
             return Some(());
         }
-        let grid = Grid::new(
-            self.path,
-            &self.limits,
-            self.pivot_rate,
-            self.pivot_acceleration,
-        );
+        let mut grid = Grid::new(&self.limits);
+        grid.fill(self.path, self.pivot_rate, self.pivot_acceleration);
         // As a rule a few places show that it is too fast, and no match when slowed down for those alone.
         let seen = self.excess(pace, &grid, Looks::Few);
         let mut shaped = None;
@@ -161,7 +159,7 @@ impl<'a> Way<'a> {
         let unit = pace.unit() * self.hz * self.hz * self.hz;
         let mut now = Moment::default();
         let mut worst = 0.0_f32;
-        let mut jerk = 0.0_f32;
+        let (mut acceleration, mut jerk) = (0.0_f32, 0.0_f32);
         for beat in &pace.beats {
             let seconds = float(beat.ticks) / self.hz;
             let push = beat.jerk as f32 * unit;
@@ -173,7 +171,10 @@ impl<'a> Way<'a> {
                 now = now.after(step, push);
                 worst = worst.larger(grid.excess(&now));
             }
+            // Largest at an end of a stretch.
+            acceleration = acceleration.larger(now.acceleration.abs());
         }
+        let worst = worst.larger(acceleration / self.limits.acceleration);
         let jerk = jerk / self.limits.jerk;
         let worst = sqrt_f32(worst);
         if jerk > 1.0 {

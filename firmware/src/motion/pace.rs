@@ -6,7 +6,7 @@
 
 use super::axis::{JERK_STEP, SUB_BITS};
 use super::float::{float, rough, rough_long};
-use super::plan::{MAX_PIECES, Piece, Plan, Position, Start};
+use super::plan::{MAX_PIECES, Piece, Plan, Position};
 use super::quotient::quotient;
 use crate::number::round;
 use heapless::Vec;
@@ -45,15 +45,8 @@ impl Pace {
         6.0 / rough_long(self.sixfold)
     }
 
-    /// The plan from `from` to `to`; `None` where a number would be too large.
-    pub fn plan(&self, id: u32, from: Position, to: Position) -> Option<Plan> {
-        let mut plan = Plan {
-            id,
-            start: Start::Rest(from),
-            pieces: Vec::new(),
-            nudge: [0; 3],
-            end: to,
-        };
+    /// Writes pieces and nudge of a plan from `from` to its end; `None` where a number would be too large.
+    pub fn play(&self, plan: &mut Plan, from: &Position) -> Option<()> {
         for beat in &self.beats {
             let ticks = beat.ticks;
             plan.pieces
@@ -66,14 +59,14 @@ impl Pace {
         let duration = self.ticks().max(1);
         let levers = self.levers(duration);
         for i in 0..3 {
-            let way = i128::from(to[i]) - i128::from(from[i]);
+            let way = i128::from(plan.end[i]) - i128::from(from[i]);
             if way != 0 {
-                let rest = self.axis(i, way << SUB_BITS, &levers, &mut plan)?;
+                let rest = self.axis(i, way << SUB_BITS, &levers, plan)?;
                 // In 64 bits a division is a tenth of one in 128.
                 plan.nudge[i] = rest / duration as i64;
             }
         }
-        Some(plan)
+        Some(())
     }
 
     /// How far a sixth of a jerk of 1 in each of the beats leads until the end, modulo 2^64: the cube of the time from the beat's

@@ -28,7 +28,7 @@ pub(super) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
 const LEAST: f32 = 0.01;
 const MOST: f32 = 0.3;
 /// What is given away more when that was too little, at least.
-const STEP: f32 = 1.7;
+const STEP: f32 = 2.2;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;

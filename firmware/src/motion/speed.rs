@@ -43,14 +43,14 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
     let mut z = [0.0; PLACES];
     // Of the places that are not calm, the last first.
     let mut nodes: Vec<Node, PLACES> = Vec::new();
-    let steepest = double * grid.acceleration;
+    let steepest = double * grid.limits.acceleration;
     let mut next = 0.0;
     for (place, z) in grid.places().iter().zip(&mut z).take(n).rev() {
         let most = 1.0 / (place.rate * place.rate);
         next = if place.calm {
             most.smaller(next + steepest)
         } else {
-            let node = Node::new(place, grid.acceleration);
+            let node = Node::new(place, grid.limits.acceleration);
             // There is room for all.
             let _ = nodes.push(node);
             node.largest(most, next, half)
