@@ -1,10 +1,12 @@
 //! Whether a target can be moved to, and along a straight line.
 
 use super::disk;
+use super::float::rough;
 use super::ground::Ground;
 use super::limits::centre;
 use super::plan::Position;
 use super::refusal::Refusal;
+use super::units::PER_UNIT;
 use crate::number::Fixed;
 use kinematics::{Angle, Scalar};
 
@@ -21,6 +23,28 @@ pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
     if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
+    if !is_well_inside(target, ground) {
+        check_disk(target, ground)?;
+    }
+    let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
+    if let Some(axis) = (0..3).find(|&i| !inside(i)) {
+        return Err(Refusal::OutOfBounds { axis });
+    }
+    Ok(())
+}
+
+/// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
+fn is_well_inside(target: &Position, ground: &Ground) -> bool {
+    let [x, y] = [0, 1].map(|i| rough(target[i]) * PER_UNIT);
+    let usable = ground.usable as f32;
+    ground.centre.map(f64::to_bits) == [0; 2] && x * x + y * y < usable * usable * NEARLY
+}
+
+/// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
+const NEARLY: f32 = 0.999_99;
+
+#[inline(never)]
+fn check_disk(target: &Position, ground: &Ground) -> Result<(), Refusal> {
     let [mut x, mut y] = centre(target);
     let mut rim = RIM;
     if ground.centre != [0.0; 2] {
@@ -38,10 +62,6 @@ pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
             radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
             usable_mm: ground.usable * ground.geometry.radius_mm,
         });
-    }
-    let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
-    if let Some(axis) = (0..3).find(|&i| !inside(i)) {
-        return Err(Refusal::OutOfBounds { axis });
     }
     Ok(())
 }
