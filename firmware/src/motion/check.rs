@@ -67,6 +67,7 @@ fn check_disk(target: &Position, ground: &Ground) -> Result<(), Refusal> {
 }
 
 /// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](super::plan_line).
+#[inline(never)]
 pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
     check_target(to, ground)?;
     if !ground.limits.all_positive() {

@@ -123,6 +123,7 @@ impl Walk {
     }
 
     /// The exit within a part of the way.
+    #[inline(never)]
     fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
         let turn = 1.01 * TAU / self.turn.abs();

@@ -14,11 +14,11 @@ use super::limits::PathLimits;
 use super::pace::Pace;
 use super::path::Path;
 use super::plan::{Plan, Position, Start};
-use super::polygon::{thinned, under};
+use super::polygon::{thin, under};
 use super::profile::Profile;
 use super::ramps::pace;
 use super::refusal::Refusal;
-use super::speed::fastest;
+use super::speed::{PLACES, fastest};
 use crate::number::{cbrt_f32, sqrt_f32};
 use heapless::Vec;
 
@@ -60,15 +60,8 @@ struct Way<'a> {
     hz: f32,
 }
 
-/// How closely a motion is looked at.
-#[derive(Clone, Copy)]
-enum Looks {
-    /// At the ends of its stretches, and at a fourth of the places between.
-    Few,
-    /// At every place.
-    All,
-}
-
+/// Looks at a motion in a stretch of it, besides those at the places it passes.
+const LOOKS: u32 = 1;
 /// Room that a motion gets for roundings when it is slowed down.
 const SPARE: f32 = 1.001_5;
 
@@ -94,29 +87,13 @@ impl<'a> Way<'a> {
         }
         let mut grid = Grid::new(&self.limits);
         grid.fill(self.path, self.pivot_rate, self.pivot_acceleration);
-        // As a rule a few places show that it is too fast, and no match when slowed down for those alone.
-        let seen = self.excess(pace, &grid, Looks::Few);
-        let mut shaped = None;
-        if seen > 1.0 {
-            let slowed = profile.slowed(seen)?.ticks();
-            shaped = self.shape(&grid, pace).map(|()| pace.ticks());
-            if shaped.is_some_and(|ticks| ticks <= slowed) {
-                return Some(());
-            }
+        let excess = self.excess(pace, &grid);
+        if excess <= 1.0 {
+            return Some(());
         }
-        let mut plain = Pace::default();
-        profile.write(&mut plain);
-        let excess = self.excess(&plain, &grid, Looks::All);
-        let slowed = if excess > 1.0 {
-            profile.slowed(excess)?
-        } else {
-            profile
-        };
-        // Few looks may have found nothing.
-        if seen <= 1.0 && excess > 1.0 {
-            shaped = self.shape(&grid, pace).map(|()| pace.ticks());
-        }
-        if shaped.is_none_or(|ticks| ticks >= slowed.ticks()) {
+        let slowed = profile.slowed(excess)?;
+        let shaped = self.shape(&grid, pace);
+        if shaped.is_none() || pace.ticks() >= slowed.ticks() {
             slowed.write(pace);
         }
         Some(())
@@ -124,11 +101,12 @@ impl<'a> Way<'a> {
 
     /// Writes the motion that follows the pivots' limits.
     fn shape(&self, grid: &Grid, paced: &mut Pace) -> Option<()> {
-        let z = fastest(grid);
-        let polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
-        let polygon = thinned(polygon, &self.limits);
+        let mut z = [0.0; PLACES];
+        fastest(grid, &mut z);
+        let mut polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
+        thin(&mut polygon, &self.limits);
         pace(&polygon, SPARE, &self.limits, self.hz, paced)?;
-        let excess = self.excess(paced, grid, Looks::All);
+        let excess = self.excess(paced, grid);
         if excess <= 1.0 {
             return Some(());
         }
@@ -151,11 +129,8 @@ impl<'a> Way<'a> {
     }
 
     /// The largest excess of a motion over its limits (see [`Grid::excess`]), jerk included.
-    fn excess(&self, pace: &Pace, grid: &Grid, looks: Looks) -> f32 {
-        let (places, least) = match looks {
-            Looks::Few => (grid.stretches() as f32 / 4.0, 1),
-            Looks::All => (grid.stretches() as f32, 2),
-        };
+    fn excess(&self, pace: &Pace, grid: &Grid) -> f32 {
+        let places = grid.stretches() as f32;
         let unit = pace.unit() * self.hz * self.hz * self.hz;
         let mut now = Moment::default();
         let mut worst = 0.0_f32;
@@ -165,7 +140,7 @@ impl<'a> Way<'a> {
             let push = beat.jerk as f32 * unit;
             jerk = jerk.larger(push.abs());
             let way = now.after(seconds, push).s - now.s;
-            let steps = least + (way.abs() * places) as u32;
+            let steps = LOOKS + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);

@@ -59,6 +59,7 @@ pub(super) struct Demand {
 }
 
 impl Path {
+    #[inline(never)]
     pub fn new(from: &Position, to: &Position, ground: &Ground) -> Self {
         let way = [0, 1].map(|i| rough(to[i].wrapping_sub(from[i])) * PER_UNIT);
         let turn_units = to[2].wrapping_sub(from[2]);

@@ -27,8 +27,6 @@ pub(super) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
 /// The share of z that is given away, the least and the most.
 const LEAST: f32 = 0.01;
 const MOST: f32 = 0.3;
-/// What is given away more when that was too little, at least.
-const STEP: f32 = 2.2;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
@@ -42,20 +40,20 @@ pub(super) fn under(z: &Squares, stretches: usize, acceleration: f32) -> Option<
         match lay(z, acceleration, 1.0 - loss) {
             Ok(polygon) => return Some(polygon),
             Err(_) if loss >= MOST => return None,
-            // As much longer as the stretches have to be on average, and half as much as curves would take for that: what is
-            // straight takes no more.
             Err(place) => {
+                // What makes the stretches of a curve as much longer as they would have to be, and a step at least.
                 let longer = stretches as f32 / place as f32;
-                let longer = longer * longer;
-                loss = (loss * longer.larger(STEP)).smaller(MOST);
+                loss = (loss * (longer * longer))
+                    .larger(1.35 * loss + 0.015)
+                    .smaller(MOST);
             }
         }
     }
 }
 
-/// Without the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
 /// which the acceleration falls: without them the speed is lower.
-pub(super) fn thinned(mut polygon: Polygon, limits: &PathLimits) -> Polygon {
+pub(super) fn thin(polygon: &mut Polygon, limits: &PathLimits) {
     let mut k = 1;
     while k + 2 < polygon.len() {
         let stretch = |k: usize| Stretch::new(&polygon[k], &polygon[k + 1]);
@@ -73,7 +71,6 @@ pub(super) fn thinned(mut polygon: Polygon, limits: &PathLimits) -> Polygon {
             k += 1;
         }
     }
-    polygon
 }
 
 /// What happens between two corners.

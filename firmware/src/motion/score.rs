@@ -124,6 +124,7 @@ struct Sum {
 }
 
 impl Sum {
+    #[inline(never)]
     fn push(&mut self, beats: &mut Vec<Beat, MAX_PIECES>, ticks: u32, jerk: i32) -> Option<()> {
         let bent = i64::from(jerk) * i64::from(ticks);
         let way = 3 * self.speed + product(3 * self.force + bent, ticks);

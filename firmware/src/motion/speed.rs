@@ -29,23 +29,20 @@ impl Bound {
     }
 }
 
-/// Rounds in which the largest z of a place is found: it is a corner of a few straight lines.
-const ROUNDS: usize = 6;
 /// What is no demand on a pivot, to divide by.
 const STILL: f32 = 1e-15;
 
-/// See the module.
-pub(super) fn fastest(grid: &Grid) -> Squares {
+/// Writes the fastest; see the module.
+pub(super) fn fastest(grid: &Grid, z: &mut Squares) {
     let n = grid.stretches();
     let half = 0.5 * n as f32;
     // A slope of z over a stretch is this many times an acceleration.
     let double = 2.0 / n as f32;
-    let mut z = [0.0; PLACES];
     // Of the places that are not calm, the last first.
     let mut nodes: Vec<Node, PLACES> = Vec::new();
     let steepest = double * grid.limits.acceleration;
     let mut next = 0.0;
-    for (place, z) in grid.places().iter().zip(&mut z).take(n).rev() {
+    for (place, z) in grid.places().iter().zip(z.iter_mut()).take(n).rev() {
         let most = 1.0 / (place.rate * place.rate);
         next = if place.calm {
             most.smaller(next + steepest)
@@ -68,7 +65,6 @@ pub(super) fn fastest(grid: &Grid) -> Squares {
         now = z.smaller((now + up).larger(0.0));
         *z = now;
     }
-    z
 }
 
 /// The bounds of a place.
@@ -136,7 +132,8 @@ impl Node {
             slope: -half,
         };
         let mut z = most;
-        for _ in 0..ROUNDS {
+        // It ends, since z only falls; a count of rounds would be written out six times over.
+        loop {
             let low = self.bound(z, -1.0);
             let own = self.bound(z, 1.0);
             let high = if onwards.at(z) < own.at(z) {
