@@ -27,6 +27,8 @@ pub(super) struct Place {
     pub rate: f32,
     /// Whether whatever keeps the rate and the line's own acceleration keeps that of the pivots too.
     pub calm: bool,
+    /// The largest of `first` and of `second`, whatever the sign.
+    most: [f32; 2],
 }
 
 /// The part of the pivots' acceleration up to which a place is calm: between two of them a little more may be asked for.
@@ -87,6 +89,7 @@ impl Grid {
                 second: demand.second.map(|second| second * over_acceleration),
                 rate,
                 calm: asked * over_acceleration <= CALM,
+                most: [first * over_acceleration, second * over_acceleration],
             });
         }
     }
@@ -115,7 +118,9 @@ impl Grid {
         let square = moment.rate * moment.rate;
         let rate = between(a.rate, b.rate);
         let mut worst = rate * rate * square;
-        if a.calm && b.calm {
+        // As a rule less is asked of the pivots' acceleration than they have, whatever its signs.
+        let most = [0, 1].map(|k| a.most[k].larger(b.most[k]));
+        if most[0] * moment.acceleration.abs() + most[1] * square <= 1.0 {
             return worst;
         }
         for i in 0..3 {
