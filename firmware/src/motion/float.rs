@@ -212,4 +212,20 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn short_numbers_are_rounded_as_they_say() {
+        for value in [0.0_f32, 0.25, 0.75, 1.0, 2.6, 4_194_303.4, 8_388_609.0, 2e9] {
+            for value in [value, -value] {
+                let near = nearest_short(value);
+                assert_eq!(f64::from(near), f64::from(value).round(), "{value}");
+                assert_eq!(
+                    f64::from(up_short(value)),
+                    f64::from(value).ceil(),
+                    "{value}"
+                );
+            }
+        }
+        assert_eq!(up_short(f32::NAN), 0);
+    }
 }

@@ -137,3 +137,113 @@ fn largest(values: &[f32; 3]) -> f32 {
     let [a, b, c] = values.map(f32::abs);
     a.larger(b).larger(c)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::ground::Ground;
+    use super::super::plan::Position;
+    use super::super::speed::{PLACES, fastest};
+    use super::*;
+    use crate::parameters::Parameters;
+    use kinematics::Geometry;
+
+    const RATE: f32 = 10.0;
+    const LIMITS: PathLimits = PathLimits {
+        rate: 2.0,
+        acceleration: 20.0,
+        jerk: 1e4,
+    };
+
+    /// Through the middle of the disk and near its rim, by parts of a turn and several.
+    fn lines() -> impl Iterator<Item = Path> {
+        const ONE: f64 = 4_294_967_296.0;
+        let ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+        [0.1, -0.8, 1.7, -2.9, 40.0]
+            .into_iter()
+            .flat_map(move |turns| {
+                [(0.1, -0.2), (0.6, 0.3), (-0.4, 0.65)].map(|(x, y)| {
+                    let at =
+                        |place: [f64; 3]| -> Position { place.map(|part| (part * ONE) as i64) };
+                    Path::new(&at([-x, y, 0.3]), &at([x, -y, 0.3 + turns]), &ground)
+                })
+            })
+    }
+
+    fn grid(path: &Path, pivot_acceleration: f32) -> Grid {
+        let mut grid = Grid::new(&LIMITS);
+        grid.fill(path, RATE, pivot_acceleration);
+        grid
+    }
+
+    /// Every place is as demanding as the line is there, whatever came before it.
+    #[test]
+    fn places_do_not_drift() {
+        for path in lines() {
+            let count = 64;
+            let mut places = path.places(count);
+            for k in 0..count {
+                let near = places.next();
+                let right = path.at(k as f32 / count as f32);
+                let close = |a: f32, b: f32| (a - b).abs() <= 2e-5 * (1.0 + b.abs());
+                for i in 0..3 {
+                    assert!(close(near.first[i], right.first[i]), "{near:?} {right:?}");
+                    let scale = path.turn.abs().larger(1.0);
+                    let [a, b] = [near.second[i], right.second[i]].map(|part| part / scale);
+                    assert!(close(a, b), "{near:?} {right:?}");
+                }
+            }
+        }
+    }
+
+    /// What calm places skip makes no difference.
+    #[test]
+    fn calm_places_are_as_fast_as_others() {
+        let (mut calm, mut others) = (0, 0);
+        for path in lines() {
+            for acceleration in [60.0, 200.0, 600.0, 3_000.0, 20_000.0] {
+                let grid = grid(&path, acceleration);
+                let mut wary = grid.clone();
+                for place in &mut wary.places {
+                    calm += usize::from(place.calm);
+                    others += usize::from(!place.calm);
+                    place.calm = false;
+                }
+                let (mut fast, mut slow) = ([0.0; PLACES], [0.0; PLACES]);
+                fastest(&grid, &mut fast);
+                fastest(&wary, &mut slow);
+                for (fast, slow) in fast.iter().zip(&slow) {
+                    assert!((fast - slow).abs() <= 1e-5 * slow, "{fast} {slow}");
+                }
+            }
+        }
+        assert!(calm > 500 && others > 500, "{calm} {others}");
+    }
+
+    /// At the places themselves: by the limits' definition, pivot for pivot.
+    #[test]
+    fn an_excess_is_that_of_the_worst_limit() {
+        let mut over = 0;
+        for path in lines() {
+            let grid = grid(&path, 50.0);
+            for (k, place) in grid.places().iter().enumerate() {
+                for (rate, acceleration) in [(0.0, 12.0), (0.5, 0.01), (0.4, -19.0), (2.2, 8.0)] {
+                    let moment = Moment {
+                        s: k as f32 / grid.stretches() as f32,
+                        rate,
+                        acceleration,
+                    };
+                    let worst = (0..3)
+                        .map(|i| place.first[i] * acceleration + place.second[i] * rate * rate)
+                        .fold((place.rate * rate) * (place.rate * rate), |worst, part| {
+                            worst.larger(part.abs())
+                        });
+                    let told = grid.excess(&moment);
+                    over += usize::from(worst > 1.0);
+                    let same = (told - worst).abs() <= 1e-3 * worst;
+                    assert!(same || (told <= 1.0 && worst <= 1.0), "{told} {worst}");
+                }
+            }
+        }
+        assert!(over > 100, "{over}");
+    }
+}

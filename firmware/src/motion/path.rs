@@ -117,10 +117,6 @@ impl Path {
         let step = 1.0 / stretches as f32;
         // A direction is worth nothing on a line that is wound, and not looked at.
         let turn = (rough(self.turn_units) * step) as i32;
-        let direction = |theta: i64| {
-            let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
-            [cos.to_f32(), sin.to_f32()]
-        };
         Places {
             path: self,
             s: 0.0,
@@ -128,6 +124,16 @@ impl Path {
             direction: direction(self.theta),
             turn: direction(i64::from(turn)),
         }
+    }
+
+    /// The demand at s, by sine and cosine of theta there.
+    #[cfg(test)]
+    pub fn at(&self, s: f32) -> Demand {
+        if self.is_wound() {
+            return self.demand_of_any_orientation(s);
+        }
+        let turned = (self.turn_units as f64 * f64::from(s)) as i64;
+        self.demand(s, direction(self.theta + turned))
     }
 
     /// The demand at s, where the platform's x axis points in this direction (cosine and sine).
@@ -198,6 +204,12 @@ impl Path {
             second: [second, -second, second],
         }
     }
+}
+
+/// Cosine and sine of an angle in 2^-32 turns.
+fn direction(theta: i64) -> [f32; 2] {
+    let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
+    [cos.to_f32(), sin.to_f32()]
 }
 
 /// Places along a line; see [`Path::places`].
