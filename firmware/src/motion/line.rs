@@ -14,7 +14,7 @@ use super::limits::PathLimits;
 use super::pace::Pace;
 use super::path::Path;
 use super::plan::{Plan, Position, Start};
-use super::polygon::{thin, under};
+use super::polygon::{Polygon, thin, under};
 use super::profile::Profile;
 use super::ramps::pace;
 use super::refusal::Refusal;
@@ -103,7 +103,8 @@ impl<'a> Way<'a> {
     fn shape(&self, grid: &Grid, paced: &mut Pace) -> Option<()> {
         let mut z = [0.0; PLACES];
         fastest(grid, &mut z);
-        let mut polygon = under(&z, grid.stretches(), self.limits.acceleration)?;
+        let mut polygon = Polygon::new();
+        under(&z, grid.stretches(), self.limits.acceleration, &mut polygon)?;
         thin(&mut polygon, &self.limits);
         pace(&polygon, SPARE, &self.limits, self.hz, paced)?;
         let excess = self.excess(paced, grid);

@@ -27,28 +27,45 @@ pub(super) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
 /// The share of z that is given away, the least and the most.
 const LEAST: f32 = 0.01;
 const MOST: f32 = 0.3;
+/// What was too little grows by this factor and this much more at least.
+const STEP: f32 = 1.35;
+const STEP_MORE: f32 = 0.015;
+/// Shares that differ by less are as good as each other.
+const FINE: f32 = 0.04;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
 
-/// The polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to `acceleration`.
-/// `None` where it takes too many stretches.
-pub(super) fn under(z: &Squares, stretches: usize, acceleration: f32) -> Option<Polygon> {
+/// Writes the polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to
+/// `acceleration`. `None` where it takes too many stretches.
+pub(super) fn under(
+    z: &Squares,
+    stretches: usize,
+    acceleration: f32,
+    polygon: &mut Polygon,
+) -> Option<()> {
     let z = z.get(..=stretches)?;
-    let mut loss = LEAST;
-    loop {
-        match lay(z, acceleration, 1.0 - loss) {
-            Ok(polygon) => return Some(polygon),
-            Err(_) if loss >= MOST => return None,
-            Err(place) => {
-                // What makes the stretches of a curve as much longer as they would have to be, and a step at least.
-                let longer = stretches as f32 / place as f32;
-                loss = (loss * (longer * longer))
-                    .larger(1.35 * loss + 0.015)
-                    .smaller(MOST);
-            }
+    let laid = |loss: f32, polygon: &mut Polygon| lay(z, acceleration, 1.0 - loss, polygon);
+    let (mut before, mut loss) = (0.0, LEAST);
+    while let Err(place) = laid(loss, polygon) {
+        if loss >= MOST {
+            return None;
+        }
+        // What makes the stretches of a curve as much longer as they would have to be, and a step at least.
+        let longer = stretches as f32 / place as f32;
+        before = loss;
+        loss = (loss * (longer * longer))
+            .larger(STEP * loss + STEP_MORE)
+            .smaller(MOST);
+    }
+    if loss - before >= FINE {
+        // Once more, with half of what was added.
+        let mut finer = Polygon::new();
+        if laid(0.5 * (before + loss), &mut finer).is_ok() {
+            *polygon = finer;
         }
     }
+    Some(())
 }
 
 /// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
@@ -89,12 +106,13 @@ impl Stretch {
     }
 }
 
-/// One pass; an error is the place up to which the stretches suffice.
-fn lay(z: &[f32], acceleration: f32, share: f32) -> Result<Polygon, usize> {
+/// One pass, written; an error is the place up to which the stretches suffice.
+#[inline(never)]
+fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Polygon) -> Result<(), usize> {
     let last = z.len() - 1;
     let spacing = 1.0 / last as f32;
     let steepest = 2.0 * acceleration * spacing;
-    let mut polygon = Polygon::new();
+    polygon.clear();
     let (mut from, mut start) = (0, 0.0);
     // There is room for one more than there are stretches.
     let _ = polygon.push(Corner { s: 0.0, rate: 0.0 });
@@ -129,5 +147,5 @@ fn lay(z: &[f32], acceleration: f32, share: f32) -> Result<Polygon, usize> {
     if let Some(corner) = polygon.last_mut() {
         corner.rate = 0.0;
     }
-    Ok(polygon)
+    Ok(())
 }
