@@ -58,8 +58,8 @@ impl Pace {
         }
         let duration = self.ticks().max(1);
         let levers = self.levers(duration);
-        for i in 0..3 {
-            let way = i128::from(plan.end[i]) - i128::from(from[i]);
+        for (i, from) in from.iter().enumerate() {
+            let way = i128::from(plan.end[i]) - i128::from(*from);
             if way != 0 {
                 let rest = self.axis(i, way << SUB_BITS, &levers, plan)?;
                 // In 64 bits a division is a tenth of one in 128.
