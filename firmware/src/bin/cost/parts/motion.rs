@@ -7,6 +7,9 @@ use crate::random::Random;
 use crate::table::Came;
 use firmware::motion::{Axis, Next, NoTransition, Plan, Start, Stop, plan_jog, plan_line};
 
+/// Tick of a head at which the next slice takes over.
+const TAKEN_OVER: u64 = 40;
+
 /// Counts the planners.
 #[inline(never)]
 pub fn run(bench: &mut Bench) {
@@ -23,6 +26,13 @@ pub fn run(bench: &mut Bench) {
         |random| (Moving::new(random), position(random)),
         |(now, to)| now.retargeted(*to),
         |_, plan| of_plan(plan.as_ref()),
+    );
+    bench.part(
+        "motion: rest of a new target, next slice",
+        1,
+        Moving::headed,
+        |(ahead, tries)| ahead.go_on(4, TAKEN_OVER, ground(), &mut { *tries }),
+        |_, plan| of_plan(plan.as_ref().ok()),
     );
     bench.part(
         "motion: jog from rest",

@@ -3,7 +3,7 @@
 use crate::random::Random;
 use core::hint::black_box;
 use firmware::motion::{
-    Axis, Ground, NoTransition, Plan, Position, Start, Stop, Tries, plan_line, plan_stop,
+    Ahead, Axis, Ground, NoTransition, Plan, Position, Start, Stop, Tries, plan_line, plan_stop,
     plan_transition, try_transition,
 };
 use firmware::number::Fixed;
@@ -131,6 +131,19 @@ impl Moving {
             Ok(plan) => Some(plan),
             Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
             Err(NoTransition::Refused(_)) => None,
+        }
+    }
+
+    /// What lies ahead of a new target's head, and what has been tried: of the next state that has any.
+    pub fn headed(random: &mut Random) -> (Ahead, Tries) {
+        loop {
+            let (now, to) = (Self::new(random), position(random));
+            let (mut tries, mut ahead) = (Tries::NONE, None);
+            let (plan, start) = (&now.plan, &now.start);
+            let _ = try_transition(3, plan, start, now.at, to, ground(), &mut tries, &mut ahead);
+            if let Some(ahead) = ahead {
+                return (ahead, tries);
+            }
         }
     }
 
