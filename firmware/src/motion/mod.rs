@@ -4,6 +4,15 @@
 //! ([`Axis`]), so setpoints are continuous by construction and the end is exact. Planning needs divisions and roots and runs
 //! at low priority ([`plan_line`], [`plan_stop`]); a plan reaches the tick through the command queue and is taken only if it
 //! starts where the motion is.
+//!
+//! A new target in motion is planned in slices, so that the first setpoint towards it does not wait for all that lies ahead.
+//! Every plan that is handed over ends at rest, all of it looked at: whatever becomes of the next slice, the motion can stop.
+//!
+//! | slice | what comes of it |
+//! |---|---|
+//! | 1 ([`try_transition`]) | the transition, when there is little to look at; else its head, which ends in a stop |
+//! | 2 ([`Ahead::go_on`]) | the rest of the transition takes over from the head: the same motion to the bit |
+//! | 1 again, when 2 has found it too fast | a slower one that leaves the head; when 1 has, one that leaves a stop just begun |
 
 mod ahead;
 mod axis;
