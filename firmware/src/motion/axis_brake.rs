@@ -6,7 +6,7 @@
 
 use super::axis_profile::AxisLimits;
 use super::brake::{SLACK, whole};
-use super::float::{Order, float};
+use super::float::Order;
 use crate::number::sqrt_f32;
 
 /// What is to be braked, over the limit of acceleration.
@@ -49,13 +49,12 @@ impl AxisBrake {
     }
 
     /// The times in whole ticks.
-    pub fn ticks(&self) -> [u64; 3] {
+    pub fn ticks(&self) -> [f32; 3] {
         whole(self.times(), |n| self.over(n))
     }
 
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
-    pub fn over(&self, n: [u64; 3]) -> [bool; 3] {
-        let [n1, n2, n3] = n.map(float);
+    pub fn over(&self, [n1, n2, n3]: [f32; 3]) -> [bool; 3] {
         let left = self.velocity + self.acceleration * (n1 / 2.0);
         let peak = -left / (n1 / 2.0 + n2 + n3 / 2.0);
         let hardest = self.acceleration.abs().larger(1.0);
@@ -100,9 +99,9 @@ mod tests {
             assert!(n2 == 0.0 || (peak.abs() - 2.0).abs() < 1e-5);
             let whole = brake.ticks();
             assert_eq!(brake.over(whole), [false; 3], "{v} {a}");
-            let longer: u64 = whole.iter().sum();
+            let longer: f32 = whole.iter().sum();
             // A start near its peak is let down to less and less of it while times are lengthened.
-            assert!(longer as f32 <= n1 + n2 + n3 + 16.0, "{v} {a}: {whole:?}");
+            assert!(longer <= n1 + n2 + n3 + 16.0, "{v} {a}: {whole:?}");
         }
     }
 }

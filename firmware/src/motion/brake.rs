@@ -15,7 +15,7 @@
 //! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 use super::axis::{Axis, JERK_STEP};
-use super::float::{Order, float, hypot, rough, ticks_up};
+use super::float::{Order, down, float, hypot, rough, ticks_up, up};
 use super::sample::Sample;
 use super::units::{AXIS_UNITS, UnitLimits};
 use crate::number::sqrt_f32;
@@ -118,24 +118,23 @@ impl Brake {
 
     /// The times in whole ticks.
     pub fn ticks(&self) -> [u64; 3] {
-        whole(self.times(), |n| self.over(n))
+        whole(self.times(), |n| self.over(n)).map(ticks_up)
     }
 
     /// P in so many ticks.
-    fn peak(&self, n: [u64; 3]) -> [f32; 3] {
-        let [n1, n2, n3] = n.map(float);
+    fn peak(&self, [n1, n2, n3]: [f32; 3]) -> [f32; 3] {
         let scale = -1.0 / (n1 / 2.0 + n2 + n3 / 2.0);
         self.after(n1 / 2.0).map(|w| w * scale)
     }
 
     /// The part of the limit that P comes to in so many ticks: jerk alone may end at less than all of it.
     pub fn part(&self, ticks: [u64; 3]) -> f32 {
-        size(&self.peak(ticks)).smaller(1.0)
+        size(&self.peak(ticks.map(float))).smaller(1.0)
     }
 
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
-    fn over(&self, n: [u64; 3]) -> [bool; 3] {
-        let [n1, _, n3] = n.map(float);
+    fn over(&self, n: [f32; 3]) -> [bool; 3] {
+        let [n1, _, n3] = n;
         let peak = self.peak(n);
         let change = [0, 1, 2].map(|i| peak[i] - self.acceleration[i]);
         let hardest = size(&self.acceleration).larger(1.0);
@@ -170,16 +169,18 @@ impl Brake {
 }
 
 /// Times in whole ticks, with what is too short by then lengthened.
-pub(super) fn whole(times: [f32; 3], over: impl Fn([u64; 3]) -> [bool; 3]) -> [u64; 3] {
-    let [n1, n2, n3] = times.map(|ticks| ticks_up(ticks - 1e-3));
-    let mut n = [n1.max(1), n2, n3.max(1)];
+pub(super) fn whole(times: [f32; 3], over: impl Fn([f32; 3]) -> [bool; 3]) -> [f32; 3] {
+    let [n1, n2, n3] = times.map(|ticks| up(ticks - 1e-3));
+    let mut n = [n1.larger(1.0), n2, n3.larger(1.0)];
     for _ in 0..LENGTHENINGS {
         let over = over(n);
         if over == [false; 3] {
             break;
         }
         for (n, over) in n.iter_mut().zip(over) {
-            *n += u64::from(over) * (1 + *n / 64);
+            if over {
+                *n += 1.0 + down(*n * (1.0 / 64.0));
+            }
         }
     }
     n
@@ -226,8 +227,9 @@ pub(super) fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
 /// Twice `value` over `divisor`, without an overflow, to two.
 fn twice_over(value: i64, divisor: i64) -> i64 {
     let whole = over(value, divisor);
-    let rest = value.wrapping_sub(whole.wrapping_mul(divisor));
-    2 * whole + over(2 * rest, divisor)
+    // Less than the divisor.
+    let rest = 2 * value.wrapping_sub(whole.wrapping_mul(divisor));
+    2 * whole + i64::from(rest >= divisor) - i64::from(rest <= -divisor)
 }
 
 /// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow exactly.

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::axis_brake::AxisBrake;
 use super::axis_profile::{AxisLimits, AxisProfile, Task};
 use super::brake::{Brake, gains};
-use super::float::{Order, float, hypot, rough, rough_long};
+use super::float::{Order, hypot, rough, rough_long};
 use super::heading::{Heading, Plane, SMALLER, target};
 use super::plan::Position;
 use super::slower::Slower;
@@ -17,8 +17,8 @@ pub(super) struct Choice {
     pub heading: Heading,
     /// Limits along and of theta.
     pub limits: [AxisLimits<f32>; 2],
-    /// Ticks in which the axis across is braked.
-    pub across: [u64; 3],
+    /// Ticks in which the axis across is braked, whole ones.
+    pub across: [f32; 3],
     /// Ticks in which each axis can arrive.
     shortest: [f32; 3],
     /// Acceleration across over that along.
@@ -164,11 +164,7 @@ fn turned(
         heading,
         limits: [along, along],
         across,
-        shortest: [
-            shortest(&task, &along)?,
-            across.into_iter().map(float).sum(),
-            0.0,
-        ],
+        shortest: [shortest(&task, &along)?, across.into_iter().sum(), 0.0],
         ratio,
     })
 }
@@ -191,9 +187,9 @@ fn give_way(now: [f32; 2], whole: f32, along: &mut AxisLimits<f32>, aside: &mut 
 
 /// The heading at which the target is straight ahead after a brake across, and the ticks of that brake. Ticks that serve for all
 /// that is under way have a heading at once; shorter ones are taken while they are long enough for what is across then.
-fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading, [u64; 3]) {
+fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading, [f32; 3]) {
     let [v, a] = [&plane.v, &plane.a].map(|vector| hypot(vector[0], vector[1]));
-    let of = |ticks: [u64; 3]| (Heading::after(plane, gains(ticks.map(float))), ticks);
+    let of = |ticks: [f32; 3]| (Heading::after(plane, gains(ticks)), ticks);
     let brake = |heading: &Heading| {
         AxisBrake::new(heading.seen(&plane.v)[1], heading.seen(&plane.a)[1], limits)
     };
@@ -201,7 +197,7 @@ fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading
     let mut heading = guess;
     for _ in 0..TURNS {
         let next = of(brake(&heading).ticks());
-        let total = |ticks: [u64; 3]| -> u64 { ticks.iter().sum() };
+        let total = |[a, b, c]: [f32; 3]| a + b + c;
         if total(next.1) < total(best.1) && brake(&next.0).over(next.1) == [false; 3] {
             best = next;
         }

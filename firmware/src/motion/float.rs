@@ -107,6 +107,24 @@ pub(super) fn ticks_up(duration: f32) -> u64 {
     }
 }
 
+/// A duration rounded up to a whole one; zero for what is not positive.
+#[inline]
+pub(super) fn up(duration: f32) -> f32 {
+    let whole = down(duration);
+    if duration > whole { whole + 1.0 } else { whole }
+}
+
+/// The same rounded down.
+#[inline]
+pub(super) fn down(duration: f32) -> f32 {
+    // Beyond 2^23 there are whole numbers only.
+    if duration < UPPER {
+        (duration as u32) as f32
+    } else {
+        duration
+    }
+}
+
 /// The same beyond 32 bits, days long, where the chip has no instruction for it.
 #[cold]
 #[inline(never)]

@@ -58,24 +58,50 @@ pub(super) fn brake(track: &mut Track, axis: &Axis, ticks: [u64; 3]) {
 /// One list of pieces from three tracks: a new one wherever a jerk changes. It has room for all segments of all axes.
 pub(super) fn merged(tracks: &[Track; 3], pieces: &mut Pieces) {
     pieces.clear();
-    let mut at = [0; 3];
-    let mut done = [0; 3];
+    let [a, b, c] = tracks;
+    let mut cursors = [a, b, c].map(|track| Cursor::new(track));
     loop {
-        let now = [0, 1, 2].map(|i| tracks[i].get(at[i]).copied());
-        let left = [0, 1, 2].map(|i| now[i].map(|(ticks, _)| ticks - done[i]));
-        let Some(ticks) = left.into_iter().flatten().min() else {
+        let [a, b, c] = &cursors;
+        let ticks = a.left.min(b.left).min(c.left);
+        if ticks >= Cursor::NEVER {
             return;
-        };
+        }
         let _ = pieces.push(Piece {
             ticks,
-            jerk: now.map(|segment| segment.map_or(0, |(_, jerk)| jerk)),
+            jerk: [a.jerk, b.jerk, c.jerk],
         });
-        for i in 0..3 {
-            done[i] += ticks;
-            if left[i] == Some(ticks) {
-                at[i] += 1;
-                done[i] = 0;
+        for cursor in &mut cursors {
+            cursor.left -= ticks;
+            if cursor.left == 0 {
+                cursor.step();
             }
         }
+    }
+}
+
+/// Where a track is.
+struct Cursor<'a> {
+    /// Ticks of the segment that are left.
+    left: u64,
+    jerk: i64,
+    rest: core::slice::Iter<'a, (u64, i64)>,
+}
+
+impl<'a> Cursor<'a> {
+    /// What is left after the last segment is more than this, however much is taken of it: no track has as many ticks.
+    const NEVER: u64 = u64::MAX / 2;
+
+    fn new(track: &'a Track) -> Self {
+        let mut cursor = Self {
+            left: 0,
+            jerk: 0,
+            rest: track.iter(),
+        };
+        cursor.step();
+        cursor
+    }
+
+    fn step(&mut self) {
+        (self.left, self.jerk) = self.rest.next().copied().unwrap_or((u64::MAX, 0));
     }
 }

@@ -22,6 +22,7 @@ use super::axis::Axis;
 use super::choice::Choice;
 use super::envelope::{Broken, Envelope, Legs, Looks};
 use super::fit::{Track, fit};
+use super::float::ticks_up;
 use super::ground::Ground;
 use super::heading::Plane;
 use super::line::check_target;
@@ -202,7 +203,7 @@ impl Choice {
     fn lay(&self, state: &[Axis; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
         let view = self.heading.view(state, to);
         let mut tracks: [Track; 3] = Default::default();
-        brake(&mut tracks[1], &view[1].0, self.across);
+        brake(&mut tracks[1], &view[1].0, self.across.map(ticks_up));
         for i in [0, 2] {
             let (axis, way) = view[i];
             fit(
