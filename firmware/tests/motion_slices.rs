@@ -37,8 +37,11 @@ impl Left {
     fn first(&self, tries: &mut Tries) -> (Result<Plan, NoTransition>, Option<Ahead>) {
         let mut ahead = None;
         let (of, from, to) = (&self.line, &self.from, self.to);
-        let plan = try_transition(2, of, from, self.at, to, &GROUND, tries, &mut ahead);
-        (plan, ahead)
+        let mut plan = Plan::default();
+        let tried = try_transition(
+            &mut plan, 2, of, from, self.at, to, &GROUND, tries, &mut ahead,
+        );
+        (tried.map(|()| plan), ahead)
     }
 }
 

@@ -36,34 +36,48 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head; `None`, and the plan as it was, when
-    /// there is none that ends inside.
+    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head, and the rest `ahead`; whether there is
+    /// a head, or else the plan is as it was.
+    ///
+    /// # Errors
+    /// What the head's stop breaks, where it can not be helped: what moves would have no way to rest.
+    // A plan is a kilobyte: none is handed around by value.
     pub(super) fn divide(
         plan: &mut Plan,
         start: &[Axis; 3],
         seen: u64,
         ground: &Ground,
-    ) -> Option<Self> {
+        ahead: &mut Option<Self>,
+    ) -> Result<bool, Broken> {
         let head = seen.min(HEAD);
         let mut stop = Plan::default();
-        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, ATTEMPTS)?;
-        let pieces = between(&plan.pieces, 0, head).count() + stop.pieces.len();
-        if stopped.is_err() || pieces > MAX_PIECES {
-            return None;
+        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, ATTEMPTS);
+        let kept = begun(&plan.pieces, head);
+        match stopped {
+            // The plan itself comes to rest as soon.
+            None => return Ok(false),
+            Some(_) if kept + stop.pieces.len() > MAX_PIECES => return Ok(false),
+            Some(stopped) => stopped?,
         }
-        let ahead = Self {
-            whole: plan.clone(),
+        let ahead = ahead.insert(Self {
+            whole: Plan {
+                pieces: Vec::new(),
+                ..*plan
+            },
             start: *start,
             seen,
             head,
-        };
-        plan.pieces.clear();
-        for piece in between(&ahead.whole.pieces, 0, head).chain(stop.pieces) {
-            // There is room for them.
-            let _ = plan.pieces.push(piece);
+        });
+        // There is room for them, in both.
+        let _ = ahead.whole.pieces.extend_from_slice(&plan.pieces);
+        plan.pieces.truncate(kept);
+        let over = plan.ticks().saturating_sub(head);
+        if let Some(last) = plan.pieces.last_mut() {
+            last.ticks -= over;
         }
+        let _ = plan.pieces.extend_from_slice(&stop.pieces);
         plan.end = stop.end;
-        Some(ahead)
+        Ok(true)
     }
 
     /// Whether it goes on from tick `at` of plan `id`.
@@ -107,11 +121,28 @@ impl Ahead {
         envelope.check(&legs, &mut Looks::after(self.seen))
     }
 
-    /// All of the transition, looked at.
-    pub(super) fn whole(self, ground: &Ground, tries: &mut Tries) -> Result<Plan, NoTransition> {
+    /// Writes all of the transition, looked at.
+    pub(super) fn whole(
+        self,
+        plan: &mut Plan,
+        ground: &Ground,
+        tries: &mut Tries,
+    ) -> Result<(), NoTransition> {
         self.look(ground).map_err(|broken| tries.after(&broken))?;
-        Ok(self.whole)
+        *plan = self.whole;
+        Ok(())
     }
+}
+
+/// How many of the pieces begin before a tick.
+fn begun(pieces: &[Piece], tick: u64) -> usize {
+    let mut begins = 0;
+    let is_later = |piece: &Piece| {
+        let later = begins >= tick;
+        begins += piece.ticks;
+        later
+    };
+    pieces.iter().position(is_later).unwrap_or(pieces.len())
 }
 
 /// What of the pieces lies between two ticks.

@@ -23,6 +23,8 @@ use crate::number::sqrt_f32;
 /// Rounds for n1 and the peak at most, and the change of n1, ticks, after which there is none.
 const ROUNDS: usize = 8;
 const SETTLED: f32 = 1e-3;
+/// The same where a stop is only estimated: in whole ticks it takes a tick or two more anyway.
+const NEARLY_SETTLED: f32 = 0.2;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
 pub(super) const SLACK: f32 = 1.0 + 5e-7;
@@ -82,7 +84,16 @@ impl Brake {
     }
 
     /// The three times in ticks, before rounding.
-    pub fn times(&self) -> [f32; 3] {
+    fn times(&self) -> [f32; 3] {
+        self.settled_to(SETTLED)
+    }
+
+    /// The same, within a fraction of a tick.
+    pub fn about(&self) -> [f32; 3] {
+        self.settled_to(NEARLY_SETTLED)
+    }
+
+    fn settled_to(&self, settled: f32) -> [f32; 3] {
         let mut times = [0.0_f32; 3];
         for _ in 0..ROUNDS {
             let half = times[0] / 2.0;
@@ -107,9 +118,9 @@ impl Brake {
             let scale = peak / size;
             let change = [0, 1, 2].map(|i| w[i] * scale + self.acceleration[i]);
             let next = [self.jerk_ticks(&change), hold, peak * back];
-            let settled = (next[0] - times[0]).abs() < SETTLED;
+            let change = (next[0] - times[0]).abs();
             times = next;
-            if settled {
+            if change < settled {
                 break;
             }
         }
@@ -152,7 +163,7 @@ impl Brake {
 
     /// The acceleration of size 1 that points against what is to be braked, track radii and rad per second squared.
     pub fn peak_per_second(&self, limits: &UnitLimits, hz: f32) -> [f32; 3] {
-        let w = self.after(self.times()[0] / 2.0);
+        let w = self.after(self.about()[0] / 2.0);
         let scale = -hz * hz / (AXIS_UNITS * size(&w).larger(f32::MIN_POSITIVE));
         let [translation, rotation] =
             [limits.translation, limits.rotation].map(|limits| limits.acceleration * scale);

@@ -98,7 +98,7 @@ impl Choice {
         slower: &Slower,
     ) -> bool {
         let brake = Brake::new(state, limits, 1.0, 1.0);
-        let times = brake.times();
+        let times = brake.about();
         let [by_velocity, by_acceleration] = gains(times);
         let left = [0, 1, 2].map(|i| {
             let (v, a) = (rough(state[i].velocity), rough(state[i].acceleration));
@@ -194,9 +194,15 @@ fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading
         AxisBrake::new(heading.seen(&plane.v)[1], heading.seen(&plane.a)[1], limits)
     };
     let mut best = of(AxisBrake::new(v, a, limits).ticks());
-    let mut heading = guess;
+    let (mut heading, mut last) = (guess, [0.0; 3]);
     for _ in 0..TURNS {
-        let next = of(brake(&heading).ticks());
+        let ticks = brake(&heading).ticks();
+        // They lead to the same heading again.
+        if ticks == last {
+            break;
+        }
+        last = ticks;
+        let next = of(ticks);
         let total = |[a, b, c]: [f32; 3]| a + b + c;
         if total(next.1) < total(best.1) && brake(&next.0).over(next.1) == [false; 3] {
             best = next;

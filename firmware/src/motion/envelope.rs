@@ -94,6 +94,8 @@ const MOST_LOOKS: usize = 60;
 const SLICE: usize = 16;
 /// What has to have been seen by then, ticks, for the rest to be left for later.
 const LEAST_SEEN: u64 = 100;
+/// Pieces up to this many ticks have no middle to glance at.
+const SHORT: u64 = 200;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
@@ -230,12 +232,13 @@ impl Envelope {
         };
     }
 
-    /// What the pivots do at the ends and in the middle of the pieces.
+    /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
     fn glance(&self, legs: &[Leg]) -> Result<(), Broken> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
         for Leg { arc, ticks, .. } in legs {
             let seconds = float(*ticks) / self.hz;
-            for t in [seconds / 2.0, seconds] {
+            let spots = [seconds, seconds / 2.0];
+            for &t in &spots[..1 + usize::from(*ticks > SHORT)] {
                 let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
                 rate = rate.larger(greatest(&rates));
                 acceleration = acceleration.larger(greatest(&accelerations));

@@ -125,7 +125,7 @@ impl Reach {
         brake: &Brake,
         hz: f32,
     ) -> Result<(), Broken> {
-        let [t1, t2, t3] = brake.times().map(|ticks| ticks / hz);
+        let [t1, t2, t3] = brake.about().map(|ticks| ticks / hz);
         let mut spots = [*at; 3];
         for i in 0..3 {
             let (v, a) = (at.v[i], at.a[i]);

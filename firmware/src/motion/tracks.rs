@@ -59,7 +59,7 @@ pub(super) fn brake(track: &mut Track, axis: &Axis, ticks: [u64; 3]) {
 pub(super) fn merged(tracks: &[Track; 3], pieces: &mut Pieces) {
     pieces.clear();
     let [a, b, c] = tracks;
-    let mut cursors = [a, b, c].map(|track| Cursor::new(track));
+    let mut cursors = [a, b, c].map(Cursor::new);
     loop {
         let [a, b, c] = &cursors;
         let ticks = a.left.min(b.left).min(c.left);

@@ -72,25 +72,27 @@ pub fn plan_transition(
     to: Position,
     ground: &Ground,
 ) -> Result<Plan, NoTransition> {
-    let mut tries = Tries::NONE;
+    let (mut tries, mut plan) = (Tries::NONE, Plan::default());
     loop {
         let mut ahead = None;
-        let tried = try_transition(id, of, from, at, to, ground, &mut tries, &mut ahead);
+        let next = &mut plan;
+        let tried = try_transition(next, id, of, from, at, to, ground, &mut tries, &mut ahead);
         let tried = match ahead {
-            Some(ahead) => ahead.whole(ground, &mut tries),
+            Some(ahead) => ahead.whole(&mut plan, ground, &mut tries),
             None => tried,
         };
         if tried != Err(NoTransition::TooFast) {
-            return tried;
+            return tried.map(|()| plan);
         }
     }
 }
 
-/// The first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
+/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
 /// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
 #[inline(never)]
 #[allow(clippy::too_many_arguments)]
 pub fn try_transition(
+    plan: &mut Plan,
     id: u32,
     of: &Plan,
     from: &[Axis; 3],
@@ -99,7 +101,7 @@ pub fn try_transition(
     ground: &Ground,
     tries: &mut Tries,
     ahead: &mut Option<Ahead>,
-) -> Result<Plan, NoTransition> {
+) -> Result<(), NoTransition> {
     check_target(&to, ground).map_err(NoTransition::Refused)?;
     if !ground.limits.all_positive() {
         return Err(NoTransition::Refused(Refusal::Limits));
@@ -112,14 +114,10 @@ pub fn try_transition(
     let choice = tries
         .choice(&state, &to, &limits, ground)
         .ok_or(NoTransition::NeedsStop)?;
-    let mut plan = Plan {
-        id,
-        start: Start::Splice {
-            plan: of.id,
-            tick: at,
-        },
-        end: to,
-        ..Plan::default()
+    (plan.id, plan.end) = (id, to);
+    plan.start = Start::Splice {
+        plan: of.id,
+        tick: at,
     };
     choice
         .lay(&state, &to, &mut plan.pieces)
@@ -132,20 +130,19 @@ pub fn try_transition(
     let end = after_all(&then, later, &[0; 3]);
     plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
     let mut looks = Looks::SLICE;
-    let looked = envelope.check(&legs, &mut looks);
-    if looked == Ok(()) && first == plan.pieces.len() {
-        return Ok(plan);
-    }
-    if matches!(looked, Ok(()) | Err(Broken::Unseen)) {
-        *ahead = Ahead::divide(&mut plan, &state, looks.seen, ground);
-        if ahead.is_some() {
-            return Ok(plan);
+    let looked = match envelope.check(&legs, &mut looks) {
+        Ok(()) if first == plan.pieces.len() => return Ok(()),
+        Ok(()) | Err(Broken::Unseen) => Ahead::divide(plan, &state, looks.seen, ground, ahead),
+        Err(broken) => Err(broken),
+    };
+    let looked = looked.and_then(|divided| {
+        if divided {
+            return Ok(());
         }
         envelope.legs(&plan.pieces, &state, &mut legs);
-        let looked = envelope.check(&legs, &mut Looks::after(looks.seen));
-        return looked.map(|()| plan).map_err(|broken| tries.after(&broken));
-    }
-    looked.map(|()| plan).map_err(|broken| tries.after(&broken))
+        envelope.check(&legs, &mut Looks::after(looks.seen))
+    });
+    looked.map_err(|broken| tries.after(&broken))
 }
 
 /// How many pieces are looked at in the first slice: all of a few, or as many as a head takes.

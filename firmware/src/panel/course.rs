@@ -80,12 +80,18 @@ impl Course {
         tries: &mut Tries,
         ahead: &mut Option<Ahead>,
     ) -> Result<Self, NoTransition> {
-        let start = self.plan.state_after(&self.start, at);
-        let planned = match goal {
+        let mut next = Self {
+            plan: Plan::default(),
+            goal,
+            stop: None,
+            start: self.plan.state_after(&self.start, at),
+        };
+        match goal {
             // It makes its plans itself.
             Goal::Stream => Err(NoTransition::NeedsStop),
             Goal::Place(to) => {
-                try_transition(id, &self.plan, &self.start, at, to, ground, tries, ahead)
+                let (plan, of, from) = (&mut next.plan, &self.plan, &self.start);
+                try_transition(plan, id, of, from, at, to, ground, tries, ahead)
             }
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
@@ -94,15 +100,10 @@ impl Course {
                     plan: self.plan.id,
                     tick: at,
                 };
-                plan_jog(id, splice, &start, &velocity, ground)
+                plan_jog(id, splice, &next.start, &velocity, ground).map(|plan| next.plan = plan)
             }
-        };
-        Ok(Self {
-            plan: planned?,
-            goal,
-            stop: None,
-            start,
-        })
+        }?;
+        Ok(next)
     }
 
     /// What lies `ahead` of this course, which is its head, from tick `at` on.

@@ -127,8 +127,19 @@ impl Moving {
     pub fn retargeted(&self, to: Position) -> Option<Plan> {
         let (mut tries, mut ahead) = (Tries::NONE, None);
         let (plan, start, at) = (&self.plan, &self.start, self.at);
-        match try_transition(3, plan, start, at, to, ground(), &mut tries, &mut ahead) {
-            Ok(plan) => Some(plan),
+        let mut next = Plan::default();
+        match try_transition(
+            &mut next,
+            3,
+            plan,
+            start,
+            at,
+            to,
+            ground(),
+            &mut tries,
+            &mut ahead,
+        ) {
+            Ok(()) => Some(next),
             Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
             Err(NoTransition::Refused(_)) => None,
         }
@@ -140,7 +151,9 @@ impl Moving {
             let (now, to) = (Self::new(random), position(random));
             let (mut tries, mut ahead) = (Tries::NONE, None);
             let (plan, start) = (&now.plan, &now.start);
-            let _ = try_transition(3, plan, start, now.at, to, ground(), &mut tries, &mut ahead);
+            let (at, tried, rest) = (now.at, &mut tries, &mut ahead);
+            let head = &mut Plan::default();
+            let _ = try_transition(head, 3, plan, start, at, to, ground(), tried, rest);
             if let Some(ahead) = ahead {
                 return (ahead, tries);
             }
