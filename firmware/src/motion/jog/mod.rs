@@ -54,9 +54,15 @@ pub fn plan_jog(
         if from_rest && wanted == [0; 3] && setting.velocity != wanted {
             return Err(NoTransition::Refused(Refusal::NoWay));
         }
-        let jog = Jog::new(state, &now, wanted, &setting, from_rest)?;
+        let jog = Jog::new(state, &now, wanted, &setting)?;
         match jog.hold(state, &setting, from_rest) {
-            Ok(hold) => return Ok(jog.finish(id, start, state, hold)),
+            Ok(hold) => {
+                // From rest the way there is the first part of the way on, which was looked at for the time that it is held.
+                if !from_rest {
+                    jog.check(state, ground)?;
+                }
+                return Ok(jog.finish(id, start, state, hold));
+            }
             Err(_) if !from_rest => return Err(NoTransition::NeedsStop),
             Err(short) => wanted = jog.slower(&short, &setting),
         }
@@ -88,7 +94,6 @@ impl Jog {
         now: &State,
         wanted: [i64; 3],
         setting: &Setting,
-        from_rest: bool,
     ) -> Result<Self, NoTransition> {
         let hz = setting.hz;
         let target = per_second(&wanted, hz);
@@ -100,18 +105,7 @@ impl Jog {
         for piece in ramp.pieces(change) {
             let _ = pieces.push(piece);
         }
-        // From rest the way there is the first part of the way on.
-        let steady = if from_rest {
-            after_all(state, &pieces, &[0; 3])
-        } else {
-            let envelope = Envelope::new(setting.ground, UnitLimits::new(setting.ground), state);
-            let mut legs = Legs::new();
-            let steady = envelope.legs(&pieces, state, &mut legs);
-            envelope
-                .check(&legs, &mut { Looks::ALL })
-                .map_err(|_| NoTransition::NeedsStop)?;
-            steady
-        };
+        let steady = after_all(state, &pieces, &[0; 3]);
         Ok(Self {
             wanted,
             steady,
@@ -121,6 +115,16 @@ impl Jog {
             force,
             radius,
         })
+    }
+
+    /// Looks at the way to the velocity as at any other.
+    fn check(&self, state: &[Axis; 3], ground: &Ground) -> Result<(), NoTransition> {
+        let envelope = Envelope::new(ground, UnitLimits::new(ground), state);
+        let mut legs = Legs::new();
+        envelope.legs(&self.pieces, state, &mut legs);
+        envelope
+            .check(&legs, &mut { Looks::ALL })
+            .map_err(|_| NoTransition::NeedsStop)
     }
 
     /// Pieces for the velocities held for `hold` ticks and given up, each axis for itself.
