@@ -10,13 +10,10 @@
 //! A jog lasts: a single unit of acceleration left would be a velocity after a year.
 
 use super::axis::{Axis, JERK_STEP};
-use super::float::Order;
+use super::float::{Order, cut, float};
 use super::plan::Piece;
 use super::swing::Pace;
-use heapless::Vec;
-
-/// Release, what it leaves, and the ramp.
-pub(super) type Pieces = Vec<Piece, 5>;
+use heapless::VecView;
 
 /// Limits of acceleration and jerk in units per second.
 #[derive(Clone, Copy)]
@@ -87,14 +84,21 @@ fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
     }
 }
 
-/// The pieces that bring the acceleration of `state` to exactly zero, within the jerks `most` (2^-72 units).
+/// Adds the pieces that bring the acceleration of `state` to exactly zero, within the jerks `most`; the velocities after them (all
+/// in 2^-72 units).
 #[inline(never)]
-pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pieces {
-    let mut pieces = Pieces::new();
+pub(super) fn release(
+    state: &[Axis; 3],
+    force: Pace,
+    most: Pace,
+    hz: f32,
+    pieces: &mut VecView<Piece>,
+) -> [i64; 3] {
+    let velocity = state.map(|axis| axis.velocity);
     if state.iter().all(|axis| axis.acceleration == 0) {
-        return pieces;
+        return velocity;
     }
-    let ticks = ticks_up(release_seconds(force, jerk) * hz).max(1);
+    let ticks = ticks_up(release_seconds(force, most) * hz).max(1);
     let steps = (ticks as i64).saturating_mul(JERK_STEP);
     let jerk = [0, 1, 2].map(|i| -state[i].acceleration / steps * JERK_STEP);
     let rest = [0, 1, 2].map(|i| -(state[i].acceleration + jerk[i] * ticks as i64));
@@ -104,7 +108,14 @@ pub(super) fn release(state: &[Axis; 3], force: Pace, jerk: Pace, hz: f32) -> Pi
         ticks: 1,
         jerk: rest,
     });
-    pieces
+    // What is left for the tick adds half of itself in it.
+    [0, 1, 2].map(|i| {
+        let mean = (jerk[i] / 2).wrapping_mul(ticks as i64);
+        let mean = mean.wrapping_add(state[i].acceleration);
+        mean.wrapping_mul(ticks as i64)
+            .wrapping_add(velocity[i])
+            .wrapping_sub(rest[i] / 2)
+    })
 }
 
 /// How long it takes to bring an acceleration to zero.
@@ -118,6 +129,6 @@ const LONGEST: f32 = 36_028_797_018_963_968.0;
 /// Rounded up to whole ticks.
 fn ticks_up(ticks: f32) -> u64 {
     let ticks = ticks.smaller(LONGEST);
-    let down = ticks as u64;
-    down + u64::from(down as f32 * (1.0 + 1e-6) < ticks)
+    let down = cut(ticks) as u64;
+    down + u64::from(float(down) * (1.0 + 1e-6) < ticks)
 }

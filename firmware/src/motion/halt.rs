@@ -5,12 +5,16 @@
 //! is softer.
 
 use super::axis::Axis;
-use super::change::{Force, Pieces, Ramp, release};
+use super::change::{Force, Ramp, release};
 use super::float::Order;
 use super::instant::{Instant, Limiter};
-use super::plan::{Piece, after_all};
+use super::plan::Piece;
 use super::refusal::Refusal;
 use super::swing::{Pace, per_second};
+use heapless::Vec;
+
+/// Release, what it leaves, and the ramp.
+pub(super) type Pieces = Vec<Piece, 5>;
 
 /// How often a softer stop is tried.
 const ATTEMPTS: usize = 3;
@@ -43,15 +47,11 @@ pub(super) fn halt(
 }
 
 fn pieces(state: &[Axis; 3], now: &Instant, force: &Force, limiter: &Limiter<'_>) -> Pieces {
-    let mut pieces = release(state, now.acceleration, force.jerk, limiter.hz);
-    let released = after_all(state, &pieces, &[0; 3]);
-    let change = released.each_ref().map(|axis| -axis.velocity);
+    let mut pieces = Pieces::new();
+    let (hz, jerk) = (limiter.hz, force.jerk);
+    let change = release(state, now.acceleration, jerk, hz, &mut pieces).map(|velocity| -velocity);
     if change != [0; 3] {
-        let ramp = Ramp::new(
-            Pace::of(&per_second(&change, limiter.hz)),
-            force,
-            limiter.hz,
-        );
+        let ramp = Ramp::new(Pace::of(&per_second(&change, hz)), force, hz);
         for piece in ramp.pieces(change) {
             // Two and three of five.
             let _ = pieces.push(piece);

@@ -2,7 +2,7 @@
 
 use super::super::axis::Axis;
 use super::super::change::Ramp;
-use super::super::float::Order;
+use super::super::float::{Order, cut, float};
 use super::super::swing::{Pace, per_second};
 use super::Jog;
 use super::start::Setting;
@@ -31,7 +31,7 @@ impl Jog {
         let hz = setting.hz;
         let target = per_second(&self.wanted, setting.hz);
         // From rest the ramp goes the same way, at half the speed.
-        let ramp = self.ramp as f32 / (2.0 * hz);
+        let ramp = float(self.ramp) / (2.0 * hz);
         let (from, done) = if from_rest {
             (state, ramp)
         } else {
@@ -47,7 +47,7 @@ impl Jog {
             point = point.smaller(turn);
             turn = point;
         }
-        let brake = self.brake.ticks() as f32 / (2.0 * hz);
+        let brake = float(self.brake.ticks()) / (2.0 * hz);
         let is_short = [
             self.wanted[..2] != [0, 0] && point < brake,
             self.wanted[2] != 0 && turn < brake,
@@ -59,7 +59,7 @@ impl Jog {
                 turn: is_short[1] && (edge.all || !is_short[0]),
             });
         }
-        let ticks = |seconds: f32| ((seconds - brake) * hz).smaller(LONGEST) as u64;
+        let ticks = |seconds: f32| cut(((seconds - brake) * hz).smaller(LONGEST)) as u64;
         Ok([ticks(point), ticks(point), ticks(turn)])
     }
 
@@ -81,7 +81,7 @@ impl Jog {
         for _ in 0..16 {
             let share = (low + high) / 2.0;
             let pace = Pace::of(&per_second(&slower(share), setting.hz));
-            let ticks = Ramp::new(pace, &self.force, setting.hz).ticks() as f32;
+            let ticks = float(Ramp::new(pace, &self.force, setting.hz).ticks());
             if share * ticks <= short.seconds * setting.hz {
                 low = share;
             } else {

@@ -16,21 +16,23 @@
 //!
 //! Near an edge there may be no room to reach the velocity and to stop again: from rest a lower one is taken.
 
+mod end;
 mod hold;
 mod reach;
 mod start;
 
+use self::end::End;
 use self::start::{Setting, State};
 use super::axis::Axis;
-use super::change::{Force, Pieces, Ramp, release};
+use super::change::{Force, Ramp, release};
 use super::envelope::{Envelope, Legs, Looks};
 use super::ground::Ground;
-use super::plan::{MAX_PIECES, Piece, Plan, Start, after_all};
+use super::plan::{Piece, Plan, Start, after_all};
 use super::refusal::Refusal;
 use super::swing::{Pace, per_second};
+use super::tracks::Pieces;
 use super::transition::NoTransition;
 use super::units::UnitLimits;
-use heapless::Vec;
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
 /// says. Zero is a velocity as any other: that axis stops smoothly.
@@ -46,22 +48,43 @@ pub fn plan_jog(
     velocity: &[f64; 3],
     ground: &Ground,
 ) -> Result<Plan, NoTransition> {
+    // Written where it stays: a plan has a thousand bytes.
+    let mut planned = Ok(Plan {
+        id,
+        start,
+        ..Plan::default()
+    });
+    if let Ok(plan) = &mut planned
+        && let Err(no) = write(plan, state, velocity, ground)
+    {
+        planned = Err(no);
+    }
+    planned
+}
+
+fn write(
+    plan: &mut Plan,
+    state: &[Axis; 3],
+    velocity: &[f64; 3],
+    ground: &Ground,
+) -> Result<(), NoTransition> {
     let setting = Setting::new(velocity, ground).map_err(NoTransition::Refused)?;
     let now = State::new(state, &setting);
-    let from_rest = matches!(start, Start::Rest(_));
+    let from_rest = matches!(plan.start, Start::Rest(_));
     let mut wanted = setting.velocity;
     for _ in 0..ATTEMPTS {
         if from_rest && wanted == [0; 3] && setting.velocity != wanted {
             return Err(NoTransition::Refused(Refusal::NoWay));
         }
-        let jog = Jog::new(state, &now, wanted, &setting)?;
+        let jog = Jog::new(state, &now, wanted, &setting, &mut plan.pieces)?;
         match jog.hold(state, &setting, from_rest) {
             Ok(hold) => {
                 // From rest the way there is the first part of the way on, which was looked at for the time that it is held.
                 if !from_rest {
-                    jog.check(state, ground)?;
+                    check(&plan.pieces, state, ground)?;
                 }
-                return Ok(jog.finish(id, start, state, hold));
+                jog.finish(plan, hold);
+                return Ok(());
             }
             Err(_) if !from_rest => return Err(NoTransition::NeedsStop),
             Err(short) => wanted = jog.slower(&short, &setting),
@@ -73,11 +96,20 @@ pub fn plan_jog(
 /// The point may be too near to an edge, theta to a bound, and once more for what a lower velocity changes.
 const ATTEMPTS: usize = 4;
 
-/// A jog up to the state in which its velocity is reached.
+/// Looks at the way to the velocity as at any other.
+fn check(pieces: &Pieces, state: &[Axis; 3], ground: &Ground) -> Result<(), NoTransition> {
+    let envelope = Envelope::new(ground, UnitLimits::new(ground), state);
+    let mut legs = Legs::new();
+    envelope.legs(pieces, state, &mut legs);
+    envelope
+        .check(&legs, &mut { Looks::ALL })
+        .map_err(|_| NoTransition::NeedsStop)
+}
+
+/// A jog from the state on in which its velocity is reached.
 struct Jog {
     /// 2^-72 units a tick.
     wanted: [i64; 3],
-    pieces: Pieces,
     /// Where the velocity is reached.
     steady: [Axis; 3],
     /// Ticks of the change of velocity, release not counted.
@@ -89,27 +121,28 @@ struct Jog {
 }
 
 impl Jog {
+    /// Writes the pieces of the way there, too.
     fn new(
         state: &[Axis; 3],
         now: &State,
         wanted: [i64; 3],
         setting: &Setting,
+        pieces: &mut Pieces,
     ) -> Result<Self, NoTransition> {
         let hz = setting.hz;
         let target = per_second(&wanted, hz);
         let (radius, force) = setting.force(now, &target)?;
-        let mut pieces = release(state, Pace::of(&now.acceleration), force.jerk, hz);
-        let released = after_all(state, &pieces, &[0; 3]);
-        let change = [0, 1, 2].map(|i| wanted[i] - released[i].velocity);
+        pieces.clear();
+        let released = release(state, Pace::of(&now.acceleration), force.jerk, hz, pieces);
+        let change = [0, 1, 2].map(|i| wanted[i] - released[i]);
         let ramp = Ramp::new(Pace::of(&per_second(&change, hz)), &force, hz);
         for piece in ramp.pieces(change) {
+            // Release and ramp are five.
             let _ = pieces.push(piece);
         }
-        let steady = after_all(state, &pieces, &[0; 3]);
         Ok(Self {
             wanted,
-            steady,
-            pieces,
+            steady: after_all(state, pieces, &[0; 3]),
             ramp: ramp.ticks(),
             brake: Ramp::new(Pace::of(&target), &force, hz),
             force,
@@ -117,67 +150,37 @@ impl Jog {
         })
     }
 
-    /// Looks at the way to the velocity as at any other.
-    fn check(&self, state: &[Axis; 3], ground: &Ground) -> Result<(), NoTransition> {
-        let envelope = Envelope::new(ground, UnitLimits::new(ground), state);
-        let mut legs = Legs::new();
-        envelope.legs(&self.pieces, state, &mut legs);
-        envelope
-            .check(&legs, &mut { Looks::ALL })
-            .map_err(|_| NoTransition::NeedsStop)
-    }
-
-    /// Pieces for the velocities held for `hold` ticks and given up, each axis for itself.
-    fn finish(&self, id: u32, start: Start, state: &[Axis; 3], hold: [u64; 3]) -> Plan {
-        let mut pieces: Vec<Piece, MAX_PIECES> = self.pieces.iter().copied().collect();
-        let brakes = self.brake.pieces(self.steady.map(|axis| -axis.velocity));
-        // Theta and the point do the same at different times: whatever begins or ends somewhere begins a piece.
-        let mut at = 0;
-        while let Some((end, jerk)) = self.next(at, &hold, &brakes) {
-            // Room for the ramp's five and eight for two ends.
-            let _ = pieces.push(Piece {
-                ticks: end - at,
-                jerk,
-            });
-            at = end;
+    /// Adds pieces for the velocities held for `hold` ticks and given up, the point's and theta's for themselves.
+    fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
+        let begun = plan.pieces.len();
+        let change = [0, 1, 2].map(|i| match self.wanted[i] {
+            0 => 0,
+            _ => -self.steady[i].velocity,
+        });
+        let brakes = self.brake.pieces(change);
+        let mut ends = [
+            End::new(change[..2] != [0, 0], point),
+            End::new(change[2] != 0, turn),
+        ];
+        // Whatever begins or ends somewhere begins a piece.
+        while let Some(ticks) = ends[0].soonest(&ends[1]) {
+            let jerks = [0, 1].map(|i| ends[i].jerk(&brakes));
+            if ticks > 0 {
+                // Room for the ramp's five and eight for two ends.
+                let _ = plan.pieces.push(Piece {
+                    ticks,
+                    jerk: [jerks[0][0], jerks[0][1], jerks[1][2]],
+                });
+            }
+            for end in &mut ends {
+                end.go_on(ticks, &brakes);
+            }
         }
-        pieces.retain(|piece| piece.ticks > 0);
-        let rest = after_all(state, &pieces, &[0; 3]);
-        let ticks = pieces.iter().map(|piece| piece.ticks).sum();
+        let rest = after_all(&self.steady, &plan.pieces[begun..], &[0; 3]);
+        plan.pieces.retain(|piece| piece.ticks > 0);
         // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
-        let nudge = rest.map(|axis| -axis.velocity);
-        Plan {
-            id,
-            start,
-            end: rest.map(|axis| axis.end(ticks, -axis.velocity)),
-            pieces,
-            nudge,
-        }
-    }
-
-    /// From `at` on: until when all axes keep their jerks, and these; `None` when all are at rest.
-    #[inline(never)]
-    fn next(&self, at: u64, hold: &[u64; 3], brakes: &[Piece; 3]) -> Option<(u64, [i64; 3])> {
-        let mut jerk = [0; 3];
-        let mut until = None;
-        for (i, jerk) in jerk.iter_mut().enumerate() {
-            if self.wanted[i] == 0 {
-                continue;
-            }
-            let hold = (hold[i], 0);
-            let mut end = 0;
-            for (ticks, now) in [hold]
-                .into_iter()
-                .chain(brakes.iter().map(|piece| (piece.ticks, piece.jerk[i])))
-            {
-                end += ticks;
-                if at < end {
-                    *jerk = now;
-                    until = Some(until.map_or(end, |until: u64| until.min(end)));
-                    break;
-                }
-            }
-        }
-        until.map(|until| (until, jerk))
+        plan.nudge = rest.map(|axis| -axis.velocity);
+        let ticks = plan.ticks();
+        plan.end = rest.map(|axis| axis.end(ticks, -axis.velocity));
     }
 }

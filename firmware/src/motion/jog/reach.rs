@@ -4,7 +4,7 @@
 //! and the most that its second derivative can be, whose crossing with the edge's square is known. Where the platform does not
 //! turn about a point beside its centre that parabola is the thing itself, and the first step the last.
 
-use super::super::float::{Order, hypot};
+use super::super::float::{Order, cut, hypot, rough};
 use super::super::ground::Bounds;
 use super::super::units::{PER_UNIT, UNITS};
 use crate::number::{Fixed, sqrt_f32};
@@ -75,7 +75,7 @@ impl Steady {
     pub fn within(&self, bounds: &Bounds) -> f32 {
         let mut seconds = f32::INFINITY;
         for ((bounds, &point), &velocity) in bounds.iter().zip(&self.point).zip(&self.velocity) {
-            let [low, high] = bounds.map(|units| units as f32 * PER_UNIT);
+            let [low, high] = bounds.map(|units| rough(units) * PER_UNIT);
             let way = if velocity > 0.0 {
                 high - MARGIN - point
             } else {
@@ -121,7 +121,7 @@ impl Steady {
     /// The platform's centre after so many seconds.
     #[inline(never)]
     fn platform(&self, seconds: f32) -> [f32; 2] {
-        let turned = (self.turning * seconds * UNITS_PER_RAD) as i64;
+        let turned = cut(self.turning * seconds * UNITS_PER_RAD);
         let angle = Angle::from_units(self.theta.wrapping_add(turned));
         let (sin, cos) = Fixed::sin_cos(angle);
         let (sin, cos) = (sin.to_f32(), cos.to_f32());

@@ -2,7 +2,7 @@
 
 use super::super::axis::{Axis, SUB_BITS};
 use super::super::change::{Force, release_seconds};
-use super::super::float::{Order, hypot};
+use super::super::float::{Order, hypot, rough};
 use super::super::ground::Ground;
 use super::super::refusal::Refusal;
 use super::super::swing::{Pace, Swing, per_second};
@@ -30,6 +30,11 @@ pub(super) struct Setting<'a> {
     force: Force,
 }
 
+/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see [`Limits`](super::super::Limits).
+fn is_within(value: f64, most: f64) -> bool {
+    value.abs().to_bits() <= most.to_bits()
+}
+
 /// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
 pub(super) struct State {
     pub platform: [f32; 2],
@@ -44,23 +49,25 @@ impl<'a> Setting<'a> {
             return Err(Refusal::Limits);
         }
         let [x, y, turning] = *velocity;
-        let speed = libm::hypot(x, y);
-        // NaN is not within a limit either.
-        if !(speed <= limits.speed_mm_s && turning.abs() <= limits.turn_speed_deg_s) {
+        let speed = limits.speed_mm_s;
+        if !(is_within(x * x + y * y, speed * speed) && is_within(turning, limits.turn_speed_deg_s))
+        {
             return Err(Refusal::Velocity);
         }
         let mm = ground.geometry.radius_mm;
         let units = f64::from(AXIS_UNITS) / limits.rate_hz;
+        let (per_mm, per_deg) = (units / mm, units * (1.0 / 360.0));
+        let over_mm = 1.0 / mm as f32;
         let pace = |mm_s: f64, deg_s: f64| Pace {
-            way: (mm_s / mm) as f32,
-            turn: deg_s.to_radians() as f32,
+            way: mm_s as f32 * over_mm,
+            turn: (deg_s as f32).to_radians(),
         };
         Ok(Self {
             ground,
             hz: limits.rate_hz as f32,
             swing: Swing::new(ground),
             usable: ground.usable as f32,
-            velocity: [x / mm, y / mm, turning / 360.0].map(|rate| (rate * units) as i64),
+            velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
             force: Force {
                 acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
                 jerk: pace(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
@@ -120,14 +127,14 @@ impl<'a> Setting<'a> {
             _ => (now.saturating_sub(low.max(-MOST_TURNS)), -wanted),
         };
         let units = (1_i64 << SUB_BITS) as f32;
-        way.max(0) as f32 * (1.0 - 4.0 * f32::EPSILON) / (velocity as f32 / units * self.hz)
+        rough(way.max(0)) * (1.0 - 5.0 * f32::EPSILON) / (rough(velocity) / units * self.hz)
     }
 
     /// The steady motion at `velocity` from a position.
     pub fn steady(&self, axes: &[Axis; 3], velocity: &[f32; 3]) -> Steady {
         let [x, y, turning] = *velocity;
         Steady {
-            point: [0, 1].map(|i| axes[i].rounded() as f32 * PER_UNIT),
+            point: [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT),
             theta: axes[2].rounded(),
             velocity: [x, y],
             turning,
@@ -143,7 +150,7 @@ impl<'a> Setting<'a> {
 impl State {
     pub fn new(axes: &[Axis; 3], setting: &Setting) -> Self {
         let acceleration = per_second(&axes.map(|axis| axis.acceleration), setting.hz);
-        let point = [0, 1].map(|i| axes[i].rounded() as f32 * PER_UNIT);
+        let point = [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT);
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(axes[2].rounded()));
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
         let [a, b] = setting.centre();
