@@ -63,6 +63,8 @@ pub(super) enum Broken {
     Rate(f32),
     /// The pivots' acceleration, by this factor.
     Acceleration(f32),
+    /// Disk or bounds, in a stop from an instant on the way.
+    NoStop,
     /// Nothing yet: not all has been looked at.
     Unseen,
 }
@@ -92,8 +94,8 @@ const SLACK: f32 = 1.0 + 1e-4;
 const MOST_LOOKS: usize = 60;
 /// Stretches in the first slice.
 const SLICE: usize = 16;
-/// What has to have been seen by then, ticks, for the rest to be left for later.
-const LEAST_SEEN: u64 = 100;
+/// What has to have been seen, ticks, for the rest to be left for later.
+pub(super) const LEAST_SEEN: u64 = 100;
 /// Pieces up to this many ticks have no middle to glance at.
 const SHORT: u64 = 200;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
@@ -192,6 +194,8 @@ impl Envelope {
                         looks.seen += ticks;
                         ticks = cut(float(ticks) * longer) as u64;
                     }
+                    // In shorter stretches the same instant would be met.
+                    Err((Broken::NoStop, _)) => return Err(Broken::Reach),
                     Err((broken, shorter)) => {
                         if broken.is_of_pivots() && !glanced {
                             looks.leave_for_later()?;
@@ -306,8 +310,9 @@ impl Envelope {
             return Ok(());
         }
         let brake = Brake::in_seconds(&at.sample, &own.stop, self.hz);
-        self.reach
+        (self.reach)
             .check_stop(&leg.arc, &leg.rooms, &at.sample, &brake, self.hz)
+            .map_err(|_| Broken::NoStop)
     }
 
     fn check_pivots(
@@ -382,7 +387,7 @@ impl Looks {
 
     fn take(&mut self) -> Result<(), Broken> {
         if self.slice == 0 {
-            self.leave_for_later()?;
+            return Err(Broken::Unseen);
         }
         self.slice = self.slice.saturating_sub(1);
         self.left = self.left.saturating_sub(1);

@@ -47,7 +47,7 @@ impl Slower {
                 self.force *= MORE / over;
                 self.speed *= sqrt_f32(MORE / over);
             }
-            Broken::Reach | Broken::Unseen => {}
+            Broken::Reach | Broken::NoStop | Broken::Unseen => {}
         }
     }
 

@@ -117,8 +117,8 @@ pub(super) fn stop_in(
         match checked {
             Ok(()) | Err(Broken::Unseen) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Broken::Reach) if !apart => apart = true,
-            Err(Broken::Reach) => {
+            Err(Broken::Reach | Broken::NoStop) if !apart => apart = true,
+            Err(Broken::Reach | Broken::NoStop) => {
                 hardness = [hardness[0] * 1.3, factor * factor];
             }
             Err(

@@ -20,7 +20,7 @@
 use super::ahead::{Ahead, HEAD};
 use super::axis::Axis;
 use super::choice::Choice;
-use super::envelope::{Broken, Envelope, Legs, Looks};
+use super::envelope::{Broken, Envelope, LEAST_SEEN, Legs, Looks};
 use super::fit::{Track, fit};
 use super::float::ticks_up;
 use super::ground::Ground;
@@ -132,7 +132,10 @@ pub fn try_transition(
     let mut looks = Looks::SLICE;
     let looked = match envelope.check(&legs, &mut looks) {
         Ok(()) if first == plan.pieces.len() => return Ok(()),
-        Ok(()) | Err(Broken::Unseen) => Ahead::divide(plan, &state, looks.seen, ground, ahead),
+        Ok(()) | Err(Broken::Unseen) if looks.seen >= LEAST_SEEN => {
+            Ahead::divide(plan, &state, looks.seen, ground, ahead)
+        }
+        Ok(()) => Ok(false),
         Err(broken) => Err(broken),
     };
     let looked = looked.and_then(|divided| {
