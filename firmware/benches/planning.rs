@@ -26,7 +26,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use asked::asked;
-use firmware::motion::{Axis, Motion, Next, Plan, Scale, plan_line, plan_transition};
+use firmware::motion::{Axis, Motion, Next, Plan, Position, Scale, plan_line, plan_transition};
 use random::Random;
 use rsruckig::prelude::*;
 use setting::setting;
@@ -69,15 +69,15 @@ fn main() {
     run.compare(
         "new target in motion",
         1,
-        |random| {
+        |random| loop {
             let (now, to) = (Moving::new(random), position(random));
-            let input = asked(&now.state(), &to);
-            (now, to, input)
+            // Where a stop is sooner there is nothing to compare.
+            if retargeted(&now, to) {
+                let input = asked(&now.state(), &to);
+                return (now, to, input);
+            }
         },
-        |(now, to, _)| {
-            let (plan, start) = (&now.plan, &now.start);
-            plan_transition(3, plan, start, now.at, *to, ground()).is_ok()
-        },
+        |(now, to, _)| retargeted(now, *to),
         |(.., input)| asks(input),
     );
     run.compare(
@@ -208,4 +208,9 @@ fn setpoint(trajectory: &Trajectory<3>, time_s: f64) -> [DataArrayOrVec<f64, 3>;
         &mut None,
     );
     all
+}
+
+/// All slices of a new target; whether there is a way to it without a stop before.
+fn retargeted(now: &Moving, to: Position) -> bool {
+    plan_transition(3, &now.plan, &now.start, now.at, to, ground()).is_ok()
 }
