@@ -3,7 +3,7 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Ahead, Axis, NoTransition, Plan, Position, Tries, plan_transition, try_transition,
+    Ahead, Axis, Leave, NoTransition, Plan, Position, Tries, plan_transition, try_transition,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::random::Random;
@@ -36,11 +36,13 @@ impl Left {
     /// The first slice: a plan, and what lies ahead of it.
     fn first(&self, tries: &mut Tries) -> (Result<Plan, NoTransition>, Option<Ahead>) {
         let mut ahead = None;
-        let (of, from, to) = (&self.line, &self.from, self.to);
         let mut plan = Plan::default();
-        let tried = try_transition(
-            &mut plan, 2, of, from, self.at, to, &GROUND, tries, &mut ahead,
-        );
+        let leave = Leave {
+            of: &self.line,
+            from: &self.from,
+            at: self.at,
+        };
+        let tried = try_transition(&mut plan, 2, leave, self.to, &GROUND, tries, &mut ahead);
         (tried.map(|()| plan), ahead)
     }
 }

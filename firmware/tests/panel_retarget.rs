@@ -102,12 +102,18 @@ fn near_the_rim_it_stops_first() {
 /// Off to the side and round: a target that is planned in slices.
 const FAR: &str = "MOV X -30 Y 50 W 200\n";
 
-#[test]
-fn what_lies_ahead_takes_over_from_its_head() {
+/// In motion, and just sent there.
+fn sent_far() -> Bench {
     let mut bench = Bench::ready();
     bench.say("MOV X 60 W 90\n");
     bench.run(3_000);
     bench.say(FAR);
+    bench
+}
+
+#[test]
+fn what_lies_ahead_takes_over_from_its_head() {
+    let mut bench = sent_far();
     bench.run_to_rest();
     // The line, the head, and what goes on from it.
     assert_eq!(bench.tick.log, ["move", "move", "move"]);
@@ -121,10 +127,7 @@ fn what_lies_ahead_takes_over_from_its_head() {
 /// A command side that is busy with something else, as with writing to flash: the stage comes to rest in the head, and goes on.
 #[test]
 fn a_head_that_nothing_follows_comes_to_rest() {
-    let mut bench = Bench::ready();
-    bench.say("MOV X 60 W 90\n");
-    bench.run(3_000);
-    bench.say(FAR);
+    let mut bench = sent_far();
     bench.run(2);
     for _ in 0..6_000 {
         bench.tick.run();
@@ -139,20 +142,14 @@ fn a_head_that_nothing_follows_comes_to_rest() {
 /// While a head is under way: a stop, and a target that is refused, which changes nothing.
 #[test]
 fn in_a_head_commands_are_taken_as_ever() {
-    let mut bench = Bench::ready();
-    bench.say("MOV X 60 W 90\n");
-    bench.run(3_000);
-    bench.say(FAR);
+    let mut bench = sent_far();
     bench.run(20);
     assert_eq!(bench.error_after("MOV X 200"), "7");
     bench.run(60);
     bench.run_to_rest();
     assert!((bench.value("POS? Y") - 50.0).abs() < 1e-6);
 
-    let mut bench = Bench::ready();
-    bench.say("MOV X 60 W 90\n");
-    bench.run(3_000);
-    bench.say(FAR);
+    let mut bench = sent_far();
     bench.run(20);
     assert_eq!(bench.error_after("HLT"), "10");
     bench.run_to_rest();

@@ -106,7 +106,7 @@ impl Ahead {
             pieces: Vec::new(),
             ..self.whole
         };
-        for piece in between(&self.whole.pieces, at, u64::MAX) {
+        for piece in after(&self.whole.pieces, at) {
             // They are no more than before.
             let _ = plan.pieces.push(piece);
         }
@@ -145,13 +145,12 @@ fn begun(pieces: &[Piece], tick: u64) -> usize {
     pieces.iter().position(is_later).unwrap_or(pieces.len())
 }
 
-/// What of the pieces lies between two ticks.
-fn between(pieces: &[Piece], from: u64, to: u64) -> impl Iterator<Item = Piece> {
-    let mut begins = 0;
+/// What of the pieces lies after a tick.
+fn after(pieces: &[Piece], tick: u64) -> impl Iterator<Item = Piece> {
+    let mut ends = 0;
     pieces.iter().filter_map(move |piece| {
-        let ends = begins + piece.ticks;
-        let ticks = ends.min(to).saturating_sub(begins.max(from));
-        begins = ends;
+        ends += piece.ticks;
+        let ticks = ends.saturating_sub(tick).min(piece.ticks);
         (ticks > 0).then_some(Piece { ticks, ..*piece })
     })
 }

@@ -76,5 +76,5 @@ pub use refusal::Refusal;
 pub use stop::{Stop, plan_stop};
 pub use stream::{CAPACITY, Clock, End, JERK_TOLERANCE, Next, NotTaken, PERIODS, Progress, Stream};
 pub use tracks::synchronised;
-pub use transition::{NoTransition, Tries, plan_transition, try_transition};
+pub use transition::{Leave, NoTransition, Tries, plan_transition, try_transition};
 pub use way::Way;

@@ -62,6 +62,17 @@ impl Tries {
     };
 }
 
+/// What is left for another target.
+#[derive(Clone, Copy)]
+pub struct Leave<'a> {
+    /// The plan under way.
+    pub of: &'a Plan,
+    /// The axes at its start.
+    pub from: &'a [Axis; 3],
+    /// The tick of it at which it is left.
+    pub at: u64,
+}
+
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
 /// takes, all of it at once.
 pub fn plan_transition(
@@ -76,7 +87,8 @@ pub fn plan_transition(
     loop {
         let mut ahead = None;
         let next = &mut plan;
-        let tried = try_transition(next, id, of, from, at, to, ground, &mut tries, &mut ahead);
+        let leave = Leave { of, from, at };
+        let tried = try_transition(next, id, leave, to, ground, &mut tries, &mut ahead);
         let tried = match ahead {
             Some(ahead) => ahead.whole(&mut plan, ground, &mut tries),
             None => tried,
@@ -90,13 +102,10 @@ pub fn plan_transition(
 /// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
 /// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
 #[inline(never)]
-#[allow(clippy::too_many_arguments)]
 pub fn try_transition(
     plan: &mut Plan,
     id: u32,
-    of: &Plan,
-    from: &[Axis; 3],
-    at: u64,
+    Leave { of, from, at }: Leave<'_>,
     to: Position,
     ground: &Ground,
     tries: &mut Tries,

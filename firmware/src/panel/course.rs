@@ -2,8 +2,8 @@
 
 use super::error::ErrorCode;
 use crate::motion::{
-    Ahead, Axis, Ground, NoTransition, Plan, Position, Refusal, Start, Stop, Tries, plan_jog,
-    plan_line, plan_stop, try_transition,
+    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Refusal, Start, Stop, Tries,
+    plan_jog, plan_line, plan_stop, try_transition,
 };
 
 /// What a motion is for.
@@ -90,8 +90,9 @@ impl Course {
             // It makes its plans itself.
             Goal::Stream => Err(NoTransition::NeedsStop),
             Goal::Place(to) => {
-                let (plan, of, from) = (&mut next.plan, &self.plan, &self.start);
-                try_transition(plan, id, of, from, at, to, ground, tries, ahead)
+                let (of, from) = (&self.plan, &self.start);
+                let leave = Leave { of, from, at };
+                try_transition(&mut next.plan, id, leave, to, ground, tries, ahead)
             }
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),

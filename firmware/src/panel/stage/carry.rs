@@ -156,11 +156,8 @@ impl Stage {
 
     /// What plans keep to now.
     pub(super) fn ground(&self) -> Ground {
-        let radius_mm = self.geometry.radius_mm;
-        let mut ground = Ground {
-            limits: self.limits,
-            ..self.base
-        };
+        let radius_mm = self.base.geometry.radius_mm;
+        let mut ground = self.base;
         ground.centre = self.radii(self.view.tool.origin());
         let [x, y] = self.view.zero;
         for (bounds, (axis, zero, per_unit)) in (ground.bounds.iter_mut()).zip([
@@ -179,7 +176,7 @@ impl Stage {
 
     /// mm to track radii.
     pub(super) fn radii(&self, mm: [f64; 2]) -> [f64; 2] {
-        mm.map(|mm| mm / self.geometry.radius_mm)
+        mm.map(|mm| mm / self.base.geometry.radius_mm)
     }
 
     pub(super) const fn next_id(&mut self) -> u32 {

@@ -163,7 +163,7 @@ impl Stage {
         values: &AxisValues,
     ) -> Result<(), ErrorCode> {
         let limited = self.view.limited(&self.target);
-        let travel = travel(&self.view, &self.geometry);
+        let travel = travel(&self.view, &self.base.geometry);
         change(&mut self.soft, values, &limited, &travel)
     }
 
@@ -172,8 +172,9 @@ impl Stage {
         if !(SLOWEST_MM_S..=self.full.speed_mm_s).contains(&mm_s) {
             return Err(ErrorCode::VelocityLimit);
         }
-        self.limits.speed_mm_s = mm_s;
-        self.limits.turn_speed_deg_s = self.full.turn_speed_deg_s * (mm_s / self.full.speed_mm_s);
+        self.base.limits.speed_mm_s = mm_s;
+        self.base.limits.turn_speed_deg_s =
+            self.full.turn_speed_deg_s * (mm_s / self.full.speed_mm_s);
         Ok(())
     }
 }

@@ -40,8 +40,7 @@ impl Stage {
 
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
-        self.geometry = parameters.geometry;
-        self.base = Ground::new(parameters.limits, parameters.geometry);
+        self.base = Ground::new(self.base.limits, parameters.geometry);
         self.targets = parameters.targets;
         self.set_limits(parameters.limits);
     }
@@ -58,9 +57,9 @@ impl Stage {
 
     /// Other limits of motion. `VLS` stays, as far as they allow it.
     fn set_limits(&mut self, limits: Limits) {
-        let mm_s = self.limits.speed_mm_s.min(limits.speed_mm_s);
+        let mm_s = self.base.limits.speed_mm_s.min(limits.speed_mm_s);
         self.full = limits;
-        self.limits = limits;
+        self.base.limits = limits;
         // Not refused: it is inside the new limits, which are far over the slowest.
         let _ = self.set_velocity(mm_s);
     }

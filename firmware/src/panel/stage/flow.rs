@@ -46,7 +46,7 @@ impl Stage {
 
     /// Ticks in so many ms.
     fn period(&self, ms: f64) -> f64 {
-        ms * 1e-3 * self.limits.rate_hz
+        ms * 1e-3 * self.base.limits.rate_hz
     }
 
     /// Which generators run, or are about to.
@@ -98,7 +98,7 @@ impl Stage {
         if self.mode() != Mode::Holding || self.motion_is_due() {
             return Err(ErrorCode::InMotion);
         }
-        let run = Run::new(&self.waves, starting, self.target, self.limits.rate_hz);
+        let run = Run::new(&self.waves, starting, self.target, self.base.limits.rate_hz);
         let start = self.place_of(&run.start(&self.waves))?;
         self.want(Goal::Place(start), link)?;
         self.target_is_rest = true;

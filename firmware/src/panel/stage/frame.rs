@@ -71,7 +71,7 @@ impl Stage {
         if self.is_faulted() {
             return Err(ErrorCode::MotionError);
         }
-        let most_arm_mm = FURTHEST * self.geometry.radius_mm;
+        let most_arm_mm = FURTHEST * self.base.geometry.radius_mm;
         let view = self.frames.view(&choice, most_arm_mm)?;
         let target = self.seen_from(&view);
         let referenced = self.snapshot().is_some_and(|snapshot| snapshot.referenced);

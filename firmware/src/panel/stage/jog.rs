@@ -50,7 +50,7 @@ impl Stage {
     pub(super) fn commanded(&self) -> Coordinates {
         let follows = self.is_jogging() || self.generators_going() != [false; 6];
         if follows && self.mode() == Mode::Moving {
-            coordinates(&self.setpoint(), &self.view, &self.geometry)
+            coordinates(&self.setpoint(), &self.view, &self.base.geometry)
         } else {
             self.target
         }
@@ -65,7 +65,7 @@ impl Stage {
             .under_way()
             .and_then(|(course, at)| course.stopped(0, at, &self.ground(), Stop::Smooth));
         match stopped {
-            Some(stop) => coordinates(&stop.plan.end, &self.view, &self.geometry),
+            Some(stop) => coordinates(&stop.plan.end, &self.view, &self.base.geometry),
             None => self.commanded(),
         }
     }

@@ -29,8 +29,8 @@ impl Stage {
             Quantity::OnTarget => flag(self.is_settled() || axis.component().is_none()),
             Quantity::Servo => flag(servo),
             Quantity::Referenced => flag(referenced),
-            Quantity::Lowest => travel_of_targets(&self.view, &self.geometry)[index][0],
-            Quantity::Highest => travel_of_targets(&self.view, &self.geometry)[index][1],
+            Quantity::Lowest => travel_of_targets(&self.view, &self.base.geometry)[index][0],
+            Quantity::Highest => travel_of_targets(&self.view, &self.base.geometry)[index][1],
             Quantity::SoftLowest => self.soft_range(axis)[0],
             Quantity::SoftHighest => self.soft_range(axis)[1],
             Quantity::SoftActive => flag(self.soft.active[index]),
@@ -73,7 +73,8 @@ impl Stage {
     }
 
     fn soft_range(&self, axis: Axis) -> [f64; 2] {
-        self.soft.range(axis, &travel(&self.view, &self.geometry))
+        self.soft
+            .range(axis, &travel(&self.view, &self.base.geometry))
     }
 
     /// The furthest target in this direction from the last one; `None` when it is no direction.
@@ -81,7 +82,7 @@ impl Stage {
         let direction = values.map(|value| value.unwrap_or(0.0));
         let last = self.base_target();
         let from = self.start_of_way(&last);
-        let most = furthest_mm(&self.view, &self.geometry);
+        let most = furthest_mm(&self.view, &self.base.geometry);
         let soft = |axis| self.soft_range(axis);
         let allowed = |target: &Coordinates| self.has_way(&from, target);
         furthest(&last, &direction, &self.view, most, soft, allowed)
@@ -93,8 +94,8 @@ impl Stage {
         let Some(snapshot) = self.snapshot.as_ref().filter(|s| s.referenced) else {
             return Coordinates::default();
         };
-        measured(&snapshot.pivots, &self.view, &self.geometry)
-            .unwrap_or_else(|| coordinates(&snapshot.setpoint, &self.view, &self.geometry))
+        measured(&snapshot.pivots, &self.view, &self.base.geometry)
+            .unwrap_or_else(|| coordinates(&snapshot.setpoint, &self.view, &self.base.geometry))
     }
 
     /// Measured pose of the platform in the base frame, whatever frames are in force.
@@ -109,10 +110,10 @@ impl Stage {
 
     /// The axes whose measured position has changed since the pivots were there; all when that is not known.
     pub fn changed_since(&self, pivots: Option<[Angle; 3]>) -> AxisSet {
-        let then = pivots.and_then(|pivots| measured(&pivots, &self.view, &self.geometry));
+        let then = pivots.and_then(|pivots| measured(&pivots, &self.view, &self.base.geometry));
         let now = self
             .pivots()
-            .and_then(|pivots| measured(&pivots, &self.view, &self.geometry));
+            .and_then(|pivots| measured(&pivots, &self.view, &self.base.geometry));
         let (Some(then), Some(now)) = (then, now) else {
             return AxisSet::MOVABLE;
         };
@@ -151,7 +152,7 @@ impl Stage {
     }
 
     pub const fn velocity_mm_s(&self) -> f64 {
-        self.limits.speed_mm_s
+        self.base.limits.speed_mm_s
     }
 
     /// The pose that is commanded now.

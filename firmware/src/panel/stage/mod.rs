@@ -42,7 +42,6 @@ use super::wave::Waves;
 use crate::link::{Command, Mode, PanelLink, Snapshot};
 use crate::motion::{Ahead, Ground, Limits, Position, Stop, Tries};
 use crate::parameters::{Parameters, Targets};
-use kinematics::Geometry;
 
 /// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for planning.
 const LOOK_AHEAD: u64 = 40;
@@ -51,10 +50,8 @@ const LOOK_AHEAD_MOST: u64 = 20_000;
 
 /// See the module.
 pub(super) struct Stage {
-    pub geometry: Geometry,
-    /// What plans keep to with the limits and the frames at the start: its disk takes long to compute.
+    /// What plans keep to, without frames and soft limits: its disk takes long to compute.
     base: Ground,
-    limits: Limits,
     /// Limits of the parameters: those of full system velocity.
     full: Limits,
     soft: SoftLimits,
@@ -117,9 +114,7 @@ enum Flight {
 impl Stage {
     pub fn new(parameters: &Parameters) -> Self {
         Self {
-            geometry: parameters.geometry,
             base: Ground::new(parameters.limits, parameters.geometry),
-            limits: parameters.limits,
             full: parameters.limits,
             soft: SoftLimits::new(),
             waves: Waves::new(),
@@ -180,7 +175,7 @@ impl Stage {
 
     /// Ticks in so many milliseconds.
     pub fn ticks(&self, ms: f64) -> u64 {
-        libm::ceil(ms * 1e-3 * self.limits.rate_hz) as u64
+        libm::ceil(ms * 1e-3 * self.base.limits.rate_hz) as u64
     }
 
     /// Takes a snapshot.
@@ -249,7 +244,7 @@ impl Stage {
     /// After a stop by command the target is where it ends; known as soon as the stop is, so that `MVR` can go on from there.
     fn will_rest_at(&mut self, end: &Position) {
         if self.target_is_rest {
-            self.target = coordinates(end, &self.view, &self.geometry);
+            self.target = coordinates(end, &self.view, &self.base.geometry);
         }
     }
 
@@ -263,7 +258,7 @@ impl Stage {
                 self.stop_wanted = None;
                 if self.target_is_rest && self.wanted.is_none() && self.flow.is_none() {
                     self.jog = [0.0; 6];
-                    self.target = coordinates(&snapshot.setpoint, &self.view, &self.geometry);
+                    self.target = coordinates(&snapshot.setpoint, &self.view, &self.base.geometry);
                     self.target_is_rest = false;
                 }
             }

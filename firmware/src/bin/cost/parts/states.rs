@@ -3,8 +3,8 @@
 use crate::random::Random;
 use core::hint::black_box;
 use firmware::motion::{
-    Ahead, Axis, Ground, NoTransition, Plan, Position, Start, Stop, Tries, plan_line, plan_stop,
-    plan_transition, try_transition,
+    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Start, Stop, Tries, plan_line,
+    plan_stop, plan_transition, try_transition,
 };
 use firmware::number::Fixed;
 use firmware::parameters::Parameters;
@@ -126,19 +126,8 @@ impl Moving {
     /// To a new target, or to a stop where there is no way to it without one, or not with the first try.
     pub fn retargeted(&self, to: Position) -> Option<Plan> {
         let (mut tries, mut ahead) = (Tries::NONE, None);
-        let (plan, start, at) = (&self.plan, &self.start, self.at);
-        let mut next = Plan::default();
-        match try_transition(
-            &mut next,
-            3,
-            plan,
-            start,
-            at,
-            to,
-            ground(),
-            &mut tries,
-            &mut ahead,
-        ) {
+        let (mut next, leave) = (Plan::default(), self.leave());
+        match try_transition(&mut next, 3, leave, to, ground(), &mut tries, &mut ahead) {
             Ok(()) => Some(next),
             Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
             Err(NoTransition::Refused(_)) => None,
@@ -150,10 +139,8 @@ impl Moving {
         loop {
             let (now, to) = (Self::new(random), position(random));
             let (mut tries, mut ahead) = (Tries::NONE, None);
-            let (plan, start) = (&now.plan, &now.start);
-            let (at, tried, rest) = (now.at, &mut tries, &mut ahead);
-            let head = &mut Plan::default();
-            let _ = try_transition(head, 3, plan, start, at, to, ground(), tried, rest);
+            let (mut head, leave) = (Plan::default(), now.leave());
+            let _ = try_transition(&mut head, 3, leave, to, ground(), &mut tries, &mut ahead);
             if let Some(ahead) = ahead {
                 return (ahead, tries);
             }
@@ -163,6 +150,14 @@ impl Moving {
     /// To a stop.
     pub fn stopped(&self, stop: Stop) -> Option<Plan> {
         plan_stop(3, &self.plan, &self.start, self.at, ground(), stop)
+    }
+
+    fn leave(&self) -> Leave<'_> {
+        Leave {
+            of: &self.plan,
+            from: &self.start,
+            at: self.at,
+        }
     }
 
     /// The axes where it is left.
