@@ -55,7 +55,7 @@ fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
     println!("seed {seed}");
     let mut random = Random::new(seed);
     let (mut heads, mut rests) = (0, 0);
-    for _ in 0..setting("STATES", 600) {
+    for _ in 0..setting("STATES", 4_000) {
         let left = Left::new(&mut random);
         let mut tries = Tries::NONE;
         let (Ok(head), Some(ahead)) = left.first(&mut tries) else {
@@ -91,7 +91,7 @@ fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
         }
     }
     println!("{heads} heads, {rests} times gone on from");
-    assert!(heads > 100 && rests > 2 * heads);
+    assert!(heads > 1_000 && rests > 2 * heads);
 }
 
 /// Another plan, or a tick at which the stop has begun, is not what it follows.
