@@ -3,6 +3,11 @@
 use std::fs;
 use std::path::Path;
 
+use firmware::link::{Command, Link};
+use firmware::parameters::Parameters;
+use hal_sim::devices::StageParameters;
+use hal_sim::host::Host;
+use hal_sim::observer::TickRecord;
 use hal_sim::run::{RunOptions, RunOutcome, run};
 use hal_sim::script::Script;
 
@@ -42,4 +47,40 @@ fn a_seed_is_a_run() {
     assert!(one.1[0].len() > 100_000, "{} bytes", one.1[0].len());
     assert_ne!(one.0.hash, other.0.hash);
     assert!(one.1[0] != other.1[0], "another seed has the same trace");
+}
+
+/// The ticks of the snapshots of a stage that is referenced and switched, when the command side looks after every so many ticks.
+fn snapshot_ticks(every: u32) -> Vec<u64> {
+    let mut host = Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE);
+    let (mut link, mut record) = (Link::new(), TickRecord::default());
+    let (mut tick_link, mut commands) = link.split();
+    let mut ticks = Vec::new();
+    for tick in 0..600 {
+        let command = match tick {
+            20 => Some(Command::Reference),
+            101 | 303 => Some(Command::Servo(false)),
+            202 | 404 => Some(Command::Servo(true)),
+            _ => None,
+        };
+        if let Some(command) = command {
+            commands.send(command).expect("room");
+        }
+        host.tick(&mut tick_link, &mut record);
+        if tick % every == 0 {
+            ticks.extend(commands.snapshot().map(|snapshot| snapshot.tick));
+        }
+    }
+    ticks
+}
+
+/// Who compares two runs can have every snapshot that any command side has had: those of one that is never late.
+#[test]
+fn a_late_command_side_sees_no_tick_that_a_prompt_one_does_not() {
+    let prompt = snapshot_ticks(1);
+    for every in 2..9 {
+        let late = snapshot_ticks(every);
+        assert!(late.len() > 50, "{}", late.len());
+        let more: Vec<_> = late.iter().filter(|tick| !prompt.contains(tick)).collect();
+        assert!(more.is_empty(), "every {every}: {more:?}");
+    }
 }
