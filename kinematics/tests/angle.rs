@@ -96,6 +96,35 @@ fn constants_are_nearest_and_their_sums_known() {
     assert_eq!(Angle::from_degrees(210.0), Some(quarter + Angle::DEG_120));
 }
 
+/// Half a turn from the reference two angles are nearest: the one below it is taken, from whichever side it is asked.
+#[test]
+fn at_half_a_turn_near_takes_the_angle_below() {
+    let half = Angle::from_units(Angle::TURN.units() / 2);
+    let one = Angle::from_units(1);
+    let far = Angle::from_units((9_999 << 32) + 123_456_789);
+    for reference in [Angle::ZERO, far, -far] {
+        for off in [half, -half, half + Angle::TURN, -half - Angle::TURN] {
+            assert_eq!(
+                (reference + off).near(reference),
+                reference - half,
+                "{off:?}"
+            );
+        }
+        assert_eq!(
+            (reference + half - one).near(reference),
+            reference + half - one
+        );
+        assert_eq!(
+            (reference - half - one).near(reference),
+            reference + half - one
+        );
+        assert_eq!(
+            (reference + half + one).near(reference),
+            reference - half + one
+        );
+    }
+}
+
 #[test]
 fn one_unit_survives_10_000_turns() {
     let mut angle = Angle::from_degrees(3_600_000.0).expect("within range");
