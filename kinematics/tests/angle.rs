@@ -73,14 +73,14 @@ proptest! {
     fn float_near_is_congruent_and_nearest(angle in -100.0..100.0, reference in -100.0..100.0) {
         let near = <f64 as Scalar>::near(angle, reference);
         prop_assert!((near - reference).abs() <= PI + 1e-12);
-        prop_assert!(((near - angle) / TAU - ((near - angle) / TAU).round()).abs() < 1e-12);
+        prop_assert!(((near - angle) / TAU - ((near - angle) / TAU).round()).abs() < 4e-15);
     }
 
     #[test]
     fn polar_gives_back_the_direction(angle in -PI..PI, length in 0.01..3.0) {
         let (sin, cos) = angle.sin_cos();
         let (direction, re, im) = <f64 as Scalar>::polar(length * cos, length * sin).expect("long enough");
-        prop_assert!((direction - angle).abs() < 1e-15 * 4.0);
+        prop_assert!((direction - angle).abs() < 5e-16);
         prop_assert!((re - cos).abs() < 1e-15 && (im - sin).abs() < 1e-15);
     }
 }
