@@ -50,7 +50,7 @@ fn the_ticks_around_a_fault_can_be_read_until_the_servo_is_on() {
         assert_eq!(row[1..3], expected, "tick {at}");
         let driven = row[9..12].iter().any(|duty| *duty != 0.0);
         assert_eq!(driven, at < tick, "tick {at}");
-        assert!((row[15] - 48.0).abs() < 0.1, "supply {}", row[15]);
+        assert!((row[15] - 48.0).abs() < 0.017, "supply {}", row[15]);
     }
     bench.run(5_000);
     assert_eq!(bench.error_after("FLC"), "0");
