@@ -1,13 +1,13 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use crate::devices::{
     Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
@@ -96,7 +96,7 @@ impl Host {
     }
 
     /// One tick of the controller, and the stage's motion up to the next.
-    pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    pub fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         let inputs = self.inputs();
         let outputs = tick(&mut self.config, &mut self.state, &inputs, link, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
@@ -139,7 +139,7 @@ impl Host {
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
     pub fn worse(&self) -> Option<Fault> {
-        self.state.worse()
+        self.state.stop_ended_by()
     }
 
     fn inputs(&mut self) -> Inputs {

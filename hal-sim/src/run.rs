@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use firmware::blackbox::BlackBox;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::{Link, Mode};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Identity, Interpreter, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::queues::Queues;
+use firmware::settings_store::SettingsStore;
 
 use crate::client::{Client, Event};
 use crate::devices::{FINE_PWM, SettingsFlash, StageParameters};
@@ -124,9 +125,9 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
 /// The panel of a controller that starts with what is kept, and the fault that it starts with.
 pub(crate) fn started(
     parameters: &Parameters,
-    keeper: &mut Keeper<SettingsFlash>,
-) -> (Panel, Option<FaultKind>) {
-    let mut panel = Panel::new(parameters, IDENTITY);
+    keeper: &mut SettingsStore<SettingsFlash>,
+) -> (Interpreter, Option<FaultKind>) {
+    let mut panel = Interpreter::new(parameters, IDENTITY);
     let fault = keeper.restore(&mut panel);
     (panel, fault)
 }
@@ -162,14 +163,14 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut keeper = Keeper::new(flash);
+    let mut keeper = SettingsStore::new(flash);
     let (mut panel, fault) = started(parameters, &mut keeper);
     let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
     let mut host = Host::new(stage, panel.parameters());
     host.restart(panel.parameters(), fault);
-    let mut link = Link::new();
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
+    let mut link = Queues::new();
+    let black_box = Box::new(RetainedMemory::new());
+    let (mut tick_queues, mut command_queues) = link.split_with_retained(&black_box);
     let mut session = Session::new();
     let mut client = Client::new(script);
     let mut observer = Observer::new(panel.parameters(), options.every);
@@ -180,7 +181,7 @@ fn simulate(
     let progress = Progress::new(script.lines.len() as u64, options.quiet);
     let fault = loop {
         let pose = host.stage.latched_pose();
-        host.tick(&mut tick_link, &mut record);
+        host.tick(&mut tick_queues, &mut record);
         ticks += 1;
         let mut moving = false;
         if let Some(sample) = &record.sample {
@@ -193,15 +194,15 @@ fn simulate(
         let taken = session.receive(&wire.to_stage);
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
-        keeper.carry_on(&mut panel);
+        let _ = panel.service(&mut session, &mut command_queues, &mut wire.to_client);
+        keeper.store_pending(&mut panel);
         if panel.wants_restart() {
             let fault;
             (panel, fault) = started(parameters, &mut keeper);
             host.restart(panel.parameters(), fault);
             session.start_again();
-            tick_link.clear();
-            panel_link.clear();
+            tick_queues.clear();
+            command_queues.clear();
         }
         let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
         wire.to_stage.extend(bytes);

@@ -1,14 +1,15 @@
 //! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
 //! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Command, Link, Mode, PanelLink, QueueFull, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::recorder::{Record, Sample};
-use firmware::store::Keeper;
+use firmware::queues::{Command, CommandQueues, QueueFull, Queues, TickQueues};
+use firmware::recorder::{Sample, TickObserver};
+use firmware::settings_store::SettingsStore;
 use hal_sim::devices::SettingsFlash;
 use hal_sim::devices::biss::{Preamble, encode};
 use hal_sim::run::IDENTITY;
@@ -45,7 +46,7 @@ pub struct Connection {
 #[derive(Default)]
 struct Last(Option<Sample>);
 
-impl Record for Last {
+impl TickObserver for Last {
     fn record(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
@@ -57,9 +58,9 @@ pub struct Ideal {
     pub config: Config,
     state: State,
     /// All that the connections share.
-    pub panel: Panel,
+    pub panel: Interpreter,
     /// Keeps its settings, in memory.
-    pub keeper: Keeper<SettingsFlash>,
+    pub keeper: SettingsStore<SettingsFlash>,
     /// The connections.
     pub connections: Vec<Connection>,
     /// What is wrong with the hardware.
@@ -68,8 +69,8 @@ pub struct Ideal {
     pub flicker: bool,
     /// What the last tick put out.
     pub outputs: Outputs,
-    tick_link: TickLink<'static>,
-    panel_link: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    command_queues: CommandQueues<'static>,
     last: Last,
     /// What the encoders show.
     counts: [u32; 3],
@@ -83,12 +84,12 @@ impl Ideal {
         let parameters = Parameters::REFERENCE;
         let config = Config::new(&parameters);
         // The queues live as long as the process: some kilobytes for each stage.
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let (tick_queues, command_queues) = Box::leak(Box::new(Queues::new())).split();
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
         let counts = [0, 1, 2].map(|i| config.encoders[i].counts_at(third(i)));
-        let mut panel = Panel::new(&parameters, IDENTITY);
-        let mut keeper = Keeper::new(SettingsFlash::in_memory());
+        let mut panel = Interpreter::new(&parameters, IDENTITY);
+        let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
         keeper.restore(&mut panel);
         Self {
             config,
@@ -99,8 +100,8 @@ impl Ideal {
             trouble: Trouble::default(),
             flicker: false,
             outputs: Outputs::default(),
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             last: Last::default(),
             counts,
             last_bit: 0,
@@ -115,7 +116,7 @@ impl Ideal {
             &mut self.config,
             &mut self.state,
             &inputs,
-            &mut self.tick_link,
+            &mut self.tick_queues,
             &mut self.last,
         );
         self.follow(before.as_ref());
@@ -140,10 +141,10 @@ impl Ideal {
         // Writing to a vector does not fail.
         let _ = self.panel.service(
             &mut connection.session,
-            &mut self.panel_link,
+            &mut self.command_queues,
             &mut connection.output,
         );
-        self.keeper.carry_on(&mut self.panel);
+        self.keeper.store_pending(&mut self.panel);
         if self.panel.wants_restart() {
             self.restart();
         }
@@ -162,7 +163,7 @@ impl Ideal {
     /// # Errors
     /// [`QueueFull`]
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
-        self.panel_link.send(command)
+        self.command_queues.send(command)
     }
 
     /// What the last tick computed, once one has run.
@@ -173,12 +174,12 @@ impl Ideal {
 
     /// What `RBT` asks for.
     fn restart(&mut self) {
-        self.panel = Panel::new(&Parameters::REFERENCE, IDENTITY);
+        self.panel = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
         self.state =
             (self.keeper.restore(&mut self.panel)).map_or_else(State::new, State::with_fault);
         self.config = Config::new(self.panel.parameters());
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
         for connection in &mut self.connections {
             connection.session.start_again();
         }

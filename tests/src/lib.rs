@@ -7,12 +7,13 @@ pub mod fuzz;
 pub mod ideal;
 pub mod trouble;
 
-use firmware::blackbox::BlackBox;
-use firmware::controller::Outputs;
+use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::{Link, Mode, PanelLink, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Interpreter, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
+use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::recorder::Sample;
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;
@@ -30,10 +31,10 @@ pub struct Bench {
     pub host: Host,
     /// What the last tick put out.
     pub outputs: Outputs,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
-    tick_link: TickLink<'static>,
-    panel_link: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    command_queues: CommandQueues<'static>,
     record: TickRecord,
     answers: Vec<u8>,
     /// Largest following error of a pivot since [`Bench::forget_errors`], encoder counts.
@@ -51,16 +52,17 @@ impl Bench {
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
         // The queues live as long as the process: a test has a few of them.
-        let black_box = Box::leak(Box::new(BlackBox::new()));
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split_keeping(black_box);
+        let black_box = Box::leak(Box::new(RetainedMemory::new()));
+        let (tick_queues, command_queues) =
+            Box::leak(Box::new(Queues::new())).split_with_retained(black_box);
         let parameters = Parameters::REFERENCE;
         Self {
             host: Host::new(stage, &parameters),
             outputs: Outputs::default(),
-            panel: Panel::new(&parameters, IDENTITY),
+            panel: Interpreter::new(&parameters, IDENTITY),
             session: Session::new(),
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             record: TickRecord::default(),
             answers: Vec::new(),
             worst_error_counts: 0,
@@ -71,11 +73,11 @@ impl Bench {
     pub fn reset(&mut self, cause: &'static str) {
         let parameters = Parameters::REFERENCE;
         self.host.restart(&parameters, None);
-        self.panel = Panel::new(&parameters, IDENTITY);
-        self.panel.note_start(cause);
+        self.panel = Interpreter::new(&parameters, IDENTITY);
+        self.panel.set_start_cause(cause);
         self.session = Session::new();
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
     }
 
     /// Referenced, holding and settled.
@@ -92,12 +94,16 @@ impl Bench {
 
     /// One tick, and one turn of the command side.
     pub fn tick(&mut self) {
-        self.outputs = self.host.tick(&mut self.tick_link, &mut self.record);
+        self.outputs = self.host.tick(&mut self.tick_queues, &mut self.record);
         if matches!(self.mode(), Mode::Holding | Mode::Moving | Mode::Stopping) {
             self.worst_error_counts = self.worst_error_counts.max(self.error_counts());
         }
         // Writing to a vector does not fail.
-        let _ = (self.panel).service(&mut self.session, &mut self.panel_link, &mut self.answers);
+        let _ = (self.panel).service(
+            &mut self.session,
+            &mut self.command_queues,
+            &mut self.answers,
+        );
     }
 
     /// So many ticks.

@@ -17,12 +17,12 @@
 use super::period::{Period, Service, Trace};
 use crate::devices::biss::{Preamble, encode};
 use crate::observer::TickRecord;
-use firmware::config::Config;
-use firmware::controller::{Inputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::{RawFrame, decode};
-use firmware::link::{Link, PanelLink, Snapshot, TickLink};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
+use firmware::queues::{CommandQueues, Queues, Snapshot, TickQueues};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -57,13 +57,13 @@ pub struct Twin {
     config: Config,
     state: State,
     record: TickRecord,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
     /// The panel's ends of the link whose other side the twin holds.
-    panel_link: PanelLink<'static>,
-    panel_side: TickLink<'static>,
-    tick_side: PanelLink<'static>,
-    tick_link: TickLink<'static>,
+    command_queues: CommandQueues<'static>,
+    panel_side: TickQueues<'static>,
+    tick_side: CommandQueues<'static>,
+    tick_queues: TickQueues<'static>,
     /// Ticks and commands done, and bytes given to the panel.
     ticks: u32,
     commands: u32,
@@ -105,7 +105,7 @@ pub enum Divergence {
         tick: u32,
     },
     /// The chip's panel has run in a way that the twin's can not repeat.
-    Panel {
+    Interpreter {
         /// Ticks done.
         ticks: u32,
     },
@@ -118,10 +118,10 @@ impl Twin {
     /// A twin of a chip that has just started.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
-        let (mut panel_side, panel_link) = endless_link();
-        let (mut tick_link, tick_side) = endless_link();
+        let (mut panel_side, command_queues) = endless_queues();
+        let (mut tick_queues, tick_side) = endless_queues();
         // The twin's panel orders its records from the twin's tick; nothing of them has to be held back.
-        std::mem::swap(&mut panel_side.recorder, &mut tick_link.recorder);
+        std::mem::swap(&mut panel_side.recorder, &mut tick_queues.recorder);
         let identity = Identity {
             serial: "",
             version: "",
@@ -130,12 +130,12 @@ impl Twin {
             config: Config::new(parameters),
             state: State::new(),
             record: TickRecord::default(),
-            panel: Panel::new(parameters, identity),
+            panel: Interpreter::new(parameters, identity),
             session: Session::new(),
-            panel_link,
+            command_queues,
             panel_side,
             tick_side,
-            tick_link,
+            tick_queues,
             ticks: 0,
             commands: 0,
             bytes: 0,
@@ -178,7 +178,7 @@ impl Twin {
         }
         let services = period.services(self.served, trace.served);
         self.services
-            .extend(services.ok_or(Divergence::Panel { ticks: trace.ticks })?);
+            .extend(services.ok_or(Divergence::Interpreter { ticks: trace.ticks })?);
         self.served = trace.served;
         let (current_counts, supply_counts) = period.stage.analog();
         let mut frames = period.stage.frames();
@@ -239,7 +239,7 @@ impl Twin {
             &mut self.config,
             &mut self.state,
             &inputs,
-            &mut self.tick_link,
+            &mut self.tick_queues,
             &mut self.record,
         );
         let tick = self.ticks;
@@ -267,7 +267,7 @@ impl Twin {
         {
             self.services.pop_front();
             self.serve(service)
-                .ok_or(Divergence::Panel { ticks: self.ticks })?;
+                .ok_or(Divergence::Interpreter { ticks: self.ticks })?;
         }
         Ok(())
     }
@@ -294,7 +294,7 @@ impl Twin {
         }
         let Ok(()) = self
             .panel
-            .service(&mut self.session, &mut self.panel_link, &mut Nowhere);
+            .service(&mut self.session, &mut self.command_queues, &mut Nowhere);
         Some(())
     }
 
@@ -326,8 +326,8 @@ fn with_flipped_bit(frame: [u8; 8]) -> [u8; 8] {
 }
 
 /// A link whose ends live as long as the process: some kilobytes for each run.
-fn endless_link() -> (TickLink<'static>, PanelLink<'static>) {
-    Box::leak(Box::new(Link::new())).split()
+fn endless_queues() -> (TickQueues<'static>, CommandQueues<'static>) {
+    Box::leak(Box::new(Queues::new())).split()
 }
 
 /// Takes every byte and keeps none.
@@ -365,7 +365,7 @@ impl fmt::Display for Divergence {
                     "at tick {tick} the chip has taken a command that the host's panel did not give"
                 )
             }
-            Self::Panel { ticks } => {
+            Self::Interpreter { ticks } => {
                 write!(
                     f,
                     "after {ticks} ticks the chip's panel had bytes or a snapshot that the host has not, or its record is lost"

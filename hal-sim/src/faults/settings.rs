@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use firmware::link::Link;
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::queues::Queues;
+use firmware::settings_store::SettingsStore;
 
 use super::random::Random;
 use crate::devices::{SettingsFlash, StageParameters};
@@ -39,19 +39,19 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-    let mut link = Box::new(Link::new());
-    let (mut tick_link, mut panel_link) = link.split();
-    let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
-    let mut keeper = Keeper::new(SettingsFlash::in_memory());
+    let mut link = Box::new(Queues::new());
+    let (mut tick_queues, mut command_queues) = link.split();
+    let mut panel = Box::new(Interpreter::new(&parameters, IDENTITY));
+    let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
     let mut session = Session::new();
     let mut answers = Vec::new();
     assert_eq!(keeper.restore(&mut panel), None, "an erased flash is none");
     session.receive(LINES);
     for _ in 0..TICKS {
-        host.tick(&mut tick_link, &mut ());
+        host.tick(&mut tick_queues, &mut ());
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut answers);
-        keeper.carry_on(&mut panel);
+        let _ = panel.service(&mut session, &mut command_queues, &mut answers);
+        keeper.store_pending(&mut panel);
     }
     assert_eq!(answers, b"0\n", "the settings are kept");
     keeper.flash().bytes().to_vec()

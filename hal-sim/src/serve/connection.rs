@@ -5,8 +5,8 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
-use firmware::link::PanelLink;
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
+use firmware::queues::CommandQueues;
 use rustix::event::PollFlags;
 
 use super::Notice;
@@ -107,8 +107,8 @@ impl Connection {
     /// Has the panel carry out what has come, line by line, so that a refusal can be told with its line.
     pub fn service(
         &mut self,
-        panel: &mut Panel,
-        link: &mut PanelLink<'_>,
+        panel: &mut Interpreter,
+        link: &mut CommandQueues<'_>,
         say: &mut dyn FnMut(Notice),
     ) {
         loop {
