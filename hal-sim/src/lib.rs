@@ -8,6 +8,7 @@ pub mod client;
 #[cfg(feature = "chip")]
 pub mod cost;
 pub mod devices;
+pub mod exercise;
 pub mod faults;
 pub mod host;
 pub mod observer;

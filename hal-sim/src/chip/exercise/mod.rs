@@ -2,13 +2,13 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `lines` | the GCS lines |
 //! | `tally` | what ticks cost, by what they did |
+//!
+//! The lines are those of [`crate::exercise`].
 //!
 //! Besides what the lines do, an encoder is broken now and then: in motion for as many frames as are bridged, at rest for more,
 //! which is a fault that the lines acknowledge.
 
-mod lines;
 mod tally;
 
 pub use tally::{Cost, Doing, Tally, Worst};
@@ -25,6 +25,7 @@ use super::run::ChipError;
 use super::{Bench, Divergence, Period, Twin, image};
 use crate::client::{Client, Event};
 use crate::devices::{EncoderFault, Stage};
+use crate::exercise::{Patience, script};
 use crate::report::Progress;
 use crate::run::{RunOptions, stage_parameters};
 
@@ -74,7 +75,7 @@ struct Runner {
     period_s: f64,
     mode: Mode,
     mended_at: u64,
-    off_polls: u32,
+    patience: Patience,
     exercise: Exercise,
 }
 
@@ -86,10 +87,6 @@ const BREAK_EVERY: u64 = 25_000;
 /// Frames that are bridged, and frames that are not.
 const FEW: u64 = 4;
 const MANY: u64 = 8;
-/// Ticks after which a line that waits while the servo is off is given up with a stop.
-const OFF_PATIENCE: u32 = 4_000;
-/// `#24`, and the question for its error.
-const STOP: &[u8] = b"\x18ERR?\n";
 
 /// Runs an exercise on the image that lies in the target folder.
 ///
@@ -102,16 +99,16 @@ pub fn exercise(options: &ExerciseOptions) -> Result<Exercise, ChipError> {
 
 fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipError> {
     let stage = Stage::new(&stage_parameters(&options.run));
-    let script = lines::script(options.run.seed, options.ticks).map_err(ChipError::Script)?;
+    let lines = script(options.run.seed, options.ticks).map_err(ChipError::Script)?;
     let mut runner = Some(Runner {
-        client: Client::new(&script),
+        client: Client::new(&lines),
         twin: Twin::new(&Parameters::REFERENCE).with_flip(options.flip),
         progress: Progress::new(options.ticks, options.run.quiet),
         ticks: options.ticks,
         period_s: stage.period_s(),
         mode: Mode::Off,
         mended_at: 0,
-        off_polls: 0,
+        patience: Patience::default(),
         exercise: Exercise::default(),
     });
     let (send, receive) = mpsc::channel();
@@ -154,7 +151,7 @@ impl Runner {
         }
         self.break_an_encoder(period);
         let (mut bytes, event) = self.client.poll(&received, self.mode == Mode::Moving);
-        bytes.extend(self.end_of_patience());
+        bytes.extend(self.patience.poll(&self.client, self.mode));
         period.send(&bytes);
         self.twin.receive(&bytes);
         if period.tick.is_multiple_of(PROGRESS_EVERY) {
@@ -213,19 +210,5 @@ impl Runner {
         } else if period.tick == self.mended_at {
             encoder.set_fault(None);
         }
-    }
-
-    /// A stop, when nothing but that ends a wait: the stage does not arrive while its servo is off. It throws away the `ERR?` that
-    /// waits behind it.
-    fn end_of_patience(&mut self) -> &'static [u8] {
-        let current = self.client.current();
-        let waits = current.is_some_and(|line| line.text.starts_with("WAC"));
-        let in_vain = waits && self.mode == Mode::Off;
-        self.off_polls = if in_vain { self.off_polls + 1 } else { 0 };
-        if self.off_polls <= OFF_PATIENCE {
-            return b"";
-        }
-        self.off_polls = 0;
-        STOP
     }
 }

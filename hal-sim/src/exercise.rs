@@ -5,6 +5,9 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use firmware::link::Mode;
+
+use crate::client::Client;
 use crate::devices::Noise;
 use crate::script::{Script, ScriptError};
 
@@ -17,7 +20,7 @@ const LEAST_TICKS: u64 = 200;
 ///
 /// # Errors
 /// None in practice: a test parses thousands.
-pub(super) fn script(seed: u64, ticks: u64) -> Result<Script, ScriptError> {
+pub fn script(seed: u64, ticks: u64) -> Result<Script, ScriptError> {
     let mut lines = Lines {
         noise: Noise::new(seed),
         text: "FRF\nWAC ONT? W = 1\nCCL 1 ADVANCED\n".to_owned(),
@@ -26,6 +29,33 @@ pub(super) fn script(seed: u64, ticks: u64) -> Result<Script, ScriptError> {
         lines.episode();
     }
     Script::parse("exercise", &lines.text)
+}
+
+/// Ticks after which a line that waits while the servo is off is given up with a stop.
+const OFF_PATIENCE: u32 = 4_000;
+/// `#24`, and the question for its error.
+const STOP: &[u8] = b"\x18ERR?\n";
+
+/// Ends a wait in vain: the stage does not arrive while its servo is off.
+#[derive(Debug, Default)]
+pub struct Patience {
+    off_polls: u32,
+}
+
+impl Patience {
+    /// What is to be sent besides what the client sends: a stop, when nothing but that ends the wait. It throws away the
+    /// `ERR?` that waits behind it. To be called once a tick, after the client was polled.
+    pub fn poll(&mut self, client: &Client, mode: Mode) -> &'static [u8] {
+        let current = client.current();
+        let waits = current.is_some_and(|line| line.text.starts_with("WAC"));
+        let in_vain = waits && mode == Mode::Off;
+        self.off_polls = if in_vain { self.off_polls + 1 } else { 0 };
+        if self.off_polls <= OFF_PATIENCE {
+            return b"";
+        }
+        self.off_polls = 0;
+        STOP
+    }
 }
 
 struct Lines {
