@@ -7,9 +7,9 @@
 use firmware::link::{Command, Link, PanelLink, Snapshot, TickLink};
 use firmware::motion::{Ground, Position, plan_line};
 use firmware::parameters::Parameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{RunOptions, controller_parameters, stage_parameters};
+use hal_sim::front::Host;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 
 const MOVES: usize = 200;
 const UNIT: f64 = 4_294_967_296.0;

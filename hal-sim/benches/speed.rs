@@ -9,12 +9,12 @@ use firmware::drivers::biss::RawFrame;
 use firmware::link::{Link, PanelLink, TickLink};
 use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
-use hal_sim::devices::{BridgeState, Stage, StageParameters};
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
-use hal_sim::run::{IDENTITY, RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::{BridgeState, Stage, StageParameters};
+use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{IDENTITY, RunOptions, run};
+use hal_sim::rig::script::Script;
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;

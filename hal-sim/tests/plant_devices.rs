@@ -6,12 +6,12 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::pwm::SetDutyCycle;
 use embedded_hal::spi::SpiBus;
 use firmware::drivers::biss::{self, FrameError};
-use hal_sim::devices::biss::COUNTS_PER_TURN;
-use hal_sim::devices::{
+use hal_sim::machine::devices::biss::COUNTS_PER_TURN;
+use hal_sim::machine::devices::{
     Bridge, BridgeParameters, BridgeState, Encoder, EncoderFault, EncoderParameters, Noise, Stage,
     StageParameters,
 };
-use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
 
 /// Position and flags as a driver would find them: behind the start bit, which follows the acknowledge.
 fn decode(frame: u64) -> (u32, bool, bool) {

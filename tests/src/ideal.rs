@@ -9,9 +9,9 @@ use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::{Record, Sample};
 use firmware::store::Keeper;
-use hal_sim::devices::SettingsFlash;
-use hal_sim::devices::biss::{Preamble, encode};
-use hal_sim::run::IDENTITY;
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::machine::devices::biss::{Preamble, encode};
+use hal_sim::rig::run::IDENTITY;
 use kinematics::Angle;
 
 /// 48 V at the ADC.

@@ -14,10 +14,10 @@ use firmware::link::{Link, Mode, PanelLink, TickLink};
 use firmware::panel::{Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::Sample;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{IDENTITY, RunOptions, stage_parameters};
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{IDENTITY, RunOptions, stage_parameters};
 
 /// Encoder counts in 2^-32 turns.
 const UNITS_PER_COUNT: i64 = 64;

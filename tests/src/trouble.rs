@@ -1,6 +1,6 @@
 //! What is done to a stage that is to notice it, and how one is made to.
 
-use hal_sim::plant::External;
+use hal_sim::machine::plant::External;
 
 use crate::Bench;
 

@@ -4,9 +4,9 @@ use firmware::link::{Command, Link, Mode, Snapshot};
 use firmware::motion::{Centre, Ground, plan_line};
 use firmware::parameters::Parameters;
 use firmware::recorder::Sample;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
 
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;

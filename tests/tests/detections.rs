@@ -3,7 +3,7 @@
 
 use firmware::fault::{FaultKind, Reaction};
 use firmware::link::Mode;
-use hal_sim::devices::EncoderFault;
+use hal_sim::machine::devices::EncoderFault;
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;

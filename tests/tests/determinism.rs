@@ -5,11 +5,11 @@ use std::path::Path;
 
 use firmware::link::{Command, Link};
 use firmware::parameters::Parameters;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{RunOptions, RunOutcome, run};
-use hal_sim::script::Script;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, RunOutcome, run};
+use hal_sim::rig::script::Script;
 
 const SCRIPT: &str = "FRF\nWAC ONT? W = 1\nMOV X 20 Y -10 W 30\nDEL 60\nHLT\nWAC ONT? W = 1\nPOS? X W\nMVR Y 3\nWAC ONT? Y = 1\n";
 

@@ -5,9 +5,9 @@ use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
 use firmware::link::Mode;
 use firmware::parameters::Parameters;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::plant::External;
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::machine::plant::External;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
 
 /// Bad frames in a row that are bridged.

@@ -4,8 +4,8 @@ use firmware::fault::FaultKind;
 use firmware::link::{Command, Link, Mode, Snapshot};
 use firmware::motion::{Ground, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
 use tests::Bench;
 
 const HALF_TURN_COUNTS: u32 = 1 << 25;

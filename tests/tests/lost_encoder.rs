@@ -3,8 +3,8 @@
 //! `CASES=1000 cargo test -p tests --test lost_encoder -- --nocapture` prints how far it is off.
 
 use firmware::link::Mode;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
 use tests::fuzz::Random;

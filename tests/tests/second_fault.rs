@@ -6,8 +6,8 @@
 use firmware::fault::FaultKind;
 use firmware::link::Mode;
 use firmware::parameters::Parameters;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
 use tests::fuzz::Random;

@@ -5,8 +5,8 @@ use firmware::controller::{Event, Outcome, STATES, TABLE};
 use firmware::link::{Command, Link, Mode, PanelLink, Snapshot, TickLink};
 use firmware::motion::{Axis, Centre, Ground, Plan, Start, Stop, plan_line, plan_stop};
 use firmware::parameters::Parameters;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::host::Host;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
 
 /// Ticks in which a command is taken and told.
 const SOON: u32 = 4;

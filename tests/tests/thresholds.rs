@@ -3,7 +3,7 @@
 
 use firmware::fault::FaultKind;
 use firmware::link::Mode;
-use hal_sim::devices::EncoderFault;
+use hal_sim::machine::devices::EncoderFault;
 use tests::Bench;
 use tests::trouble::PIVOT;
 

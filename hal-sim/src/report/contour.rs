@@ -3,10 +3,10 @@
 use contour::{Contour, ContourBuilder};
 use kinematics::Geometry;
 
-use super::colour;
 use super::mechanism::Plane;
-use super::scale::{Steps, Ticks};
-use super::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
+use drawing::colour;
+use drawing::scale::{Steps, Ticks};
+use drawing::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
 
 /// What to draw.
 pub struct ContourMap<'a> {

@@ -7,9 +7,9 @@ use kinematics::Geometry;
 use serde::Serialize;
 
 use super::Run;
-use super::envelope::Bin;
 use super::sample::Move;
-use crate::assets::{bundle, text};
+use drawing::assets::{bundle, text};
+use drawing::envelope::Bin;
 
 /// What the live page and the document have in common, in the order of their dependence.
 const SHARED: &[&str] = &[
@@ -24,9 +24,9 @@ const SHARED: &[&str] = &[
     "/js/plot.js",
 ];
 
-const TEMPLATE: &str = include_str!("../../page/report.html");
-const SCRIPT: &str = include_str!("../../page/js/report.js");
-const STYLE: &str = include_str!("../../page/css/report.css");
+const TEMPLATE: &str = include_str!("document/report.html");
+const SCRIPT: &str = include_str!("document/report.js");
+const STYLE: &str = include_str!("document/report.css");
 
 /// What the document's script gets besides the channels.
 #[derive(Serialize)]

@@ -2,8 +2,8 @@
 
 use kinematics::{Geometry, Guide, Inverse, Pose, inverse};
 
-use super::colour;
-use super::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
+use drawing::colour;
+use drawing::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
 
 /// The stage's plane, in track radii, laid on a square of the sheet.
 pub(super) struct Plane {

@@ -12,12 +12,12 @@ use std::process::ExitCode;
 use firmware::blackbox::BlackBox;
 use firmware::link::{Link, Mode};
 use firmware::panel::{Panel, Session};
-use hal_sim::client::Client;
-use hal_sim::exercise::{Patience, script};
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{IDENTITY, RunOptions, controller_parameters, run, stage_parameters};
-use hal_sim::script::{Script, ScriptError};
+use hal_sim::front::Host;
+use hal_sim::rig::client::Client;
+use hal_sim::rig::exercise::{Patience, script};
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{IDENTITY, RunOptions, controller_parameters, run, stage_parameters};
+use hal_sim::rig::script::{Script, ScriptError};
 
 /// Seed of the exercise's lines and of the simulated noise.
 const SEED: u64 = 1;

@@ -1,0 +1,58 @@
+//! Kept settings of which a bit has flipped.
+
+use std::sync::OnceLock;
+
+use firmware::link::Link;
+use firmware::panel::{Panel, Session};
+use firmware::parameters::Parameters;
+use firmware::store::Keeper;
+
+use super::random::Random;
+use crate::front::Host;
+use crate::machine::devices::{SettingsFlash, StageParameters};
+use crate::rig::run::IDENTITY;
+
+/// What an operator keeps, and the ticks in which it is kept.
+const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";
+const TICKS: u32 = 100;
+/// Bytes of a record before what is kept: its head, twice, of which one may be damaged. Its CRC and its end stand behind.
+const FRONT: usize = 32;
+const LENGTH: usize = 8;
+
+/// A flash with settings that were whole once.
+pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
+    static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
+    let mut bytes = KEPT.get_or_init(kept).clone();
+    let length: [u8; 4] = [0, 1, 2, 3].map(|i| bytes[LENGTH + i]);
+    let length = u32::from_le_bytes(length) as usize;
+    // What is kept, or the CRC behind it; not the bytes that fill up the last word.
+    let place = random.below(length as u32 + 4) as usize;
+    let filled = if place < length {
+        place
+    } else {
+        length.next_multiple_of(4) + place - length
+    };
+    bytes[FRONT + filled] ^= 1 << random.below(8);
+    SettingsFlash::holding(&bytes)
+}
+
+fn kept() -> Vec<u8> {
+    let parameters = Parameters::REFERENCE;
+    let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
+    let mut link = Box::new(Link::new());
+    let (mut tick_link, mut panel_link) = link.split();
+    let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
+    let mut keeper = Keeper::new(SettingsFlash::in_memory());
+    let mut session = Session::new();
+    let mut answers = Vec::new();
+    assert_eq!(keeper.restore(&mut panel), None, "an erased flash is none");
+    session.receive(LINES);
+    for _ in 0..TICKS {
+        host.tick(&mut tick_link, &mut ());
+        // Writing to a vector does not fail.
+        let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+        keeper.carry_on(&mut panel);
+    }
+    assert_eq!(answers, b"0\n", "the settings are kept");
+    keeper.flash().bytes().to_vec()
+}
