@@ -103,7 +103,7 @@ impl<const N: usize> Envelope<N> {
 
 #[cfg(test)]
 mod tests {
-    use crate::*;
+    use super::*;
 
     #[test]
     fn no_spike_is_lost() {

@@ -100,7 +100,7 @@ fn round_step(raw: f64, steps: Steps) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::*;
+    use super::*;
 
     #[test]
     fn ticks_are_round_and_cover_the_range() {
