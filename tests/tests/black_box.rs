@@ -28,10 +28,10 @@ fn faulted() -> Bench {
     assert_eq!(bench.error_after("FLR?"), "77", "nothing has happened yet");
     bench.send("MOV X 40 W 100\n");
     bench.run(2_000);
-    bench.host.emergency_stop = true;
+    bench.rig.front.emergency_stop = true;
     bench.run(500);
     assert_eq!(bench.mode(), Mode::Fault);
-    bench.host.emergency_stop = false;
+    bench.rig.front.emergency_stop = false;
     assert_eq!(bench.error_after(""), "1024");
     bench
 }
@@ -65,9 +65,9 @@ fn the_record_of_a_controlled_stop_is_that_of_its_beginning() {
     let mut bench = Bench::ready();
     bench.send("MOV X 40 W 100\n");
     bench.run(2_000);
-    bench.host.late = true;
+    bench.rig.front.late = true;
     bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
-    bench.host.late = false;
+    bench.rig.front.late = false;
     let tick = bench.fault().expect("a fault").tick as f64;
     bench.run_until("stopped", |bench| bench.mode() == Mode::Fault);
     let rows = record(&mut bench);
@@ -81,7 +81,7 @@ fn a_record_of_the_users_own_changes_nothing() {
     bench.say("DRC 1 X 1\nDRT 1 1 0\n");
     bench.send("STE X 1\nMOV X 40\n");
     bench.run(2_000);
-    bench.host.emergency_stop = true;
+    bench.rig.front.emergency_stop = true;
     bench.run(100);
     assert_eq!(record(&mut bench).len(), ROWS);
 }

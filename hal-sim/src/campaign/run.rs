@@ -1,11 +1,9 @@
 //! One run of the campaign.
 
-use firmware::blackbox::BlackBox;
 use firmware::fault::Fault;
-use firmware::link::{Command, Link, Mode, PanelLink};
-use firmware::panel::{CAUSES, Panel, Session};
+use firmware::link::{Command, Mode};
+use firmware::panel::{CAUSES, Session};
 use firmware::recorder::{Record, Sample};
-use firmware::store::Keeper;
 
 use super::injection::Injection;
 use super::random::Random;
@@ -14,9 +12,9 @@ use super::settings::damaged;
 use super::truth::fastest_rad_s;
 use super::watch::{AT_REST_RAD_S, Watch};
 use crate::front::Host;
-use crate::machine::devices::BridgeState;
+use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
-use crate::rig::run::IDENTITY;
+use crate::rig::{Queues, Rig};
 
 /// Ticks from one sign of life of the host to the next.
 const HEARTBEAT_EVERY: u64 = 200;
@@ -116,62 +114,55 @@ impl Record for Seen {
 /// Runs a scenario, or the same without its injection.
 #[must_use]
 pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
-    let parameters = &scenario.parameters;
-    let mut host = Host::new(&scenario.stage, parameters);
-    host.stage.set_pose_at_rest(scenario.start);
-    let mut link = Box::new(Link::new());
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
-    let mut panel = Box::new(Panel::new(parameters, IDENTITY));
+    let mut random = Random::new(!scenario.seed);
+    let flash = if scenario.injection == Injection::DamagedSettings && !is_control {
+        damaged(&mut random)
+    } else {
+        SettingsFlash::in_memory()
+    };
+    let mut queues = Queues::new();
+    let mut rig = Rig::simulated(&mut queues, &scenario.stage, &scenario.parameters, flash);
+    rig.front.stage.set_pose_at_rest(scenario.start);
     let mut session = Session::new();
     let mut flooding = Session::new();
     let mut seen = Seen::default();
     let mut answers = Vec::new();
     let mut lines = scenario.lines.iter().peekable();
-    let mut random = Random::new(!scenario.seed);
     let mut watch = Watch::new(&scenario, is_control);
     // What the controller's own count of ticks is behind.
     let mut restarted_at = 0;
-    if scenario.injection == Injection::DamagedSettings && !is_control {
-        let problem = Keeper::new(damaged(&mut random)).restore(&mut panel);
-        host.restart(parameters, problem);
-    }
 
     for tick in 1_u64.. {
         let age = tick.checked_sub(scenario.at).filter(|_| !is_control);
         if let Some(age) = age {
-            (scenario.injection).apply(&mut host, scenario.axis, age, &mut random);
+            (scenario.injection).apply(&mut rig.front, scenario.axis, age, &mut random);
         }
         if let (Injection::Watchdog(_), Some(0)) = (scenario.injection, age) {
             for _ in 0..START_TICKS {
-                host.stage.advance_period([BridgeState::RESET; AXES]);
+                (rig.front.stage).advance_period([BridgeState::RESET; AXES]);
             }
-            host.restart(parameters, None);
-            *panel = Panel::new(parameters, IDENTITY);
-            panel.note_start(CAUSES[0]);
+            rig.reset(CAUSES[0]);
             session = Session::new();
-            tick_link.clear();
-            panel_link.clear();
             restarted_at = tick;
         }
         if let (Injection::QueueFull, Some(0..FLOOD_TICKS)) = (scenario.injection, age)
             && watch.outcome.told.is_none()
         {
-            let refused = flood(&mut panel, &mut flooding, &mut panel_link);
+            let refused = flood(&mut rig, &mut flooding);
             watch.outcome.told = refused.then_some(tick);
         }
-        let shown = host.stage.encoders.clone();
-        let (current_counts, _) = host.stage.analog();
-        let outputs = host.tick(&mut tick_link, &mut seen);
-        watch.look(tick, &host, (&shown, current_counts), &seen);
+        let shown = rig.front.stage.encoders.clone();
+        let (current_counts, _) = rig.front.stage.analog();
+        let outputs = rig.tick(&mut seen);
+        watch.look(tick, &rig.front, (&shown, current_counts), &seen);
         if seen
             .sample()
             .is_some_and(|sample| sample.mode == Mode::Fault)
         {
-            scenario.injection.let_go(&mut host.stage.plant);
+            scenario.injection.let_go(&mut rig.front.stage.plant);
         }
-        if watch.is_over(tick, &host) {
-            watch.outcome.end = end(&host, outputs.awake);
+        if watch.is_over(tick, &rig.front) {
+            watch.outcome.end = end(&rig.front, outputs.awake);
             break;
         }
         // A host that is there says so, if only by an empty line.
@@ -189,7 +180,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
         }
         if tick.is_multiple_of(SERVICE_EVERY) {
             // Writing to a vector does not fail.
-            let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+            let _ = rig.service(&mut session, &mut answers);
         }
     }
     if let Some(event) = scenario.injection.expected().told
@@ -198,8 +189,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
         session.receive(b"EVT?\n");
         answers.clear();
         for _ in 0..SERVICE_EVERY {
-            host.tick(&mut tick_link, &mut seen);
-            let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+            rig.tick(&mut seen);
+            let _ = rig.service(&mut session, &mut answers);
         }
         let events = String::from_utf8_lossy(&answers);
         watch.outcome.told = told(&events, event).map(|tick| tick + restarted_at);
@@ -208,15 +199,15 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
 }
 
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.
-fn flood(panel: &mut Panel, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
+fn flood(rig: &mut Rig<'_>, session: &mut Session) -> bool {
     // In no state but a fault does it do anything.
-    while link.send(Command::Acknowledge).is_ok() {}
+    while rig.panel_link.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();
     if session.is_idle() {
         session.receive(b"ERR?\nSVO X 0\nERR?\n");
     }
     // Writing to a vector does not fail.
-    let _ = panel.service(session, link, &mut answers);
+    let _ = rig.service(session, &mut answers);
     answers.ends_with(b"1005\n")
 }
 

@@ -2,15 +2,12 @@
 
 use std::sync::OnceLock;
 
-use firmware::link::Link;
-use firmware::panel::{Panel, Session};
+use firmware::panel::Session;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
 
 use super::random::Random;
-use crate::front::Host;
 use crate::machine::devices::{SettingsFlash, StageParameters};
-use crate::rig::run::IDENTITY;
+use crate::rig::{Queues, Rig};
 
 /// What an operator keeps, and the ticks in which it is kept.
 const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";
@@ -38,21 +35,18 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
-    let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-    let mut link = Box::new(Link::new());
-    let (mut tick_link, mut panel_link) = link.split();
-    let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
-    let mut keeper = Keeper::new(SettingsFlash::in_memory());
+    let mut queues = Queues::new();
+    let (stage, flash) = (StageParameters::REFERENCE, SettingsFlash::in_memory());
+    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut session = Session::new();
     let mut answers = Vec::new();
-    assert_eq!(keeper.restore(&mut panel), None, "an erased flash is none");
     session.receive(LINES);
     for _ in 0..TICKS {
-        host.tick(&mut tick_link, &mut ());
+        rig.tick(&mut ());
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut answers);
-        keeper.carry_on(&mut panel);
+        let _ = rig.service(&mut session, &mut answers);
+        rig.keep();
     }
     assert_eq!(answers, b"0\n", "the settings are kept");
-    keeper.flash().bytes().to_vec()
+    rig.keeper.flash().bytes().to_vec()
 }

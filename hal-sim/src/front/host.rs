@@ -1,7 +1,6 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::controller::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
@@ -9,6 +8,7 @@ use firmware::link::TickLink;
 use firmware::parameters::Parameters;
 use firmware::recorder::Record;
 
+use super::{ControlLoop, Front};
 use crate::machine::devices::{
     Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
 };
@@ -61,8 +61,7 @@ pub struct Host {
     /// The tick before did not come.
     missed: bool,
     drivers: [Driver; AXES],
-    config: Config,
-    state: State,
+    control: ControlLoop,
 }
 
 /// Nothing that the simulated pins return can fail.
@@ -90,15 +89,14 @@ impl Host {
             late: false,
             missed: false,
             drivers: drivers.try_into().ok().expect(three),
-            config: Config::new(parameters),
-            state: State::new(),
+            control: ControlLoop::new(parameters),
         }
     }
 
     /// One tick of the controller, and the stage's motion up to the next.
     pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
-        let inputs = self.inputs();
-        let outputs = tick(&mut self.config, &mut self.state, &inputs, link, recorder);
+        self.control.inputs = self.inputs();
+        let outputs = self.control.tick(link, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
             let done = if outputs.awake {
                 driver.drive(duty)
@@ -126,20 +124,19 @@ impl Host {
 
     /// Starts the controller again, with these parameters and perhaps a fault; the stage stays as it is.
     pub fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
-        self.config = Config::new(parameters);
-        self.state = fault.map_or_else(State::new, State::with_fault);
+        self.control.restart(parameters, fault);
     }
 
     /// The latched fault.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
-        self.state.fault()
+        self.control.fault()
     }
 
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
     pub fn worse(&self) -> Option<Fault> {
-        self.state.worse()
+        self.control.worse()
     }
 
     fn inputs(&mut self) -> Inputs {
@@ -162,5 +159,15 @@ impl Host {
             tick_cycles: 0,
             late: self.late | std::mem::take(&mut self.missed),
         }
+    }
+}
+
+impl Front for Host {
+    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+        self.tick(link, recorder)
+    }
+
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
+        self.restart(parameters, fault);
     }
 }

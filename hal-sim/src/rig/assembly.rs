@@ -1,17 +1,32 @@
-//! The one assembly of a controller on a simulated machine: command side, settings, queues, tick, and starting again.
+//! The one assembly of a controller: command side, settings, queues, tick, and starting again.
+//!
+//! What differs from one use to the next is passed in: what the tick stands before ([`Front`]), who sends lines and reads the
+//! replies, who records the ticks.
+//!
+//! ```text
+//! lines -> Session -> Panel -> queues -> tick of the Front -> recorder
+//! replies <---------/  |  ^------------/
+//!               SettingsFlash
+//! ```
 
 use embedded_io::Write;
 use firmware::blackbox::BlackBox;
 use firmware::controller::Outputs;
+use firmware::fault::FaultKind;
 use firmware::link::{Link, PanelLink, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::panel::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
 use firmware::recorder::Record;
 use firmware::store::Keeper;
 
-use super::run::started;
-use crate::front::Host;
+use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};
+
+/// Who the simulated controller says it is.
+pub const IDENTITY: Identity = Identity {
+    serial: "SIM",
+    version: env!("CARGO_PKG_VERSION"),
+};
 
 /// The queues between tick and command side, and what outlives a restart of both. A rig borrows it.
 pub struct Queues {
@@ -20,11 +35,11 @@ pub struct Queues {
 }
 
 /// See the module.
-pub struct Rig<'a> {
-    /// The machine and the controller's loop.
-    pub host: Host,
+pub struct Rig<'a, F = Host> {
+    /// The tick, and what it stands before.
+    pub front: F,
     /// The command side.
-    pub panel: Panel,
+    pub panel: Box<Panel>,
     /// Keeps its settings.
     pub keeper: Keeper<SettingsFlash>,
     /// The tick's ends of the queues.
@@ -49,24 +64,49 @@ impl Queues {
             black_box: Box::new(BlackBox::new()),
         }
     }
+
+    /// The ends of the tick, and those of the command side.
+    pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
+        self.link.split_keeping(&self.black_box)
+    }
+
+    /// Queues that live as long as the process: some kilobytes each time.
+    #[must_use]
+    pub fn endless() -> &'static mut Self {
+        Box::leak(Box::new(Self::new()))
+    }
 }
 
 impl<'a> Rig<'a> {
-    /// A stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
+    /// A simulated stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
     #[must_use]
-    pub fn new(
+    pub fn simulated(
         queues: &'a mut Queues,
         stage: &StageParameters,
         parameters: &Parameters,
         flash: SettingsFlash,
     ) -> Self {
-        let (tick_link, panel_link) = queues.link.split_keeping(&queues.black_box);
+        let front = |parameters: &Parameters| Host::new(stage, parameters);
+        Self::new(queues.split(), parameters, flash, front)
+    }
+}
+
+impl<'a, F: Front> Rig<'a, F> {
+    /// A controller that starts with the settings of this flash, and with these parameters where it keeps none. `front` is told with
+    /// which parameters it starts.
+    #[must_use]
+    pub fn new(
+        (tick_link, panel_link): (TickLink<'a>, PanelLink<'a>),
+        parameters: &Parameters,
+        flash: SettingsFlash,
+        front: impl FnOnce(&Parameters) -> F,
+    ) -> Self {
         let mut keeper = Keeper::new(flash);
         let (panel, fault) = started(parameters, &mut keeper);
-        let mut host = Host::new(stage, panel.parameters());
-        host.restart(panel.parameters(), fault);
+        let mut front = front(panel.parameters());
+        front.restart(panel.parameters(), fault);
         Self {
-            host,
+            front,
             panel,
             keeper,
             tick_link,
@@ -75,9 +115,9 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// One tick of the controller, and the machine's motion up to the next.
+    /// One tick of the controller, and of what it stands before up to the next.
     pub fn tick(&mut self, recorder: &mut impl Record) -> Outputs {
-        self.host.tick(&mut self.tick_link, recorder)
+        self.front.tick(&mut self.tick_link, recorder)
     }
 
     /// Has the command side carry out what a connection has received.
@@ -92,7 +132,12 @@ impl<'a> Rig<'a> {
         self.panel.service(session, &mut self.panel_link, replies)
     }
 
-    /// Goes on keeping settings, a step at a time.
+    /// What the command side does with no connection there: a macro goes on.
+    pub fn advance(&mut self) {
+        self.panel.advance(&mut self.panel_link);
+    }
+
+    /// Goes on keeping settings.
     pub fn keep(&mut self) {
         self.keeper.carry_on(&mut self.panel);
     }
@@ -100,14 +145,34 @@ impl<'a> Rig<'a> {
     /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
     /// start again.
     pub fn restart_if_wanted(&mut self) -> bool {
-        if !self.panel.wants_restart() {
-            return false;
+        let wanted = self.panel.wants_restart();
+        if wanted {
+            self.start();
         }
+        wanted
+    }
+
+    /// What a reset of the chip leaves: what the tick stands before as it is, the controller started anew for this cause.
+    pub fn reset(&mut self, cause: &'static str) {
+        self.start();
+        self.panel.note_start(cause);
+    }
+
+    fn start(&mut self) {
         let (panel, fault) = started(&self.parameters, &mut self.keeper);
         self.panel = panel;
-        self.host.restart(self.panel.parameters(), fault);
+        self.front.restart(self.panel.parameters(), fault);
         self.tick_link.clear();
         self.panel_link.clear();
-        true
     }
+}
+
+/// The panel of a controller that starts with what is kept, and the fault that it starts with.
+fn started(
+    parameters: &Parameters,
+    keeper: &mut Keeper<SettingsFlash>,
+) -> (Box<Panel>, Option<FaultKind>) {
+    let mut panel = Box::new(Panel::new(parameters, IDENTITY));
+    let fault = keeper.restore(&mut panel);
+    (panel, fault)
 }

@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use firmware::blackbox::BlackBox;
-use firmware::fault::{Fault, FaultKind};
-use firmware::link::{Link, Mode};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::fault::Fault;
+use firmware::link::Mode;
+use firmware::panel::Session;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
 
-use crate::front::Host;
+use super::{Queues, Rig};
 use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::machine::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
@@ -67,12 +65,6 @@ pub struct RunOutcome {
     pub ticks: u64,
 }
 
-/// Who the simulated controller says it is.
-pub const IDENTITY: Identity = Identity {
-    serial: "SIM",
-    version: env!("CARGO_PKG_VERSION"),
-};
-
 /// Radius of the payload's cylinder, m.
 const CYLINDER_M: f64 = 0.05;
 /// Its distance from the platform's centre, m.
@@ -122,16 +114,6 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
     simulate(script, &parameters, &stage, options, flash)
 }
 
-/// The panel of a controller that starts with what is kept, and the fault that it starts with.
-pub(crate) fn started(
-    parameters: &Parameters,
-    keeper: &mut Keeper<SettingsFlash>,
-) -> (Panel, Option<FaultKind>) {
-    let mut panel = Panel::new(parameters, IDENTITY);
-    let fault = keeper.restore(&mut panel);
-    (panel, fault)
-}
-
 /// The controller's parameters, as the imperfections that are left make them.
 #[must_use]
 pub fn controller_parameters(options: &RunOptions) -> Parameters {
@@ -163,46 +145,38 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut keeper = Keeper::new(flash);
-    let (mut panel, fault) = started(parameters, &mut keeper);
-    let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
-    let mut host = Host::new(stage, panel.parameters());
-    host.restart(panel.parameters(), fault);
-    let mut link = Link::new();
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
+    let mut queues = Queues::new();
+    let mut rig = Rig::simulated(&mut queues, stage, parameters, flash);
+    let Parameters {
+        geometry, limits, ..
+    } = *rig.panel.parameters();
     let mut session = Session::new();
     let mut client = Client::new(script);
-    let mut observer = Observer::new(panel.parameters(), options.every);
+    let mut observer = Observer::new(rig.panel.parameters(), options.every);
     let mut record = TickRecord::default();
     let mut wire = Wire::default();
     let mut answers = Vec::new();
     let mut ticks = 0;
     let progress = Progress::new(script.lines.len() as u64, options.quiet);
     let fault = loop {
-        let pose = host.stage.latched_pose();
-        host.tick(&mut tick_link, &mut record);
+        let pose = rig.front.stage.latched_pose();
+        rig.tick(&mut record);
         ticks += 1;
         let mut moving = false;
         if let Some(sample) = &record.sample {
             moving = sample.mode == Mode::Moving;
             observer.look(sample, pose);
             if sample.mode == Mode::Fault {
-                break Some(fault_text(script, &client, host.fault()));
+                break Some(fault_text(script, &client, rig.front.fault()));
             }
         }
         let taken = session.receive(&wire.to_stage);
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
-        keeper.carry_on(&mut panel);
-        if panel.wants_restart() {
-            let fault;
-            (panel, fault) = started(parameters, &mut keeper);
-            host.restart(panel.parameters(), fault);
+        let _ = rig.service(&mut session, &mut wire.to_client);
+        rig.keep();
+        if rig.restart_if_wanted() {
             session.start_again();
-            tick_link.clear();
-            panel_link.clear();
         }
         let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
         wire.to_stage.extend(bytes);
@@ -217,7 +191,10 @@ fn simulate(
             _ => {}
         }
         if ticks % PROGRESS_EVERY == 0 {
-            progress.update(client.done() as u64, ticks as f64 * host.stage.period_s());
+            progress.update(
+                client.done() as u64,
+                ticks as f64 * rig.front.stage.period_s(),
+            );
         }
     };
     RunOutcome {

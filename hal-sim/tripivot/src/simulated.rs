@@ -20,7 +20,7 @@ impl<'a> Simulated<'a> {
     pub fn new(queues: &'a mut Queues, options: &RunOptions, flash: SettingsFlash) -> Self {
         let parameters = controller_parameters(options);
         Self {
-            rig: Rig::new(queues, &stage_parameters(options), &parameters, flash),
+            rig: Rig::simulated(queues, &stage_parameters(options), &parameters, flash),
             rate_hz: parameters.limits.rate_hz,
         }
     }
@@ -36,7 +36,7 @@ impl Controller for Simulated<'_> {
     }
 
     fn advance(&mut self) {
-        self.rig.panel.advance(&mut self.rig.panel_link);
+        self.rig.advance();
     }
 
     fn service<W: Write>(
@@ -56,6 +56,6 @@ impl Controller for Simulated<'_> {
     }
 
     fn fault(&self) -> Option<Fault> {
-        self.rig.host.fault()
+        self.rig.front.fault()
     }
 }

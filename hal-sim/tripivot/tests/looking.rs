@@ -2,11 +2,11 @@
 #![cfg(unix)]
 
 use desk::web::questions;
-use firmware::link::Link;
-use firmware::panel::{Panel, Session};
+use firmware::panel::Session;
 use firmware::recorder::RunningHash;
-use hal_sim::front::Host;
-use hal_sim::rig::run::{IDENTITY, RunOptions, controller_parameters, stage_parameters};
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use hal_sim::rig::{Queues, Rig};
 
 /// Ticks between two looks: 60 times a second.
 const LOOK_EVERY: u64 = 333;
@@ -26,15 +26,14 @@ const DRIVEN: &[(u64, &str)] = &[
 fn run(viewers: usize, lines: &str) -> (RunningHash, usize) {
     let options = RunOptions::default();
     let parameters = controller_parameters(&options);
-    let mut host = Host::new(&stage_parameters(&options), &parameters);
-    let mut link = Link::new();
-    let (mut tick_link, mut panel_link) = link.split();
-    let mut panel = Panel::new(&parameters, IDENTITY);
+    let mut queues = Queues::new();
+    let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
+    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut client = Session::new();
     let mut looking: Vec<_> = (0..viewers).map(|_| Session::new()).collect();
     let (mut hash, mut replies, mut seen) = (RunningHash::default(), Vec::new(), Vec::new());
     for tick in 0..TICKS {
-        host.tick(&mut tick_link, &mut hash);
+        rig.tick(&mut hash);
         for (_, line) in DRIVEN.iter().filter(|(at, _)| *at == tick) {
             client.receive(format!("{line}\n").as_bytes());
         }
@@ -43,11 +42,11 @@ fn run(viewers: usize, lines: &str) -> (RunningHash, usize) {
             if (tick + number) % LOOK_EVERY == 0 {
                 assert_eq!(session.receive(lines.as_bytes()), lines.len(), "no room");
             }
-            (panel.service(session, &mut panel_link, &mut seen)).expect("a vector");
+            rig.service(session, &mut seen).expect("a vector");
         }
-        (panel.service(&mut client, &mut panel_link, &mut replies)).expect("a vector");
+        rig.service(&mut client, &mut replies).expect("a vector");
     }
-    assert_eq!(host.fault(), None);
+    assert_eq!(rig.front.fault(), None);
     (hash, seen.len())
 }
 

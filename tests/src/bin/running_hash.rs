@@ -9,15 +9,15 @@
 
 use std::process::ExitCode;
 
-use firmware::blackbox::BlackBox;
-use firmware::link::{Link, Mode};
-use firmware::panel::{Panel, Session};
-use hal_sim::front::Host;
+use firmware::link::Mode;
+use firmware::panel::Session;
+use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::client::Client;
 use hal_sim::rig::exercise::{Patience, script};
 use hal_sim::rig::observer::TickRecord;
-use hal_sim::rig::run::{IDENTITY, RunOptions, controller_parameters, run, stage_parameters};
+use hal_sim::rig::run::{RunOptions, controller_parameters, run, stage_parameters};
 use hal_sim::rig::script::{Script, ScriptError};
+use hal_sim::rig::{Queues, Rig};
 
 /// Seed of the exercise's lines and of the simulated noise.
 const SEED: u64 = 1;
@@ -50,21 +50,20 @@ fn exercise(lines: &Script) -> u32 {
         ..RunOptions::default()
     };
     let parameters = controller_parameters(&options);
-    let mut host = Host::new(&stage_parameters(&options), &parameters);
-    let mut panel = Panel::new(&parameters, IDENTITY);
-    let mut link = Link::new();
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
+    let mut queues = Queues::new();
+    let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
+    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let (mut session, mut client) = (Session::new(), Client::new(lines));
     let (mut patience, mut record) = (Patience::default(), TickRecord::default());
     let (mut to_client, mut to_stage) = (Vec::new(), Vec::new());
     for _ in 0..TICKS {
-        host.tick(&mut tick_link, &mut record);
+        rig.tick(&mut record);
         let mode = (record.sample.as_ref()).map_or(Mode::Off, |sample| sample.mode);
         let taken = session.receive(&to_stage);
         to_stage.drain(..taken);
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut to_client);
+        let _ = rig.service(&mut session, &mut to_client);
+        rig.keep();
         let (bytes, _) = client.poll(&std::mem::take(&mut to_client), mode == Mode::Moving);
         to_stage.extend(bytes);
         to_stage.extend(patience.poll(&client, mode));

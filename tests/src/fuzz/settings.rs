@@ -10,7 +10,7 @@ use firmware::panel::{PARAMETERS, Panel};
 use firmware::parameters::Parameters;
 use firmware::store::Keeper;
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::run::IDENTITY;
+use hal_sim::rig::IDENTITY;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const SECTOR: usize = 16 << 10;

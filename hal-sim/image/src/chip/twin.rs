@@ -15,14 +15,16 @@
 //! So the twin is a tick behind the chip, and as many more as the chip's panel takes from a command to the end of its run.
 
 use super::period::{Period, Service, Trace};
-use firmware::config::Config;
-use firmware::controller::{Inputs, State, tick};
+use firmware::controller::Inputs;
 use firmware::drivers::biss::{RawFrame, decode};
-use firmware::link::{Link, PanelLink, Snapshot, TickLink};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::link::{PanelLink, Snapshot, TickLink};
+use firmware::panel::Session;
 use firmware::parameters::Parameters;
+use hal_sim::front::ControlLoop;
+use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
 use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::{Queues, Rig};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -54,16 +56,13 @@ pub struct Agreed<'a> {
 
 /// The twin.
 pub struct Twin {
-    config: Config,
-    state: State,
+    /// Tick and panel, of queues of their own: what goes from one to the other is passed on when the chip has done so.
+    rig: Rig<'static, ControlLoop>,
     record: TickRecord,
-    panel: Panel,
     session: Session,
-    /// The panel's ends of the link whose other side the twin holds.
-    panel_link: PanelLink<'static>,
+    /// The other ends of the panel's queues, and of the tick's.
     panel_side: TickLink<'static>,
     tick_side: PanelLink<'static>,
-    tick_link: TickLink<'static>,
     /// Ticks and commands done, and bytes given to the panel.
     ticks: u32,
     commands: u32,
@@ -118,24 +117,17 @@ impl Twin {
     /// A twin of a chip that has just started.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
-        let (mut panel_side, panel_link) = endless_link();
-        let (mut tick_link, tick_side) = endless_link();
+        let (mut panel_side, panel_link) = Queues::endless().split();
+        let (mut tick_link, tick_side) = Queues::endless().split();
         // The twin's panel orders its records from the twin's tick; nothing of them has to be held back.
         std::mem::swap(&mut panel_side.recorder, &mut tick_link.recorder);
-        let identity = Identity {
-            serial: "",
-            version: "",
-        };
+        let (links, flash) = ((tick_link, panel_link), SettingsFlash::in_memory());
         Self {
-            config: Config::new(parameters),
-            state: State::new(),
+            rig: Rig::new(links, parameters, flash, ControlLoop::new),
             record: TickRecord::default(),
-            panel: Panel::new(parameters, identity),
             session: Session::new(),
-            panel_link,
             panel_side,
             tick_side,
-            tick_link,
             ticks: 0,
             commands: 0,
             bytes: 0,
@@ -235,13 +227,8 @@ impl Twin {
         else {
             return Ok(None);
         };
-        tick(
-            &mut self.config,
-            &mut self.state,
-            &inputs,
-            &mut self.tick_link,
-            &mut self.record,
-        );
+        self.rig.front.inputs = inputs;
+        self.rig.tick(&mut self.record);
         let tick = self.ticks;
         self.ticks = tick.wrapping_add(1);
         self.snapshots.extend(self.tick_side.snapshot());
@@ -292,9 +279,8 @@ impl Twin {
             // The panel has taken the one before.
             self.panel_side.snapshots.enqueue(snapshot).ok()?;
         }
-        let Ok(()) = self
-            .panel
-            .service(&mut self.session, &mut self.panel_link, &mut Nowhere);
+        let Ok(()) = self.rig.service(&mut self.session, &mut Nowhere);
+        self.rig.keep();
         Some(())
     }
 
@@ -323,11 +309,6 @@ fn with_flipped_bit(frame: [u8; 8]) -> [u8; 8] {
         )
         .to_be_bytes()
     })
-}
-
-/// A link whose ends live as long as the process: some kilobytes for each run.
-fn endless_link() -> (TickLink<'static>, PanelLink<'static>) {
-    Box::leak(Box::new(Link::new())).split()
 }
 
 /// Takes every byte and keeps none.
