@@ -4,10 +4,10 @@
 
 use firmware::link::Mode;
 use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::random::Random;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
-use tests::fuzz::Random;
 
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
@@ -62,14 +62,14 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         random.between(-400.0, 400.0)
     );
     assert_eq!(bench.error_after(&line), "0");
-    for _ in 0..random.below(12_000) {
+    for _ in 0..random.index(12_000) {
         bench.tick();
     }
     if bench.mode() != Mode::Moving {
         return;
     }
     let fault = *random.pick(&LOST);
-    let encoder = random.below(3);
+    let encoder = random.index(3);
     bench.rig.front.stage.encoders[encoder].set_fault(fault);
     let mut ticks = 0;
     while bench.mode() != Mode::Fault && ticks < 40_000 {

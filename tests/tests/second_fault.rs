@@ -7,10 +7,10 @@ use firmware::fault::FaultKind;
 use firmware::link::Mode;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::random::Random;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
-use tests::fuzz::Random;
 
 const BRIDGED: u32 = Parameters::REFERENCE.supervision.bridged_frames as u32;
 /// Ticks of a controlled stop.
@@ -187,10 +187,10 @@ fn off_after_two(stage: &StageParameters, random: &mut Random) -> Option<f64> {
     let (x, y) = (radius * angle.cos(), radius * angle.sin());
     let w = random.between(-400.0, 400.0);
     assert_eq!(bench.error_after(&format!("MOV X {x} Y {y} W {w}")), "0");
-    bench.run(random.below(8_000) as u32);
-    let first = random.below(3);
+    bench.run(random.index(8_000) as u32);
+    let first = random.index(3);
     lose(&mut bench, first);
-    bench.run(1 + random.below(STOP_TICKS as usize) as u32);
+    bench.run(1 + random.index(STOP_TICKS as usize) as u32);
     if bench.mode() != Mode::Stopping {
         return None;
     }

@@ -2,10 +2,10 @@
 
 use firmware::parameters::Supervision;
 
-use super::random::Random;
 use crate::front::{Host, Wiring};
 use crate::machine::devices::EncoderFault;
 use crate::machine::plant::{AXES, External, Plant};
+use crate::random::Random;
 
 /// Something that breaks, for good unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]

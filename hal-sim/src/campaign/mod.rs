@@ -12,7 +12,7 @@
 //! |---|---|
 //! | `injection`, `settings` | what breaks |
 //! | `expected`, `effect` | what the controller has to say about it, and when that has passed its threshold |
-//! | `scenario`, `random` | from a seed to a run |
+//! | `scenario` | from a seed to a run |
 //! | `run`, `watch` | one run, and who looks on |
 //! | `truth` | what the machine really did |
 //! | `verdict` | whether the controller did what it has to |
@@ -21,7 +21,6 @@
 mod effect;
 mod expected;
 mod injection;
-mod random;
 mod rows;
 mod run;
 mod scenario;
@@ -43,7 +42,7 @@ pub use verdict::Problem;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
-use crate::machine::devices::Noise;
+use crate::random::Random;
 
 /// What a campaign is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +60,7 @@ impl Campaign {
     /// with its control behind it, whatever the threads do.
     #[must_use]
     pub fn run(&self, tell: impl Fn(u64) + Sync) -> Vec<Outcome> {
-        let mut seeds = Noise::new(self.seed);
+        let mut seeds = Random::new(self.seed);
         // 48 bits: short enough to be typed.
         let seeds: Vec<u64> = (0..self.runs).map(|_| seeds.bits() >> 16).collect();
         let next = AtomicU64::new(0);

@@ -6,7 +6,6 @@ use firmware::panel::{CAUSES, Session};
 use firmware::recorder::{Record, Sample};
 
 use super::injection::Injection;
-use super::random::Random;
 use super::scenario::Scenario;
 use super::settings::damaged;
 use super::truth::fastest_rad_s;
@@ -14,6 +13,7 @@ use super::watch::{AT_REST_RAD_S, Watch};
 use crate::front::Host;
 use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
+use crate::random::Random;
 use crate::rig::{Queues, Rig};
 
 /// Ticks from one sign of life of the host to the next.

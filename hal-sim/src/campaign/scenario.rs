@@ -5,9 +5,9 @@ use core::f64::consts::TAU;
 use firmware::parameters::Parameters;
 
 use super::injection::{HEARTBEAT_MS, Injection};
-use super::random::Random;
 use crate::machine::devices::StageParameters;
 use crate::machine::plant::{AXES, Payload, PlantParameters};
+use crate::random::Random;
 
 /// How far a plant's parameter is off, as a share of it.
 const SPREAD: f64 = 0.3;

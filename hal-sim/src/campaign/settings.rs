@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use firmware::panel::Session;
 use firmware::parameters::Parameters;
 
-use super::random::Random;
 use crate::machine::devices::{SettingsFlash, StageParameters};
+use crate::random::Random;
 use crate::rig::{Queues, Rig};
 
 /// What an operator keeps, and the ticks in which it is kept.

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use firmware::link::Mode;
 
-use crate::machine::devices::Noise;
+use crate::random::Random;
 use crate::rig::client::Client;
 use crate::rig::script::{Script, ScriptError};
 
@@ -22,7 +22,7 @@ const LEAST_TICKS: u64 = 200;
 /// None in practice: a test parses thousands.
 pub fn script(seed: u64, ticks: u64) -> Result<Script, ScriptError> {
     let mut lines = Lines {
-        noise: Noise::new(seed),
+        random: Random::new(seed),
         text: "FRF\nWAC ONT? W = 1\nCCL 1 ADVANCED\n".to_owned(),
     };
     for _ in 0..ticks.div_ceil(LEAST_TICKS) {
@@ -59,7 +59,7 @@ impl Patience {
 }
 
 struct Lines {
-    noise: Noise,
+    random: Random,
     text: String,
 }
 
@@ -264,18 +264,13 @@ impl Lines {
         let _ = writeln!(self.text, "{line}");
     }
 
-    /// From 0 to below 1.
-    fn share(&mut self) -> f64 {
-        (self.noise.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn within(&mut self, least: f64, most: f64) -> f64 {
-        least + (most - least) * self.share()
+        self.random.between(least, most)
     }
 
     /// Either end included.
     fn whole(&mut self, least: u64, most: u64) -> u64 {
-        least + self.noise.bits() % (most - least + 1)
+        least + self.random.bits() % (most - least + 1)
     }
 }
 

@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn crc_agrees_with_the_shift_register() {
-        let mut noise = super::super::noise::Noise::new(7);
+        let mut noise = crate::random::Random::new(7);
         for _ in 0..1000 {
             let payload = noise.bits() >> 36;
             assert_eq!(crc6(payload), crc6_by_register(payload), "{payload:#x}");

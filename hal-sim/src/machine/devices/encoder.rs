@@ -10,7 +10,7 @@ use embedded_hal::spi::{ErrorType, SpiBus};
 use kinematics::Scalar;
 
 use super::biss::{self, COUNTS_PER_TURN, Preamble};
-use super::noise::Noise;
+use crate::random::Random;
 
 /// What an encoder is made and mounted like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,7 @@ pub struct Encoder {
     parameters: EncoderParameters,
     with_noise: bool,
     with_eccentricity: bool,
-    noise: Noise,
+    noise: Random,
     fault: Option<EncoderFault>,
     position: u32,
     frame: u64,
@@ -100,7 +100,7 @@ impl Encoder {
             parameters,
             with_noise,
             with_eccentricity,
-            noise: Noise::new(seed),
+            noise: Random::new(seed),
             fault: None,
             position: parameters.zero_counts % COUNTS_PER_TURN,
             frame: u64::MAX,

@@ -5,7 +5,6 @@ pub mod biss;
 mod bridge;
 mod encoder;
 mod flash;
-mod noise;
 mod stage;
 
 pub use bridge::{
@@ -14,5 +13,4 @@ pub use bridge::{
 };
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
-pub use noise::Noise;
 pub use stage::{Stage, StageParameters};
