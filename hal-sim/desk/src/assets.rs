@@ -1,6 +1,10 @@
 //! The page's files, embedded in the program.
 
+use std::sync::LazyLock;
+
 use drawing::assets::{Asset, SCRIPT, STYLE};
+
+use crate::error_words;
 
 const HTML: &str = "text/html; charset=utf-8";
 
@@ -40,14 +44,22 @@ const ASSETS: &[Asset] = &[
     asset!("/js/console.js", SCRIPT, "js/console.js"),
 ];
 
-/// All files of the page, those among them that it shares with the document of a run.
+/// All files of the page: its own, what is made from the program's tables, and those that it shares with the document of a run.
 pub(crate) fn all() -> impl Iterator<Item = &'static Asset> {
-    ASSETS.iter().chain(drawing::assets::ASSETS)
+    static MADE: LazyLock<[Asset; 1]> = LazyLock::new(|| {
+        [Asset {
+            path: "/js/error-words.js",
+            kind: SCRIPT,
+            text: error_words::script().leak(),
+        }]
+    });
+    (ASSETS.iter().chain(&*MADE)).chain(drawing::assets::all())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use drawing::colour::COLOURS;
 
     fn text(path: &str) -> &'static str {
         (all().find(|asset| asset.path == path)).map_or("", |asset| asset.text)
@@ -68,6 +80,43 @@ mod tests {
                 let path = format!("/js/{file}");
                 assert!(!text(&path).is_empty(), "{}: {line}", asset.path);
             }
+        }
+    }
+
+    /// What stands between `before` and `after`, wherever it does.
+    fn between<'a>(text: &'a str, before: &str, after: char) -> Vec<&'a str> {
+        (text.split(before).skip(1))
+            .filter_map(|rest| rest.split_once(after).map(|(name, _)| name))
+            .collect()
+    }
+
+    #[test]
+    fn the_page_has_the_colours_of_the_table_and_uses_all_of_them() {
+        let known: Vec<&str> = COLOURS.iter().map(|colour| colour.name).collect();
+        let others: String = all()
+            .filter(|asset| asset.path != "/css/colours.css")
+            .map(|asset| asset.text)
+            .collect();
+        assert!(!others.contains("light-dark(#"), "a colour beside the table");
+        let named = [
+            between(&others, "var(--", ')'),
+            between(&others, "colour(\"", '"'),
+            between(&others, "paint: \"", '"'),
+        ];
+        for name in named
+            .concat()
+            .into_iter()
+            .filter(|name| !name.contains('$'))
+        {
+            assert!(known.contains(&name), "{name} is not in the table");
+        }
+        for name in known {
+            // The document of a run paints the centre's x and y.
+            let of_a_run = ["x", "y"].contains(&name);
+            let is_used = [format!("var(--{name})"), format!("\"{name}\"")]
+                .iter()
+                .any(|use_of_it| others.contains(use_of_it));
+            assert!(is_used || of_a_run, "{name} is not used");
         }
     }
 

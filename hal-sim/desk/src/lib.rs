@@ -6,9 +6,11 @@
 //! | `web` | the page, in front of any controller |
 //! | `record` | a record of a controller's data recorder |
 //! | `settings` | a controller's settings to a file and back |
+//! | [`error_words`] | error numbers in words |
 
 #[cfg(unix)]
 mod assets;
+pub mod error_words;
 #[cfg(unix)]
 pub mod record;
 #[cfg(unix)]

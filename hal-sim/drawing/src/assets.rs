@@ -1,5 +1,9 @@
 //! Scripts and styles that the live page and the document of a run share, embedded in the program.
 
+use std::sync::LazyLock;
+
+use crate::{colour, mechanism};
+
 /// A file of a page.
 pub struct Asset {
     /// Where browsers ask for it.
@@ -25,8 +29,8 @@ macro_rules! asset {
     };
 }
 
-/// All of them.
-pub const ASSETS: &[Asset] = &[
+/// Those that are files.
+const FILES: &[Asset] = &[
     asset!("/css/theme.css", STYLE, "css/theme.css"),
     asset!("/css/controls.css", STYLE, "css/controls.css"),
     asset!("/js/gcs.js", SCRIPT, "js/gcs.js"),
@@ -40,10 +44,31 @@ pub const ASSETS: &[Asset] = &[
     asset!("/js/envelope.js", SCRIPT, "js/envelope.js"),
 ];
 
+/// All of them: the files, and what is made from the program's tables.
+pub fn all() -> impl Iterator<Item = &'static Asset> {
+    static MADE: LazyLock<[Asset; 2]> = LazyLock::new(|| {
+        [
+            Asset {
+                path: "/css/colours.css",
+                kind: STYLE,
+                text: colour::style_sheet().leak(),
+            },
+            Asset {
+                path: "/js/sizes.js",
+                kind: SCRIPT,
+                text: mechanism::script().leak(),
+            },
+        ]
+    });
+    FILES.iter().chain(&*MADE)
+}
+
 /// One of them.
 #[must_use]
 pub fn text(path: &str) -> &'static str {
-    (ASSETS.iter().find(|asset| asset.path == path)).map_or("", |asset| asset.text)
+    all()
+        .find(|asset| asset.path == path)
+        .map_or("", |asset| asset.text)
 }
 
 /// Scripts in one, in this order, for a document that stands alone: without the lines that import and the words that export.

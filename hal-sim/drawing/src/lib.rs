@@ -5,6 +5,7 @@
 //! | [`svg`], [`png`] | pictures |
 //! | [`chart`], [`scale`], [`envelope`] | quantities over time |
 //! | [`colour`] | one set of colours |
+//! | [`mechanism`] | sizes of the drawn mechanism |
 //! | [`assets`] | scripts and styles that the live page and a run's document share |
 //! | [`files`] | files and folders written |
 //! | [`progress`] | the progress bar |
@@ -14,6 +15,7 @@ pub mod chart;
 pub mod colour;
 pub mod envelope;
 pub mod files;
+pub mod mechanism;
 pub mod png;
 pub mod progress;
 pub mod scale;

@@ -19,6 +19,7 @@ const SHARED: &[&str] = &[
     "/js/view.js",
     "/js/ticks.js",
     "/js/envelope.js",
+    "/js/sizes.js",
     "/js/mechanism.js",
     "/js/zoom.js",
     "/js/plot.js",
@@ -63,7 +64,8 @@ struct Leg {
 
 /// The document.
 pub(super) fn write(run: &Run) -> String {
-    let style = [text("/css/theme.css"), text("/css/controls.css"), STYLE].concat();
+    let shared = ["/css/colours.css", "/css/theme.css", "/css/controls.css"];
+    let style = [&shared.map(text).concat(), STYLE].concat();
     let script = [&bundle(SHARED), SCRIPT].concat();
     let title = run.name.replace('&', "&amp;").replace('<', "&lt;");
     let data = serde_json::to_string(&facts(run)).unwrap_or_default();

@@ -3,11 +3,11 @@
 // A pose is { centre: [mm, mm], deg, pivots: [deg, deg, deg] }, a geometry { radius, start, end, disk }, all mm: the track, where
 // the usable part of a guide starts and ends from the platform's centre, and the usable disk.
 
+import { SIZES } from "./sizes.js";
 import { colour } from "./theme.js";
 
 const DEG = Math.PI / 180;
-/** Directions of the guides from the platform's own x axis, deg. */
-const GUIDES = [-30, 90, 210];
+const GUIDES = SIZES.guidesDeg;
 /** Names need room. */
 const NAMES_PX_PER_MM = 1.1;
 
@@ -39,7 +39,7 @@ export function drawTrack(context, plane, geometry) {
   context.stroke();
   context.setLineDash([]);
   circle(context, plane, [0, 0], geometry.radius);
-  context.lineWidth = Math.max(4, 0.06 * geometry.radius * plane.scale);
+  context.lineWidth = Math.max(SIZES.trackLeastPx, SIZES.trackWidth * geometry.radius * plane.scale);
   context.strokeStyle = colour("steel");
   context.stroke();
   drawCross(context, plane, [0, 0], 5, colour("faint"));
@@ -67,7 +67,7 @@ export function drawMechanism(context, plane, geometry, pose) {
 
 /** A rail: its usable part open in the pivot's colour, the rest a thin bar. */
 function drawGuide(context, plane, geometry, pose, deg, index) {
-  const width = Math.max(6, 0.09 * geometry.radius * plane.scale);
+  const width = Math.max(SIZES.guideLeastPx, SIZES.guideWidth * geometry.radius * plane.scale);
   const [start, end] = [off(pose.centre, deg, geometry.start), off(pose.centre, deg, geometry.end)];
   context.lineCap = "butt";
   trace(context, plane, [pose.centre, start]);
@@ -80,12 +80,13 @@ function drawGuide(context, plane, geometry, pose, deg, index) {
   context.stroke();
   trace(context, plane, [off(start, deg, 1.5), off(end, deg, -1.5)]);
   context.strokeStyle = colour("panel");
-  context.lineWidth = width - 4;
+  context.lineWidth = width - SIZES.guideWallsPx;
   context.stroke();
 }
 
 function corners(geometry, pose) {
-  return GUIDES.map((offset) => off(pose.centre, pose.deg + offset, geometry.start * 1.25));
+  const out = geometry.start + SIZES.cornerBeyondStart * geometry.radius;
+  return GUIDES.map((offset) => off(pose.centre, pose.deg + offset, out));
 }
 
 function drawPlatform(context, plane, geometry, pose) {
@@ -97,7 +98,7 @@ function drawPlatform(context, plane, geometry, pose) {
   context.lineWidth = 2;
   context.stroke();
   drawArrow(context, plane, geometry, pose, colour("theta"));
-  circle(context, plane, pose.centre, Math.max(5 / plane.scale, 0.04 * geometry.radius));
+  circle(context, plane, pose.centre, Math.max(SIZES.centreLeastPx / plane.scale, SIZES.centreRadius * geometry.radius));
   context.fillStyle = colour("centre");
   context.fill();
   context.strokeStyle = colour("panel");
@@ -108,28 +109,28 @@ function drawPlatform(context, plane, geometry, pose) {
 /** The platform's own x axis. */
 function drawArrow(context, plane, geometry, pose, paint) {
   const at = (along, left) => off(pose.centre, pose.deg, along * geometry.radius, left * geometry.radius);
-  trace(context, plane, [at(0, 0), at(0.36, 0)]);
+  trace(context, plane, [at(0, 0), at(SIZES.arrowShaft, 0)]);
   context.strokeStyle = paint;
   context.lineWidth = 3;
   context.stroke();
-  trace(context, plane, [at(0.5, 0), at(0.34, 0.06), at(0.34, -0.06)], true);
+  trace(context, plane, [at(SIZES.arrowTip, 0), at(SIZES.arrowBack, SIZES.arrowHalfWidth), at(SIZES.arrowBack, -SIZES.arrowHalfWidth)], true);
   context.fillStyle = paint;
   context.fill();
-  const [x, y] = plane.pixel(at(0.6, 0));
+  const [x, y] = plane.pixel(at(SIZES.arrowName, 0));
   write(context, "x′", x, y, paint, "bold 15px system-ui, sans-serif");
 }
 
 /** The carriage on the track, turned with its guide. */
 function drawCarriage(context, plane, geometry, pose, deg, index) {
   const place = off([0, 0], pose.pivots[index], geometry.radius);
-  const [long, wide] = [0.14 * geometry.radius, 0.11 * geometry.radius];
+  const [long, wide] = [SIZES.carriageHalfLength * geometry.radius, SIZES.carriageHalfWidth * geometry.radius];
   trace(context, plane, [off(place, deg, long, wide), off(place, deg, -long, wide), off(place, deg, -long, -wide), off(place, deg, long, -wide)], true);
   context.fillStyle = colour(`pivot-${index + 1}`);
   context.fill();
   context.strokeStyle = colour("panel");
   context.lineWidth = 2;
   context.stroke();
-  const size = Math.max(11, 0.13 * geometry.radius * plane.scale);
+  const size = Math.max(SIZES.numberLeastPx, SIZES.numberHeight * geometry.radius * plane.scale);
   write(context, String(index + 1), ...plane.pixel(place), colour("on-pivot"), `bold ${size}px system-ui, sans-serif`);
 }
 

@@ -13,7 +13,7 @@ view.keepsCursor = true;
 
 const pivots = (from) => [1, 2, 3].map((number) => ({ name: `pivot ${number}`, short: String(number), paint: `pivot-${number}`, channel: from + number - 1 }));
 const plots = [
-  { title: "Centre, mm", series: [{ name: "x", paint: "pivot-1", channel: 0 }, { name: "y", paint: "pivot-2", channel: 1 }], decimals: 3 },
+  { title: "Centre, mm", series: [{ name: "x", paint: "x", channel: 0 }, { name: "y", paint: "y", channel: 1 }], decimals: 3 },
   { title: "Orientation θ, °", series: [{ name: "θ", paint: "theta", channel: 2 }], decimals: 3 },
   { title: "Following error of the centre, µm", series: [{ name: "distance", paint: "centre", channel: 3 }], decimals: 3 },
   { title: "Following error of θ, µrad", series: [{ name: "θ", paint: "theta", channel: 4 }], decimals: 2 },
