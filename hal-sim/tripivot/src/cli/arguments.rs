@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, value_parser};
+use clap::{Args, Parser, Subcommand};
 
+use super::number::{whole, within};
 use super::stage::{SimulatedStage, Simulation};
 
 #[cfg(unix)]
@@ -74,7 +75,7 @@ pub(super) struct Serve {
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50000")]
     pub(super) listen: String,
     /// Simulated seconds in a second.
-    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true, value_parser = within(SPEEDS))]
     pub(super) speed: f64,
     /// A pseudo-terminal besides, in place of the controller's serial line.
     #[arg(long)]
@@ -94,16 +95,16 @@ pub(super) struct Serve {
 #[derive(Args, Clone, Debug)]
 pub(super) struct Faults {
     /// Runs with a fault; as many are run without.
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 10_000, allow_negative_numbers = true, value_parser = whole(1..=10_000_000_u32))]
     pub(super) runs: u32,
     /// Seed of the campaign.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub(super) seed: u64,
     /// Threads [default: as many as there are processors].
-    #[arg(long, value_name = "N", value_parser = jobs)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1024_usize))]
     pub(super) jobs: Option<usize>,
     /// Run the run of this seed again, alone, and tell about it.
-    #[arg(long, value_name = "SEED", conflicts_with_all = ["runs", "seed", "jobs"])]
+    #[arg(long, value_name = "SEED", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX), conflicts_with_all = ["runs", "seed", "jobs"])]
     pub(super) only: Option<u64>,
     /// Write all runs into this file, as CSV.
     #[arg(long, value_name = "FILE")]
@@ -113,23 +114,6 @@ pub(super) struct Faults {
     pub(super) quiet: bool,
 }
 
-fn jobs(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(jobs @ 1..=1024) => Ok(jobs),
-        _ => Err("not a number from 1 to 1024".to_owned()),
-    }
-}
-
 /// Slowest and fastest: 20 ticks a second, and more than any machine computes.
 #[cfg(unix)]
 const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
-
-#[cfg(unix)]
-fn speed(text: &str) -> Result<f64, String> {
-    let speed: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if SPEEDS.contains(&speed) {
-        Ok(speed)
-    } else {
-        Err(format!("not from {} to {}", SPEEDS.start(), SPEEDS.end()))
-    }
-}

@@ -9,6 +9,7 @@ mod error;
 mod faults;
 mod inverse;
 mod map;
+mod number;
 #[cfg(unix)]
 mod record;
 mod rows;
@@ -21,6 +22,7 @@ pub mod signal;
 mod simulate;
 pub mod stage;
 mod units;
+mod usage;
 #[cfg(unix)]
 mod view;
 
@@ -32,6 +34,7 @@ use arguments::{Arguments, Command};
 use error::CliError;
 
 pub use arguments::VERSION;
+pub use usage::usage;
 
 /// Exit code: something went wrong on the way of a valid request: a fault, a pose out of reach.
 pub const FAILED: u8 = 1;
@@ -52,24 +55,6 @@ pub fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
-}
-
-/// What a program of this name says of its command line: help and version as clap prints them; an error in one line, its first
-/// paragraph.
-pub fn usage(program: &str, error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() {
-        // Nobody is left to be told when standard output is closed.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
-    }
-    let text = error.render().to_string();
-    let paragraph: Vec<&str> = (text.lines().map(str::trim))
-        .take_while(|line| !line.is_empty())
-        .collect();
-    let line = paragraph.join(" ");
-    let line = line.strip_prefix("error: ").unwrap_or(&line);
-    eprintln!("{program}: {line} (see --help)");
-    ExitCode::from(BAD_REQUEST)
 }
 
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {

@@ -4,15 +4,20 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::super::number::number;
+
 /// One pose on the command line.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseArguments {
     /// Centre along x, mm.
+    #[arg(value_parser = number)]
     pub(in super::super) x: f64,
     /// Centre along y, mm.
+    #[arg(value_parser = number)]
     pub(in super::super) y: f64,
     /// Orientation, deg, any number of turns.
+    #[arg(value_parser = number)]
     pub(in super::super) theta: f64,
 }
 
@@ -21,7 +26,7 @@ pub(in super::super) struct PoseArguments {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseRows {
     /// X and Y in mm, THETA in deg.
-    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv")]
+    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
     pub(in super::super) numbers: Vec<f64>,
     /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3. A line of headings may come first.
     #[arg(long)]
@@ -33,7 +38,7 @@ pub(in super::super) struct PoseRows {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PivotRows {
     /// Angles of the pivots on the track, deg.
-    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv")]
+    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
     pub(in super::super) numbers: Vec<f64>,
     /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta. A line of headings may come first.
     #[arg(long)]
@@ -50,7 +55,7 @@ pub(in super::super) struct Map {
     #[arg(long, value_name = "FILE")]
     pub(in super::super) out: PathBuf,
     /// Orientation of the platform, deg.
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, value_parser = number)]
     pub(in super::super) theta: f64,
 }
 
