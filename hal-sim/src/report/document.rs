@@ -34,10 +34,12 @@ const STYLE: &str = include_str!("document/report.css");
 struct Facts<'a> {
     name: &'a str,
     summary: String,
+    /// In one line.
+    conditions: String,
     ticks: u64,
     geometry: Lengths,
     moves: Vec<Leg>,
-    /// Start of each bin, s.
+    /// End of each bin, s: a plot on the live page has them so, too.
     times: String,
     /// Lowest and highest of each channel, bin by bin.
     channels: Vec<[String; 2]>,
@@ -95,7 +97,7 @@ fn fill(template: &str, parts: &[(&str, String)]) -> String {
 
 fn facts(run: &Run) -> Facts<'_> {
     let plots = run.trace.plots();
-    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.start_s).collect();
+    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.end_s).collect();
     let mut channels = Vec::new();
     add(&mut channels, plots.pose.bins(), &[0, 1, 2]);
     add(&mut channels, plots.error.bins(), &[0, 1]);
@@ -106,6 +108,7 @@ fn facts(run: &Run) -> Facts<'_> {
     Facts {
         name: &run.name,
         summary: run.summary().to_string(),
+        conditions: run.conditions.to_string(),
         ticks: run.trace.statistics().ticks,
         geometry: lengths(&run.geometry),
         moves: run.moves.iter().map(leg).collect(),

@@ -4,9 +4,11 @@
 //! A run loop calls [`Trace::record`] every tick, collects its [`Move`]s, and puts both into a [`Run`], which prints
 //! ([`Run::summary`]) and writes ([`Run::write`]) itself.
 
+mod conditions;
 mod contour;
 mod csv;
 mod document;
+mod facts;
 mod mechanism;
 mod motion;
 mod path;
@@ -21,12 +23,36 @@ use std::path::Path;
 use drawing::{ReportError, make_folder, write_file, write_png};
 use firmware::motion::Limits;
 use kinematics::Geometry;
+use serde::Serialize;
 
+pub use conditions::Conditions;
 pub use contour::{ContourMap, contour_map};
+pub use facts::{Facts, FollowingError, Leg, PeakRms};
 pub use sample::{MotionSample, Move, Sample};
 pub use statistics::{Spread, Statistics};
 pub use summary::Summary;
 pub use trace::{DEFAULT_EVERY, Trace};
+
+/// The files of a run. What it was made under stands in `conditions.json`, in the report and in the pictures: the tables
+/// hold nothing but headings and numbers, which every program can read.
+pub const FILES: [&str; 8] = [
+    "trace.csv",
+    "moves.csv",
+    "picture.svg",
+    "picture.png",
+    "motion.svg",
+    "motion.png",
+    "report.html",
+    "conditions.json",
+];
+
+/// What `conditions.json` holds.
+#[derive(Serialize)]
+struct NamedConditions<'a> {
+    run: &'a str,
+    #[serde(flatten)]
+    conditions: &'a Conditions,
+}
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -41,6 +67,8 @@ pub struct Run {
     pub trace: Trace,
     /// The moves in the order of time.
     pub moves: Vec<Move>,
+    /// What it was made under.
+    pub conditions: Conditions,
     /// Wall-clock time of the simulation, s.
     pub wall_s: f64,
 }
@@ -49,6 +77,18 @@ impl Run {
     /// The summary for the terminal.
     pub fn summary(&self) -> Summary<'_> {
         Summary::new(self)
+    }
+
+    /// What the summary says, to be serialised.
+    pub fn facts(&self) -> Facts<'_> {
+        facts::facts(self)
+    }
+
+    /// Moves after which the stage had not settled when the next began or the run ended.
+    pub fn never_settled(&self) -> usize {
+        (self.moves.iter())
+            .filter(|one| one.settled_s.is_none())
+            .count()
     }
 
     /// The picture as an SVG document.
@@ -66,8 +106,7 @@ impl Run {
         document::write(self)
     }
 
-    /// Writes `trace.csv`, `moves.csv`, `picture` and `motion` as SVG and PNG, and `report.html` into `folder`, which is made
-    /// if it is not there.
+    /// Writes all [`FILES`] into `folder`, which is made if it is not there.
     ///
     /// # Errors
     /// [`ReportError`] names the file that could not be written.
@@ -82,6 +121,13 @@ impl Run {
             write_file(&folder.join(format!("{name}.svg")), picture.as_bytes())?;
             write_png(&folder.join(format!("{name}.png")), &picture)?;
         }
-        write_file(&folder.join("report.html"), self.document().as_bytes())
+        write_file(&folder.join("report.html"), self.document().as_bytes())?;
+        let conditions = NamedConditions {
+            run: &self.name,
+            conditions: &self.conditions,
+        };
+        // A structure of texts and numbers can always be serialised.
+        let text = serde_json::to_string_pretty(&conditions).unwrap_or_default() + "\n";
+        write_file(&folder.join("conditions.json"), text.as_bytes())
     }
 }

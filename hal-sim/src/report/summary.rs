@@ -26,7 +26,8 @@ impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         errors(f, self.run)?;
         moves(f, &self.run.moves)?;
-        limits(f, self.run)
+        limits(f, self.run)?;
+        conditions(f, self.run)
     }
 }
 
@@ -129,6 +130,14 @@ fn limits(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     writeln!(f, "{:<22}{end_s:>10.3} s", "simulated time")?;
     let speed = end_s / wall_s;
     writeln!(f, "{:<22}{speed:>10.1} times real time", "speed")
+}
+
+fn conditions(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    writeln!(f, "\nconditions")?;
+    for (name, value) in run.conditions.list() {
+        writeln!(f, "  {name:<20}{value}")?;
+    }
+    writeln!(f)
 }
 
 fn mean(values: &[f64]) -> f64 {

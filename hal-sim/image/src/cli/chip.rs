@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use super::arguments::ChipRun;
 use super::error::CliError;
 use crate::chip::{self, ChipOutcome};
-use drawing::make_folder;
-use hal_sim::report::Run;
+use drawing::claim_folder;
+use hal_sim::report::{FILES, Run};
 use hal_sim::rig::run::{self, RunOutcome};
 use hal_sim::rig::script::Script;
 use tripivot::cli::stage::options;
@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
         .unwrap_or(name.as_os_str())
         .to_string_lossy();
     let options = options(&format!("chip-{stem}"), &arguments.simulation);
-    make_folder(&options.out)?;
+    claim_folder(&options.out, &FILES)?;
     let on_chip = chip::run(&script, &options)?;
     let on_host = run::run(&script, &options);
     for (line, answer) in &on_chip.answers {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 
 use super::number::{whole, within};
 use super::stage::{SimulatedStage, Simulation};
@@ -28,6 +29,21 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) simulation: Simulation,
+    #[command(flatten)]
+    pub(super) output: RunOutput,
+}
+
+/// How a run tells what came of it.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct RunOutput {
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, eccentricity, settings);
+    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); moves (start_s, profile_end_s, settled_s,
+    /// settle_ms, x_mm, y_mm, theta_deg; null where the stage never settled); never_settled; peak_duty (0 to 1);
+    /// smallest_separation_deg; simulated_s; wall_s; answers (line, answer); fault (null without one); folder.
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 #[derive(Subcommand, Debug)]
@@ -41,6 +57,8 @@ pub(super) enum Command {
         settings: Option<PathBuf>,
         #[command(flatten)]
         simulation: Simulation,
+        #[command(flatten)]
+        output: RunOutput,
     },
     /// Run the simulated stage in real time and let GCS clients drive it, over TCP and a pseudo-terminal.
     #[cfg(unix)]
@@ -57,7 +75,7 @@ pub(super) enum Command {
     Settings(SettingsCommand),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
-    /// Pivot angles (deg) of a pose (mm, mm, deg).
+    /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
     Direct(PivotRows),
@@ -65,6 +83,19 @@ pub(super) enum Command {
     Check(PoseArguments),
     /// Draw a quantity over the disk as a contour picture.
     Map(Map),
+    /// Print a shell's completions of this command line.
+    ///
+    /// For bash: tripivot completions bash > ~/.local/share/bash-completion/completions/tripivot
+    Completions {
+        /// Which shell.
+        shell: Shell,
+    },
+    /// Write the manual pages of this program and of each of its commands into a folder.
+    Man {
+        /// The folder.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
 }
 
 /// The simulated stage, served.
@@ -109,6 +140,15 @@ pub(super) struct Faults {
     /// Write all runs into this file, as CSV.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: runs, seed (both null with --only) and wall_s; faults, for each of them and at last for the runs without: fault, runs,
+    /// no_effect, detected, latency_median_ticks, latency_worst_ticks, deviation_worst_mm, travelled_median_mm,
+    /// travelled_worst_mm, turned_worst_deg, ended_braked, ended_released, ended_moving, overruns, overrun_worst_mm;
+    /// missed, the runs with a fault that are not as they should be, and alarms, the runs without; told, those runs one by
+    /// one, with --only both: seed, is_control, fault, tick, latched, latched_tick, latency_ticks, problem, text.
+    #[arg(long)]
+    pub(super) json: bool,
     /// No progress bar.
     #[arg(long, short)]
     pub(super) quiet: bool,

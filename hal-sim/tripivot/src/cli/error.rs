@@ -14,13 +14,16 @@ pub(super) enum CliError {
     /// The pose, pivots or option given on the command line.
     #[error("{0}")]
     Value(String),
+    /// A pose that has no pivots.
+    #[error("{0}")]
+    OutOfReach(String),
     /// A row of standard input.
-    #[error("row {row}: {reason}")]
+    #[error("row {row}: {error}")]
     Row {
         /// Line number in the input, from 1.
         row: u64,
         /// What is wrong with it.
-        reason: String,
+        error: Box<CliError>,
     },
     #[error("cannot read standard input: {0}")]
     Input(io::Error),
@@ -52,12 +55,22 @@ pub(super) enum CliError {
     /// The stage faulted in a run, or refused a line.
     #[error("{0}")]
     Fault(String),
+    #[error(
+        "{never} of {moves} moves never settled: the stage has not come to rest before the next move or the end of the run"
+    )]
+    NeverSettled {
+        /// So many.
+        never: usize,
+        /// All moves.
+        moves: usize,
+    },
 }
 
 impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
-            Self::Fault(_) => FAILED,
+            Self::Fault(_) | Self::OutOfReach(_) | Self::NeverSettled { .. } => FAILED,
+            Self::Row { error, .. } => error.exit_code(),
             #[cfg(unix)]
             Self::Settings(error) if error.is_failure() => FAILED,
             #[cfg(unix)]

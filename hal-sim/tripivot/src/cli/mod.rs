@@ -1,6 +1,7 @@
 //! The command line `tripivot`: what can be asked of it, and the answers that need no simulation.
 //!
-//! Exit codes: 0 done; 1 the stage faulted, or the pose is out of reach; 2 the command line, a file or a number is wrong.
+//! Exit codes: 0 done; 1 the stage faulted or never settled, or the pose is out of reach; 2 the command line, a file or a number
+//! is wrong.
 
 mod arguments;
 mod check;
@@ -8,8 +9,10 @@ mod direct;
 mod error;
 mod faults;
 mod inverse;
+mod json;
 mod map;
 mod number;
+mod pages;
 #[cfg(unix)]
 mod record;
 mod rows;
@@ -36,7 +39,7 @@ use error::CliError;
 pub use arguments::VERSION;
 pub use usage::usage;
 
-/// Exit code: something went wrong on the way of a valid request: a fault, a pose out of reach.
+/// Exit code: something went wrong on the way of a valid request: a fault, a stage that does not settle, a pose out of reach.
 pub const FAILED: u8 = 1;
 /// Exit code: the request cannot be served as it stands.
 pub const BAD_REQUEST: u8 = 2;
@@ -59,12 +62,13 @@ pub fn main() -> ExitCode {
 
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
-        None => simulate::demonstration(&arguments.simulation),
+        None => simulate::demonstration(&arguments.simulation, arguments.output.json),
         Some(Command::Run {
             file,
             settings,
             simulation,
-        }) => simulate::script(&file, &simulation, settings.as_deref()),
+            output,
+        }) => simulate::script(&file, &simulation, settings.as_deref(), output.json),
         #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
         #[cfg(unix)]
@@ -78,5 +82,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),
         Some(Command::Map(map)) => map::run(&map),
+        Some(Command::Completions { shell }) => pages::completions(shell),
+        Some(Command::Man { out }) => pages::man(&out),
     }
 }

@@ -9,13 +9,13 @@ use hal_sim::rig::run::RunOptions;
 
 use super::number::{whole, within};
 
-/// Where runs go unless `--out` says otherwise, from the current folder.
-const FOLDER: &str = "target/tripivot";
+/// Before the name of a run: the folder that it goes to unless `--out` says otherwise, in the working directory.
+const FOLDER: &str = "tripivot-";
 
 /// Options of a simulation.
 #[derive(Args, Clone, Debug)]
 pub struct Simulation {
-    /// Folder for trace and picture [default: target/tripivot/<name>].
+    /// Folder for trace, pictures and report [default: tripivot-NAME in the working directory].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write every N-th tick into the trace.
@@ -81,7 +81,7 @@ const PAYLOAD_LIMIT_KG: f64 = 5.0;
 /// What to do in a run called `name`.
 #[must_use]
 pub fn options(name: &str, arguments: &Simulation) -> RunOptions {
-    let default = || PathBuf::from(FOLDER).join(name);
+    let default = || PathBuf::from(format!("{FOLDER}{name}"));
     RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,

@@ -63,8 +63,13 @@ pub(in super::super) struct RecordRun {
     #[arg(long, value_name = "S", default_value_t = 60.0, allow_negative_numbers = true, value_parser = within(0.0..=LONGEST_S))]
     pub(in super::super) patience: f64,
     /// Folder for table and picture.
-    #[arg(long, value_name = "DIR", default_value = "target/tripivot/record")]
+    #[arg(long, value_name = "DIR", default_value = "tripivot-record")]
     pub(in super::super) out: PathBuf,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: controller; sent (null if nothing was); points; period_us; signals (name with its unit, lowest, highest); folder.
+    #[arg(long)]
+    pub(in super::super) json: bool,
     /// No progress bar.
     #[arg(long, short)]
     pub(in super::super) quiet: bool,
