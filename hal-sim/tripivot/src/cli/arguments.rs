@@ -19,11 +19,15 @@ pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 /// Version and commit of this program.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("TRIPIVOT_COMMIT"));
 
+/// Below the help.
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 the stage faulted or never settled, a fault was missed, or the pose is out of reach; \
+    2 the command line, a file or a number is wrong.";
+
 /// Tripivot: a simulated planar XY-Theta stage under its real controller.
 ///
 /// Without a command it runs the built-in demonstration: a tour of the disk, three turns of the platform, and back.
 #[derive(Parser, Debug)]
-#[command(version = VERSION, args_conflicts_with_subcommands = true)]
+#[command(version = VERSION, after_help = EXIT_CODES, args_conflicts_with_subcommands = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
