@@ -224,6 +224,30 @@ fn a_quantity_has_one_colour() {
     }
 }
 
+/// A move that the next one followed at once had no time to settle; one that was given a tenth of a second had.
+#[test]
+fn a_move_that_nobody_waited_for_is_no_failure() {
+    let mut run = run(1_001, 20);
+    let end_s = run.trace.statistics().end_s;
+    let unsettled = |start_s: f64| Move {
+        start_s,
+        profile_end_s: start_s + 0.5,
+        settled_s: None,
+        target: [0.0; 3],
+    };
+    run.moves = [0.0, 0.5, 1.099, 1.7].map(unsettled).to_vec();
+    assert_eq!(run.never_settled(), 1);
+    let summary = run.summary().to_string();
+    let ends_in = |word: &str| summary.lines().filter(|line| line.ends_with(word)).count();
+    assert_eq!((ends_in("no time"), ends_in(" never")), (3, 1), "{summary}");
+    assert!(summary.contains("never settled: 1\n"), "{summary}");
+    // The end of the run counts as the next move does.
+    run.moves = vec![unsettled(end_s - 0.5 - 0.099)];
+    assert_eq!(run.never_settled(), 0);
+    run.moves = vec![unsettled(end_s - 0.5 - 0.101)];
+    assert_eq!(run.never_settled(), 1);
+}
+
 #[test]
 fn a_long_run_lists_the_moves_slowest_to_settle() {
     let mut run = run(100, 1);

@@ -7,7 +7,6 @@ use kinematics::Geometry;
 use serde::Serialize;
 
 use super::Run;
-use super::sample::Move;
 use drawing::assets::{bundle, text};
 use drawing::envelope::Bin;
 
@@ -59,8 +58,10 @@ struct Lengths {
 struct Leg {
     start_s: f64,
     end_s: f64,
-    /// Ms; none when it never settled.
+    /// Ms; none when it had not settled before the next move or the end of the run.
     settle_ms: Option<f64>,
+    /// It had the time to.
+    never: bool,
     target: [f64; 3],
 }
 
@@ -111,7 +112,7 @@ fn facts(run: &Run) -> Facts<'_> {
         conditions: run.conditions.to_string(),
         ticks: run.trace.statistics().ticks,
         geometry: lengths(&run.geometry),
-        moves: run.moves.iter().map(leg).collect(),
+        moves: (0..run.moves.len()).map(|index| leg(run, index)).collect(),
         times: packed(times.into_iter()),
         channels,
     }
@@ -127,11 +128,13 @@ fn lengths(geometry: &Geometry) -> Lengths {
     }
 }
 
-fn leg(one: &Move) -> Leg {
+fn leg(run: &Run, index: usize) -> Leg {
+    let one = &run.moves[index];
     Leg {
         start_s: one.start_s,
         end_s: one.profile_end_s,
         settle_ms: one.settle_s().map(|s| 1e3 * s),
+        never: run.never_settles(index),
         target: one.target,
     }
 }

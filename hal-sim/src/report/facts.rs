@@ -17,7 +17,7 @@ pub struct Facts<'a> {
     pub following_error: FollowingError,
     /// The moves in the order of time.
     pub moves: Vec<Leg>,
-    /// How many of them never settled.
+    /// How many of them never settled, though they had the time to.
     pub never_settled: usize,
     /// Largest magnitude of any duty, 0 to 1.
     pub peak_duty: f64,
@@ -58,9 +58,9 @@ pub struct Leg {
     pub start_s: f64,
     /// When it arrived.
     pub profile_end_s: f64,
-    /// When the stage had settled; none if it never did.
+    /// When the stage had settled; none if it had not when the next move began or the run ended.
     pub settled_s: Option<f64>,
-    /// From the arrival until settled; none if it never did.
+    /// From the arrival until settled; none as above.
     pub settle_ms: Option<f64>,
     /// Where to, along x.
     pub x_mm: f64,

@@ -46,6 +46,10 @@ pub const FILES: [&str; 8] = [
     "conditions.json",
 ];
 
+/// A stage that has not settled so long after its setpoint's arrival does not settle, s: the reference stage needs a fifth of that,
+/// half of it with all the payload that it may carry.
+pub const SETTLING_S: f64 = 0.1;
+
 /// What `conditions.json` holds.
 #[derive(Serialize)]
 struct NamedConditions<'a> {
@@ -84,11 +88,20 @@ impl Run {
         facts::facts(self)
     }
 
-    /// Moves after which the stage had not settled when the next began or the run ended.
+    /// How many moves never settled.
     pub fn never_settled(&self) -> usize {
-        (self.moves.iter())
-            .filter(|one| one.settled_s.is_none())
+        (0..self.moves.len())
+            .filter(|&index| self.never_settles(index))
             .count()
+    }
+
+    /// Whether the stage had not settled after this move when the next began or the run ended, though it had been given
+    /// [`SETTLING_S`] or more: whoever sends the next line at once has not waited for it.
+    pub(crate) fn never_settles(&self, index: usize) -> bool {
+        let one = &self.moves[index];
+        let end_s = self.trace.statistics().end_s;
+        let until_s = self.moves.get(index + 1).map_or(end_s, |next| next.start_s);
+        one.settled_s.is_none() && until_s - one.profile_end_s >= SETTLING_S
     }
 
     /// The picture as an SVG document.

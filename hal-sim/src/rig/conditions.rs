@@ -6,7 +6,7 @@ use crate::report::Conditions;
 
 /// What a run with these options on the host is made under. Who calls may know better which program and machine it is.
 #[must_use]
-pub fn conditions(options: &RunOptions) -> Conditions {
+pub fn run_conditions(options: &RunOptions) -> Conditions {
     Conditions {
         program: concat!("hal-sim ", env!("CARGO_PKG_VERSION")).to_owned(),
         machine: "simulated reference stage, controller on the host".to_owned(),

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Rig`] | the assembly of both |
 //! | [`run`] | a script, from its first line to the report |
-//! | [`conditions`] | what a run is made under |
+//! | `conditions` | what a run is made under |
 //! | [`script`] | files of GCS lines |
 //! | [`exercise`] | GCS lines from a seed |
 //! | [`client`] | sends lines one after the other, as any client would |
@@ -19,4 +19,4 @@ pub mod run;
 pub mod script;
 
 pub use assembly::{IDENTITY, Queues, Rig};
-pub use conditions::conditions;
+pub use conditions::run_conditions;

@@ -12,8 +12,8 @@ use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::machine::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
 use crate::rig::client::{Client, Event};
-use crate::rig::conditions;
 use crate::rig::observer::{Observer, TickRecord};
+use crate::rig::run_conditions;
 use crate::rig::script::{Line, Script};
 use drawing::Progress;
 
@@ -205,7 +205,7 @@ fn simulate(
             limits,
             trace: observer.trace,
             moves: observer.moves,
-            conditions: conditions(options),
+            conditions: run_conditions(options),
             wall_s: progress.finish(),
         },
         fault,

@@ -15,9 +15,9 @@ use drawing::Progress;
 use hal_sim::machine::devices::Stage;
 use hal_sim::report::{Conditions, Run};
 use hal_sim::rig::client::{Client, Event};
-use hal_sim::rig::conditions;
 use hal_sim::rig::observer::Observer;
 use hal_sim::rig::run::{RunOptions, stage_parameters, stuck_text};
+use hal_sim::rig::run_conditions;
 use hal_sim::rig::script::{Script, ScriptError};
 
 /// A run on the chip that came to its end, one way or another.
@@ -156,7 +156,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
             conditions: Conditions {
                 machine: "simulated reference stage, controller's image on the emulated chip"
                     .to_owned(),
-                ..conditions(options)
+                ..run_conditions(options)
             },
             wall_s: runner.progress.finish(),
         },

@@ -98,7 +98,8 @@ byId("moves").append(make("tr", {}, ...heads), ...run.moves.map((move, index) =>
     view.show(move.start_s - room, move.end_s + room);
     view.point(move.start_s);
   });
-  const settled = move.settle_ms === null ? "never" : shown(move.settle_ms, 2);
+  const unsettled = move.never ? "never" : "no time";
+  const settled = move.settle_ms === null ? unsettled : shown(move.settle_ms, 2);
   const cells = [shown(move.start_s, 3), ...move.target.map((value) => shown(value, 3)), shown(move.end_s - move.start_s, 4), settled];
   return make("tr", {}, make("td", {}, show), ...cells.map((text) => make("td", { textContent: text })));
 }));

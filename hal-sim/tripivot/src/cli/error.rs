@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use drawing::ReportError;
+use hal_sim::report::SETTLING_S;
 use hal_sim::rig::script::ScriptError;
 
 use super::{BAD_REQUEST, FAILED};
@@ -56,7 +57,7 @@ pub(super) enum CliError {
     #[error("{0}")]
     Fault(String),
     #[error(
-        "{never} of {moves} moves never settled: the stage has not come to rest before the next move or the end of the run"
+        "{never} of {moves} moves never settled, though each had {SETTLING_S} s or more before the next move or the end of the run"
     )]
     NeverSettled {
         /// So many.
