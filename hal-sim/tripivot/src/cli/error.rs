@@ -37,16 +37,12 @@ pub(super) enum CliError {
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),
     #[error(transparent)]
     Script(#[from] ScriptError),
-    #[cfg(unix)]
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
-    #[cfg(unix)]
     #[error(transparent)]
     Record(#[from] desk::record::RecordError),
-    #[cfg(unix)]
     #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
-    #[cfg(unix)]
     #[error(transparent)]
     Page(#[from] desk::web::PageError),
     /// The stage faulted in a run, or refused a line.
@@ -58,9 +54,7 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) => FAILED,
-            #[cfg(unix)]
             Self::Settings(error) if error.is_failure() => FAILED,
-            #[cfg(unix)]
             Self::Record(error) if error.is_failure() => FAILED,
             _ => BAD_REQUEST,
         }

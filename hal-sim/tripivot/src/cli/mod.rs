@@ -9,19 +9,14 @@ mod error;
 mod faults;
 mod inverse;
 mod map;
-#[cfg(unix)]
 mod record;
 mod rows;
-#[cfg(unix)]
 mod serve;
-#[cfg(unix)]
 mod settings;
-#[cfg(unix)]
 pub mod signal;
 mod simulate;
 pub mod stage;
 mod units;
-#[cfg(unix)]
 mod view;
 
 use std::process::ExitCode;
@@ -80,14 +75,10 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
             settings,
             simulation,
         }) => simulate::script(&file, &simulation, settings.as_deref()),
-        #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
-        #[cfg(unix)]
         Some(Command::View(arguments)) => view::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),

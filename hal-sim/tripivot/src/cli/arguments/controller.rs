@@ -17,10 +17,10 @@ pub(in super::super) struct Controller {
         conflicts_with = "port"
     )]
     pub(in super::super) connect: String,
-    /// The serial line that the controller is at, or a pseudo-terminal.
+    /// The serial line that the controller is at (/dev/ttyUSB0, COM3), or a pseudo-terminal.
     #[arg(long, value_name = "DEVICE")]
     pub(in super::super) port: Option<PathBuf>,
-    /// Bits a second on the serial line.
+    /// Bits a second on the serial line. On macOS a pseudo-terminal takes 0 only, which leaves its rate alone.
     #[arg(long, value_name = "N", default_value_t = 921_600)]
     pub(in super::super) baud: u32,
 }
