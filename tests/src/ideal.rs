@@ -1,16 +1,17 @@
 //! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
 //! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
-use firmware::controller::{Inputs, Outputs};
+use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Command, Mode, QueueFull};
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::recorder::{Record, Sample};
+use firmware::queues::{Command, QueueFull};
+use firmware::recorder::{Sample, TickObserver};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 use kinematics::Angle;
 
 /// 48 V at the ADC.
@@ -44,7 +45,7 @@ pub struct Connection {
 #[derive(Default)]
 struct Last(Option<Sample>);
 
-impl Record for Last {
+impl TickObserver for Last {
     fn record(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
@@ -73,7 +74,10 @@ impl Ideal {
     #[must_use]
     pub fn new(connections: usize) -> Self {
         let parameters = Parameters::REFERENCE;
-        let (queues, flash) = (Queues::endless().split(), SettingsFlash::in_memory());
+        let (queues, flash) = (
+            ControllerMemory::endless().split(),
+            SettingsFlash::in_memory(),
+        );
         let rig = Rig::new(queues, &parameters, flash, ControlLoop::new);
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
@@ -137,7 +141,7 @@ impl Ideal {
     /// # Errors
     /// [`QueueFull`]
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
-        self.rig.panel_link.send(command)
+        self.rig.command_queues.send(command)
     }
 
     /// What the last tick computed, once one has run.

@@ -1,6 +1,6 @@
 //! Error numbers of the General Command Set in words, for people: what the page shows in place of a number.
 
-use firmware::panel::ErrorCode;
+use firmware::gcs::ErrorCode;
 
 /// Makes the table, and a `match` over it: a code that is missing or named twice, or that no controller sets, does not compile.
 macro_rules! error_words {
@@ -26,7 +26,7 @@ error_words! {
     NotReady: "not referenced, or the servo is off",
     PositionLimit: "out of the stage’s reach or of the soft limits",
     VelocityLimit: "velocity out of limits",
-    PivotNotSettable: "the centre of rotation cannot be set there",
+    CentreNotSettable: "the centre of rotation cannot be set there",
     Stopped: "stopped",
     InvalidAxis: "no such axis",
     OutOfRange: "a value is out of range",

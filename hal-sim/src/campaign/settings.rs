@@ -2,12 +2,12 @@
 
 use std::sync::OnceLock;
 
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 
 use crate::machine::devices::{SettingsFlash, StageParameters};
 use crate::random::Random;
-use crate::rig::{Queues, Rig};
+use crate::rig::{ControllerMemory, Rig};
 
 /// What an operator keeps, and the ticks in which it is kept.
 const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";

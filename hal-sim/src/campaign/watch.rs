@@ -1,7 +1,7 @@
 //! Judges a run while it goes on.
 
 use firmware::fault::Reaction;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 
 use super::effect::{Effects, Now};
 use super::expected::{Cause, MOST_EARLY};
@@ -98,7 +98,7 @@ impl<'a> Watch<'a> {
         };
         self.effects.look(&now);
         self.outcome.fault = self.outcome.fault.or(host.fault());
-        self.outcome.worse = host.worse();
+        self.outcome.worse = host.stop_ended_by();
         if let Some((at, pivot)) = self.effects.second_found(self.scenario)
             && at == tick
             && self.was_stopping

@@ -1,12 +1,12 @@
 //! The firmware's tick with its state, which is given what the hardware would give it.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use super::Front;
 
@@ -50,12 +50,12 @@ impl ControlLoop {
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
     pub fn worse(&self) -> Option<Fault> {
-        self.state.worse()
+        self.state.stop_ended_by()
     }
 }
 
 impl Front for ControlLoop {
-    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         tick(
             &mut self.config,
             &mut self.state,

@@ -1,12 +1,12 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
-use firmware::controller::{Inputs, Outputs};
+use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use super::{ControlLoop, Front};
 use crate::machine::devices::{
@@ -94,7 +94,7 @@ impl Host {
     }
 
     /// One tick of the controller, and the stage's motion up to the next.
-    pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    pub fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         self.control.inputs = self.inputs();
         let outputs = self.control.tick(link, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
@@ -136,7 +136,7 @@ impl Host {
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
     pub fn worse(&self) -> Option<Fault> {
-        self.control.worse()
+        self.control.stop_ended_by()
     }
 
     fn inputs(&mut self) -> Inputs {
@@ -163,7 +163,7 @@ impl Host {
 }
 
 impl Front for Host {
-    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         self.tick(link, recorder)
     }
 

@@ -1,9 +1,9 @@
 //! Looks at every tick of a run: turns what the controller and the plant know into the report's samples and moves.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
-use firmware::recorder::{Record, RunningHash, Sample as TickSample};
+use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
 use std::f64::consts::{PI, TAU};
 
 use crate::report::{MotionSample, Move, Sample, Trace};
@@ -21,7 +21,7 @@ pub struct TickRecord {
     pub hash: RunningHash,
 }
 
-impl Record for TickRecord {
+impl TickObserver for TickRecord {
     fn record(&mut self, sample: &TickSample) {
         self.hash.record(sample);
         self.sample = Some(sample.clone());

@@ -23,7 +23,7 @@ mod table {
     use desk::serve::{Pacing, ServeOptions, Server};
     use desk::web::{Endpoint, Page};
     use hal_sim::machine::devices::SettingsFlash;
-    use hal_sim::rig::Queues;
+    use hal_sim::rig::ControllerMemory;
     use hal_sim::rig::run::RunOptions;
     use tripivot::simulated::Simulated;
     use tungstenite::client;

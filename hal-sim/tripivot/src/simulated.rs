@@ -3,10 +3,10 @@
 use desk::serve::Controller;
 use embedded_io::Write;
 use firmware::fault::Fault;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// See the module.
 pub struct Simulated<'a> {

@@ -1,11 +1,11 @@
 //! Whoever looks at the page changes nothing of the control loop.
 
 use desk::web::questions;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::recorder::RunningHash;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Ticks between two looks: 60 times a second.
 const LOOK_EVERY: u64 = 333;

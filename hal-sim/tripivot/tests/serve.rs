@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use desk::serve::{Notice, Pacing, ServeOptions, Server};
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::Queues;
+use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
 use tripivot::simulated::Simulated;
 

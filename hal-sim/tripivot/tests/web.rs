@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use desk::serve::{ServeOptions, Server};
 use desk::web::{Endpoint, Page};
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::Queues;
+use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
 use serde_json::{Value, json};
 use tripivot::simulated::Simulated;

@@ -9,15 +9,15 @@
 
 use std::process::ExitCode;
 
-use firmware::link::Mode;
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::client::Client;
 use hal_sim::rig::exercise::{Patience, script};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run, stage_parameters};
 use hal_sim::rig::script::{Script, ScriptError};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Seed of the exercise's lines and of the simulated noise.
 const SEED: u64 = 1;

@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use rustix::event::PollFlags;
 use rustix::fd::{AsFd, BorrowedFd};
 

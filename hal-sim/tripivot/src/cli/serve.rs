@@ -12,7 +12,7 @@ use super::view::page;
 use desk::serve::{Printer, ServeOptions, Server};
 use desk::web::{Endpoint, Page};
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::Queues;
+use hal_sim::rig::ControllerMemory;
 
 use crate::simulated::Simulated;
 
