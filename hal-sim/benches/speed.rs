@@ -3,9 +3,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use firmware::controller::Inputs;
+use firmware::control::Inputs;
 use firmware::drivers::biss::RawFrame;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 use hal_sim::front::{ControlLoop, Front, Host};
 use hal_sim::machine::devices::{BridgeState, SettingsFlash, Stage, StageParameters};

@@ -1,11 +1,12 @@
 //! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
 //! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
-use firmware::controller::{Inputs, Outputs};
+use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Command, Mode, QueueFull};
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, QueueFull};
 use firmware::recorder::{Record, Sample};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;

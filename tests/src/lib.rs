@@ -7,10 +7,10 @@ pub mod fuzz;
 pub mod ideal;
 pub mod trouble;
 
-use firmware::controller::Outputs;
+use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::Mode;
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use firmware::recorder::Sample;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};

@@ -2,7 +2,7 @@
 //!
 //! `CASES=1000 cargo test -p tests --test lost_encoder -- --nocapture` prints how far it is off.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::machine::devices::{EncoderFault, StageParameters};
 use hal_sim::random::Random;
 use hal_sim::rig::run::{RunOptions, stage_parameters};

@@ -97,7 +97,10 @@ mod tests {
             .filter(|asset| asset.path != "/css/colours.css")
             .map(|asset| asset.text)
             .collect();
-        assert!(!others.contains("light-dark(#"), "a colour beside the table");
+        assert!(
+            !others.contains("light-dark(#"),
+            "a colour beside the table"
+        );
         let named = [
             between(&others, "var(--", ')'),
             between(&others, "colour(\"", '"'),

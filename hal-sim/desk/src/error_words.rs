@@ -1,6 +1,6 @@
 //! Error numbers of the General Command Set in words, for people: what the page shows in place of a number.
 
-use firmware::panel::ErrorCode;
+use firmware::gcs::ErrorCode;
 
 /// Makes the table, and a `match` over it: a code that is missing or named twice, or that no controller sets, does not compile.
 macro_rules! error_words {

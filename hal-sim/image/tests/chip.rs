@@ -1,7 +1,7 @@
 //! The image on the emulated chip. Needs `cargo stage` first, then
 //! `cargo chip-test --test chip`.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{BridgeState, EncoderFault, Stage, StageParameters};
 use image::chip::{Action, Bench, Outcome, Period, ResetCause, Twin, elf_file};

@@ -1,7 +1,7 @@
 //! The comparison of chip and host, and that it can fail. Needs `cargo stage` first, then
 //! `cargo chip-test --test chip_exercise`.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::rig::run::RunOptions;
 use image::chip::{Divergence, Exercise, ExerciseOptions, exercise};
 

@@ -1,8 +1,9 @@
 //! One run of the campaign.
 
 use firmware::fault::Fault;
-use firmware::link::{Command, Mode};
-use firmware::panel::{CAUSES, Session};
+use firmware::gcs::{CAUSES, Session};
+use firmware::mode::Mode;
+use firmware::queues::Command;
 use firmware::recorder::{Record, Sample};
 
 use super::injection::Injection;

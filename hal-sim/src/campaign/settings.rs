@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 
 use crate::machine::devices::{SettingsFlash, StageParameters};

@@ -1,11 +1,11 @@
 //! The firmware's tick with its state, which is given what the hardware would give it.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
+use firmware::queues::TickLink;
 use firmware::recorder::Record;
 
 use super::Front;

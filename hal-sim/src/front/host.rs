@@ -1,11 +1,11 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
-use firmware::controller::{Inputs, Outputs};
+use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
+use firmware::queues::TickLink;
 use firmware::recorder::Record;
 
 use super::{ControlLoop, Front};

@@ -11,10 +11,10 @@ mod host;
 pub use control_loop::ControlLoop;
 pub use host::{Host, Wiring};
 
-use firmware::controller::Outputs;
+use firmware::control::Outputs;
 use firmware::fault::FaultKind;
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
+use firmware::queues::TickLink;
 use firmware::recorder::Record;
 
 /// A controller's loop with what it stands before.

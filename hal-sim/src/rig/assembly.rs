@@ -10,14 +10,14 @@
 //! ```
 
 use embedded_io::Write;
-use firmware::blackbox::BlackBox;
-use firmware::controller::Outputs;
+use firmware::control::Outputs;
 use firmware::fault::FaultKind;
-use firmware::link::{Link, PanelLink, TickLink};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::fault_record::BlackBox;
+use firmware::gcs::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::queues::{Link, PanelLink, TickLink};
 use firmware::recorder::Record;
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 
 use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};

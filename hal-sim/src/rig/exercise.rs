@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 
 use crate::random::Random;
 use crate::rig::client::Client;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use firmware::fault::Fault;
-use firmware::link::Mode;
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
 use super::{Queues, Rig};

@@ -3,7 +3,7 @@
 use desk::serve::Controller;
 use embedded_io::Write;
 use firmware::fault::Fault;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 use hal_sim::rig::{Queues, Rig};

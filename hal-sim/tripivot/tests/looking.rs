@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use desk::web::questions;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::recorder::RunningHash;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};

@@ -9,8 +9,8 @@
 
 use std::process::ExitCode;
 
-use firmware::link::Mode;
-use firmware::panel::Session;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::client::Client;
 use hal_sim::rig::exercise::{Patience, script};

@@ -1,6 +1,6 @@
 //! Lines to send: some that mean something, some nearly, some nothing at all.
 
-use firmware::panel::PARAMETERS;
+use firmware::gcs::PARAMETERS;
 use hal_sim::random::Random;
 
 /// Lines that mean something; `{x}` a length, `{w}` an angle, `{n}` any number, `{p}` a parameter, `{v}` a variable, `{m}` a

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use rustix::event::PollFlags;
 
 use super::output::{Output, Overflow};

@@ -2,7 +2,7 @@
 
 use embedded_io::Write;
 use firmware::fault::Fault;
-use firmware::panel::Session;
+use firmware::gcs::Session;
 
 /// A controller in this process: what ticks, and what carries out its clients' lines.
 pub trait Controller {

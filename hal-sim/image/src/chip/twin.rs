@@ -15,11 +15,11 @@
 //! So the twin is a tick behind the chip, and as many more as the chip's panel takes from a command to the end of its run.
 
 use super::period::{Period, Service, Trace};
-use firmware::controller::Inputs;
+use firmware::control::Inputs;
 use firmware::drivers::biss::{RawFrame, decode};
-use firmware::link::{PanelLink, Snapshot, TickLink};
-use firmware::panel::Session;
+use firmware::gcs::Session;
 use firmware::parameters::Parameters;
+use firmware::queues::{PanelLink, Snapshot, TickLink};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
