@@ -9,20 +9,17 @@
 //! ```
 #![cfg_attr(not(test), no_std)]
 
-pub mod blackbox;
-pub mod config;
-pub mod controller;
+pub(crate) mod commander;
+pub mod control;
+
 pub mod drivers;
-pub mod encoder;
 pub mod fault;
-pub mod interval;
-pub mod link;
+pub mod fault_record;
+pub mod gcs;
+pub mod mode;
 pub mod motion;
 pub mod number;
-pub mod panel;
 pub mod parameters;
+pub mod queues;
 pub mod recorder;
-mod reference;
-pub mod servo;
-mod settling;
-pub mod store;
+pub mod settings_store;

@@ -1,11 +1,13 @@
 //! Every tunable of the controller, in physical units, with the reference stage as default.
 //!
-//! What the tick uses is derived from these once, in [`Config`](crate::config::Config). Defaults come from the reference
+//! What the tick uses is derived from these once, in [`Config`](crate::control::config::Config). Defaults come from the reference
 //! stage (DESIGN section 4) unless a line says otherwise.
 
-use crate::link::RECORD_ROWS;
 use crate::motion::{Limits, Way};
 use kinematics::Geometry;
+
+/// Rows that a record of any signals can have: with all tables 16,384 samples.
+pub const RECORD_ROWS: usize = 2048;
 
 /// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
 pub const PWM_COUNTS: u16 = 4200;
@@ -105,7 +107,7 @@ pub struct Gains {
     pub velocity_v_s_rad: f64,
     /// Voltage per integral of the velocity error.
     pub integral_v_rad: f64,
-    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::servo`].
+    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::control::servo`].
     pub learning: f64,
     /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
     pub friction_learning: f64,

@@ -1,7 +1,7 @@
 //! Frames to angles: what is believed, what is bridged, what makes an encoder unusable and why.
 
+use firmware::control::encoder::{Encoder, EncoderConfig};
 use firmware::drivers::biss::RawFrame;
-use firmware::encoder::{Encoder, EncoderConfig};
 use firmware::fault::FaultKind;
 use firmware::parameters::{EncoderSetup, Parameters, Supervision};
 use kinematics::Angle;

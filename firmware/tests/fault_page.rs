@@ -2,10 +2,10 @@
 
 mod written_page;
 
-use firmware::controller::{Outcome, STATES, TABLE};
+use firmware::control::{Outcome, STATES, TABLE};
 use firmware::fault::{ABOUT, Fault, Reaction};
-use firmware::link::Mode;
-use firmware::panel::{ErrorCode, PARAMETERS};
+use firmware::gcs::{ErrorCode, PARAMETERS};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use std::fmt::Write;
 

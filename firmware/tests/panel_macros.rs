@@ -3,7 +3,7 @@
 mod panel_bench;
 
 use firmware::fault::FaultKind;
-use firmware::panel::{DEPTH, LINES, MACRO_BYTES, MACROS, NAME_BYTES, TEXT_BYTES, VARIABLES};
+use firmware::gcs::{DEPTH, LINES, MACRO_BYTES, MACROS, NAME_BYTES, TEXT_BYTES, VARIABLES};
 use panel_bench::Bench;
 
 /// Referenced, with these macros.
@@ -384,7 +384,7 @@ fn it_goes_on_without_its_client_and_errors_are_its_own() {
     let client = bench.connect();
     bench.say_to(client, "MAC START m\n");
     // The client is gone.
-    *bench.session(client) = firmware::panel::Session::new();
+    *bench.session(client) = firmware::gcs::Session::new();
     finish(&mut bench);
     assert_eq!(
         bench.say("ERR?\nMAC ERR?\nMOV? X\n"),

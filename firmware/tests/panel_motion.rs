@@ -3,7 +3,8 @@
 mod panel_bench;
 
 use firmware::fault::FaultKind;
-use firmware::link::{COMMANDS, Command, Mode};
+use firmware::mode::Mode;
+use firmware::queues::{COMMANDS, Command};
 use panel_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.

@@ -3,7 +3,7 @@
 mod panel_bench;
 
 use firmware::fault::FaultKind;
-use firmware::panel::{Identity, Panel};
+use firmware::gcs::{Identity, Panel};
 use firmware::parameters::Parameters;
 use panel_bench::Bench;
 

@@ -3,8 +3,8 @@
 
 mod panel_bench;
 
-use firmware::config::Config;
-use firmware::panel::{Kind, PARAMETERS, Parameter, When};
+use firmware::control::config::Config;
+use firmware::gcs::{Kind, PARAMETERS, Parameter, When};
 use firmware::parameters::Parameters;
 use panel_bench::Bench;
 use proptest::prelude::*;
@@ -213,7 +213,7 @@ fn a_full_queue_refuses_the_line() {
     let mut bench = advanced();
     while bench
         .link
-        .send(firmware::link::Command::Acknowledge)
+        .send(firmware::queues::Command::Acknowledge)
         .is_ok()
     {}
     bench.offer(0, b"SPA 1 0x54500300 250\nERR?\n");

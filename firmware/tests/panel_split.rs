@@ -2,7 +2,7 @@
 
 mod panel_bench;
 
-use firmware::panel::parse;
+use firmware::gcs::parse;
 use panel_bench::Bench;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -2,7 +2,7 @@
 
 mod panel_bench;
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use panel_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.

@@ -62,7 +62,7 @@ fn help_lists_what_is_there() {
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {
         // With no parameters each is either understood or short of them, never unknown.
-        if let Err(error) = firmware::panel::parse(name.as_bytes()) {
+        if let Err(error) = firmware::gcs::parse(name.as_bytes()) {
             assert_eq!(error.code.number(), 24, "{name}");
         }
     }
@@ -243,10 +243,10 @@ fn parse_errors_say_where_and_what() {
         ("WAC ONT? W ~ 1", 12, "an operator: = != < <= > >="),
         ("CSV? 1", 6, "the end of the line"),
     ] {
-        let error = firmware::panel::parse(line.as_bytes()).unwrap_err();
+        let error = firmware::gcs::parse(line.as_bytes()).unwrap_err();
         assert_eq!((error.column, error.expected), (column, expected), "{line}");
     }
-    let error = firmware::panel::parse(b"MOV X 1 X 2").unwrap_err();
+    let error = firmware::gcs::parse(b"MOV X 1 X 2").unwrap_err();
     assert_eq!(
         error.to_string(),
         "column 9: expected an axis that has not been named yet (error 22)"

@@ -2,7 +2,7 @@
 
 mod written_page;
 
-use firmware::panel::{Kind, PARAMETERS, Parameter};
+use firmware::gcs::{Kind, PARAMETERS, Parameter};
 use firmware::parameters::Parameters;
 use std::fmt::Write;
 

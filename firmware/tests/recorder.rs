@@ -2,7 +2,7 @@
 
 use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::motion::Setpoint;
 use firmware::recorder::{
     PanelRecorder, Progress, Recorder, Sample, Setup, TickRecorder, Watch, Word,

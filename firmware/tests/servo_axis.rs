@@ -1,8 +1,8 @@
 //! The servo of one pivot: duties that are right on average, no windup, and a loop that is stable on a simple plant.
 
+use firmware::control::servo::{AxisServo, PivotSetpoint, ServoConfig};
 use firmware::drivers::bridge::Duty;
 use firmware::parameters::{Drive, Parameters};
-use firmware::servo::{AxisServo, PivotSetpoint, ServoConfig};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
 

@@ -5,7 +5,7 @@ mod flash_bench;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
 
 const SECTOR: usize = 1024;

@@ -5,7 +5,7 @@
 
 mod flash_bench;
 
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
 
 /// Small, so that the journal goes round it often.

@@ -4,9 +4,9 @@
 //! friction with presliding and stiction among them. Times are counted from the tick that takes the command: to the profile's end,
 //! to where every pivot comes to stay within the window of +-2 encoder LSB, and to where the controller says so, a dwell later.
 
-use firmware::link::{Command, Link, PanelLink, Snapshot, TickLink};
 use firmware::motion::{Ground, Position, plan_line};
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
 use hal_sim::host::Host;
 use hal_sim::observer::TickRecord;
 use hal_sim::run::{RunOptions, controller_parameters, stage_parameters};

@@ -3,12 +3,12 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Link, PanelLink, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::queues::{Link, PanelLink, TickLink};
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
 use hal_sim::host::Host;
 use hal_sim::observer::TickRecord;

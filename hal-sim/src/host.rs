@@ -1,12 +1,12 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::TickLink;
 use firmware::parameters::Parameters;
+use firmware::queues::TickLink;
 use firmware::recorder::Record;
 
 use crate::devices::{

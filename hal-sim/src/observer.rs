@@ -1,6 +1,6 @@
 //! Looks at every tick of a run: turns what the controller and the plant know into the report's samples and moves.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 use firmware::recorder::{Record, RunningHash, Sample as TickSample};

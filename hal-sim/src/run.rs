@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use firmware::blackbox::BlackBox;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::{Link, Mode};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::fault_record::BlackBox;
+use firmware::gcs::{Identity, Panel, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::queues::Link;
+use firmware::settings_store::Keeper;
 
 use crate::client::{Client, Event};
 use crate::devices::{FINE_PWM, SettingsFlash, StageParameters};

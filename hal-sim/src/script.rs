@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use firmware::panel::{ErrorCode, ParseError, parse};
+use firmware::gcs::{ErrorCode, ParseError, parse};
 
 /// A line to be sent.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 //! `cargo test --release -p hal-sim --features chip --ignore-rust-version --test chip`.
 #![cfg(feature = "chip")]
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use hal_sim::chip::{Action, Bench, Outcome, Period, ResetCause, Twin, image};
 use hal_sim::devices::{BridgeState, EncoderFault, Stage, StageParameters};

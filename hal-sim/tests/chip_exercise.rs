@@ -2,7 +2,7 @@
 //! `cargo test --release -p hal-sim --features chip --ignore-rust-version --test chip_exercise`.
 #![cfg(feature = "chip")]
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::chip::{Divergence, Exercise, ExerciseOptions, exercise};
 use hal_sim::run::RunOptions;
 

@@ -1,14 +1,15 @@
 //! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
 //! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
-use firmware::config::Config;
-use firmware::controller::{Inputs, Outputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Command, Link, Mode, PanelLink, QueueFull, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Panel, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link, PanelLink, QueueFull, TickLink};
 use firmware::recorder::{Record, Sample};
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 use hal_sim::devices::SettingsFlash;
 use hal_sim::devices::biss::{Preamble, encode};
 use hal_sim::run::IDENTITY;

@@ -7,12 +7,13 @@ pub mod fuzz;
 pub mod ideal;
 pub mod trouble;
 
-use firmware::blackbox::BlackBox;
-use firmware::controller::Outputs;
+use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
-use firmware::link::{Link, Mode, PanelLink, TickLink};
-use firmware::panel::{Panel, Session};
+use firmware::fault_record::BlackBox;
+use firmware::gcs::{Panel, Session};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
+use firmware::queues::{Link, PanelLink, TickLink};
 use firmware::recorder::Sample;
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;

@@ -1,8 +1,8 @@
 //! The black box on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
 
-use firmware::blackbox::{AFTER, ROWS};
-use firmware::link::Mode;
-use firmware::panel::CAUSES;
+use firmware::fault_record::{AFTER, ROWS};
+use firmware::gcs::CAUSES;
+use firmware::mode::Mode;
 use tests::Bench;
 
 /// A row of `FLR?`: tick, mode, fault, then pivots, errors, duties, currents, supply, cost.

@@ -1,8 +1,9 @@
 //! A centre of rotation beside the platform's centre: the machine turns about that point.
 
-use firmware::link::{Command, Link, Mode, Snapshot};
+use firmware::mode::Mode;
 use firmware::motion::{Centre, Ground, plan_line};
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link, Snapshot};
 use firmware::recorder::Sample;
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;

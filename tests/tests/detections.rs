@@ -2,7 +2,7 @@
 //! Through the simulated hardware and the firmware's own drivers; thresholds are set as a user sets them.
 
 use firmware::fault::{FaultKind, Reaction};
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::devices::EncoderFault;
 use tests::Bench;
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use firmware::link::{Command, Link};
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link};
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;
 use hal_sim::observer::TickRecord;

@@ -1,7 +1,7 @@
 //! The controlled stop, whatever is under way: a line, a turn about another centre, a stream, a waveform. It stays on the path that
 //! the motion would have taken, within the limits of the motion, and in the workspace.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;

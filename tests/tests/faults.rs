@@ -3,7 +3,7 @@
 
 use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use hal_sim::devices::{EncoderFault, StageParameters};
 use hal_sim::plant::External;

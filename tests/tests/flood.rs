@@ -1,7 +1,7 @@
 //! All clients send as much as is taken of them, at every tick, while the stage moves: the motion is the same to the bit, and a
 //! stop is obeyed as soon as ever.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::recorder::Sample;
 use tests::fuzz::Random;
 use tests::ideal::Ideal;

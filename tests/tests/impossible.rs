@@ -1,9 +1,10 @@
 //! Pivots that are no pose, and setpoints that no pivots can follow.
 
 use firmware::fault::FaultKind;
-use firmware::link::{Command, Link, Mode, Snapshot};
+use firmware::mode::Mode;
 use firmware::motion::{Ground, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
+use firmware::queues::{Command, Link, Snapshot};
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;
 use tests::Bench;

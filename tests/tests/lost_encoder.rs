@@ -2,7 +2,7 @@
 //!
 //! `CASES=1000 cargo test -p tests --test lost_encoder -- --nocapture` prints how far it is off.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::devices::{EncoderFault, StageParameters};
 use hal_sim::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! Moves, retargets and stops by command, on the simulated machine.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::recorder::Sample;
 use tests::Bench;
 

@@ -1,6 +1,6 @@
 //! What the data recorder says of a move, against what the simulator knows of the same ticks.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;

@@ -4,7 +4,7 @@
 //! `CASES=300 cargo test -p tests --test second_fault -- --nocapture` prints how far two lost encoders let the platform be off.
 
 use firmware::fault::FaultKind;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use hal_sim::devices::{EncoderFault, StageParameters};
 use hal_sim::run::{RunOptions, stage_parameters};

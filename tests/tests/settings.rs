@@ -1,9 +1,10 @@
 //! Parameters set on a running controller reach its loop.
 
-use firmware::config::Config;
+use firmware::control::config::Config;
 use firmware::fault::FaultKind;
-use firmware::link::{Command, Mode};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
+use firmware::queues::Command;
 use tests::Bench;
 use tests::ideal::Ideal;
 

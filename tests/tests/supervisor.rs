@@ -1,10 +1,11 @@
 //! The supervisor's table, line by line: every event in every state, through the tick, with the simulated machine behind it.
 
-use firmware::config::Config;
-use firmware::controller::{Event, Outcome, STATES, TABLE};
-use firmware::link::{Command, Link, Mode, PanelLink, Snapshot, TickLink};
+use firmware::control::config::Config;
+use firmware::control::{Event, Outcome, STATES, TABLE};
+use firmware::mode::Mode;
 use firmware::motion::{Axis, Centre, Ground, Plan, Start, Stop, plan_line, plan_stop};
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
 use hal_sim::devices::{EncoderFault, StageParameters};
 use hal_sim::host::Host;
 

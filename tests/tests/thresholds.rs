@@ -2,7 +2,7 @@
 //! shows that a fault fires and its twin does not, these fail when a threshold is doubled or a count is not started anew.
 
 use firmware::fault::FaultKind;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use hal_sim::devices::EncoderFault;
 use tests::Bench;
 use tests::trouble::PIVOT;

@@ -1,6 +1,6 @@
 //! The tool's point travels the straight line while the platform turns about it: on the simulated machine, by its own truth.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use tests::Bench;
 
 /// Where a point of the platform (mm, in its axes) is on the machine: x and y, mm.

@@ -1,7 +1,7 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
 use super::Position;
-use super::float::Order;
+use crate::number::float::Order;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,17 +4,17 @@
 //! curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in which theta comes to
 //! rest later than the point, leaves no room for a brake that takes as long for both: then each has its own.
 
-use super::axis::Axis;
 use super::brake::Brake;
-use super::envelope::{Broken, Envelope, Legs, Looks};
-use super::fit::Track;
-use super::float::Order;
-use super::ground::Ground;
+use super::check::platform::greatest;
+use super::check::sample::Arc;
+use super::check::{Broken, Envelope, Legs, Looks};
+use super::constraints::Ground;
+use super::plan::axis_state::Axis;
+use super::plan::units::UnitLimits;
 use super::plan::{Piece, Plan, Start};
-use super::platform::greatest;
-use super::sample::Arc;
-use super::tracks::{Pieces, brake, merged};
-use super::units::UnitLimits;
+use super::profile::tracks::{Pieces, brake, merged};
+use super::profile::whole_ticks::Track;
+use crate::number::float::Order;
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

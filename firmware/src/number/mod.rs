@@ -25,6 +25,8 @@
 //! ([`crate::recorder::RunningHash`]); `cargo chip --ticks` does for as many ticks of motion from a seed, and with
 //! `--flip` it shows that a single bit is found. How far all of it is from exact: tests `exactness`, `fifty_digits` and `all_inputs`.
 
+pub(crate) mod float;
+
 mod arcsine;
 mod fixed;
 mod multiply;

@@ -20,64 +20,18 @@
 //! | `panel` | the end outside of it: orders, reading, turns put back |
 //! | `hash` | a hash of every tick |
 
-mod hash;
-mod panel;
+mod memory;
+mod reader;
+mod running_hash;
+mod sample;
 mod setup;
-mod store;
-mod tick;
-mod word;
+mod signal;
+mod writer;
 
-pub use hash::RunningHash;
-pub use panel::{Cursor, PanelRecorder, Progress};
-pub use setup::{MOST_BETWEEN, Setup, TABLES, WIDEST, Watch};
-pub use store::Recorder;
-pub use tick::TickRecorder;
-pub use word::{Kind, Word};
-
-use crate::drivers::bridge::Duty;
-use crate::fault::FaultKind;
-use crate::link::Mode;
-use crate::motion::Setpoint;
-use kinematics::Angle;
-
-/// All that a tick computed.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// The tick.
-    pub tick: u64,
-    /// State of the supervisor.
-    pub mode: Mode,
-    /// The latched fault.
-    pub fault: Option<FaultKind>,
-    /// Setpoint of the platform.
-    pub setpoint: Setpoint,
-    /// Setpoint of the point that is moved: the platform's unless a centre of rotation has been chosen.
-    pub point: Setpoint,
-    /// Setpoint of the pivots; the measured angles while the servo is off.
-    pub pivot_setpoints: [Angle; 3],
-    /// Their rates, rad/s.
-    pub pivot_rates: [f32; 3],
-    /// Measured pivots.
-    pub pivots: [Angle; 3],
-    /// Duties.
-    pub duty: [Duty; 3],
-    /// Motor currents, ADC counts.
-    pub current_counts: [u16; 3],
-    /// Supply, ADC counts.
-    pub supply_counts: u16,
-    /// What the tick before cost, cycles.
-    pub tick_cycles: u32,
-    /// Commands taken so far.
-    pub commands: u32,
-}
-
-/// Somebody who looks at every tick. Runs inside it: no allocation, no blocking, no unbounded work.
-pub trait Record {
-    /// Takes the sample of one tick.
-    fn record(&mut self, sample: &Sample);
-}
-
-impl Record for () {
-    #[inline]
-    fn record(&mut self, _: &Sample) {}
-}
+pub use memory::Recorder;
+pub use reader::{Cursor, PanelRecorder, Progress};
+pub use running_hash::RunningHash;
+pub use sample::{Record, Sample};
+pub use setup::{MOST_BETWEEN, RECORD_WORDS, Setup, TABLES, WIDEST, Watch};
+pub use signal::{Kind, Word};
+pub use writer::TickRecorder;

@@ -1,12 +1,18 @@
 //! What a record is to be.
 
-use super::word::Word;
+use super::signal::Word;
+use crate::parameters::RECORD_ROWS;
 use heapless::Vec;
 
 /// Signals that a record can hold for its reader.
 pub const TABLES: usize = 8;
 /// Words of the widest row: some signals are worked out of several words.
 pub const WIDEST: usize = 11;
+/// Words of the data recorder.
+pub const RECORD_WORDS: usize = RECORD_ROWS * WIDEST;
+
+const _: () = assert!(RECORD_ROWS * TABLES >= 16_384);
+
 /// Most ticks from row to row. A pivot at 10 rad/s makes 5.2 turns in them, inside the 8 by which turns are put back.
 pub const MOST_BETWEEN: u32 = 65_536;
 
@@ -45,7 +51,7 @@ impl Watch {
     /// For a value in the word's own unit. Rising is from below to at or above, falling the other way.
     pub fn new(word: Word, value: f64, rising: bool) -> Self {
         let level = match word.kind() {
-            super::Kind::Float => super::word::ordered((value as f32 + 0.0).to_bits()),
+            super::Kind::Float => super::signal::ordered((value as f32 + 0.0).to_bits()),
             // From here up the integer is at or above the value.
             _ => libm::ceil(value) as i64,
         };

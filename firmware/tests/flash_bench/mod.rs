@@ -8,9 +8,9 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
-use firmware::panel::{Identity, PARAMETERS, Panel};
+use firmware::gcs::{Identity, PARAMETERS, Panel};
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 use panel_bench::Bench;
 
 pub const SECTORS: usize = 4;

@@ -2,14 +2,15 @@
 #![allow(dead_code)] // Each test file uses its part.
 
 use core::convert::Infallible;
-use firmware::config::Config;
+use firmware::control::config::Config;
+use firmware::control::loop_counters::Interval;
 use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
-use firmware::interval::Interval;
-use firmware::link::{Command, Link, Mode, PanelLink, Snapshot, TickLink};
+use firmware::gcs::{Identity, Panel, Session};
+use firmware::mode::Mode;
 use firmware::motion::{Motion, Scale, Setpoint};
-use firmware::panel::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
 use firmware::recorder::Sample;
 use kinematics::{Angle, Pose, inverse};
 

@@ -6,7 +6,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
 use super::{Bench, BenchError, Divergence, Period, TickCost, Twin, image};

@@ -17,12 +17,12 @@
 use super::period::{Period, Service, Trace};
 use crate::devices::biss::{Preamble, encode};
 use crate::observer::TickRecord;
-use firmware::config::Config;
-use firmware::controller::{Inputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::{RawFrame, decode};
-use firmware::link::{Link, PanelLink, Snapshot, TickLink};
-use firmware::panel::{Identity, Panel, Session};
+use firmware::gcs::{Identity, Panel, Session};
 use firmware::parameters::Parameters;
+use firmware::queues::{Link, PanelLink, Snapshot, TickLink};
 use std::collections::VecDeque;
 use std::fmt;
 

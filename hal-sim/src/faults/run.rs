@@ -1,11 +1,12 @@
 //! One run of the campaign.
 
-use firmware::blackbox::BlackBox;
 use firmware::fault::Fault;
-use firmware::link::{Command, Link, Mode, PanelLink};
-use firmware::panel::{CAUSES, Panel, Session};
+use firmware::fault_record::BlackBox;
+use firmware::gcs::{CAUSES, Panel, Session};
+use firmware::mode::Mode;
+use firmware::queues::{Command, Link, PanelLink};
 use firmware::recorder::{Record, Sample};
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 
 use super::injection::Injection;
 use super::random::Random;

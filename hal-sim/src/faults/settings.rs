@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use firmware::link::Link;
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Panel, Session};
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::queues::Link;
+use firmware::settings_store::Keeper;
 
 use super::random::Random;
 use crate::devices::{SettingsFlash, StageParameters};

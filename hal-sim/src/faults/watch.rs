@@ -1,7 +1,7 @@
 //! Judges a run while it goes on.
 
 use firmware::fault::Reaction;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 
 use super::effect::{Effects, Now};
 use super::expected::{Cause, MOST_EARLY};

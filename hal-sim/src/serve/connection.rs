@@ -5,8 +5,8 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
-use firmware::link::PanelLink;
-use firmware::panel::{Panel, Session};
+use firmware::gcs::{Panel, Session};
+use firmware::queues::PanelLink;
 use rustix::event::PollFlags;
 
 use super::Notice;

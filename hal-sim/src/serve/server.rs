@@ -8,11 +8,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use firmware::blackbox::BlackBox;
-use firmware::link::{Link, PanelLink, TickLink};
-use firmware::panel::Panel;
+use firmware::fault_record::BlackBox;
+use firmware::gcs::Panel;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::queues::{Link, PanelLink, TickLink};
+use firmware::settings_store::Keeper;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 

@@ -1,6 +1,6 @@
 //! What viewers may send: a line for the controller, with the token that came with the page.
 
-use firmware::panel::LINE_BYTES;
+use firmware::gcs::LINE_BYTES;
 use serde::Deserialize;
 
 /// Longest message, bytes.

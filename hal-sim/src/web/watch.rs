@@ -38,8 +38,8 @@ mod tests {
     use super::*;
     use crate::host::Host;
     use crate::run::{IDENTITY, RunOptions, controller_parameters, stage_parameters};
-    use firmware::link::Link;
-    use firmware::panel::{Panel, Session};
+    use firmware::gcs::{Panel, Session};
+    use firmware::queues::Link;
     use firmware::recorder::RunningHash;
 
     /// Ticks between two looks: 60 times a second.

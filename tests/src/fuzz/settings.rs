@@ -6,9 +6,9 @@
 use super::Random;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
-use firmware::panel::{PARAMETERS, Panel};
+use firmware::gcs::{PARAMETERS, Panel};
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::settings_store::Keeper;
 use hal_sim::devices::SettingsFlash;
 use hal_sim::run::IDENTITY;
 

@@ -1,7 +1,7 @@
 //! Lines to send: some that mean something, some nearly, some nothing at all.
 
 use super::random::Random;
-use firmware::panel::PARAMETERS;
+use firmware::gcs::PARAMETERS;
 
 /// Lines that mean something; `{x}` a length, `{w}` an angle, `{n}` any number, `{p}` a parameter, `{v}` a variable, `{m}` a
 /// macro, `{a}` an axis, `{c}` a condition, `{i}` a small whole number.

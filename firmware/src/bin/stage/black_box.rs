@@ -1,6 +1,6 @@
 //! Where the black box lies: in memory that the start-up code leaves alone, as long as there is power.
 
-use firmware::blackbox::BlackBox;
+use firmware::fault_record::BlackBox;
 
 /// What it holds after a power-up is found out by its checks.
 #[unsafe(link_section = ".uninit.BLACK_BOX")]

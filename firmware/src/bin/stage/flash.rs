@@ -12,7 +12,7 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
-use firmware::store::RECORD_BYTES;
+use firmware::settings_store::RECORD_BYTES;
 use stm32f4xx_hal::pac;
 
 /// Where it begins, after the code's memory.

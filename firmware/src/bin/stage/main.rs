@@ -74,14 +74,12 @@ mod app {
         watchdog,
     };
     use core::mem::MaybeUninit;
-    use firmware::{
-        config::Config,
-        controller::{Inputs, State, tick},
-        link::{Link, PanelLink, TickLink},
-        panel::{Identity, Panel, Session},
-        parameters::Parameters,
-        store::Keeper,
-    };
+    use firmware::control::config::Config;
+    use firmware::control::{Inputs, State, tick};
+    use firmware::gcs::{Identity, Panel, Session};
+    use firmware::parameters::Parameters;
+    use firmware::queues::{Link, PanelLink, TickLink};
+    use firmware::settings_store::Keeper;
 
     const IDENTITY: Identity = Identity {
         serial: "0",

@@ -2,7 +2,7 @@
 
 use crate::{restart, trace::TRACE};
 use core::sync::atomic::{AtomicU32, Ordering};
-use firmware::panel::CAUSES;
+use firmware::gcs::CAUSES;
 use stm32f4xx_hal::{pac, prelude::*, watchdog::IndependentWatchdog};
 
 /// How long the loop may stand still, ms. The oscillator behind it is good to -30 and +50 %.

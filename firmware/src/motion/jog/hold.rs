@@ -1,11 +1,11 @@
 //! How long a jog can be held before its axes have to brake, and how much slower it has to be where that is too short.
 
-use super::super::axis::Axis;
-use super::super::change::Ramp;
-use super::super::float::{Order, cut, float};
-use super::super::swing::{Pace, per_second};
 use super::Jog;
 use super::start::Setting;
+use crate::motion::brake::velocity_change::Ramp;
+use crate::motion::check::pivot_bounds::{Pace, per_second};
+use crate::motion::plan::axis_state::Axis;
+use crate::number::float::{Order, cut, float};
 
 /// Some axes would be over after so many seconds at the velocity wanted: too soon to reach it and to stop.
 pub(super) struct Short {

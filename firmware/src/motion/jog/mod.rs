@@ -18,21 +18,21 @@
 
 mod end;
 mod hold;
-mod reach;
 mod start;
+mod travel;
 
 use self::end::End;
 use self::start::{Setting, State};
-use super::axis::Axis;
-use super::change::{Force, Ramp, release};
-use super::envelope::{Envelope, Legs, Looks};
-use super::ground::Ground;
+use super::brake::velocity_change::{Force, Ramp, release};
+use super::check::pivot_bounds::{Pace, per_second};
+use super::check::{Envelope, Legs, Looks};
+use super::constraints::Ground;
+use super::plan::axis_state::Axis;
+use super::plan::units::UnitLimits;
 use super::plan::{Piece, Plan, Start, after_all};
+use super::profile::tracks::Pieces;
 use super::refusal::Refusal;
-use super::swing::{Pace, per_second};
-use super::tracks::Pieces;
-use super::transition::NoTransition;
-use super::units::UnitLimits;
+use super::retarget::NoTransition;
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
 /// says. Zero is a velocity as any other: that axis stops smoothly.

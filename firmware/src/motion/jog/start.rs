@@ -1,15 +1,15 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
-use super::super::axis::{Axis, SUB_BITS};
-use super::super::change::{Force, release_seconds};
-use super::super::float::{Order, hypot, rough};
-use super::super::ground::Ground;
 use super::super::refusal::Refusal;
-use super::super::swing::{Pace, Swing, per_second};
-use super::super::transition::NoTransition;
-use super::super::units::{AXIS_UNITS, PER_UNIT};
-use super::reach::Steady;
+use super::travel::Steady;
+use crate::motion::brake::velocity_change::{Force, release_seconds};
+use crate::motion::check::pivot_bounds::{Pace, Swing, per_second};
+use crate::motion::constraints::Ground;
+use crate::motion::plan::axis_state::{Axis, SUB_BITS};
+use crate::motion::plan::units::{AXIS_UNITS, PER_UNIT};
+use crate::motion::retarget::NoTransition;
 use crate::number::Fixed;
+use crate::number::float::{Order, hypot, rough};
 use kinematics::{Angle, Scalar};
 
 /// 0.2 um on the reference stage.
@@ -30,7 +30,7 @@ pub(super) struct Setting<'a> {
     force: Force,
 }
 
-/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see [`Limits`](super::super::Limits).
+/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see [`Limits`](crate::motion::Limits).
 fn is_within(value: f64, most: f64) -> bool {
     value.abs().to_bits() <= most.to_bits()
 }

@@ -12,7 +12,7 @@
 //! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece is made
 //! up in the next: nothing accumulates.
 
-use super::super::axis::{Axis, JERK_STEP};
+use crate::motion::plan::axis_state::{Axis, JERK_STEP};
 
 /// The three pieces' lengths, and the inverse of the above with times in units of T.
 #[derive(Clone, Copy, Debug)]

@@ -22,19 +22,19 @@
 //! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock differs a little
 //! (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
 
-mod course;
-mod kinds;
 mod knot;
+mod messages;
+mod plans;
 mod spline;
 
-pub use self::kinds::{Clock, End, Next, NotTaken, Progress};
+pub use messages::{Clock, End, Next, NotTaken, Progress};
 
 use self::knot::Knot;
 use self::spline::WINDOW;
-use super::axis::Axis;
-use super::check::check_target;
-use super::ground::Ground;
+use super::check::target::check_target;
+use super::constraints::Ground;
 use super::plan::Position;
+use super::plan::axis_state::Axis;
 use heapless::Deque;
 
 /// Targets that can wait.

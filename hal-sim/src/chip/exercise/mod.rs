@@ -18,7 +18,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use std::path::Path;
 use std::sync::mpsc;
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
 use super::run::ChipError;

@@ -1,6 +1,6 @@
 //! What the ticks of an exercise cost, by what they did.
 
-use firmware::link::Mode;
+use firmware::mode::Mode;
 
 /// Instructions of some of the ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,11 +6,11 @@ mod tick;
 use crate::bench::{Bench, plain};
 use crate::random::Random;
 use core::hint::black_box;
-use firmware::config::Config;
+use firmware::control::config::Config;
+use firmware::control::encoder::Encoder;
+use firmware::control::servo::{AxisServo, PivotSetpoint};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
-use firmware::encoder::Encoder;
 use firmware::parameters::Parameters;
-use firmware::servo::{AxisServo, PivotSetpoint};
 use frames::frames;
 use kinematics::Angle;
 

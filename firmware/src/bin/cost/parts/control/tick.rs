@@ -7,12 +7,13 @@ use super::frames::frames;
 use crate::bench::Bench;
 use crate::random::Random;
 use crate::table::Came;
-use firmware::config::Config;
-use firmware::controller::{Inputs, State, tick};
+use firmware::control::config::Config;
+use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::link::{Command, Link, Mode, PanelLink, TickLink};
+use firmware::mode::Mode;
 use firmware::motion::{Axis, Centre, Ground, Plan, plan_line, plan_transition};
 use firmware::number::Fixed;
+use firmware::queues::{Command, Link, PanelLink, TickLink};
 use firmware::recorder::{Record, RunningHash, Sample, Setup, Word};
 use kinematics::{Angle, Pose, inverse};
 

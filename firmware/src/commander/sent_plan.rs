@@ -1,0 +1,153 @@
+//! A plan as the command side knows it: with the state it starts from, so that it can be left from outside the tick.
+
+use crate::gcs::error::ErrorCode;
+use crate::motion::{
+    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Refusal, Start, Stop, Tries,
+    plan_jog, plan_line, plan_stop, try_transition,
+};
+
+/// What a motion is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Goal {
+    /// Rest at a position.
+    Place(Position),
+    /// A velocity, kept as long as it can be: of x and y in the base frame (mm/s) and of theta (deg/s).
+    Velocity([f64; 3]),
+    /// What a stream's targets say.
+    Stream,
+}
+
+/// A plan that was sent to the tick.
+#[derive(Clone, Debug)]
+pub(crate) struct Course {
+    /// The plan.
+    pub plan: Plan,
+    /// What it is for; of a stop, what the motion before it was for.
+    pub goal: Goal,
+    /// Of a stop, how it brakes.
+    pub stop: Option<Stop>,
+    /// The three axes at its first tick.
+    start: [Axis; 3],
+}
+
+impl Course {
+    /// From rest at `from`.
+    pub fn from_rest(
+        id: u32,
+        from: Position,
+        goal: Goal,
+        ground: &Ground,
+    ) -> Result<Self, ErrorCode> {
+        let start = from.map(Axis::at_rest);
+        let plan = match goal {
+            // It makes its plans itself.
+            Goal::Stream => Err(ErrorCode::Busy),
+            Goal::Place(to) => plan_line(id, from, to, ground).map_err(|refusal| code(&refusal)),
+            Goal::Velocity(velocity) => {
+                plan_jog(id, Start::Rest(from), &start, &velocity, ground).map_err(|no| match no {
+                    NoTransition::Refused(refusal) => code(&refusal),
+                    // At rest there is nothing to stop.
+                    NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
+                })
+            }
+        };
+        Ok(Self {
+            plan: plan?,
+            goal,
+            stop: None,
+            start,
+        })
+    }
+
+    /// A plan of a stream, from these axes.
+    pub const fn streamed(plan: Plan, start: [Axis; 3]) -> Self {
+        Self {
+            plan,
+            goal: Goal::Stream,
+            stop: None,
+            start,
+        }
+    }
+
+    /// The way to another goal that leaves this course at its tick `at`, by the next of `tries`; what of it is not planned yet is
+    /// left `ahead`.
+    pub fn left_for(
+        &self,
+        goal: Goal,
+        id: u32,
+        at: u64,
+        ground: &Ground,
+        tries: &mut Tries,
+        ahead: &mut Option<Ahead>,
+    ) -> Result<Self, NoTransition> {
+        let mut next = Self {
+            plan: Plan::default(),
+            goal,
+            stop: None,
+            start: self.plan.state_after(&self.start, at),
+        };
+        match goal {
+            // It makes its plans itself.
+            Goal::Stream => Err(NoTransition::NeedsStop),
+            Goal::Place(to) => {
+                let (of, from) = (&self.plan, &self.start);
+                let leave = Leave { of, from, at };
+                try_transition(&mut next.plan, id, leave, to, ground, tries, ahead)
+            }
+            // A plan that has ended by then leaves nothing to leave.
+            Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
+            Goal::Velocity(velocity) => {
+                let splice = Start::Splice {
+                    plan: self.plan.id,
+                    tick: at,
+                };
+                plan_jog(id, splice, &next.start, &velocity, ground).map(|plan| next.plan = plan)
+            }
+        }?;
+        Ok(next)
+    }
+
+    /// What lies `ahead` of this course, which is its head, from tick `at` on.
+    pub fn gone_on(
+        &self,
+        ahead: &Ahead,
+        id: u32,
+        at: u64,
+        ground: &Ground,
+        tries: &mut Tries,
+    ) -> Result<Self, NoTransition> {
+        Ok(Self {
+            plan: ahead.go_on(id, at, ground, tries)?,
+            start: self.plan.state_after(&self.start, at),
+            ..*self
+        })
+    }
+
+    /// Whether it takes over from another one in motion.
+    pub fn is_splice(&self) -> bool {
+        matches!(self.plan.start, Start::Splice { .. })
+    }
+
+    /// The stop that leaves this course at its tick `at`; `None` when it comes to rest by itself as soon.
+    pub fn stopped(&self, id: u32, at: u64, ground: &Ground, stop: Stop) -> Option<Self> {
+        Some(Self {
+            plan: plan_stop(id, &self.plan, &self.start, at, ground, stop)?,
+            start: self.plan.state_after(&self.start, at),
+            stop: Some(stop),
+            goal: self.goal,
+        })
+    }
+}
+
+/// What a connection is told of a refusal.
+pub(crate) const fn code(refusal: &Refusal) -> ErrorCode {
+    match refusal {
+        Refusal::Velocity
+        | Refusal::PivotRate { .. }
+        | Refusal::Limits
+        | Refusal::Acceleration
+        | Refusal::Jerk
+        | Refusal::Pivots => ErrorCode::VelocityLimit,
+        _ => ErrorCode::PositionLimit,
+    }
+}

@@ -1,0 +1,137 @@
+//! Soft limits of the axes: travel as the user narrows it.
+//!
+//! They hold for the commanded point as [`View::limited`](super::frames::View::limited) counts it: in the base frame's axes,
+//! whatever work frame is enabled. One that has not been set is where the travel ends.
+
+use super::axis::{Axis, AxisValues};
+use super::coordinates::{Coordinates, Travel};
+use crate::gcs::error::ErrorCode;
+
+/// Lowest and highest targets, mm and deg, and whether they count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SoftLimits {
+    lowest: AxisValues,
+    highest: AxisValues,
+    pub active: [bool; 6],
+}
+
+impl SoftLimits {
+    /// All of the travel.
+    pub const fn new() -> Self {
+        Self {
+            lowest: [None; 6],
+            highest: [None; 6],
+            active: [true; 6],
+        }
+    }
+
+    /// The same with another travel, which narrows them. `None` when it leaves nothing between them.
+    pub fn fitted(&self, travel: &Travel) -> Option<Self> {
+        let mut fitted = *self;
+        for (i, [least, most]) in travel.iter().enumerate() {
+            let outside = self.lowest[i].is_some_and(|lowest| lowest > *most)
+                || self.highest[i].is_some_and(|highest| highest < *least);
+            if outside {
+                return None;
+            }
+            fitted.lowest[i] = self.lowest[i].map(|lowest| lowest.max(*least));
+            fitted.highest[i] = self.highest[i].map(|highest| highest.min(*most));
+        }
+        Some(fitted)
+    }
+
+    /// Lowest and highest target of an axis.
+    pub fn range(&self, axis: Axis, travel: &Travel) -> [f64; 2] {
+        let (i, [lowest, highest]) = (axis.index(), travel[axis.index()]);
+        [
+            self.lowest[i].unwrap_or(lowest),
+            self.highest[i].unwrap_or(highest),
+        ]
+    }
+
+    /// What has been set for an axis and counts.
+    pub const fn set_range(&self, axis: Axis) -> [Option<f64>; 2] {
+        let i = axis.index();
+        if self.active[i] {
+            [self.lowest[i], self.highest[i]]
+        } else {
+            [None; 2]
+        }
+    }
+
+    /// Whether every axis of `limited` is inside.
+    pub fn allow(&self, limited: &Coordinates) -> bool {
+        Axis::ALL.into_iter().all(|axis| {
+            let [lowest, highest] = self.set_range(axis);
+            let value = limited[axis.index()];
+            lowest.is_none_or(|lowest| lowest <= value)
+                && highest.is_none_or(|highest| value <= highest)
+        })
+    }
+
+    /// `NLM`, with the target that must stay inside.
+    pub fn set_lowest(
+        &mut self,
+        values: &AxisValues,
+        limited: &Coordinates,
+        travel: &Travel,
+    ) -> Result<(), ErrorCode> {
+        let mut wanted = *self;
+        wanted.lowest = replaced(&wanted.lowest, values);
+        self.change(wanted, limited, travel)
+    }
+
+    /// `PLM`.
+    pub fn set_highest(
+        &mut self,
+        values: &AxisValues,
+        limited: &Coordinates,
+        travel: &Travel,
+    ) -> Result<(), ErrorCode> {
+        let mut wanted = *self;
+        wanted.highest = replaced(&wanted.highest, values);
+        self.change(wanted, limited, travel)
+    }
+
+    /// `SSL`: 0 or 1.
+    pub fn activate(
+        &mut self,
+        values: &AxisValues,
+        limited: &Coordinates,
+        travel: &Travel,
+    ) -> Result<(), ErrorCode> {
+        let mut wanted = *self;
+        for (active, value) in wanted.active.iter_mut().zip(values) {
+            *active = match *value {
+                None => *active,
+                Some(0.0) => false,
+                Some(1.0) => true,
+                Some(_) => return Err(ErrorCode::OutOfRange),
+            };
+        }
+        self.change(wanted, limited, travel)
+    }
+
+    /// Limits beyond the travel, that cross, or that leave out where the stage is, are refused as a whole.
+    fn change(
+        &mut self,
+        wanted: Self,
+        limited: &Coordinates,
+        travel: &Travel,
+    ) -> Result<(), ErrorCode> {
+        let good = Axis::ALL.into_iter().all(|axis| {
+            let [least, most] = travel[axis.index()];
+            let [lowest, highest] = wanted.range(axis, travel);
+            least <= lowest && lowest <= highest && highest <= most
+        });
+        if !good || !wanted.allow(limited) {
+            return Err(ErrorCode::SoftLimit);
+        }
+        *self = wanted;
+        Ok(())
+    }
+}
+
+fn replaced(limits: &AxisValues, values: &AxisValues) -> AxisValues {
+    core::array::from_fn(|i| values[i].or(limits[i]))
+}

@@ -1,0 +1,109 @@
+//! What a tick is given, what it gives, and what the loop remembers between ticks.
+
+use super::encoder::Encoder;
+use super::loop_counters::Interval;
+use super::servo::AxisServo;
+use super::settling::Settling;
+use super::supervisor::Watch;
+use crate::drivers::biss::RawFrame;
+use crate::drivers::bridge::Duty;
+use crate::fault::{Fault, FaultKind};
+use crate::mode::Mode;
+use crate::motion::Motion;
+
+/// What the hardware gives a tick.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Frames of the three encoders, all latched at the same instant.
+    pub frames: [RawFrame; 3],
+    /// Fault pins of the bridges (true: fault).
+    pub bridge_fault: [bool; 3],
+    /// Emergency stop pressed.
+    pub emergency_stop: bool,
+    /// Motor currents, ADC counts.
+    pub current_counts: [u16; 3],
+    /// Supply, ADC counts.
+    pub supply_counts: u16,
+    /// Cost of the tick before, processor cycles; 0 where nobody counts them.
+    pub tick_cycles: u32,
+    /// The tick before ended after its deadline, or there should have been one more since.
+    pub late: bool,
+}
+
+/// What a tick gives the hardware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Duties; zero brakes.
+    pub duty: [Duty; 3],
+    /// Sleep pins: false lets the motors coast whatever the duty.
+    pub awake: bool,
+}
+
+/// All that the loop remembers.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    pub(super) tick: u64,
+    pub(super) mode: Mode,
+    pub(super) fault: Option<Fault>,
+    /// The fault that has ended the controlled stop of the one before.
+    pub(super) worse: Option<Fault>,
+    /// A latched fault lets the motors coast.
+    pub(super) coasts: bool,
+    /// The pivot that has lost its encoder, until the fault is acknowledged.
+    pub(super) lost: Option<usize>,
+    pub(super) referenced: bool,
+    pub(super) encoders: [Encoder; 3],
+    pub(super) motion: Motion,
+    pub(super) servo: [AxisServo; 3],
+    pub(super) settling: Settling,
+    pub(super) supply: f32,
+    pub(super) commands: u32,
+    pub(super) refused: u32,
+    /// State and commands at the end of the last tick, and whether they are news that no snapshot has been due for yet.
+    pub(super) known: (Mode, u32),
+    pub(super) news: bool,
+    pub(super) interval: Interval,
+    /// Late ticks, a hundred each, less those forgiven.
+    pub(super) lateness: u32,
+    /// Ticks in a row with a low supply.
+    pub(super) low_supply: u8,
+    /// Square of how far out the setpoint may be, track radii.
+    pub(super) reach_square: f32,
+    /// The pivot that is watched in this tick; in [`SNAPSHOT_TURN`] none is.
+    pub(super) turn: usize,
+    pub(super) watch: [Watch; 3],
+}
+
+impl State {
+    /// State at power-up.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// State at power-up, with a fault that was found before: latched, so that nothing drives until it is acknowledged.
+    pub fn with_fault(kind: FaultKind) -> Self {
+        let fault = Fault {
+            kind,
+            pivot: None,
+            tick: 0,
+            value: 0.0,
+            limit: 0.0,
+        };
+        Self {
+            mode: Mode::Fault,
+            fault: Some(fault),
+            coasts: true,
+            ..Self::new()
+        }
+    }
+
+    /// The latched fault.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// The fault that has ended the controlled stop of that one.
+    pub fn worse(&self) -> Option<Fault> {
+        self.worse
+    }
+}

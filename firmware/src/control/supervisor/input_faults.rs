@@ -1,0 +1,105 @@
+//! Faults that the inputs show.
+
+use crate::control::config::{Config, SUPPLY_V_PER_COUNT};
+use crate::control::{Inputs, State};
+use crate::fault::{FaultKind, Reaction};
+use crate::mode::Mode;
+
+/// Ticks in a row that a low supply is one: 0.2 ms, over which a converter's noise is none.
+const SUPPLY_TICKS: u8 = 4;
+/// Ticks over which one late tick is forgiven.
+const FORGIVEN: u32 = 100;
+
+impl State {
+    /// Looks at what the inputs show. In a tick with nothing unusual that is one look at all of it.
+    #[inline]
+    pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
+        let [one, two, three] = inputs.bridge_fault;
+        let told = inputs.emergency_stop | inputs.late | one | two | three;
+        let kept = self.lateness | u32::from(self.low_supply);
+        let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
+        let has_power = inputs.supply_counts >= config.limits.supply_min;
+        if told || kept != 0 || !is_well || !has_power || self.mode == Mode::Fault {
+            self.look_at_inputs(config, inputs);
+        }
+    }
+
+    #[cold]
+    fn look_at_inputs(&mut self, config: &Config, inputs: &Inputs) {
+        if self.mode == Mode::Fault {
+            // An encoder that is lost loses its turns, whatever else is wrong already.
+            self.referenced &= self.encoders.iter().all(|e| e.unusable().is_none());
+            return;
+        }
+        if inputs.emergency_stop {
+            self.fail(FaultKind::EmergencyStop, None, 0.0, 0.0);
+            return;
+        }
+        self.check_lateness(config, inputs.late);
+        if self.servo_on() {
+            self.check_power(config, inputs);
+        }
+        if self.referenced || self.mode == Mode::Stopping {
+            self.check_encoders();
+        }
+    }
+
+    fn check_lateness(&mut self, config: &Config, late: bool) {
+        if late {
+            self.lateness = self.lateness.saturating_add(FORGIVEN);
+            let most = config.limits.late_ticks;
+            if self.lateness > most.saturating_mul(FORGIVEN) {
+                let value = self.lateness.div_ceil(FORGIVEN) as f32;
+                self.fail(FaultKind::LoopLate, None, value, most as f32);
+            }
+        } else {
+            self.lateness = self.lateness.saturating_sub(1);
+        }
+    }
+
+    fn check_power(&mut self, config: &Config, inputs: &Inputs) {
+        for i in 0..3 {
+            if inputs.bridge_fault[i] {
+                self.fail(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
+            }
+        }
+        if inputs.supply_counts >= config.limits.supply_min {
+            self.low_supply = 0;
+            return;
+        }
+        self.low_supply += 1;
+        if self.low_supply >= SUPPLY_TICKS {
+            self.low_supply = 0;
+            let volts = |counts: u16| f32::from(counts) * SUPPLY_V_PER_COUNT as f32;
+            let limit = config.limits.supply_min;
+            self.fail(
+                FaultKind::SupplyLow,
+                None,
+                volts(inputs.supply_counts),
+                volts(limit),
+            );
+        }
+    }
+
+    fn check_encoders(&mut self) {
+        for i in 0..3 {
+            if self.lost == Some(i) {
+                continue;
+            }
+            if let Some(kind) = self.encoders[i].unusable() {
+                self.fail(kind, Some(i), 0.0, 0.0);
+            }
+        }
+    }
+
+    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so that its
+    /// integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own speed.
+    #[cold]
+    pub(in crate::control) fn freeze(&mut self, pivot: usize) {
+        if let Some(encoder) = self.encoders.get_mut(pivot) {
+            encoder.give_up(FaultKind::EncoderFrozen);
+        }
+        let kind = FaultKind::EncoderFrozen;
+        self.fail_with(Reaction::Brake, kind, Some(pivot), [0.0; 2]);
+    }
+}

@@ -1,0 +1,224 @@
+//! From lines to what they ask of the frames.
+
+use crate::commander::axis::{Axis, AxisSet, AxisValues};
+use crate::commander::frames::{FrameName, Kind};
+use crate::gcs::error::ErrorCode;
+use crate::gcs::parse::{ParseError, axis, number, values};
+use crate::gcs::request::{Action, Request};
+use crate::gcs::scan::Scanner;
+
+/// What is to be done with frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrameAction {
+    /// `KSD`, `KST`, `KSW`
+    Define(Kind, FrameName, AxisValues),
+    /// `KSF`
+    Here(FrameName),
+    /// `KLN`: child and parent.
+    Link(FrameName, FrameName),
+    /// `KEN`
+    Enable(FrameName),
+    /// `KRM`
+    Remove(FrameName),
+    /// `SPI`: R, S and T, mm.
+    Pivot([Option<f64>; 3]),
+}
+
+/// A question about frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameQuery {
+    /// `KEN?`: types of the enabled frames.
+    Enabled(Option<FrameName>),
+    /// `KET?`: enabled frames of the types.
+    Types(Option<Kind>),
+    /// `KLN?`
+    Chains(Option<FrameName>),
+    /// `KLS?`
+    List(Option<FrameName>, Option<ListItem>),
+    /// `KLT?`: start and end of the chain.
+    Totals(Option<FrameName>, Option<FrameName>),
+    /// `SPI?`: which of R, S and T; none stands for all.
+    Pivot([bool; 3]),
+}
+
+/// A property that `KLS?` tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListItem {
+    /// The type.
+    Type,
+    /// The frame it is in.
+    Parent,
+    /// Whether it is enabled.
+    Enabled,
+    /// Where it lies: along one axis, or all.
+    Position(Option<Axis>),
+}
+
+/// What follows the name of a command about frames.
+type Parsed = Result<Request, ParseError>;
+
+const A_NAME: &str = "a frame's name: a letter, then letters, digits or _, 16 at most";
+
+/// `KSD`, `KST` or `KSW`: a name, then pairs of axis and number; an axis that is not named is 0.
+pub fn define(kind: Kind, scanner: &mut Scanner<'_>) -> Parsed {
+    let name = name(scanner)?;
+    let values = if scanner.is_at_end() {
+        AxisValues::default()
+    } else {
+        values(scanner)?
+    };
+    act(FrameAction::Define(kind, name, values))
+}
+
+/// `KSF`
+pub fn here(scanner: &mut Scanner<'_>) -> Parsed {
+    act(FrameAction::Here(name(scanner)?))
+}
+
+/// `KLN`
+pub fn link(scanner: &mut Scanner<'_>) -> Parsed {
+    act(FrameAction::Link(name(scanner)?, name(scanner)?))
+}
+
+/// `KEN`
+pub fn enable(scanner: &mut Scanner<'_>) -> Parsed {
+    act(FrameAction::Enable(name(scanner)?))
+}
+
+/// `KRM`
+pub fn remove(scanner: &mut Scanner<'_>) -> Parsed {
+    act(FrameAction::Remove(name(scanner)?))
+}
+
+/// `SPI`: pairs of R, S or T and number.
+pub fn pivot(scanner: &mut Scanner<'_>) -> Parsed {
+    let mut wanted = [None; 3];
+    loop {
+        let (place, word) = pivot_axis(scanner)?;
+        if wanted[place].is_some() {
+            return Err(word);
+        }
+        wanted[place] = Some(number(scanner.next())?);
+        if scanner.is_at_end() {
+            return act(FrameAction::Pivot(wanted));
+        }
+    }
+}
+
+/// `SPI?`
+pub fn pivots(scanner: &mut Scanner<'_>) -> Parsed {
+    let mut named = [false; 3];
+    while !scanner.is_at_end() {
+        let (place, word) = pivot_axis(scanner)?;
+        if named[place] {
+            return Err(word);
+        }
+        named[place] = true;
+    }
+    ask(FrameQuery::Pivot(named))
+}
+
+/// `KEN?`
+pub fn enabled(scanner: &mut Scanner<'_>) -> Parsed {
+    ask(FrameQuery::Enabled(name_or_none(scanner)?))
+}
+
+/// `KLN?`
+pub fn chains(scanner: &mut Scanner<'_>) -> Parsed {
+    ask(FrameQuery::Chains(name_or_none(scanner)?))
+}
+
+/// `KLT?`
+pub fn totals(scanner: &mut Scanner<'_>) -> Parsed {
+    let start = name_or_none(scanner)?;
+    ask(FrameQuery::Totals(start, name_or_none(scanner)?))
+}
+
+/// `KET?`
+pub fn types(scanner: &mut Scanner<'_>) -> Parsed {
+    let word = scanner.word();
+    let kind = Kind::ALL
+        .into_iter()
+        .find(|kind| kind.word().as_bytes().eq_ignore_ascii_case(word.text));
+    if kind.is_none() && !word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::OutOfRange, "a type: KSD, KSF, KST or KSW"));
+    }
+    ask(FrameQuery::Types(kind))
+}
+
+/// `KLS?`
+pub fn list(scanner: &mut Scanner<'_>) -> Parsed {
+    let name = name_or_none(scanner)?;
+    let item = if scanner.is_at_end() {
+        None
+    } else {
+        Some(list_item(scanner)?)
+    };
+    ask(FrameQuery::List(name, item))
+}
+
+fn list_item(scanner: &mut Scanner<'_>) -> Result<ListItem, ParseError> {
+    let word = scanner.word();
+    let is = |name: &str| word.text.eq_ignore_ascii_case(name.as_bytes());
+    if is("TYPE") {
+        Ok(ListItem::Type)
+    } else if is("PARENT") {
+        Ok(ListItem::Parent)
+    } else if is("ENABLED") {
+        Ok(ListItem::Enabled)
+    } else if is("POS") {
+        let axis = if scanner.is_at_end() {
+            None
+        } else {
+            Some(axis(scanner.next(), &mut AxisSet::default())?)
+        };
+        Ok(ListItem::Position(axis))
+    } else {
+        Err(word.unfit(
+            ErrorCode::OutOfRange,
+            "an item: TYPE, PARENT, ENABLED or POS",
+        ))
+    }
+}
+
+fn act(action: FrameAction) -> Parsed {
+    Ok(Request::Act(Action::Frame(action)))
+}
+
+fn ask(query: FrameQuery) -> Parsed {
+    Ok(Request::Frames(query))
+}
+
+fn name(scanner: &mut Scanner<'_>) -> Result<FrameName, ParseError> {
+    let word = scanner.word();
+    if word.text.is_empty() {
+        return Err(word.unfit(ErrorCode::ParameterCount, A_NAME));
+    }
+    FrameName::new(word.text).ok_or_else(|| word.unfit(ErrorCode::OutOfRange, A_NAME))
+}
+
+fn name_or_none(scanner: &mut Scanner<'_>) -> Result<Option<FrameName>, ParseError> {
+    if scanner.is_at_end() {
+        return Ok(None);
+    }
+    name(scanner).map(Some)
+}
+
+/// The place of R, S or T, and the error should it have been named before.
+fn pivot_axis(scanner: &mut Scanner<'_>) -> Result<(usize, ParseError), ParseError> {
+    let word = scanner.next();
+    let place = match word.text {
+        b"R" | b"r" => 0,
+        b"S" | b"s" => 1,
+        b"T" | b"t" => 2,
+        b"" => return Err(word.unfit(ErrorCode::ParameterCount, "R, S or T")),
+        _ => return Err(word.unfit(ErrorCode::InvalidAxis, "R, S or T")),
+    };
+    Ok((
+        place,
+        word.unfit(
+            ErrorCode::AxisTwice,
+            "a coordinate that has not been named yet",
+        ),
+    ))
+}

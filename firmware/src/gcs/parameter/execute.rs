@@ -1,0 +1,129 @@
+//! Setting parameters: who may, when, and how the new values reach the tick.
+//!
+//! A line is carried out whole or not at all. The panel plans with the new parameters from the next line on; what the tick
+//! computes with is derived from them here and handed over as one command, which the tick takes only at rest. Nothing that
+//! depends on them is decided before the tick has said that it did.
+
+use super::{PARAMETERS, Parameter, Settings, When};
+use crate::gcs::Panel;
+use crate::gcs::error::ErrorCode;
+use crate::gcs::events::Event;
+use crate::gcs::session::Session;
+use crate::motion::Limits;
+use crate::parameters::Parameters;
+use crate::queues::PanelLink;
+
+/// What `CCL 1` asks for: against accidents, not against intruders. The same for all controllers of this family.
+pub(in crate::gcs) const PASSWORD: &[u8] = b"ADVANCED";
+
+impl Panel {
+    /// `SPA`: all settings or, with an error, none.
+    pub(in crate::gcs) fn set(
+        &mut self,
+        settings: &Settings,
+        session: &Session,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let mut wanted = self.parameters.clone();
+        for (address, value) in settings.iter().flatten() {
+            let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
+            self.permit(parameter, session.level)?;
+            parameter.put(*value, &mut wanted)?;
+        }
+        if session.level == 0 && !self.is_within_rating(&wanted) {
+            return Err(ErrorCode::OutOfRange);
+        }
+        self.put_in_force(wanted, link)?;
+        for (address, value) in settings.iter().flatten() {
+            self.events
+                .add(self.stage.tick(), Event::Set(address.id, *value));
+        }
+        Ok(())
+    }
+
+    /// Goes over to other parameters, or leaves everything as it is.
+    pub(in crate::gcs) fn put_in_force(
+        &mut self,
+        wanted: Parameters,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
+        let most_rows = self.desk.most_rows(link.recorder.capacity());
+        if wanted.recorder.points > most_rows || !wanted.are_sound() {
+            return Err(ErrorCode::OutOfRange);
+        }
+        self.stage.configure(&self.parameters, &wanted, link)?;
+        if wanted.recorder != self.parameters.recorder {
+            self.desk.arm_again(&link.recorder);
+        }
+        self.rated = highest(&self.rated, &wanted.limits);
+        self.parameters_before = core::mem::replace(&mut self.parameters, wanted);
+        Ok(())
+    }
+
+    /// Whether this may become of the parameters now: what was kept may be in force again at any command level.
+    pub(in crate::gcs) fn permit_change(&self, wanted: &Parameters) -> Result<(), ErrorCode> {
+        let changed = |p: &&Parameter| p.number(&self.parameters) != p.number(wanted);
+        let settable = PARAMETERS.iter().filter(|p| !p.is_read_only());
+        settable
+            .filter(changed)
+            .try_for_each(|parameter| self.permit(parameter, parameter.level))
+    }
+
+    fn permit(&self, parameter: &Parameter, level: u8) -> Result<(), ErrorCode> {
+        if level < parameter.level {
+            return Err(ErrorCode::LevelTooLow);
+        }
+        // A motion under way was planned with other ones.
+        if self.stage.is_under_way() {
+            return Err(ErrorCode::InMotion);
+        }
+        match parameter.when {
+            When::Never => Err(ErrorCode::ReadOnly),
+            When::ServoOff if self.stage.is_held() => Err(ErrorCode::NotAllowed),
+            When::AtRest | When::ServoOff => Ok(()),
+        }
+    }
+
+    /// Whether no limit of motion is over what the stage was set up for.
+    fn is_within_rating(&self, wanted: &Parameters) -> bool {
+        highest(&self.rated, &wanted.limits) == self.rated
+    }
+
+    /// `CCL`: the command level of the connection.
+    pub(in crate::gcs) fn set_level(
+        session: &mut Session,
+        level: f64,
+        password: bool,
+    ) -> Result<(), ErrorCode> {
+        match (level, password) {
+            (0.0, _) => session.level = 0,
+            (1.0, true) => session.level = 1,
+            (1.0, false) => return Err(ErrorCode::Password),
+            _ => return Err(ErrorCode::OutOfRange),
+        }
+        Ok(())
+    }
+
+    /// Back to the parameters that the tick has, if it has refused those that were set last.
+    pub(in crate::gcs) fn take_back_if_refused(&mut self) {
+        if self.stage.has_refused_settings() {
+            self.parameters.clone_from(&self.parameters_before);
+            self.stage.use_parameters(&self.parameters);
+        }
+    }
+}
+
+/// The higher of each limit of motion.
+fn highest(a: &Limits, b: &Limits) -> Limits {
+    Limits {
+        speed_mm_s: a.speed_mm_s.max(b.speed_mm_s),
+        acceleration_mm_s2: a.acceleration_mm_s2.max(b.acceleration_mm_s2),
+        jerk_mm_s3: a.jerk_mm_s3.max(b.jerk_mm_s3),
+        turn_speed_deg_s: a.turn_speed_deg_s.max(b.turn_speed_deg_s),
+        turn_acceleration_deg_s2: a.turn_acceleration_deg_s2.max(b.turn_acceleration_deg_s2),
+        turn_jerk_deg_s3: a.turn_jerk_deg_s3.max(b.turn_jerk_deg_s3),
+        pivot_rate_rad_s: a.pivot_rate_rad_s.max(b.pivot_rate_rad_s),
+        pivot_acceleration_rad_s2: a.pivot_acceleration_rad_s2.max(b.pivot_acceleration_rad_s2),
+        ..*a
+    }
+}

@@ -1,0 +1,377 @@
+//! What can be recorded: record options, their sources, and of what words of the tick each is worked out.
+//!
+//! Numbers under 200 are those that this family of controllers gives the same things; own ones begin there.
+
+use crate::commander::axis::Axis;
+use crate::commander::coordinates::measured;
+use crate::commander::frames::View;
+use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
+use crate::parameters::Parameters;
+use crate::recorder::{Kind, TABLES, WIDEST, Word};
+use core::fmt;
+use heapless::Vec;
+use kinematics::{Angle, Geometry};
+
+/// Where a signal comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// `0`: the controller as a whole.
+    Controller,
+    /// `1` to `3`: a pivot, counted from 0 here.
+    Pivot(u8),
+    /// An axis.
+    Axis(Axis),
+}
+
+/// What a table records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// The record option.
+    pub option: u16,
+    /// Where from.
+    pub source: Source,
+    signal: Signal,
+}
+
+/// How the value of a channel comes about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Signal {
+    /// A frozen axis.
+    Zero,
+    /// A word.
+    Word(Word),
+    /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
+    Real(u8),
+    /// Measured pose minus its setpoint.
+    Error(u8),
+    /// Time since the trigger, which the row tells.
+    Time,
+}
+
+/// A record option.
+pub(super) struct RecordOption {
+    pub number: u16,
+    /// What it is, in a few words.
+    pub name: &'static str,
+    /// Of what, and its unit.
+    pub detail: &'static str,
+    signal: fn(Source) -> Option<Signal>,
+}
+
+/// Nothing is recorded.
+pub(super) const OFF: u16 = 0;
+
+/// Every option that records something.
+#[rustfmt::skip]
+pub(super) const OPTIONS: &[RecordOption] = &[
+    option(1, "commanded position", " of axis or pivot, mm or deg", |source| match source {
+        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
+        Source::Pivot(i) => Some(Signal::Word(Word::PivotSetpoint(i))),
+        Source::Controller => None,
+    }),
+    option(2, "real position", " of axis or pivot, mm or deg", |source| match source {
+        Source::Axis(axis) => Some(of_axis(axis, Signal::Real)),
+        Source::Pivot(i) => Some(Signal::Word(Word::Pivot(i))),
+        Source::Controller => None,
+    }),
+    option(3, "position error", " of axis or pivot, real minus commanded, mm or deg", |source| match source {
+        Source::Axis(axis) => Some(of_axis(axis, Signal::Error)),
+        Source::Pivot(i) => Some(Signal::Word(Word::PivotError(i))),
+        Source::Controller => None,
+    }),
+    option(8, "time since the trigger", ", s", |source| of_controller(source, Signal::Time)),
+    option(70, "commanded velocity", " of axis or pivot, mm/s or deg/s", |source| match source {
+        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Velocity(i)))),
+        Source::Pivot(i) => Some(Signal::Word(Word::PivotRate(i))),
+        Source::Controller => None,
+    }),
+    option(71, "commanded acceleration", " of axis, mm/s^2 or deg/s^2", |source| match source {
+        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Acceleration(i)))),
+        _ => None,
+    }),
+    option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, Word::Duty)),
+    option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, Word::Current)),
+    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(Word::Supply))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(Word::Mode))),
+    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(Word::Fault))),
+    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(Word::Cost))),
+];
+
+const fn option(
+    number: u16,
+    name: &'static str,
+    detail: &'static str,
+    signal: fn(Source) -> Option<Signal>,
+) -> RecordOption {
+    RecordOption {
+        number,
+        name,
+        detail,
+        signal,
+    }
+}
+
+fn of_axis(axis: Axis, signal: fn(u8) -> Signal) -> Signal {
+    axis.component().map_or(Signal::Zero, |i| signal(i as u8))
+}
+
+fn of_pivot(source: Source, word: fn(u8) -> Word) -> Option<Signal> {
+    match source {
+        Source::Pivot(i) => Some(Signal::Word(word(i))),
+        _ => None,
+    }
+}
+
+fn of_controller(source: Source, signal: Signal) -> Option<Signal> {
+    (source == Source::Controller).then_some(signal)
+}
+
+/// What the tables record before they are told.
+pub(super) const DEFAULT: [Channel; TABLES] = [
+    commanded(Axis::X, Word::Centre(0)),
+    real(Axis::X, 0),
+    commanded(Axis::Y, Word::Centre(1)),
+    real(Axis::Y, 1),
+    commanded(Axis::W, Word::Theta),
+    real(Axis::W, 2),
+    Channel {
+        option: 73,
+        source: Source::Pivot(0),
+        signal: Signal::Word(Word::Duty(0)),
+    },
+    Channel {
+        option: 202,
+        source: Source::Controller,
+        signal: Signal::Word(Word::Mode),
+    },
+];
+
+const fn commanded(axis: Axis, word: Word) -> Channel {
+    Channel {
+        option: 1,
+        source: Source::Axis(axis),
+        signal: Signal::Word(word),
+    }
+}
+
+const fn real(axis: Axis, component: u8) -> Channel {
+    Channel {
+        option: 2,
+        source: Source::Axis(axis),
+        signal: Signal::Real(component),
+    }
+}
+
+const PIVOTS: [Word; 3] = [Word::Pivot(0), Word::Pivot(1), Word::Pivot(2)];
+
+impl Source {
+    /// The source of a name, in either case.
+    pub(super) fn named(name: &[u8]) -> Option<Self> {
+        match name {
+            b"0" => Some(Self::Controller),
+            [digit @ b'1'..=b'3'] => Some(Self::Pivot(digit - b'1')),
+            name => Axis::named(name).map(Self::Axis),
+        }
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Controller => f.write_str("0"),
+            Self::Pivot(i) => write!(f, "{}", i + 1),
+            Self::Axis(axis) => write!(f, "{}", axis.letter()),
+        }
+    }
+}
+
+impl Channel {
+    /// An option of a source; `None` when there is no such option, or not of this source.
+    pub(super) fn new(option: u16, source: Source) -> Option<Self> {
+        let known = OPTIONS.iter().find(|known| known.number == option)?;
+        Some(Self {
+            option,
+            source,
+            signal: (known.signal)(source)?,
+        })
+    }
+
+    /// The word whose crossing of a value can trigger; none where the value is worked out after the tick.
+    pub(super) fn watched(self) -> Option<Word> {
+        match self.signal {
+            Signal::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    fn words(self) -> impl Iterator<Item = Word> {
+        let (own, pivots) = match self.signal {
+            Signal::Zero | Signal::Time => (None, false),
+            Signal::Word(word) => (Some(word), false),
+            Signal::Real(_) => (None, true),
+            Signal::Error(i) => (Some(setpoint(i)), true),
+        };
+        let pivots = PIVOTS.into_iter().filter(move |_| pivots);
+        own.into_iter().chain(pivots)
+    }
+
+    fn unit(self) -> &'static str {
+        let of_axis = |mm: &'static str, deg: &'static str| match self.source {
+            Source::Axis(axis) if axis.unit() == "mm" => mm,
+            _ => deg,
+        };
+        match self.option {
+            1..=3 => of_axis("mm", "deg"),
+            8 => "s",
+            70 => of_axis("mm/s", "deg/s"),
+            71 => of_axis("mm/s^2", "deg/s^2"),
+            200 => "A",
+            201 => "V",
+            204 => "cycles",
+            _ => "",
+        }
+    }
+
+    /// Whether its values are whole numbers.
+    pub(super) const fn is_whole(self) -> bool {
+        matches!(
+            self.signal,
+            Signal::Word(Word::Mode | Word::Fault | Word::Cost)
+        )
+    }
+}
+
+/// What it is and its unit, for the head of `DRR?`: a text without `=`.
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known = OPTIONS.iter().find(|known| known.number == self.option);
+        f.write_str(known.map_or("", |known| known.name))?;
+        match self.source {
+            Source::Controller => {}
+            Source::Pivot(i) => write!(f, " of pivot {}", i + 1)?,
+            Source::Axis(axis) => write!(f, " of {}", axis.letter())?,
+        }
+        match self.unit() {
+            "" => Ok(()),
+            unit => write!(f, ", {unit}"),
+        }
+    }
+}
+
+/// The setpoint of a component of the pose.
+const fn setpoint(component: u8) -> Word {
+    match component {
+        2 => Word::Theta,
+        i => Word::Centre(i),
+    }
+}
+
+/// The words of a row from which all channels can be worked out, each once.
+pub(super) fn words(channels: &[Option<Channel>; TABLES]) -> Vec<Word, WIDEST> {
+    let mut words = Vec::new();
+    for word in channels
+        .iter()
+        .flatten()
+        .flat_map(|channel| channel.words())
+    {
+        if !words.contains(&word) {
+            // There is room: the three errors of the pose, the worst, need six words for three tables.
+            let _ = words.push(word);
+        }
+    }
+    words
+}
+
+/// What turns words into mm, deg and s, as it was when the record was ordered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scales {
+    geometry: Geometry,
+    pwm_counts: f64,
+    period_s: f64,
+}
+
+const LENGTH: f64 = 1.0 / 536_870_912.0;
+const ANGLE_DEG: f64 = 360.0 / 268_435_456.0;
+const ERROR_DEG: f64 = 360.0 / 4_294_967_296.0;
+
+impl Scales {
+    pub fn new(parameters: &Parameters) -> Self {
+        Self {
+            geometry: parameters.geometry,
+            pwm_counts: f64::from(parameters.drive.pwm_counts),
+            period_s: 1.0 / parameters.limits.rate_hz,
+        }
+    }
+
+    /// Seconds from tick to tick.
+    pub const fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// What a word's number is multiplied by.
+    pub fn factor(&self, word: Word) -> f64 {
+        let radius_mm = self.geometry.radius_mm;
+        match (word.kind(), word) {
+            (Kind::Length, _) => LENGTH * radius_mm,
+            (Kind::Angle, _) => ANGLE_DEG,
+            (Kind::AngleError, _) => ERROR_DEG,
+            (Kind::Float, Word::Velocity(0 | 1) | Word::Acceleration(0 | 1)) => radius_mm,
+            (Kind::Float, _) => 180.0 / core::f64::consts::PI,
+            (_, Word::Duty(_)) => 1.0 / self.pwm_counts,
+            (_, Word::Current(_)) => CURRENT_A_PER_COUNT,
+            (_, Word::Supply) => SUPPLY_V_PER_COUNT,
+            (Kind::Count, _) => 1.0,
+        }
+    }
+}
+
+/// A row of a record, as it was read.
+pub(super) struct Row<'a> {
+    pub words: &'a [Word],
+    pub values: [i64; WIDEST],
+    pub scales: &'a Scales,
+    /// The row, counted from that of the trigger.
+    pub row: i64,
+    /// Ticks from row to row.
+    pub every: u32,
+    /// Measured pose, once somebody has asked.
+    pub pose: Option<[f64; 3]>,
+}
+
+impl Row<'_> {
+    /// The value of a channel, mm, deg or as its option says; not a number where the pivots are no pose.
+    pub fn value(&mut self, channel: Channel) -> f64 {
+        match channel.signal {
+            Signal::Zero => 0.0,
+            Signal::Word(word) => self.word(word),
+            Signal::Real(i) => self.pose()[usize::from(i)],
+            Signal::Error(i) => self.pose()[usize::from(i)] - self.word(setpoint(i)),
+            Signal::Time => self.row as f64 * f64::from(self.every) * self.scales.period_s,
+        }
+    }
+
+    fn integer(&self, word: Word) -> i64 {
+        let place = self.words.iter().position(|own| *own == word);
+        place.map_or(0, |place| self.values[place])
+    }
+
+    fn word(&self, word: Word) -> f64 {
+        let integer = self.integer(word);
+        let number = match word.kind() {
+            Kind::Float => f64::from(f32::from_bits(integer as u32)),
+            _ => integer as f64,
+        };
+        number * self.scales.factor(word)
+    }
+
+    fn pose(&mut self) -> [f64; 3] {
+        if let Some(pose) = self.pose {
+            return pose;
+        }
+        let pivots = PIVOTS.map(|pivot| Angle::from_units(self.integer(pivot) << 4));
+        let pose = measured(&pivots, &View::BASE, &self.scales.geometry)
+            .map_or([f64::NAN; 3], |pose| [pose[0], pose[1], pose[5]]);
+        self.pose = Some(pose);
+        pose
+    }
+}

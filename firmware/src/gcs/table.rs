@@ -1,0 +1,592 @@
+//! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
+
+use super::macros::{MacroRequest, MacroSyntax};
+use super::parameter::Settings;
+use super::parse::{self, ParseError};
+use super::recorder;
+use super::request::{Action, Condition, Property, Quantity, Query, Request};
+use super::scan::Scanner;
+use crate::commander::axis::{AxisSet, AxisValues};
+use crate::commander::frames;
+use crate::commander::frames::Kind;
+use crate::commander::wave;
+use crate::commander::wave::WaveQuery;
+
+/// A command.
+pub(super) struct Entry {
+    /// As `HLP?` lists it.
+    pub name: &'static str,
+    /// What follows the name, and what the whole then asks for.
+    pub syntax: Syntax,
+    /// Its parameters and its meaning, for `HLP?`.
+    pub help: &'static str,
+}
+
+/// What follows a command's name.
+pub(super) enum Syntax {
+    /// Not a line at all: this byte alone.
+    Byte(u8, Request),
+    /// Nothing.
+    Plain(Request),
+    /// Nothing or `ALL`.
+    All(Request),
+    /// As this function understands it.
+    Own(fn(&mut Scanner<'_>) -> Result<Request, ParseError>),
+    /// Axes; none stands for all.
+    Read(Quantity),
+    /// Axes; none stands for all.
+    Axes(fn(AxisSet) -> Action),
+    /// Axes; none stands for all.
+    Tell(Property),
+    /// Pairs of axis and number.
+    Values(fn(AxisValues) -> Action),
+    /// Pairs of axis and number.
+    AskValues(fn(AxisValues) -> Request),
+    /// Pairs of item and parameter; none stands for all.
+    Parameters,
+    /// Triples of item, parameter and number.
+    Settings(fn(Settings) -> Action),
+    /// About macros.
+    Macro(MacroSyntax),
+    /// Name and value of a variable.
+    SetVariable,
+    /// Name of a variable, two numbers.
+    AddVariable,
+    /// Names of variables; none stands for all.
+    Variables,
+    /// A number of lines, and a condition.
+    Jump,
+    /// Level and password.
+    Level,
+    /// A number.
+    Number(fn(f64) -> Action),
+    /// Query, axis, operator, number.
+    Condition(fn(Condition) -> Action),
+}
+
+const fn entry(name: &'static str, syntax: Syntax, help: &'static str) -> Entry {
+    Entry { name, syntax, help }
+}
+
+const fn ask(name: &'static str, query: Query, help: &'static str) -> Entry {
+    entry(name, Syntax::Plain(Request::Ask(query)), help)
+}
+
+const fn read(name: &'static str, quantity: Quantity, help: &'static str) -> Entry {
+    entry(name, Syntax::Read(quantity), help)
+}
+
+const fn own(
+    name: &'static str,
+    parse: fn(&mut Scanner<'_>) -> Result<Request, ParseError>,
+    help: &'static str,
+) -> Entry {
+    entry(name, Syntax::Own(parse), help)
+}
+
+const fn byte(name: &'static str, byte: u8, request: Request, help: &'static str) -> Entry {
+    entry(name, Syntax::Byte(byte, request), help)
+}
+
+/// Every command there is, in the order of `HLP?`. A static: a constant would stand in the image once for each use.
+pub(super) static COMMANDS: &[Entry] = &[
+    byte(
+        "#3",
+        3,
+        Request::Read(Quantity::Position, AxisSet::ALL),
+        "get real position",
+    ),
+    byte("#4", 4, Request::Ask(Query::Status), "get status"),
+    byte("#5", 5, Request::Ask(Query::Moving), "get motion status"),
+    byte(
+        "#6",
+        6,
+        Request::Ask(Query::Changed),
+        "get axes whose position has changed since it was asked for",
+    ),
+    byte("#7", 7, Request::Ask(Query::Ready), "is controller ready"),
+    byte(
+        "#8",
+        8,
+        Request::Macro(MacroRequest::IsRunning),
+        "is a macro running",
+    ),
+    byte(
+        "#9",
+        9,
+        Request::Waves(WaveQuery::Mask),
+        "get wave generator status",
+    ),
+    byte("#24", 24, Request::Act(Action::Stop), "stop all axes"),
+    ask("*IDN?", Query::Identity, "get device identification"),
+    entry(
+        "ADD",
+        Syntax::AddVariable,
+        "<variable> <number> <number> set variable to the sum",
+    ),
+    entry(
+        "CCL",
+        Syntax::Level,
+        "<level> [<password>] set command level",
+    ),
+    ask("CCL?", Query::Level, "get command level"),
+    entry(
+        "CST?",
+        Syntax::Tell(Property::Stage),
+        "[{<axis>}] get stage type",
+    ),
+    ask("CSV?", Query::Syntax, "get syntax version"),
+    entry(
+        "DEL",
+        Syntax::Number(Action::Delay),
+        "<milliseconds> delay what follows on this connection",
+    ),
+    own(
+        "DRC",
+        recorder::set_channels,
+        "{<table> <source> <option>} set what is recorded",
+    ),
+    own(
+        "DRC?",
+        recorder::channels,
+        "[{<table>}] get what is recorded",
+    ),
+    own(
+        "DRL?",
+        recorder::lengths,
+        "[{<table>}] get number of recorded points",
+    ),
+    own(
+        "DRR?",
+        recorder::data,
+        "[<first> <points> [{<table>}]] get recorded points",
+    ),
+    own(
+        "DRT",
+        recorder::set_triggers,
+        "{<table> <trigger> <value>} set trigger and arm",
+    ),
+    own("DRT?", recorder::triggers, "[{<table>}] get trigger"),
+    ask("ERR?", Query::Error, "get and clear error number"),
+    ask(
+        "EVT?",
+        Query::Events,
+        "get what has happened: number, tick, event",
+    ),
+    entry(
+        "FLC",
+        Syntax::Plain(Request::Act(Action::Acknowledge)),
+        "acknowledge the latched fault",
+    ),
+    own(
+        "FLR?",
+        recorder::fault_record,
+        "get the fault record: the ticks before the last fault, and after",
+    ),
+    ask("FLT?", Query::Fault, "get the latched fault in words"),
+    entry(
+        "FRF",
+        Syntax::Axes(Action::Reference),
+        "[{<axis>}] reference",
+    ),
+    read(
+        "FRF?",
+        Quantity::Referenced,
+        "[{<axis>}] get referencing result",
+    ),
+    own("HDR?", recorder::help, "get options of the recorder"),
+    entry(
+        "HBT",
+        Syntax::Number(Action::Heartbeat),
+        "<milliseconds> stop when no connection that has sent this is heard for longer; 0: never",
+    ),
+    ask("HBT?", Query::Heartbeat, "get longest silence of the host"),
+    entry(
+        "HLT",
+        Syntax::Axes(Action::Halt),
+        "[{<axis>}] halt smoothly",
+    ),
+    ask("HLP?", Query::Help, "get list of commands"),
+    ask("HPA?", Query::ParameterHelp, "get list of parameters"),
+    entry(
+        "JOG",
+        Syntax::Values(Action::Jog),
+        "{<axis> <velocity>} move at constant velocity",
+    ),
+    read(
+        "JOG?",
+        Quantity::Jog,
+        "[{<axis>}] get constant velocity of axes",
+    ),
+    entry(
+        "JRC",
+        Syntax::Jump,
+        "<lines> <query> <operator> <value> jump in the macro on condition",
+    ),
+    own("KEN", frames::enable, "<name> enable frame"),
+    own(
+        "KEN?",
+        frames::enabled,
+        "[<name>] get types of enabled frames",
+    ),
+    own(
+        "KET?",
+        frames::types,
+        "[<type>] get enabled frames of types",
+    ),
+    own("KLN", frames::link, "<child> <parent> link frame to parent"),
+    own("KLN?", frames::chains, "[<name>] get parents of frames"),
+    own(
+        "KLS?",
+        frames::list,
+        "[<name> [<item> [<axis>]]] get properties of frames",
+    ),
+    own(
+        "KLT?",
+        frames::totals,
+        "[<name> [<end>]] get where the chain of a frame lies",
+    ),
+    own("KRM", frames::remove, "<name> remove frame"),
+    own(
+        "KSD",
+        |scanner| frames::define(Kind::Directed, scanner),
+        "<name> {<axis> <value>} define directed frame",
+    ),
+    own(
+        "KSF",
+        frames::here,
+        "<name> define frame at the current position",
+    ),
+    own(
+        "KST",
+        |scanner| frames::define(Kind::Tool, scanner),
+        "<name> {<axis> <value>} define tool frame",
+    ),
+    own(
+        "KSW",
+        |scanner| frames::define(Kind::Work, scanner),
+        "<name> {<axis> <value>} define work frame",
+    ),
+    read(
+        "LIM?",
+        Quantity::LimitSwitch,
+        "[{<axis>}] get whether there are limit switches",
+    ),
+    entry(
+        "LST",
+        Syntax::Plain(Request::Act(Action::RestartStatistics)),
+        "start loop statistics again",
+    ),
+    ask(
+        "LST?",
+        Query::Statistics,
+        "get loop statistics, and the peak following error since they were last asked for",
+    ),
+    entry(
+        "MAC BEG",
+        Syntax::Macro(MacroSyntax::Begin),
+        "<macro> record the lines that follow",
+    ),
+    entry(
+        "MAC DEL",
+        Syntax::Macro(MacroSyntax::Delete),
+        "<macro> forget it",
+    ),
+    entry(
+        "MAC END",
+        Syntax::Plain(Request::Macro(MacroRequest::End)),
+        "keep what was recorded",
+    ),
+    entry(
+        "MAC ERR?",
+        Syntax::Plain(Request::Macro(MacroRequest::Error)),
+        "get what went wrong in the last one",
+    ),
+    entry(
+        "MAC FREE?",
+        Syntax::Plain(Request::Macro(MacroRequest::Free)),
+        "get bytes left",
+    ),
+    entry(
+        "MAC NSTART",
+        Syntax::Macro(MacroSyntax::StartTimes),
+        "<macro> <times> [<argument> [<argument>]] run it repeatedly",
+    ),
+    entry(
+        "MAC START",
+        Syntax::Macro(MacroSyntax::Start),
+        "<macro> [<argument> [<argument>]] run it",
+    ),
+    entry(
+        "MAC STOP",
+        Syntax::Macro(MacroSyntax::Stop),
+        "[<macro>] stop it",
+    ),
+    entry(
+        "MAC?",
+        Syntax::Macro(MacroSyntax::List),
+        "[<macro>] get macros or lines of one",
+    ),
+    entry(
+        "MEX",
+        Syntax::Condition(Action::Leave),
+        "<query> <operator> <value> end the macro on condition",
+    ),
+    ask(
+        "MON?",
+        Query::Monitor,
+        "get pose and pivots in the base frame, and what was lowest and highest since last asked",
+    ),
+    entry(
+        "MOV",
+        Syntax::Values(Action::Move),
+        "{<axis> <position>} set target position",
+    ),
+    read("MOV?", Quantity::Target, "[{<axis>}] get target position"),
+    entry(
+        "MRT",
+        Syntax::Values(Action::MoveInTool),
+        "{<axis> <distance>} set target relative to the last target, along the axes of the tool",
+    ),
+    entry(
+        "MRW",
+        Syntax::Values(Action::MoveRelative),
+        "{<axis> <distance>} set target relative to the last target, along the axes of the work frame",
+    ),
+    entry(
+        "MVR",
+        Syntax::Values(Action::MoveRelative),
+        "{<axis> <distance>} set target relative to the last target",
+    ),
+    entry(
+        "NLM",
+        Syntax::Values(Action::SoftLowest),
+        "{<axis> <position>} set lowest position of the soft limits",
+    ),
+    read(
+        "NLM?",
+        Quantity::SoftLowest,
+        "[{<axis>}] get lowest position of the soft limits",
+    ),
+    read("ONT?", Quantity::OnTarget, "[{<axis>}] get on-target state"),
+    entry(
+        "PLM",
+        Syntax::Values(Action::SoftHighest),
+        "{<axis> <position>} set highest position of the soft limits",
+    ),
+    read(
+        "PLM?",
+        Quantity::SoftHighest,
+        "[{<axis>}] get highest position of the soft limits",
+    ),
+    read("POS?", Quantity::Position, "[{<axis>}] get real position"),
+    entry(
+        "PUN?",
+        Syntax::Tell(Property::Unit),
+        "[{<axis>}] get unit of position",
+    ),
+    entry(
+        "RBT",
+        Syntax::Plain(Request::Act(Action::Restart)),
+        "restart the controller",
+    ),
+    entry(
+        "RMC?",
+        Syntax::Plain(Request::Macro(MacroRequest::Running)),
+        "get running macros",
+    ),
+    own(
+        "RPA",
+        parse::recall,
+        "[{<item> <parameter>}] get parameters back as they are kept",
+    ),
+    own("RTR", recorder::set_rate, "<ticks> set ticks a point"),
+    own("RTR?", recorder::rate, "get ticks a point"),
+    entry(
+        "SAI?",
+        Syntax::All(Request::Ask(Query::Axes)),
+        "[ALL] get axis identifiers",
+    ),
+    own(
+        "SCT",
+        parse::cycle_time,
+        "T <milliseconds> set time between streamed targets",
+    ),
+    own(
+        "SCT?",
+        parse::cycle_time_query,
+        "[T] get time between streamed targets",
+    ),
+    entry(
+        "SPA",
+        Syntax::Settings(Action::Set),
+        "{<item> <parameter> <value>} set parameter",
+    ),
+    entry(
+        "SPA?",
+        Syntax::Parameters,
+        "[{<item> <parameter>}] get parameter",
+    ),
+    own(
+        "SPI",
+        frames::pivot,
+        "{<R|S|T> <position>} set centre of rotation",
+    ),
+    own("SPI?", frames::pivots, "[{<R|S|T>}] get centre of rotation"),
+    entry(
+        "SSL",
+        Syntax::Values(Action::SoftActive),
+        "{<axis> <0|1>} set whether soft limits count",
+    ),
+    read(
+        "SSL?",
+        Quantity::SoftActive,
+        "[{<axis>}] get whether soft limits count",
+    ),
+    ask("SSN?", Query::Serial, "get serial number"),
+    entry(
+        "STE",
+        Syntax::Values(Action::Step),
+        "{<axis> <distance>} make a step and record it",
+    ),
+    entry(
+        "STP",
+        Syntax::Plain(Request::Act(Action::Stop)),
+        "stop all axes",
+    ),
+    entry(
+        "SVO",
+        Syntax::Values(Action::Servo),
+        "{<axis> <0|1>} set servo mode",
+    ),
+    read("SVO?", Quantity::Servo, "[{<axis>}] get servo mode"),
+    read("TMN?", Quantity::Lowest, "[{<axis>}] get lowest position"),
+    read("TMX?", Quantity::Highest, "[{<axis>}] get highest position"),
+    own("TNR?", recorder::count, "get number of record tables"),
+    entry(
+        "TRA?",
+        Syntax::AskValues(Request::Reach),
+        "{<axis> <direction>} get the furthest target in this direction",
+    ),
+    read(
+        "TRS?",
+        Quantity::ReferenceSwitch,
+        "[{<axis>}] get whether there are reference switches",
+    ),
+    own("TWG?", wave::count, "get number of wave generators"),
+    entry(
+        "VAR",
+        Syntax::SetVariable,
+        "<variable> [<value>] set or forget variable",
+    ),
+    entry("VAR?", Syntax::Variables, "[{<variable>}] get variable"),
+    entry(
+        "VEL",
+        Syntax::Values(Action::AxisVelocity),
+        "{<axis> <velocity>} set velocity of axes",
+    ),
+    read(
+        "VEL?",
+        Quantity::Velocity,
+        "[{<axis>}] get velocity of axes",
+    ),
+    ask("VER?", Query::Version, "get firmware version"),
+    entry(
+        "VLS",
+        Syntax::Number(Action::Velocity),
+        "<velocity> set system velocity",
+    ),
+    ask("VLS?", Query::Velocity, "get system velocity"),
+    entry(
+        "VMO?",
+        Syntax::AskValues(Request::Reachable),
+        "{<axis> <position>} get whether a target can be moved to",
+    ),
+    entry(
+        "WAC",
+        Syntax::Condition(Action::Wait),
+        "<query> <axis> <operator> <value> wait for condition",
+    ),
+    own(
+        "WAV",
+        wave::define,
+        "<table> <X|&|+> <PNT|LIN|RAMP|SIN_P> {<value>} define segment of a wave table",
+    ),
+    own(
+        "WAV?",
+        wave::lengths,
+        "[{<table> 1}] get length of wave tables",
+    ),
+    own("WCL", wave::clear, "{<table>} clear wave tables"),
+    own(
+        "WGC",
+        wave::cycles,
+        "{<generator> <cycles>} set cycles of wave generators",
+    ),
+    own(
+        "WGC?",
+        |scanner| wave::generators(WaveQuery::Cycles, scanner),
+        "[{<generator>}] get cycles of wave generators",
+    ),
+    own(
+        "WGO",
+        wave::go,
+        "{<generator> <0|1>} stop or start wave generators",
+    ),
+    own(
+        "WGO?",
+        |scanner| wave::generators(WaveQuery::Going, scanner),
+        "[{<generator>}] get whether wave generators run",
+    ),
+    own(
+        "WPA",
+        parse::keep,
+        "<password> [{<item> <parameter>}] keep parameters over a restart",
+    ),
+    own(
+        "WSL",
+        wave::select,
+        "{<generator> <table>} connect wave tables to generators",
+    ),
+    own(
+        "WSL?",
+        |scanner| wave::generators(WaveQuery::Tables, scanner),
+        "[{<generator>}] get wave tables of generators",
+    ),
+    own(
+        "WTR",
+        wave::rate,
+        "{<generator> <ticks> <interpolation>} set ticks a point for all wave generators",
+    ),
+    own(
+        "WTR?",
+        |scanner| wave::generators(WaveQuery::Rates, scanner),
+        "[{<generator>}] get ticks a point of wave generators",
+    ),
+];
+
+/// The line command of this name, in either case; `keyword` is the second word of those that have two.
+pub(super) fn find(name: &[u8], keyword: &[u8]) -> Option<&'static Entry> {
+    COMMANDS.iter().find(|entry| {
+        let (first, second) = entry.name.split_once(' ').unwrap_or((entry.name, ""));
+        !matches!(entry.syntax, Syntax::Byte(..))
+            && first.as_bytes().eq_ignore_ascii_case(name)
+            && second.as_bytes().eq_ignore_ascii_case(keyword)
+    })
+}
+
+/// Whether there are commands of two words that start with this one.
+pub(super) fn has_keywords(name: &[u8]) -> bool {
+    COMMANDS.iter().any(|entry| {
+        let first = entry.name.split_once(' ').map(|(first, _)| first);
+        first.is_some_and(|first| first.as_bytes().eq_ignore_ascii_case(name))
+    })
+}
+
+/// What the single byte asks for.
+pub(super) fn find_byte(byte: u8) -> Option<Request> {
+    COMMANDS.iter().find_map(|entry| match entry.syntax {
+        Syntax::Byte(own, request) if own == byte => Some(request),
+        _ => None,
+    })
+}

@@ -1,0 +1,142 @@
+//! Variables: names for texts, put in for `$name` or `${name}` anywhere in a line before it is understood.
+//!
+//! Names of one digit are local to the macro that runs: 0 is how many arguments it was started with, 1 and 2 are those, the
+//! others are free. All other variables are the controller's, the same for every connection and macro. A name goes as far
+//! as letters, digits and underscores go; `${name}` ends it where one of those follows.
+
+use super::error::ErrorCode;
+use super::session::LINE_BYTES;
+use super::text::{Name, Text, is_of_name};
+use core::fmt::Write;
+use heapless::Vec;
+
+/// Variables that can be kept, besides the local ones.
+pub const VARIABLES: usize = 32;
+/// Variables that a line can ask for.
+pub const NAMED: usize = 8;
+
+/// Variables 0 to 9 of a running macro.
+pub(super) type Locals = [Option<Text>; 10];
+
+/// What a line wants of the variables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum VariableRequest {
+    /// `VAR`: set one, or, without a value, forget it.
+    Set(Name, Option<Text>),
+    /// `ADD`: set one to a sum.
+    Add(Name, f64, f64),
+    /// `VAR?`: tell those named, or all.
+    Tell([Option<Name>; NAMED]),
+}
+
+/// The controller's variables.
+#[derive(Default)]
+pub(super) struct Variables {
+    kept: Vec<(Name, Text), VARIABLES>,
+}
+
+impl Variables {
+    /// All of them, in the order in which they were first set.
+    pub fn iter(&self) -> impl Iterator<Item = &(Name, Text)> {
+        self.kept.iter()
+    }
+
+    /// The value of a variable; local ones are there only inside a macro.
+    pub fn get<'a>(&'a self, name: &Name, locals: Option<&'a Locals>) -> Option<&'a Text> {
+        match name.digit() {
+            Some(digit) => locals?.get(digit)?.as_ref(),
+            None => (self.kept.iter().find(|(kept, _)| kept == name)).map(|(_, value)| value),
+        }
+    }
+
+    /// Its value as a number.
+    pub fn number(&self, name: &Name, locals: Option<&Locals>) -> Result<f64, ErrorCode> {
+        let text = self.get(name, locals).ok_or(ErrorCode::UnknownVariable)?;
+        let number = text.as_str().parse::<f64>().ok();
+        number
+            .filter(|number| number.is_finite())
+            .ok_or(ErrorCode::InvalidNumber)
+    }
+
+    /// Sets one, or forgets it.
+    pub fn set(
+        &mut self,
+        name: &Name,
+        value: Option<Text>,
+        locals: Option<&mut Locals>,
+    ) -> Result<(), ErrorCode> {
+        if let Some(digit) = name.digit() {
+            let local = locals.and_then(|locals| locals.get_mut(digit));
+            *local.ok_or(ErrorCode::UnknownVariable)? = value;
+            return Ok(());
+        }
+        let place = self.kept.iter().position(|(kept, _)| kept == name);
+        match (place, value) {
+            (Some(place), Some(value)) => self.kept[place].1 = value,
+            (Some(place), None) => {
+                self.kept.remove(place);
+            }
+            (None, Some(value)) => {
+                let pair = (*name, value);
+                self.kept.push(pair).map_err(|_| ErrorCode::NoMemory)?;
+            }
+            (None, None) => return Err(ErrorCode::UnknownVariable),
+        }
+        Ok(())
+    }
+
+    /// The line with the values of its variables in their places.
+    pub fn expand(
+        &self,
+        line: &[u8],
+        locals: Option<&Locals>,
+    ) -> Result<Vec<u8, LINE_BYTES>, ErrorCode> {
+        let mut expanded = Vec::new();
+        let mut rest = line;
+        while let Some(at) = rest.iter().position(|&byte| byte == b'$') {
+            append(&mut expanded, &rest[..at])?;
+            let (name, behind) = reference(&rest[at + 1..])?;
+            let value = self.get(&name, locals).ok_or(ErrorCode::UnknownVariable)?;
+            append(&mut expanded, value.as_bytes())?;
+            rest = behind;
+        }
+        append(&mut expanded, rest)?;
+        Ok(expanded)
+    }
+}
+
+fn append(line: &mut Vec<u8, LINE_BYTES>, bytes: &[u8]) -> Result<(), ErrorCode> {
+    line.extend_from_slice(bytes)
+        .map_err(|_| ErrorCode::LineTooLong)
+}
+
+/// The name behind a `$`, and what follows it.
+fn reference(text: &[u8]) -> Result<(Name, &[u8]), ErrorCode> {
+    let (name, behind) = match text.strip_prefix(b"{") {
+        Some(inside) => {
+            let end = inside.iter().position(|&byte| byte == b'}');
+            let end = end.ok_or(ErrorCode::InvalidIdentifier)?;
+            (&inside[..end], &inside[end + 1..])
+        }
+        None => {
+            let end = text.iter().position(|&byte| !is_of_name(byte));
+            text.split_at(end.unwrap_or(text.len()))
+        }
+    };
+    let name = Name::named(name).ok_or(ErrorCode::InvalidIdentifier)?;
+    Ok((name, behind))
+}
+
+/// A number as the value of a variable: in full where that fits, which it does for all but the largest and the smallest.
+pub(super) fn text_of(number: f64) -> Result<Text, ErrorCode> {
+    if !number.is_finite() {
+        return Err(ErrorCode::OutOfRange);
+    }
+    let mut text = Text::EMPTY;
+    if write!(text, "{number}").is_ok() {
+        return Ok(text);
+    }
+    text = Text::EMPTY;
+    write!(text, "{number:e}").map_err(|_| ErrorCode::NoMemory)?;
+    Ok(text)
+}

@@ -1,0 +1,62 @@
+//! What queries about tables and generators answer.
+
+use crate::commander::wave::{WaveQuery, Waves};
+use crate::gcs::reply::{Reply, one_line};
+use embedded_io::Write;
+
+impl Waves {
+    /// Answers a query; `going` says which generators run.
+    pub fn answer<W: Write>(
+        &self,
+        query: WaveQuery,
+        going: &[bool; 6],
+        out: &mut W,
+    ) -> Result<(), W::Error> {
+        match query {
+            WaveQuery::Generators => one_line(out, format_args!("{}", self.generators.len())),
+            WaveQuery::Mask => {
+                let bits = going
+                    .iter()
+                    .zip(0..)
+                    .map(|(&going, bit)| u8::from(going) << bit);
+                one_line(out, format_args!("{:x}", bits.sum::<u8>()))
+            }
+            WaveQuery::Lengths(named) => {
+                let mut reply = Reply::new(out);
+                for (table, _) in wanted(&named) {
+                    reply.line(format_args!("{} 1={}", table + 1, self.length(table)))?;
+                }
+                reply.end()
+            }
+            WaveQuery::Tables(named) => each(&named, out, |i| self.generators[i].table.into()),
+            WaveQuery::Cycles(named) => each(&named, out, |i| self.generators[i].cycles),
+            WaveQuery::Going(named) => each(&named, out, |i| going[i].into()),
+            WaveQuery::Rates(named) => {
+                let mut reply = Reply::new(out);
+                for (generator, _) in wanted(&named) {
+                    reply.line(format_args!("{}={} 1", generator + 1, self.ticks))?;
+                }
+                reply.end()
+            }
+        }
+    }
+}
+
+/// The places that are named; all when none is.
+fn wanted(named: &[bool]) -> impl Iterator<Item = (usize, &bool)> {
+    let all = !named.contains(&true);
+    (named.iter().enumerate()).filter(move |&(_, &named)| named || all)
+}
+
+/// A line of each generator.
+fn each<W: Write>(
+    named: &[bool; 6],
+    out: &mut W,
+    value: impl Fn(usize) -> u32,
+) -> Result<(), W::Error> {
+    let mut reply = Reply::new(out);
+    for (generator, _) in wanted(named) {
+        reply.line(format_args!("{}={}", generator + 1, value(generator)))?;
+    }
+    reply.end()
+}

@@ -1,0 +1,142 @@
+//! How a line is travelled: stretches of constant jerk of the path parameter, in whole numbers, and the plan they make.
+//!
+//! Every axis gets the same pieces, times its own factor: the line is straight by construction. The jerks of a pace are
+//! integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What rounding takes from
+//! the acceleration in one piece is given back in the next, and what is left at the end is spread as the plan's nudge.
+
+use super::quotient::quotient;
+use crate::motion::plan::axis_state::{JERK_STEP, SUB_BITS};
+use crate::motion::plan::{MAX_PIECES, Piece, Plan, Position};
+use crate::number::float::{float, rough, rough_long};
+use crate::number::round;
+use heapless::Vec;
+
+/// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
+pub(crate) const BITS: u32 = 30;
+
+/// A stretch of constant jerk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Beat {
+    /// Length.
+    pub ticks: u64,
+    /// Jerk of the path parameter, in units of its own.
+    pub jerk: i32,
+}
+
+/// See the module.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pace {
+    /// The stretches, from rest to rest.
+    pub beats: Vec<Beat, MAX_PIECES>,
+    /// Six times the way that the jerks make: positive.
+    pub sixfold: i128,
+    /// Fraction bits of the jerks: [`BITS`] or none.
+    pub bits: u32,
+}
+
+impl Pace {
+    /// Duration in ticks.
+    pub fn ticks(&self) -> u64 {
+        self.beats.iter().map(|beat| beat.ticks).sum()
+    }
+
+    /// What the path parameter's jerk is, per tick cubed, for one unit of a beat's.
+    pub fn unit(&self) -> f32 {
+        6.0 / rough_long(self.sixfold)
+    }
+
+    /// Writes pieces and nudge of a plan from `from` to its end; `None` where a number would be too large.
+    pub fn play(&self, plan: &mut Plan, from: &Position) -> Option<()> {
+        for beat in &self.beats {
+            let ticks = beat.ticks;
+            plan.pieces
+                .push(Piece {
+                    ticks,
+                    jerk: [0; 3],
+                })
+                .ok()?;
+        }
+        let duration = self.ticks().max(1);
+        let levers = self.levers(duration);
+        for (i, from) in from.iter().enumerate() {
+            let way = i128::from(plan.end[i]) - i128::from(*from);
+            if way != 0 {
+                let rest = self.axis(i, way << SUB_BITS, &levers, plan)?;
+                // In 64 bits a division is a tenth of one in 128.
+                plan.nudge[i] = rest / duration as i64;
+            }
+        }
+        Some(())
+    }
+
+    /// How far a sixth of a jerk of 1 in each of the beats leads until the end, modulo 2^64: the cube of the time from the beat's
+    /// start to the end, less that from its end.
+    fn levers(&self, duration: u64) -> [u64; MAX_PIECES] {
+        let cube = |ticks: u64| ticks.wrapping_mul(ticks).wrapping_mul(ticks);
+        let mut levers = [0; MAX_PIECES];
+        let mut left = duration;
+        let mut before = cube(left);
+        for (lever, beat) in levers.iter_mut().zip(&self.beats) {
+            left = left.wrapping_sub(beat.ticks);
+            let after = cube(left);
+            *lever = before.wrapping_sub(after);
+            before = after;
+        }
+        levers
+    }
+
+    /// Writes the jerks of an axis; what they leave of its way, 2^-72 track radii or turns.
+    #[inline(never)]
+    fn axis(
+        &self,
+        i: usize,
+        way: i128,
+        levers: &[u64; MAX_PIECES],
+        plan: &mut Plan,
+    ) -> Option<i64> {
+        let (factor, left) = quotient(way << self.bits, self.sixfold)?;
+        // Rounding the jerks leaves little more than this: what is within 64 bits can be summed up in them.
+        i64::try_from(left >> self.bits).ok()?;
+        let mut rest = way as u64;
+        // What the acceleration lacks, in steps of a jerk.
+        let mut owed = 0.0;
+        for ((piece, beat), lever) in plan.pieces.iter_mut().zip(&self.beats).zip(levers) {
+            let (whole, fraction) = self.share(factor, beat.jerk);
+            let ticks = float(beat.ticks);
+            let (more, rounded) = rounded(fraction + owed / ticks);
+            owed += (fraction - rounded) * ticks;
+            let sixth = whole.wrapping_add(more);
+            rest = rest.wrapping_sub((sixth as u64).wrapping_mul(*lever));
+            piece.jerk[i] = sixth.wrapping_mul(JERK_STEP);
+        }
+        Some(rest as i64)
+    }
+
+    /// A beat's jerk times an axis' factor: whole, rounded down, and the fraction.
+    #[inline]
+    fn share(&self, factor: i64, jerk: i32) -> (i64, f32) {
+        const PART: f32 = 1.0 / (1_u32 << BITS) as f32;
+        let jerk = i64::from(jerk);
+        if self.bits == 0 {
+            return (factor.wrapping_mul(jerk), 0.0);
+        }
+        // In two parts, each of them within 64 bits.
+        let (high, low) = ((factor >> 32) * jerk, i64::from(factor as u32) * jerk);
+        let fraction = low as u32 & ((1 << BITS) - 1);
+        let whole = (high << (32 - BITS)).wrapping_add(low >> BITS);
+        (whole, fraction as f32 * PART)
+    }
+}
+
+/// The nearest whole number, as one and as a float.
+#[inline]
+fn rounded(value: f32) -> (i64, f32) {
+    const MOST: f32 = 2_097_152.0;
+    if value.abs() < MOST {
+        let (whole, float) = round(value);
+        (i64::from(whole), float)
+    } else {
+        let whole = value as i64;
+        (whole, rough(whole))
+    }
+}

@@ -1,0 +1,250 @@
+//! Ramps of the acceleration in whole numbers: the pieces of a pace.
+//!
+//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
+//! a few units, and two ticks more take those: the motion ends at rest to the bit.
+
+use super::jerk_ramps::{Ramp, Ramps};
+use super::path_profile::{BITS, Beat, Pace};
+use super::segments::STRETCHES;
+use crate::motion::plan::MAX_PIECES;
+use crate::motion::plan::axis_state::{product, times};
+use crate::number::float::{Order, nearest_short, rough, rough_long};
+use heapless::Vec;
+
+/// The ramps in integers.
+pub(crate) struct Score {
+    ramps: Vec<Note, { STRETCHES + 1 }>,
+    start: i32,
+    end: i32,
+}
+
+/// A ramp: start, end and jerk.
+#[derive(Clone, Copy)]
+struct Note {
+    start: i32,
+    end: i32,
+    jerk: i32,
+}
+
+impl Note {
+    fn ticks(&self) -> i32 {
+        self.end - self.start
+    }
+
+    /// Twice the distance of its middle from the end of all.
+    fn lever(&self, end: i32) -> i32 {
+        2 * end - self.start - self.end
+    }
+}
+
+impl Score {
+    pub fn new(ramps: &Ramps) -> Option<Self> {
+        let jerk = |ramp: &Ramp| ramp.change / ramp.ticks as f32;
+        let largest = ramps
+            .iter()
+            .fold(0.0_f32, |most, r| most.larger(jerk(r).abs()));
+        let mut score = Self {
+            ramps: Vec::new(),
+            start: i32::MAX,
+            end: i32::MIN,
+        };
+        let scale = (1_u32 << BITS) as f32 / largest;
+        for ramp in ramps {
+            let half = ramp.ticks / 2;
+            let note = Note {
+                start: ramp.middle - half,
+                end: ramp.middle + half,
+                jerk: nearest_short(jerk(ramp) * scale),
+            };
+            score.start = score.start.min(note.start);
+            score.end = score.end.max(note.end);
+            score.ramps.push(note).ok()?;
+        }
+        score.close()?;
+        Some(score)
+    }
+
+    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
+    fn left(&self) -> (i64, i128) {
+        self.ramps.iter().fold((0, 0), |(force, speed), note| {
+            let step = i64::from(note.jerk) * i64::from(note.ticks());
+            let lever = note.lever(self.end) as u32;
+            (force + step, speed + product(step, lever))
+        })
+    }
+
+    /// Lets the last two ramps take up what is left.
+    fn close(&mut self) -> Option<()> {
+        let (force, speed) = self.left();
+        let [.., a, b] = &mut self.ramps[..] else {
+            return None;
+        };
+        let (far, near) = (a.lever(self.end), b.lever(self.end));
+        let a_step = -rough_long(speed - product(force, near as u32)) / (far - near) as f32;
+        let a_jerk = nearest_short(a_step / a.ticks() as f32);
+        a.jerk = a.jerk.wrapping_add(a_jerk);
+        let force = force + i64::from(a_jerk) * i64::from(a.ticks());
+        b.jerk = (b.jerk).wrapping_sub(nearest_short(rough(force) / b.ticks() as f32));
+        Some(())
+    }
+
+    /// Writes the pieces between all starts and ends.
+    pub fn write(&self, pace: &mut Pace) -> Option<()> {
+        let mut times: Vec<(i32, i32), { 2 * (STRETCHES + 1) }> = Vec::new();
+        for note in &self.ramps {
+            insert(&mut times, (note.start, note.jerk))?;
+            insert(&mut times, (note.end, -note.jerk))?;
+        }
+        pace.beats.clear();
+        pace.bits = BITS;
+        let mut sum = Sum::default();
+        let mut jerk = 0_i32;
+        for pair in times.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            jerk = jerk.wrapping_add(from.1);
+            if to.0 > from.0 {
+                sum.push(&mut pace.beats, (to.0 - from.0) as u32, jerk)?;
+            }
+        }
+        sum.close(&mut pace.beats)?;
+        pace.sixfold = sum.sixfold;
+        (sum.sixfold > 0).then_some(())
+    }
+}
+
+/// The state that beats lead to.
+#[derive(Default)]
+struct Sum {
+    /// Acceleration.
+    force: i64,
+    /// Twice the speed.
+    speed: i128,
+    /// Six times the way.
+    sixfold: i128,
+}
+
+impl Sum {
+    #[inline(never)]
+    fn push(&mut self, beats: &mut Vec<Beat, MAX_PIECES>, ticks: u32, jerk: i32) -> Option<()> {
+        let bent = i64::from(jerk) * i64::from(ticks);
+        let way = 3 * self.speed + product(3 * self.force + bent, ticks);
+        self.sixfold += times(way, ticks);
+        self.speed += product(2 * self.force + bent, ticks);
+        self.force += bent;
+        let ticks = u64::from(ticks);
+        beats.push(Beat { ticks, jerk }).ok()
+    }
+
+    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the acceleration is.
+    fn close(&mut self, beats: &mut Vec<Beat, MAX_PIECES>) -> Option<()> {
+        if self.force == 0 && self.speed == 0 {
+            return Some(());
+        }
+        let first = i32::try_from(-(self.speed + i128::from(3 * self.force)) / 2).ok()?;
+        let second = i32::try_from(-self.force - i64::from(first)).ok()?;
+        self.push(beats, 1, first)?;
+        self.push(beats, 1, second)
+    }
+}
+
+/// Inserts in order of time; nearly always at the end.
+fn insert<const N: usize>(times: &mut Vec<(i32, i32), N>, event: (i32, i32)) -> Option<()> {
+    times.push(event).ok()?;
+    let mut k = times.len() - 1;
+    while k > 0 && times[k - 1].0 > event.0 {
+        times[k] = times[k - 1];
+        k -= 1;
+    }
+    times[k] = event;
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::motion::line::rounded_ramps::*;
+
+    /// Up, along, and down, with ramps that overlap or not.
+    fn ramps(length: i32, ticks: i32) -> Ramps {
+        [
+            (0, 1.0),
+            (length, -1.0),
+            (5 * length, -0.7),
+            (6 * length, 0.7),
+        ]
+        .into_iter()
+        .map(|(middle, change)| Ramp {
+            middle,
+            ticks,
+            change: change * 1e-6,
+        })
+        .collect()
+    }
+
+    fn paced(ramps: &Ramps) -> Option<Pace> {
+        let mut pace = Pace::default();
+        Score::new(ramps)?.write(&mut pace).map(|()| pace)
+    }
+
+    /// Every tick of it, in the integers of the beats.
+    fn played(pace: &Pace) -> (i128, i128, i128) {
+        let (mut force, mut twice_speed, mut sixfold) = (0_i128, 0_i128, 0_i128);
+        for beat in &pace.beats {
+            for _ in 0..beat.ticks {
+                let jerk = i128::from(beat.jerk);
+                sixfold += 3 * (twice_speed + force) + jerk;
+                twice_speed += 2 * force + jerk;
+                force += jerk;
+            }
+        }
+        (force, twice_speed, sixfold)
+    }
+
+    #[test]
+    fn it_ends_at_rest_to_the_bit_and_knows_its_way() {
+        for (length, ticks) in [
+            (2, 2),
+            (40, 10),
+            (1_000, 200),
+            (1_000, 1_400),
+            (300_000, 2_000),
+        ] {
+            let pace = paced(&ramps(length, ticks)).unwrap();
+            let (force, speed, sixfold) = played(&pace);
+            assert_eq!((force, speed), (0, 0), "{length} {ticks}");
+            assert_eq!(sixfold, pace.sixfold, "{length} {ticks}");
+            // Two ticks close it.
+            assert!(pace.ticks() <= (6 * length + ticks) as u64 + 2);
+        }
+    }
+
+    /// Ramps of any lengths: what the integers leave goes in two ticks.
+    #[test]
+    fn whatever_the_lengths_it_ends_at_rest() {
+        for k in 1..200_i32 {
+            let mut odd = ramps(1_000 + 7 * k, 2 * k);
+            odd[1].middle += k;
+            odd[2].ticks += 2 * (k % 5);
+            odd[3].middle += 3 * k;
+            let (force, speed, _) = played(&paced(&odd).unwrap());
+            assert_eq!((force, speed), (0, 0), "{k}");
+        }
+    }
+
+    #[test]
+    fn what_ramps_leave_of_speed_is_taken_up_by_the_last_two() {
+        let mut off = ramps(1_000, 200);
+        off[3].change *= 1.01;
+        let pace = paced(&off).unwrap();
+        let (force, speed, _) = played(&pace);
+        assert_eq!((force, speed), (0, 0));
+    }
+
+    #[test]
+    fn backwards_is_no_pace() {
+        let mut backwards = ramps(1_000, 200);
+        for ramp in &mut backwards {
+            ramp.change = -ramp.change;
+        }
+        assert!(paced(&backwards).is_none());
+    }
+}

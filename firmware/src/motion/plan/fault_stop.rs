@@ -1,0 +1,120 @@
+//! The controlled stop of a fault: the plan under way is followed slower and slower.
+//!
+//! The plan's own time runs at a pace that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is over. So
+//! the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of any plan, without
+//! planning anything: velocity is the plan's times the pace, acceleration the plan's times its square and the plan's velocity
+//! times the pace's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
+
+use super::follower::{ACCELERATION_CUT, Motion, Scale, Setpoint, VELOCITY_CUT};
+use kinematics::{Acceleration, Twist};
+
+/// How a motion is slowed down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slowdown {
+    /// Part of the stop that is a tick.
+    step: f32,
+    rate_hz: f32,
+}
+
+/// Where in its stop a motion is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Slowing {
+    /// Part of the stop that is over.
+    over: f32,
+    /// Part of the plan's tick that has begun.
+    part: f32,
+    pace: f32,
+    /// Change of the pace, 1/s.
+    change: f32,
+}
+
+impl Slowdown {
+    /// A stop that takes so long.
+    pub fn new(duration_s: f64, rate_hz: f64) -> Self {
+        Self {
+            step: (1.0 / (duration_s * rate_hz)) as f32,
+            rate_hz: rate_hz as f32,
+        }
+    }
+}
+
+/// 2^-32 turns or track radii in what a velocity and an acceleration are cut to.
+const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;
+const ACCELERATION_UNIT: f32 = 1.0 / (1 << (40 - ACCELERATION_CUT)) as f32;
+
+impl Motion {
+    /// A stop begins at the setpoint of this tick.
+    pub fn begin_slowing(&mut self) {
+        self.slowing = Slowing {
+            pace: 1.0,
+            ..Slowing::default()
+        };
+    }
+
+    /// One tick on, in a stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
+    pub fn advance_slower(&mut self, slowdown: &Slowdown) {
+        if !self.moving {
+            return;
+        }
+        let mut slowing = self.slowing;
+        let before = slowing.pace;
+        slowing.over += slowdown.step;
+        let u = slowing.over;
+        if u >= 1.0 {
+            let rest = self.slowed_position();
+            self.rest_at(rest);
+            return;
+        }
+        slowing.pace = 1.0 - u * u * (3.0 - 2.0 * u);
+        slowing.change = -6.0 * u * (1.0 - u) * slowdown.step * slowdown.rate_hz;
+        slowing.part += 0.5 * (before + slowing.pace);
+        if slowing.part >= 1.0 {
+            slowing.part -= 1.0;
+            self.advance();
+        }
+        self.slowing = slowing;
+    }
+
+    /// The setpoint now, in a stop.
+    pub fn slowed_setpoint(&self, scale: &Scale) -> Setpoint {
+        if !self.moving {
+            return self.setpoint(scale);
+        }
+        let plan = self.setpoint(scale);
+        let Slowing {
+            part, pace, change, ..
+        } = self.slowing;
+        // Of the plan within its tick.
+        let tick = part / scale.rate_hz;
+        let (twist, acceleration) = (&plan.twist, &plan.acceleration);
+        let x = twist.x + acceleration.x * tick;
+        let y = twist.y + acceleration.y * tick;
+        let theta = twist.theta + acceleration.theta * tick;
+        let square = pace * pace;
+        Setpoint {
+            position: self.slowed_position(),
+            twist: Twist {
+                x: x * pace,
+                y: y * pace,
+                theta: theta * pace,
+            },
+            acceleration: Acceleration {
+                x: acceleration.x * square + x * change,
+                y: acceleration.y * square + y * change,
+                theta: acceleration.theta * square + theta * change,
+            },
+        }
+    }
+
+    /// The plan's position within its tick.
+    fn slowed_position(&self) -> [i64; 3] {
+        let part = self.slowing.part;
+        self.axes.map(|axis| {
+            let velocity = (axis.velocity >> VELOCITY_CUT) as i32 as f32 * VELOCITY_UNIT;
+            let acceleration =
+                (axis.acceleration >> ACCELERATION_CUT) as i32 as f32 * ACCELERATION_UNIT;
+            let way = part * (velocity + 0.5 * part * acceleration);
+            axis.rounded().wrapping_add(i64::from(way as i32))
+        })
+    }
+}

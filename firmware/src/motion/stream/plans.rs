@@ -1,0 +1,155 @@
+//! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
+
+use super::spline::point;
+use super::{JERK_TOLERANCE, PART_BITS, Sent, Stream};
+use crate::motion::brake::halt::halt;
+use crate::motion::check::instant::{Instant, Limiter};
+use crate::motion::check::pivot_bounds::{Pace, per_second};
+use crate::motion::constraints::Ground;
+use crate::motion::plan::axis_state::{Axis, SUB_BITS};
+use crate::motion::plan::{Piece, Plan, Position, Start, nudge};
+use crate::motion::refusal::Refusal;
+use heapless::Vec;
+
+/// A plan, the axes that it starts from, and what is left when it is sent.
+pub(super) type Planned = (Plan, [Axis; 3], Sent);
+
+impl Stream {
+    /// The next plan, with the curve passed by its knots; after `sent`, or from rest.
+    pub(super) fn plan(
+        &mut self,
+        id: u32,
+        sent: Option<Sent>,
+        ground: &Ground,
+    ) -> Result<Planned, Refusal> {
+        let limiter = Limiter::new(ground);
+        let rest = self.target(2);
+        let (start, from) = match sent {
+            Some(Sent { id, splice, state }) => {
+                let (plan, tick) = (id, splice);
+                (Start::Splice { plan, tick }, state)
+            }
+            None => (Start::Rest(rest), rest.map(Axis::at_rest)),
+        };
+        let mut plan = Plan {
+            id,
+            start,
+            pieces: Vec::new(),
+            nudge: [0; 3],
+            end: rest,
+        };
+        let (state, now) = self.knots(&mut plan, from, &limiter)?;
+        let splice = plan.ticks();
+        if self.complete {
+            plan.end = self.target(2);
+            plan.nudge = nudge(&state, &plan.end, splice).ok_or(Refusal::Limits)?;
+        } else {
+            let (stop, end) = halt(&state, &now, &limiter)?;
+            plan.pieces
+                .extend(stop.into_iter().filter(|piece| piece.ticks > 0));
+            plan.end = end.map(|axis| axis.rounded());
+            if plan.ticks() == splice {
+                // At rest there is nothing to stop; but a plan that is over can not be left.
+                let _ = plan.pieces.push(Piece {
+                    ticks: 1,
+                    jerk: [0; 3],
+                });
+            }
+        }
+        Ok((plan, from, Sent { id, splice, state }))
+    }
+
+    /// Adds the pieces along the curve; where they lead.
+    fn knots(
+        &mut self,
+        plan: &mut Plan,
+        from: [Axis; 3],
+        limiter: &Limiter<'_>,
+    ) -> Result<([Axis; 3], Instant), Refusal> {
+        let mut state = from;
+        let mut before = limiter.look(&state)?;
+        for _ in 0..self.knots {
+            self.pass();
+            for piece in self.pieces(&state) {
+                let jerk = per_second(&piece.jerk, limiter.hz);
+                let jerk = Pace::of(&jerk.map(|jerk| jerk * limiter.hz * limiter.hz));
+                if jerk.way > limiter.jerk.way * JERK_TOLERANCE
+                    || jerk.turn > limiter.jerk.turn * JERK_TOLERANCE
+                {
+                    return Err(Refusal::Jerk);
+                }
+                piece.run(&mut state, piece.ticks, &[0; 3]);
+                let now = limiter.look(&state)?;
+                limiter.check(&before, &now, piece.ticks as f32 / limiter.hz)?;
+                before = now;
+                // Six times three, and five of the stop: they fit.
+                let _ = plan.pieces.push(piece);
+            }
+            if self.is_at_the_end() {
+                self.complete = true;
+                break;
+            }
+        }
+        Ok((state, before))
+    }
+
+    /// Passes the curve by a knot.
+    fn pass(&mut self) {
+        self.part += self.knot.whole() * self.rate;
+        while self.part >> PART_BITS != 0 {
+            self.part -= 1 << PART_BITS;
+            // The last target stays: it stands for all that would come.
+            if self.targets.len() > 1 {
+                let _ = self.targets.pop_front();
+            }
+        }
+    }
+
+    /// The pieces from a state to where the curve is now.
+    fn pieces(&self, state: &[Axis; 3]) -> [Piece; 3] {
+        let mut pieces = self.knot.ticks.map(|ticks| Piece {
+            ticks,
+            jerk: [0; 3],
+        });
+        const ONE: f32 = (1_u64 << PART_BITS) as f32;
+        let window = [0, 1, 2, 3, 4, 5].map(|k| self.target(k));
+        let (part, rate) = (self.part as f32 / ONE, self.rate as f32 / ONE);
+        for (i, axis) in state.iter().enumerate() {
+            let point = point(&window, i, part);
+            let units = (1_u64 << SUB_BITS) as f32;
+            let velocity = point.rate * rate * units;
+            let acceleration = point.acceleration * rate * rate * units;
+            let to = Axis {
+                position: (i128::from(window[2][i]) << SUB_BITS)
+                    + (i128::from((point.offset * FINE) as i64) << (SUB_BITS - FINE_BITS)),
+                velocity: velocity as i64,
+                acceleration: acceleration as i64,
+            };
+            for (piece, jerk) in pieces.iter_mut().zip(self.knot.jerks(axis, &to)) {
+                piece.jerk[i] = jerk;
+            }
+        }
+        pieces
+    }
+
+    /// A target of the window; the last one stands for those that are not there.
+    #[inline(never)]
+    fn target(&self, place: usize) -> Position {
+        let last = self.targets.len() - 1;
+        // There is one always: the start, or the last.
+        self.targets
+            .iter()
+            .nth(place.min(last))
+            .copied()
+            .unwrap_or_default()
+    }
+
+    fn is_at_the_end(&self) -> bool {
+        let first = self.target(0);
+        self.announced && self.targets.iter().all(|target| *target == first)
+    }
+}
+
+/// Bits of a place on the curve below a position's unit.
+const FINE_BITS: u32 = 20;
+const FINE: f32 = (1_u32 << FINE_BITS) as f32;
