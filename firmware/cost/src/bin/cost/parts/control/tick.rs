@@ -1,11 +1,9 @@
 //! The tick as a whole: referenced, then led from target to target, every pivot where it should be but for a little. Now and
 //! then a frame is missing.
 
-use super::super::states::{ground, position};
 use super::SUPPLY_COUNTS;
 use super::frames::frames;
 use crate::bench::Bench;
-use crate::random::Random;
 use crate::table::Came;
 use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
@@ -15,6 +13,8 @@ use firmware::motion::{Axis, Centre, Ground, Plan, plan_line, plan_transition};
 use firmware::number::Fixed;
 use firmware::queues::{Command, Link, PanelLink, TickLink};
 use firmware::recorder::{Record, RunningHash, Sample, Setup, Word};
+use firmware_cost::random::Random;
+use firmware_cost::states::{ground, position};
 use kinematics::{Angle, Pose, inverse};
 
 /// Of the pivots while nothing moves them.

@@ -2,8 +2,8 @@
 
 use crate::meter::Meter;
 use crate::order::Order;
-use crate::random::Random;
 use crate::table::{COST, Came};
+use firmware_cost::random::Random;
 
 /// The run.
 pub struct Bench {

@@ -4,13 +4,13 @@ mod frames;
 mod tick;
 
 use crate::bench::{Bench, plain};
-use crate::random::Random;
 use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
 use firmware::control::servo::{AxisServo, PivotSetpoint};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
 use firmware::parameters::Parameters;
+use firmware_cost::random::Random;
 use frames::frames;
 use kinematics::Angle;
 
@@ -47,11 +47,11 @@ fn decoding(bench: &mut Bench, config: &Config) {
 
 /// The rings under the encoders, which turn at 2 rad/s (over 2.5 an encoder does not become ready), a few counts more or less from tick to tick.
 #[derive(Default)]
-pub struct Rings([Angle; 3]);
+struct Rings([Angle; 3]);
 
 impl Rings {
     /// The frames a tick later; one in 64 times one of them is missing.
-    pub fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
+    fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
         const STEP: f64 = 2.0 / core::f64::consts::TAU / 20_000.0 * 4_294_967_296.0;
         for pivot in &mut self.0 {
             *pivot += Angle::from_units((STEP + random.within(-250.0, 250.0)) as i64);

@@ -1,11 +1,11 @@
 //! Planning: what the command side computes for a new target or a stop.
 
-use super::states::{Moving, ground, position, way};
-use super::streaming::Streaming;
 use crate::bench::Bench;
-use crate::random::Random;
 use crate::table::Came;
 use firmware::motion::{Axis, Next, NoTransition, Plan, Start, Stop, plan_jog, plan_line};
+use firmware_cost::random::Random;
+use firmware_cost::states::{Moving, ground, position, way};
+use firmware_cost::streaming::Streaming;
 
 /// Tick of a head at which the next slice takes over.
 const TAKEN_OVER: u64 = 40;

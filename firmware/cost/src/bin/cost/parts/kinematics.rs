@@ -1,10 +1,10 @@
 //! The mechanism in the tick's numbers.
 
-use super::states::{moved, pose};
 use crate::bench::{Bench, plain};
-use crate::random::Random;
 use crate::table::Came;
 use firmware::number::Fixed;
+use firmware_cost::random::Random;
+use firmware_cost::states::{moved, pose};
 use kinematics::{
     Acceleration, Angle, Inverse, PivotMotion, Pose, Twist, direct, in_platform_axes, inverse,
     pivot_motion_in_platform_axes,

@@ -1,10 +1,10 @@
 //! Following a plan: the motion generator's share of a tick.
 
-use super::states::{Moving, ground};
 use crate::bench::{Bench, plain};
-use crate::random::Random;
 use crate::table::Came;
 use firmware::motion::{Motion, Scale};
+use firmware_cost::random::Random;
+use firmware_cost::states::{Moving, ground};
 
 /// Counts taking a plan, and a tick of it.
 #[inline(never)]
