@@ -3,11 +3,11 @@
 mod frames;
 mod tick;
 
-use crate::bench::{Bench, plain};
+use crate::bench::{Bench, no_result};
 use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
-use firmware::control::servo::{AxisServo, PivotSetpoint};
+use firmware::control::servo::{PivotServo, PivotSetpoint};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
 use firmware::parameters::Parameters;
 use firmware_cost::random::Random;
@@ -37,11 +37,11 @@ fn decoding(bench: &mut Bench, config: &Config) {
         |(_, rings), random| rings.turned(random),
         |(encoders, _), frames| {
             for (i, encoder) in encoders.iter_mut().enumerate() {
-                encoder.take(&config.encoders[i], &frames[i]);
+                encoder.update(&config.encoders[i], &frames[i]);
             }
             encoders.each_ref().map(Encoder::angle)
         },
-        plain,
+        no_result,
     );
 }
 
@@ -68,7 +68,7 @@ fn servo(bench: &mut Bench, config: &Config) {
     bench.part_with(
         "servo, three",
         Bench::SHORT,
-        &mut [AxisServo::default(); 3],
+        &mut [PivotServo::default(); 3],
         |_, random| [0; 3].map(|_| pivot(random)),
         |servo, pivots| {
             let counts_per_volt = config.servo.counts_per_volt(f32::from(SUPPLY_COUNTS));
@@ -81,7 +81,7 @@ fn servo(bench: &mut Bench, config: &Config) {
             }
             duty
         },
-        plain,
+        no_result,
     );
 }
 

@@ -1,7 +1,7 @@
 //! The mechanism in the tick's numbers.
 
-use crate::bench::{Bench, plain};
-use crate::table::Came;
+use crate::bench::{Bench, no_result};
+use crate::table::CallResult;
 use firmware::number::Fixed;
 use firmware_cost::random::Random;
 use firmware_cost::states::{moved, pose};
@@ -39,7 +39,7 @@ pub fn run(bench: &mut Bench) {
         Bench::SHORT,
         |random| Angle::from_units(random.next() as i64),
         |&angle| <Fixed as kinematics::Scalar>::sin_cos(angle),
-        plain,
+        no_result,
     );
 }
 
@@ -64,6 +64,6 @@ fn pivots(random: &mut Random) -> [Angle; 3] {
     }
 }
 
-fn refused(refused: bool) -> Came {
-    Came { refused, ticks: 0 }
+fn refused(refused: bool) -> CallResult {
+    CallResult { refused, ticks: 0 }
 }

@@ -1,7 +1,7 @@
 //! Planning: what the command side computes for a new target or a stop.
 
 use crate::bench::Bench;
-use crate::table::Came;
+use crate::table::CallResult;
 use firmware::motion::{Axis, Next, NoTransition, Plan, Start, Stop, plan_jog, plan_line};
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
@@ -118,8 +118,8 @@ pub fn run_stream(bench: &mut Bench) {
     }
 }
 
-fn of_plan(plan: Option<&Plan>) -> Came {
-    Came {
+fn of_plan(plan: Option<&Plan>) -> CallResult {
+    CallResult {
         refused: plan.is_none(),
         ticks: plan.map_or(0, Plan::ticks),
     }
