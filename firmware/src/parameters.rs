@@ -1,7 +1,7 @@
 //! Every tunable of the controller, in physical units, with the reference stage as default.
 //!
-//! What the tick uses is derived from these once, in [`Config`](crate::control::config::Config). Defaults come from the reference
-//! stage (DESIGN section 4) unless a line says otherwise.
+//! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage unless a line
+//! says otherwise.
 
 use crate::motion::{Limits, Way};
 use kinematics::Geometry;
@@ -88,7 +88,7 @@ pub struct Drive {
     pub viscous_n_m_s: f64,
     /// Coulomb friction at the ring.
     pub coulomb_n_m: f64,
-    /// Way over which friction builds up after a reversal (presliding).
+    /// Distance over which friction builds up after a reversal (presliding).
     pub presliding_rad: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct Gains {
     pub velocity_v_s_rad: f64,
     /// Voltage per integral of the velocity error.
     pub integral_v_rad: f64,
-    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::control::servo`].
+    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see `control/servo`.
     pub learning: f64,
     /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
     pub friction_learning: f64,
@@ -149,11 +149,11 @@ pub struct Supervision {
     pub supply_min_v: f64,
     /// Rate of a pivot that is a fault, over the largest rate of a pivot in motion.
     pub overspeed_factor: f64,
-    /// Way of a pivot's setpoint in which its encoder must show something new.
+    /// Distance of a pivot's setpoint in which its encoder must show something new.
     pub frozen_rad: f64,
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
-    /// Longest time of a bridge at its largest duty.
+    /// Longest time of a bridge at its largest duty (saturated).
     pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,

@@ -1,8 +1,10 @@
 use super::checked_words::CheckedEntries;
+use super::memory::LAYOUT_MAGIC;
 use super::*;
 use crate::mode::Mode;
 use crate::motion::Motion;
 use crate::recorder::{Sample, TickObserver};
+use core::sync::atomic::Ordering;
 
 fn sample(tick: u64, mode: Mode) -> Sample {
     let setpoint = Motion::default().setpoint(&crate::motion::Scale::new(20_000.0));

@@ -8,7 +8,7 @@ use super::Panel;
 use super::reply::Reply;
 use super::session::Session;
 use crate::commander::axis::Axis;
-use crate::control::config::UNITS_PER_RAD;
+use crate::control::units::UNITS_PER_RAD;
 use crate::mode::Mode;
 use crate::queues::Snapshot;
 use embedded_io::Write;

@@ -2,8 +2,8 @@
 
 use super::Panel;
 use super::reply::Reply;
-use crate::control::config::UNITS_PER_RAD;
 use crate::control::loop_counters::LoopCounters;
+use crate::control::units::UNITS_PER_RAD;
 use crate::queues::Snapshot;
 use embedded_io::Write;
 

@@ -2,7 +2,7 @@
 //!
 //! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task does,
 //! with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered; what
-//! comes in gathers in the receiver's ring of 1 KiB.
+//! comes in gathers in the receiver's ring of 2 KiB.
 //!
 //! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a sector
 //! is written, and empty when it is on again. The tick's constants then come from flash at five wait states.

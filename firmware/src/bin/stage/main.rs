@@ -208,7 +208,7 @@ mod app {
         let local = context.local;
         let mut received = 0u32;
         loop {
-            if local.receiver.look() {
+            if local.receiver.poll() {
                 local.session.lose();
             }
             local.receiver.pass_to(|bytes| {

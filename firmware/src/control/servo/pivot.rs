@@ -1,8 +1,9 @@
 //! The servo of one pivot.
 
+use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::platform_torque::Body;
 use super::presliding::Presliding;
-use crate::control::config::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::control::units::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::drivers::bridge::Duty;
 use crate::number;
 use crate::parameters::Parameters;
@@ -23,14 +24,22 @@ pub struct ServoConfig {
     model_weights: [f32; FEATURES],
     /// Back-EMF.
     volt_per_rate: f32,
+    /// Ticks by which torque and friction look ahead: latency and the winding's time constant.
     lead_ticks: f32,
     latency_s: f32,
+    /// Presliding lengths a tick, for a rate of 1 rad/s.
     presliding_per_rate: f32,
+    /// Current over the dead time's knee, for a volt at rest.
     knee_currents_per_volt: f32,
+    /// Share of the way to its final value that the current goes in a tick.
     current_step: f32,
+    /// What the dead time takes of a pulse, PWM counts.
     dead_time_counts: f32,
+    /// Largest duty, PWM counts.
     max_counts: f32,
+    /// PWM counts a volt where the supply reads one ADC count.
     counts_per_volt_at_one_count: f32,
+    /// Anti-windup: largest size of the integral, V.
     integral_limit: f32,
     learnt_weight_limit: [f32; FEATURES],
 }
@@ -38,7 +47,7 @@ pub struct ServoConfig {
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
 const FEATURES: usize = 3;
 
-/// Duty kept back from full: the bridge needs its charge pump refreshed and the current sense its window.
+/// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
 const MAX_DUTY: f64 = 0.98;
 
 impl ServoConfig {
@@ -209,7 +218,7 @@ impl PivotServo {
         self.requested_counts = counts;
         let limited = clamp_symmetric(counts, config.max_counts);
 
-        // Collecting stops while the bridge is at its end and the error asks for more.
+        // Anti-windup: collecting stops while the bridge is saturated and the error asks for more.
         if counts == limited || counts * r < 0.0 {
             self.integral = clamp_symmetric(
                 self.integral + config.integral_gain * r,
@@ -242,13 +251,6 @@ impl PivotServo {
     }
 }
 
-/// The share of the dead time that counts: over the knee, where a motor at work is, all of it.
-#[inline]
-fn dead_time_share(current: f32) -> f32 {
-    let share = if current > 1.0 { 1.0 } else { current };
-    if share < -1.0 { -1.0 } else { share }
-}
-
 /// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).
 #[inline]
 fn clamp_symmetric(value: f32, most: f32) -> f32 {
@@ -269,25 +271,5 @@ fn clamped_end(value: f32, most: f32) -> f32 {
         most
     } else {
         0.0
-    }
-}
-
-/// The duty whose pulses, after the dead time has taken its part, are `wanted`.
-///
-/// Dead time shortens every pulse by `lost` counts, or by all of it if that is less, times the `share` that the current's size
-/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse that comes out no
-/// longer than `lost` is one that loses its share of itself.
-#[inline]
-fn compensate_dead_time(wanted: f32, share: f32, lost: f32) -> f32 {
-    let pulse = wanted + lost * share;
-    let (size, share) = if wanted < 0.0 {
-        (-pulse, -share)
-    } else {
-        (pulse, share)
-    };
-    if size >= lost {
-        pulse
-    } else {
-        wanted / (1.0 - share)
     }
 }

@@ -5,7 +5,7 @@
 use crate::commander::axis::Axis;
 use crate::commander::coordinates::measured;
 use crate::commander::frames::View;
-use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::parameters::Parameters;
 use crate::recorder::{MAX_ROW_WORDS, RECORDER_TABLES, RawSignal, SignalFormat};
 use core::fmt;
