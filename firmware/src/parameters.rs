@@ -1,7 +1,7 @@
 //! Every tunable of the controller, in physical units, with the reference stage as default.
 //!
-//! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage unless a line
-//! says otherwise.
+//! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
+//! unless a line says otherwise.
 
 use crate::motion::{Limits, Way};
 use kinematics::Geometry;
@@ -94,11 +94,12 @@ pub struct Drive {
 
 /// Servo gains.
 ///
-/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain Kv crosses
-/// over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600 rad/s, 260 Hz. The
-/// electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and the 1.5 kHz resonance
-/// leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia 20 % under the model. The
-/// position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and 12 deg of phase at crossover.
+/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain
+/// Kv crosses over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600
+/// rad/s, 260 Hz. The electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and
+/// the 1.5 kHz resonance leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia
+/// 20 % under the model. The position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and
+/// 12 deg of phase at crossover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// Velocity setpoint per position error.
@@ -109,10 +110,11 @@ pub struct Gains {
     pub integral_v_rad: f64,
     /// How fast feedforward learns, as a share of the integral gain (0: not at all); see `control/servo`.
     pub learning: f64,
-    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
+    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the
+    /// integral.
     pub friction_learning: f64,
-    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which voltage
-    /// feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
+    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
+    /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
     pub latency_s: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
-//! for one, every fourth tick or when mode or commands have changed, and not when it took a command: that tick is the longest
-//! as it is. What goes through is defined in [`crate::control`], which is at the other end.
+//! for one, every fourth tick or when mode or commands have changed, and not when it took a command: that tick is the
+//! longest as it is. What goes through is defined in [`crate::control`], which is at the other end.
 
 pub use crate::control::{Command, Snapshot, TickQueues};
 pub use crate::recorder::QueueFull;

@@ -14,11 +14,11 @@ pub enum Command {
     Servo(bool),
     /// Execute a plan. Refused by the tick (and counted) when its start is no longer where the motion is.
     Move(Plan),
-    /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or not;
-    /// the platform does not move.
+    /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or
+    /// not; the platform does not move.
     Centre(Centre),
-    /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the encoders'
-    /// readings mean; such a change takes the reference.
+    /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the
+    /// encoders' readings mean; such a change takes the reference.
     Configure(Config),
     /// Acknowledge the latched fault.
     Acknowledge,

@@ -98,16 +98,17 @@ impl Default for Encoder {
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
 const READY_FRAMES: u8 = 4;
-/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s. To stop
-/// so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
+/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s.
+/// To stop so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
 const FROZEN_STEP: u32 = 16 << ALIGN_SHIFT;
 
 impl Encoder {
     /// Takes the frame of this tick.
     ///
     /// A frame is believed when it decodes and its step differs from the last one's by no more than the plausible
-    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while the pivot
-    /// turns. A frame that is not believed is never used: the angle goes on by the last step, up to [`EncoderConfig`]'s count of them in a row.
+    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while
+    /// the pivot turns. A frame that is not believed is never used: the angle goes on by the last step, up to
+    /// [`EncoderConfig`]'s count of them in a row.
     #[inline]
     pub fn update(&mut self, config: &EncoderConfig, frame: &RawFrame) {
         if let (true, Some(counts)) = (
@@ -171,8 +172,8 @@ impl Encoder {
         }
     }
 
-    /// How far a reading is from the angle, and the innovation: how far that is from the last step. After bridged frames the angle has gone on
-    /// by itself: then it is from where it was expected to be.
+    /// How far a reading is from the angle, and the innovation: how far that is from the last step. After bridged
+    /// frames the angle has gone on by itself: then it is from where it was expected to be.
     #[inline]
     fn moved(&self, fraction: u32) -> (i32, u32) {
         let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
@@ -206,7 +207,8 @@ impl Encoder {
             self.good_frames = 1;
         } else if innovation <= allowed {
             self.advance_by(moved);
-            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the
+            // rate.
             self.step = self
                 .step
                 .wrapping_add(moved.wrapping_sub(self.step) / ticks as i32);

@@ -59,7 +59,8 @@ pub struct State {
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,
-    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due yet.
+    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due
+    /// yet.
     pub(super) last_mode_and_commands: (Mode, u32),
     pub(super) report_due: bool,
     pub(super) loop_counters: LoopCounters,

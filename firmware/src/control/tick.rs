@@ -17,11 +17,11 @@ use kinematics::Angle;
 
 /// One period of the control loop, at 20 kHz by default.
 ///
-/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update interrupt
-/// with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period, 25 us after the
-/// update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No allocation, no blocking,
-/// no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its cost on the chip stands in the
-/// README and is printed by `cargo chip`.
+/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update
+/// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
+/// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
+/// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
+/// cost on the chip stands in the README and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
     config: &mut Config,
@@ -45,7 +45,8 @@ pub fn tick(
     // Handled where it lies: a plan is too long to be moved twice.
     let command = queues.commands.peek();
     let commanded = command.is_some();
-    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next one on.
+    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next
+    // one on.
     let drives = state.servo_on();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
@@ -96,9 +97,9 @@ pub fn tick(
     if queues.recorder.is_active() {
         queues.recorder.observe(&sample());
     }
-    // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest as it
-    // is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend on when the
-    // command side reads.
+    // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
+    // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
+    // on when the command side reads.
     let now = (state.mode, state.commands);
     state.report_due |= now != state.last_mode_and_commands;
     state.last_mode_and_commands = now;
@@ -109,8 +110,8 @@ pub fn tick(
     outputs
 }
 
-// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
-// each between its symbols.
+// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can
+// count each between its symbols.
 
 /// Encoder frames to pivot angles.
 #[inline(never)]

@@ -20,8 +20,8 @@ pub struct TickQueues<'a> {
 
 impl TickQueues<'_> {
     /// Whether there is room for a snapshot.
-    // The queue carries its number of slots with it. Comparing it spares the tick a division by what, for all the compiler
-    // knows, could be zero, and the panic behind that.
+    // The queue carries its number of slots with it. Comparing it spares the tick a division by what, for all the
+    // compiler knows, could be zero, and the panic behind that.
     #[inline]
     pub fn has_snapshot_room(&self) -> bool {
         self.snapshots.capacity() == SNAPSHOT_SLOTS - 1 && self.snapshots.ready()

@@ -1,4 +1,5 @@
-//! Faults: what can go wrong in the loop (`kind`), what is done about it and why (`description`), and what is kept of it.
+//! Faults: what can go wrong in the loop (`kind`), what is done about it and why (`description`), and what is kept of
+//! it.
 
 mod description;
 mod kind;

@@ -36,7 +36,8 @@ impl RetainedMemory {
         Some(span)
     }
 
-    /// The next row of the record that is whole, from a cursor that [`FaultRecord::first_row`] has made; `None` at its end.
+    /// The next row of the record that is whole, from a cursor that [`FaultRecord::first_row`] has made; `None` at its
+    /// end.
     pub fn next(&self, span: &FaultRecord, cursor: &mut u32) -> Option<FaultRecordRow> {
         while *cursor < FAULT_RECORD_ROWS as u32 {
             let tick = span.first.wrapping_add(*cursor);

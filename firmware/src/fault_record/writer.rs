@@ -6,8 +6,8 @@ use crate::mode::Mode;
 use crate::recorder::{Sample, TickObserver};
 use core::sync::atomic::Ordering;
 
-/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the servo is on
-/// again; the same after a start that finds a record.
+/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the
+/// servo is on again; the same after a start that finds a record.
 pub struct FaultRecordWriter<'a> {
     memory: &'a RetainedMemory,
     start: u32,

@@ -3,14 +3,14 @@
 //! A [`Recorder`] is a store of 32-bit words with two ends. The [`RecorderWriter`] writes into it inside the tick; the
 //! [`RecorderReader`] orders records and reads them at low priority. Neither waits for the other, and there is no lock:
 //!
-//! - Orders go to the tick by value, through a queue. A [`RecordSetup`] is copied out of it once, so that the tick works on its
-//!   own.
-//! - The words are atomics, each written and read in one access. The tick publishes how many rows of the record are complete
-//!   with release, the reader loads that with acquire, so it sees those rows whole; and they stay as they are until the reader
-//!   itself orders another record, since rows are overwritten only before the trigger.
+//! - Orders go to the tick by value, through a queue. A [`RecordSetup`] is copied out of it once, so that the tick
+//!   works on its own.
+//! - The words are atomics, each written and read in one access. The tick publishes how many rows of the record are
+//!   complete with release, the reader loads that with acquire, so it sees those rows whole; and they stay as they are
+//!   until the reader itself orders another record, since rows are overwritten only before the trigger.
 //!
-//! What is written are [`RawSignal`]s, integers or floats as the tick has them, finer than the encoder; what they are in mm and deg
-//! is worked out by whoever reads them.
+//! What is written are [`RawSignal`]s, integers or floats as the tick has them, finer than the encoder; what they are
+//! in mm and deg is worked out by whoever reads them.
 //!
 //! | file | idea |
 //! |---|---|

@@ -42,7 +42,8 @@ pub enum RawSignal {
 pub enum SignalFormat {
     /// A length in 2^-29 track radii (0.19 nm on a track of 100 mm).
     Length,
-    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last row's.
+    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last
+    /// row's.
     Angle,
     /// A small angle in 2^-32 turns.
     AngleError,

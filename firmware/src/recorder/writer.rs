@@ -6,8 +6,8 @@ use super::setup::{ORDER_SLOTS, Order, RecordSetup};
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Consumer;
 
-/// Takes orders, looks for the trigger and writes rows. Costs two flags read while there is nothing to do; otherwise, each
-/// tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
+/// Takes orders, looks for the trigger and writes rows. Costs two flags read while there is nothing to do; otherwise,
+/// each tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
 pub struct RecorderWriter<'a> {
     words: &'a [AtomicU32],
     published: &'a Published,

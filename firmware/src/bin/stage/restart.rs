@@ -4,7 +4,8 @@ use crate::pwm;
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
 
-/// What [`ASKED`] holds over a restart that was asked for; a power-up hardly leaves it by chance, and is no software reset.
+/// What [`ASKED`] holds over a restart that was asked for; a power-up hardly leaves it by chance, and is no software
+/// reset.
 const ASKED_MAGIC: u32 = 0x5242_5421;
 
 /// Keeps its value over a reset: the start-up code leaves this section alone.

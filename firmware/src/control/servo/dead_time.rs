@@ -9,9 +9,9 @@ pub(super) fn dead_time_share(current: f32) -> f32 {
 
 /// The duty whose pulses, after the dead time has taken its part, are `wanted`.
 ///
-/// Dead time shortens every pulse by `dead_counts` counts, or by all of it if that is less, times the `share` that the current's size
-/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse that comes out no
-/// longer than `dead_counts` is one that loses its share of itself.
+/// Dead time shortens every pulse by `dead_counts` counts, or by all of it if that is less, times the `share` that the
+/// current's size and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse
+/// that comes out no longer than `dead_counts` is one that loses its share of itself.
 #[inline]
 pub(super) fn compensate_dead_time(wanted: f32, share: f32, dead_counts: f32) -> f32 {
     let pulse = wanted + dead_counts * share;

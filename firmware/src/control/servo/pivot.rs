@@ -154,7 +154,8 @@ pub struct PivotServo {
 }
 
 impl PivotServo {
-    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the setpoint.
+    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the
+    /// setpoint.
     pub fn restart(&mut self) {
         *self = Self {
             learnt_weights: self.learnt_weights,
@@ -196,8 +197,8 @@ impl PivotServo {
             .friction
             .advance(setpoint.rate * config.presliding_per_rate);
         let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
-        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
-        // needs a fifth more for the current's change as well.
+        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker
+        // by a fifth needs a fifth more for the current's change as well.
         let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
         let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
         let friction = contact + config.lead_ticks * (contact - last_contact);
@@ -207,8 +208,8 @@ impl PivotServo {
             + (config.model_weights[1] + self.learnt_weights[1]) * torque
             + (config.model_weights[2] + self.learnt_weights[2]) * friction;
 
-        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead time
-        // takes of it is made up for.
+        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead
+        // time takes of it is made up for.
         let over_emf = feedforward + self.integral + config.velocity_gain * r;
         self.current +=
             (over_emf * config.knee_currents_per_volt - self.current) * config.current_step;
@@ -228,8 +229,8 @@ impl PivotServo {
         self.quantise(limited)
     }
 
-    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so that the
-    /// pivots can take turns.
+    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
+    /// that the pivots can take turns.
     #[inline]
     pub fn learn(&mut self, config: &ServoConfig) {
         let collected = self.integral - self.integral_when_learnt;
@@ -240,8 +241,8 @@ impl PivotServo {
         }
     }
 
-    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200 is
-    /// coarser than friction forgives.
+    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200
+    /// is coarser than friction forgives.
     #[inline]
     fn quantise(&mut self, counts: f32) -> Duty {
         let wanted = counts + self.rounding_residue;
@@ -251,7 +252,8 @@ impl PivotServo {
     }
 }
 
-/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).
+/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their
+/// order).
 #[inline]
 fn clamp_symmetric(value: f32, most: f32) -> f32 {
     if value.abs() <= most {

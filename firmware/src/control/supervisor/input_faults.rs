@@ -93,8 +93,9 @@ impl State {
         }
     }
 
-    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so that its
-    /// integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own speed.
+    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so
+    /// that its integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own
+    /// speed.
     #[cold]
     pub(in crate::control) fn fault_frozen_encoder(&mut self, pivot: usize) {
         if let Some(encoder) = self.encoders.get_mut(pivot) {

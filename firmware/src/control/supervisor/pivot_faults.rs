@@ -1,5 +1,5 @@
-//! Faults of a single pivot: one pivot is inspected in a tick, one after the other, and none in each fourth tick, which sends a
-//! snapshot. So they are found at most four ticks (200 us) later than they could be, at a third of the cost.
+//! Faults of a single pivot: one pivot is inspected in a tick, one after the other, and none in each fourth tick, which
+//! sends a snapshot. So they are found at most four ticks (200 us) later than they could be, at a third of the cost.
 
 use crate::control::config::Config;
 use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
@@ -8,8 +8,8 @@ use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
 use crate::fault::FaultKind;
 use crate::number::sqrt_f32;
 
-/// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the windings' own
-/// time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
+/// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the
+/// windings' own time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
 const REPEATED_READINGS: u16 = 20;
 
 impl State {
@@ -126,8 +126,8 @@ fn radians(units: u32) -> f32 {
     units as f32 * RAD
 }
 
-/// Whether a duty is over one before by more than a limit, or as far on the other side of zero. Less than what moved a pivot
-/// last need not move it: at the end of a motion friction keeps it where it is.
+/// Whether a duty is over one before by more than a limit, or as far on the other side of zero. Less than what moved a
+/// pivot last need not move it: at the end of a motion friction keeps it where it is.
 fn drive_exceeds(duty: i16, before: i16, limit: u16) -> bool {
     let [duty, before, limit] = [i32::from(duty), i32::from(before), i32::from(limit)];
     duty > before.max(0) + limit || duty < before.min(0) - limit

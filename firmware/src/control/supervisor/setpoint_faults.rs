@@ -10,7 +10,8 @@ use crate::number::sqrt_f32;
 const RETURN_TOLERANCE: f32 = 1e-4;
 
 impl State {
-    /// Takes the limit from where the servo is switched on: outside the disk that is no fault as long as it goes no further out.
+    /// Takes the limit from where the servo is switched on: outside the disk that is no fault as long as it goes no
+    /// further out.
     pub(in crate::control) fn set_radius_limit_from(&mut self, platform: &Position) {
         self.max_radius_squared = radius_squared(platform) + RETURN_TOLERANCE;
     }
@@ -38,8 +39,8 @@ impl State {
         false
     }
 
-    /// Whether a pivot at `rho` along its guide is in that guide's range. Outside the disk it need not be: there the return into
-    /// the disk counts.
+    /// Whether a pivot at `rho` along its guide is in that guide's range. Outside the disk it need not be: there the
+    /// return into the disk counts.
     #[inline]
     pub(in crate::control) fn is_in_guide_range(
         &mut self,
