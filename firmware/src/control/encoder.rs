@@ -64,7 +64,7 @@ impl EncoderConfig {
 pub struct Encoder {
     angle: Angle,
     step: i32,
-    /// Good frames in a row, up to [`READY`].
+    /// Good frames in a row, up to [`READY_FRAMES`].
     good_frames: u8,
     /// Bad frames in a row.
     bad_frames: u8,

@@ -23,7 +23,7 @@ pub struct RecordSetup {
     pub number: u32,
     /// What stands in a row.
     pub signals: Vec<RawSignal, MAX_ROW_WORDS>,
-    /// Ticks from row to row, 1 to [`MOST_BETWEEN`].
+    /// Ticks from row to row, 1 to [`MAX_ROW_PERIOD_TICKS`].
     pub every: u32,
     /// Rows of the record, those before the trigger included.
     pub rows: u32,

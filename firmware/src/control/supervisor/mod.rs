@@ -11,7 +11,7 @@
 //! | `pivot_faults` | faults of a single pivot, one pivot a tick |
 //!
 //! Off coasts, so that a stage can be moved by hand; holding, moving and stopping drive; a fault brakes, or coasts
-//! where its [`Reaction`] is that. All faults with their detection, reaction and reason stand in `FAULTS.md`, which is
+//! where its [`Reaction`](crate::fault::Reaction) is that. All faults with their detection, reaction and reason stand in `FAULTS.md`, which is
 //! made from [`FAULT_DESCRIPTIONS`](crate::fault::FAULT_DESCRIPTIONS).
 //!
 //! The measured pose is computed when a command needs it, not at every tick: while the servo is on, every pivot is
