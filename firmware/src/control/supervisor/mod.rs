@@ -11,8 +11,8 @@
 //! | `pivot_faults` | faults of a single pivot, one pivot a tick |
 //!
 //! Off coasts, so that a stage can be moved by hand; holding, moving and stopping drive; a fault brakes, or coasts
-//! where its [`Reaction`](crate::fault::Reaction) is that. All faults with their detection, reaction and reason stand in `FAULTS.md`, which is
-//! made from [`FAULT_DESCRIPTIONS`](crate::fault::FAULT_DESCRIPTIONS).
+//! where its [`Reaction`](crate::fault::Reaction) is that. All faults with their detection, reaction and reason stand
+//! in `FAULTS.md`, which is made from [`FAULT_DESCRIPTIONS`](crate::fault::FAULT_DESCRIPTIONS).
 //!
 //! The measured pose is computed when a command needs it, not at every tick: while the servo is on, every pivot is
 //! within the largest following error of the setpoint, which bounds the measured pose more tightly than any margin of

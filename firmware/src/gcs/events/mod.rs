@@ -1,7 +1,7 @@
 //! What has happened to the controller: a ring of typed events, each with its tick. `EVT?` tells them, the oldest first; when
 //! it is full the oldest goes. They are numbered from 1 on, so that one sees how many have gone.
 //!
-//! Each is written into the black box too, if there is one, and those from before a reset are found there: they keep their
+//! Each is written into the retained memory too, if there is one, and those from before a reset are found there: they keep their
 //! numbers, and the events after the start go on from there.
 
 mod words;
@@ -55,7 +55,7 @@ pub(super) enum Event {
 pub(super) struct Events {
     kept: Deque<(u64, Event), RETAINED_EVENTS>,
     count: u32,
-    /// How many of them the black box has; `None` before it was looked at.
+    /// How many of them the retained memory has; `None` before it was looked at.
     boxed: Option<u32>,
     last: Seen,
 }
@@ -100,7 +100,7 @@ impl Events {
         self.count = self.count.wrapping_add(1);
     }
 
-    /// Writes what is new into the black box; the first time, takes what is in it from before.
+    /// Writes what is new into the retained memory; the first time, takes what is in it from before.
     pub fn keep(&mut self, retained_memory: &RetainedMemory) {
         let boxed = match self.boxed {
             Some(boxed) => boxed,

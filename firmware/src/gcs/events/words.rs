@@ -1,4 +1,4 @@
-//! Events as words, for the black box: number, tick (two), what, three of its own, and the check.
+//! Events as words, for the retained memory: number, tick (two), what, three of its own, and the check.
 
 use super::Event;
 use crate::fault::{FAULT_DESCRIPTIONS, Fault};
