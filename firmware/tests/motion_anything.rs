@@ -4,8 +4,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Centre, Ground, Motion, NoTransition, Plan, Position, Scale, Setpoint, Start, Stop,
-    plan_jog, plan_line, plan_stop, plan_transition,
+    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
+    Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::grounds::{Velocity, grounds, rest, velocities};
@@ -49,13 +49,13 @@ const MOST: u64 = 20_000;
 /// A motion under way.
 struct Course {
     plan: Plan,
-    from: [Axis; 3],
-    ground: Ground,
+    from: [AxisState; 3],
+    ground: Constraints,
 }
 
 impl Course {
     /// At rest.
-    fn resting(from: [Axis; 3], ground: Ground) -> Self {
+    fn resting(from: [AxisState; 3], ground: Constraints) -> Self {
         let at = from.map(|axis| axis.rounded());
         let plan = plan_line(1, at, at, &ground).expect("where it is");
         Self { plan, from, ground }
@@ -71,9 +71,9 @@ impl Course {
         let here = state.map(|axis| axis.rounded());
         match *command {
             Command::Target(platform) => {
-                let to = Centre::new(ground.centre)?.of_platform(&platform);
+                let to = RotationCentre::new(ground.rotation_centre)?.from_platform(&platform);
                 if moving {
-                    plan_transition(id, &self.plan, &self.from, at, to, ground).ok()
+                    plan_retarget(id, &self.plan, &self.from, at, to, ground).ok()
                 } else {
                     plan_line(id, here, to, ground).ok()
                 }
@@ -81,12 +81,12 @@ impl Course {
             Command::Velocity(velocity) => {
                 let start = if moving {
                     let plan = self.plan.id;
-                    Start::Splice { plan, tick: at }
+                    PlanStart::Splice { plan, tick: at }
                 } else {
-                    Start::Rest(here)
+                    PlanStart::Rest(here)
                 };
                 match plan_jog(id, start, &state, &velocity, ground) {
-                    Err(NoTransition::NeedsStop) if !moving => panic!("at rest"),
+                    Err(RetargetError::NeedsStop) if !moving => panic!("at rest"),
                     plan => plan.ok(),
                 }
             }
@@ -99,7 +99,7 @@ impl Course {
         &self,
         command: &Command,
         next: &Plan,
-        start: &[Axis; 3],
+        start: &[AxisState; 3],
     ) -> Result<(), TestCaseError> {
         let mut worst = Worst::default();
         let end = worst.walk_ends(next, start, &self.ground, MOST);
@@ -126,7 +126,7 @@ impl Course {
 }
 
 /// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the acceleration.
-fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Ground) -> bool {
+fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Constraints) -> bool {
     let hz = ground.limits.rate_hz;
     let unit = [1.0, 1.0, 1.0 / std::f64::consts::TAU];
     let rates = |p: &Setpoint| [p.twist.x, p.twist.y, p.twist.theta].map(f64::from);
@@ -154,8 +154,8 @@ fn limits_workspace_and_continuity_are_kept() {
         let from = rest(platform, &ground);
         prop_assume!(from.is_some());
         let mut course = Course::resting(from.unwrap(), ground);
-        let scale = Scale::new(ground.limits.rate_hz);
-        let mut motion = Motion::default();
+        let scale = SetpointScale::new(ground.limits.rate_hz);
+        let mut motion = PlanFollower::default();
         motion.rest_at(course.plan.end);
         let mut at = 0;
         let mut seen = motion.setpoint(&scale);
@@ -165,7 +165,7 @@ fn limits_workspace_and_continuity_are_kept() {
                 let start = course.plan.state_after(&course.from, at);
                 course.check(&command, &next, &start)?;
                 let mut counts = made.get();
-                counts[command.kind()][usize::from(motion.moving())] += 1;
+                counts[command.kind()][usize::from(motion.is_moving())] += 1;
                 made.set(counts);
                 prop_assert_eq!(motion.accept(&next), Ok(()));
                 course = Course {

@@ -3,13 +3,13 @@
 
 mod motion_bench;
 
-use firmware::motion::{Ground, Position, Refusal, check_line, plan_line};
+use firmware::motion::{Constraints, Position, Refusal, check_line, plan_line};
 use motion_bench::*;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Two positions of a point of the platform that have the platform centre inside the disk, and the ground for them.
-fn lines() -> impl Strategy<Value = (Position, Position, Ground)> {
+fn lines() -> impl Strategy<Value = (Position, Position, Constraints)> {
     let place = || (0.0..0.8_f64, -PI..PI, -0.7..0.7_f64);
     // Half of them long and about a point not far off: they go through the middle, and may leave the disk near either end.
     let arm = prop_oneof![0.0..0.7_f64, 0.05..0.25_f64];
@@ -20,7 +20,14 @@ fn lines() -> impl Strategy<Value = (Position, Position, Ground)> {
         let to = point(b, centre);
         let share = 10_f64.powf(exponent);
         let to = [0, 1, 2].map(|i| from[i] + ((to[i] - from[i]) as f64 * share) as i64);
-        (from, to, Ground { centre, ..GROUND })
+        (
+            from,
+            to,
+            Constraints {
+                rotation_centre: centre,
+                ..GROUND
+            },
+        )
     })
 }
 
@@ -53,15 +60,15 @@ proptest! {
 
     #[test]
     fn what_leaves_the_disk_is_refused_and_nothing_else((from, to, ground) in lines()) {
-        let furthest = furthest(&from, &to, ground.centre);
+        let furthest = furthest(&from, &to, ground.rotation_centre);
         let answer = check_line(&from, &to, &ground);
         // The sampling here and the rim there: a hair's breadth is left open.
         if furthest > 0.8 + 2e-6 {
             let refusal = answer.expect_err("it leaves the disk");
-            if let Refusal::LeavesDisk { radius_mm, usable_mm, share } = refusal {
+            if let Refusal::LeavesDisk { radius_mm, usable_mm, fraction } = refusal {
                 prop_assert_eq!(usable_mm.round(), 80.0);
                 prop_assert!(radius_mm / 100.0 <= furthest + 1e-5, "{radius_mm} of {furthest}");
-                let there = radius(&from, &to, share, ground.centre);
+                let there = radius(&from, &to, fraction, ground.rotation_centre);
                 prop_assert!((there - radius_mm / 100.0).abs() < 1e-5, "{there} {radius_mm}");
             }
         } else if furthest < 0.8 - 2e-6 {
@@ -72,12 +79,12 @@ proptest! {
 
     #[test]
     fn many_turns_about_a_point_leave_the_disk_where_both_lengths_add_up(turns in 1.02..10_000.0_f64, r in 0.0..0.79_f64, arm in 0.0..0.79_f64) {
-        let ground = Ground { centre: [0.0, arm], ..GROUND };
+        let ground = Constraints { rotation_centre: [0.0, arm], ..GROUND };
         // The arm points inwards at the start, so that the platform centre is inside.
         let from = at(r * 100.0, 0.0, -0.25);
         let to = [from[0], from[1], from[2] + (turns * UNIT) as i64];
-        let start = radius(&from, &to, 0.0, ground.centre);
-        prop_assume!(start < 0.799 && radius(&from, &to, 1.0, ground.centre) < 0.799);
+        let start = radius(&from, &to, 0.0, ground.rotation_centre);
+        prop_assume!(start < 0.799 && radius(&from, &to, 1.0, ground.rotation_centre) < 0.799);
         prop_assume!((r + arm - 0.8).abs() > 1e-5);
         let answer = check_line(&from, &to, &ground);
         prop_assert_eq!(answer.is_err(), r + arm > 0.8, "{:?}", answer);
@@ -97,11 +104,11 @@ proptest! {
 /// Also near the edge, where some orientations are not possible.
 #[test]
 fn where_it_is_it_can_stay() {
-    let ground = Ground {
-        centre: [0.4, 0.0],
+    let ground = Constraints {
+        rotation_centre: [0.4, 0.0],
         ..GROUND
     };
-    let here = point((0.7, 0.3, 0.1), ground.centre);
+    let here = point((0.7, 0.3, 0.1), ground.rotation_centre);
     assert_eq!(check_line(&here, &here, &ground), Ok(()));
     assert_eq!(plan_line(1, here, here, &ground).unwrap().ticks(), 0);
 }
@@ -109,8 +116,8 @@ fn where_it_is_it_can_stay() {
 #[test]
 fn a_refusal_says_where_and_how_far() {
     // At the start and at the end the platform centre is 10 mm from the track's, half a turn from there 90 mm.
-    let ground = Ground {
-        centre: [0.4, 0.0],
+    let ground = Constraints {
+        rotation_centre: [0.4, 0.0],
         ..GROUND
     };
     let (from, to) = (at(0.0, 50.0, 0.25), at(0.0, 50.0, 1.25));

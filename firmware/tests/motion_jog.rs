@@ -2,7 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{Axis, Motion, NoTransition, Refusal, Start, plan_jog};
+use firmware::motion::{AxisState, PlanFollower, PlanStart, Refusal, RetargetError, plan_jog};
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::grounds::{Velocity, grounds, rest, velocities};
 use motion_bench::random::Random;
@@ -12,12 +12,12 @@ use proptest::prelude::*;
 /// Ticks of a velocity held that are looked at.
 const SECOND: u64 = 20_000;
 
-fn start(axes: &[Axis; 3]) -> Start {
-    Start::Rest(axes.map(|axis| axis.rounded()))
+fn start(axes: &[AxisState; 3]) -> PlanStart {
+    PlanStart::Rest(axes.map(|axis| axis.rounded()))
 }
 
 /// The velocity of a state in mm/s and deg/s.
-fn speeds(axes: &[Axis; 3]) -> Velocity {
+fn speeds(axes: &[AxisState; 3]) -> Velocity {
     let [x, y, turns] = velocity(axes);
     [x * 100.0, y * 100.0, turns * 360.0]
 }
@@ -43,8 +43,8 @@ proptest! {
                 prop_assert!(worst.is_kept(), "{worst:?}");
                 prop_assert!(ends_at_rest(&plan, &end), "{end:?} {:?}", plan.end);
             }
-            Err(NoTransition::Refused(Refusal::NoWay)) => {}
-            Err(NoTransition::Refused(Refusal::PivotRate { radius_mm })) => {
+            Err(RetargetError::Refused(Refusal::NoRoom)) => {}
+            Err(RetargetError::Refused(Refusal::PivotRate { radius_mm })) => {
                 let at = (platform[0] as f64).hypot(platform[1] as f64) / UNIT * 100.0;
                 prop_assert!(at > radius_mm - 1e-3, "{at} {radius_mm}");
             }
@@ -64,7 +64,7 @@ proptest! {
         let first = first.unwrap();
         let tick = (part * first.ticks().min(6_000) as f64) as u64;
         let state = first.state_after(&axes, tick);
-        let splice = Start::Splice { plan: 3, tick };
+        let splice = PlanStart::Splice { plan: 3, tick };
         if let Ok(plan) = plan_jog(4, splice, &state, &other, &ground) {
             let mut worst = Worst::default();
             let end = worst.walk_ends(&plan, &state, &ground, SECOND);
@@ -104,11 +104,11 @@ fn another_velocity_is_taken_in_motion() {
                 }
             };
             let tick = (random.unit() * plan.ticks().min(6_000) as f64) as u64;
-            let splice = Start::Splice { plan: 7, tick };
+            let splice = PlanStart::Splice { plan: 7, tick };
             let state = plan.state_after(&axes, tick);
             match plan_jog(8, splice, &state, &velocity(&mut random), &GROUND) {
                 Ok(_) => made += 1,
-                Err(NoTransition::NeedsStop) => stops += 1,
+                Err(RetargetError::NeedsStop) => stops += 1,
                 Err(refused) => panic!("{refused:?}"),
             }
         }
@@ -172,7 +172,7 @@ fn theta_turns_without_end_and_without_a_step() {
         let lifetime = 30 * 365 * 86_400 * 20_000;
         assert!(plan.ticks() > lifetime, "{} ticks", plan.ticks());
         // The tick's own steps, beginning wherever: the same as the plan's, and all of one size.
-        let mut motion = Motion::default();
+        let mut motion = PlanFollower::default();
         motion.rest_at([0, 0, from]);
         motion.accept(&plan).expect("at rest");
         for _ in 0..4_000 {
@@ -219,7 +219,7 @@ fn near_the_edge_a_lower_velocity_is_taken_and_at_it_none() {
     let jog = |velocity: Velocity| plan_jog(1, start(&axes), &axes, &velocity, &GROUND);
     assert_eq!(
         jog([200.0, 0.0, 0.0]).err(),
-        Some(NoTransition::Refused(Refusal::NoWay))
+        Some(RetargetError::Refused(Refusal::NoRoom))
     );
     assert!(
         jog([-200.0, 0.0, 0.0]).is_ok(),
@@ -244,13 +244,13 @@ fn no_velocity_at_rest_is_no_motion() {
 fn velocities_that_can_not_be_are_refused() {
     let axes = at_rest(at(70.0, 0.0, 0.0));
     let refusal = |velocity: Velocity| plan_jog(1, start(&axes), &axes, &velocity, &GROUND).err();
-    let velocity = Some(NoTransition::Refused(Refusal::Velocity));
+    let velocity = Some(RetargetError::Refused(Refusal::Velocity));
     assert_eq!(refusal([200.1, 0.0, 0.0]), velocity);
     assert_eq!(refusal([150.0, 150.0, 0.0]), velocity);
     assert_eq!(refusal([0.0, 0.0, -361.0]), velocity);
     assert_eq!(refusal([0.0, f64::NAN, 0.0]), velocity);
     // At 70 mm a turn a second takes a pivot to 2 pi (1 + 0.7) = 10.7 rad/s.
-    let Some(NoTransition::Refused(Refusal::PivotRate { radius_mm })) = refusal([0.0, 0.0, 360.0])
+    let Some(RetargetError::Refused(Refusal::PivotRate { radius_mm })) = refusal([0.0, 0.0, 360.0])
     else {
         panic!("the pivots can not");
     };

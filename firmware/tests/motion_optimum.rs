@@ -6,7 +6,7 @@
 mod motion_bench;
 mod optimum;
 
-use firmware::motion::{Ground, Plan, Position, plan_line};
+use firmware::motion::{Constraints, Plan, Position, plan_line};
 use motion_bench::exact::Worst;
 use motion_bench::random::Random;
 use motion_bench::setting::setting;
@@ -16,11 +16,11 @@ use std::f64::consts::TAU;
 
 /// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of them
 /// of any size from 0.1 mm up; one in four about another point than the platform centre.
-fn random_move(random: &mut Random) -> (Position, Position, Ground) {
+fn random_move(random: &mut Random) -> (Position, Position, Constraints) {
     let mut ground = GROUND;
     if random.unit() < 0.25 {
         let (r, direction) = (0.6 * random.unit().sqrt(), TAU * random.unit());
-        ground.centre = [r * direction.cos(), r * direction.sin()];
+        ground.rotation_centre = [r * direction.cos(), r * direction.sin()];
     }
     let turns = if random.unit() < 0.2 { 3.0 } else { 1.0 };
     loop {
@@ -43,14 +43,14 @@ fn random_move(random: &mut Random) -> (Position, Position, Ground) {
 }
 
 /// Every limit, and the disk; what a failure needs to be found again.
-fn check(plan: &Plan, from: &Position, to: &Position, ground: &Ground) -> Worst {
+fn check(plan: &Plan, from: &Position, to: &Position, ground: &Constraints) -> Worst {
     let mut worst = Worst::default();
     worst.walk(plan, &at_rest(*from), ground);
     // Of the disk an f32's roundings on the way; 0.1 um.
     assert!(
         worst.shares().iter().all(|&share| share <= SLACK) && worst.outside <= 1e-6,
         "{from:?} -> {to:?} about {:?}: {worst:?}",
-        ground.centre
+        ground.rotation_centre
     );
     worst
 }
@@ -71,7 +71,7 @@ fn lines_keep_every_limit_and_are_within_a_tenth_of_the_optimum() {
         assert!(
             ratio > 1.0 - 1e-4,
             "{from:?} -> {to:?} about {:?}: {ratio}",
-            ground.centre
+            ground.rotation_centre
         );
         ratios.push(ratio);
     }

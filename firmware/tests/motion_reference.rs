@@ -6,7 +6,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, AxisLimits, JERK_STEP, Limits, Plan, Position, plan_line, plan_transition, synchronised,
+    AxisLimits, AxisState, JERK_STEP, Limits, Plan, Position, plan_line, plan_retarget,
+    synchronised,
 };
 use motion_bench::exact::ends_at_rest;
 use motion_bench::random::Random;
@@ -43,7 +44,7 @@ fn per_axis(limits: &Limits, part: f64) -> [AxisMost; 3] {
 }
 
 /// The reference's synchronised duration in ticks; `None` where it finds none.
-fn reference(axes: &[Axis; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
+fn reference(axes: &[AxisState; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
     // Times in thousands of ticks: it takes what is closer than 1e-8 for the same.
     const LONG: f64 = 1_000.0;
     let mut input = InputParameter::<3>::new(None);
@@ -65,7 +66,7 @@ fn reference(axes: &[Axis; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<
 }
 
 /// Ticks in which the tick itself plays a plan, which has to end at rest.
-fn played(plan: &Plan, start: &[Axis; 3]) -> f64 {
+fn played(plan: &Plan, start: &[AxisState; 3]) -> f64 {
     let all = states(plan, *start);
     assert!(
         ends_at_rest(plan, all.last().unwrap()),
@@ -102,7 +103,7 @@ fn three_axes_take_as_long_as_the_reference() {
             1 => limit,
             _ => (2.0 * random.unit() - 1.0) * limit,
         };
-        let axes = limits.map(|[v, a, _]| Axis {
+        let axes = limits.map(|[v, a, _]| AxisState {
             position: 0,
             velocity: within(v) as i64,
             acceleration: within(a) as i64 / JERK_STEP * JERK_STEP,
@@ -168,7 +169,7 @@ fn new_targets_in_motion_beside_the_reference() {
             let line = plan_line(1, from, to, &ground).expect("a line");
             let at = (random.unit() * line.ticks() as f64) as u64;
             let start = line.state_after(&at_rest(from), at);
-            let Ok(next) = plan_transition(2, &line, &at_rest(from), at, other, &ground) else {
+            let Ok(next) = plan_retarget(2, &line, &at_rest(from), at, other, &ground) else {
                 stops += 1;
                 continue;
             };

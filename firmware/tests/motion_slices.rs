@@ -3,7 +3,7 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Ahead, Axis, Leave, NoTransition, Plan, Position, Tries, plan_transition, try_transition,
+    Ahead, AxisState, Leave, Plan, Position, RetargetError, Tries, plan_retarget, try_retarget,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::random::Random;
@@ -16,7 +16,7 @@ const TAKEN_OVER: [u64; 4] = [1, 40, 99, 200];
 /// A line that is left for another target at a random tick.
 struct Left {
     line: Plan,
-    from: [Axis; 3],
+    from: [AxisState; 3],
     at: u64,
     to: Position,
 }
@@ -34,7 +34,7 @@ impl Left {
     }
 
     /// The first slice: a plan, and what lies ahead of it.
-    fn first(&self, tries: &mut Tries) -> (Result<Plan, NoTransition>, Option<Ahead>) {
+    fn first(&self, tries: &mut Tries) -> (Result<Plan, RetargetError>, Option<Ahead>) {
         let mut ahead = None;
         let mut plan = Plan::default();
         let leave = Leave {
@@ -42,7 +42,7 @@ impl Left {
             from: &self.from,
             at: self.at,
         };
-        let tried = try_transition(&mut plan, 2, leave, self.to, &GROUND, tries, &mut ahead);
+        let tried = try_retarget(&mut plan, 2, leave, self.to, &GROUND, tries, &mut ahead);
         (tried.map(|()| plan), ahead)
     }
 }
@@ -69,7 +69,7 @@ fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
         // As of any stop: while it releases an acceleration the speed goes on to rise.
         let pivots = worst.pivot_rate.max(worst.pivot_acceleration);
         assert!(pivots <= 1.001 && worst.is_inside(), "{worst:?} {head:?}");
-        let whole = plan_transition(2, &left.line, &left.from, left.at, left.to, &GROUND);
+        let whole = plan_retarget(2, &left.line, &left.from, left.at, left.to, &GROUND);
         for at in TAKEN_OVER {
             if !ahead.follows(2, at) {
                 continue;
@@ -119,7 +119,7 @@ fn tries_are_no_more_than_three() {
                 Some(ahead) => ahead.go_on(3, 0, &GROUND, &mut tries).map(drop),
                 None => plan.map(drop),
             };
-            if looked != Err(NoTransition::TooFast) {
+            if looked != Err(RetargetError::TooFast) {
                 found += usize::from(count > 1 && looked.is_ok());
                 break;
             }

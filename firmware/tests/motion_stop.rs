@@ -2,7 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{Plan, Position, Start, Stop, plan_jog, plan_line, plan_stop};
+use firmware::motion::{Plan, PlanStart, Position, Stop, plan_jog, plan_line, plan_stop};
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::grounds::{grounds, rest, velocities};
 use motion_bench::*;
@@ -101,7 +101,7 @@ proptest! {
         let to = to.map(|axis| axis.rounded());
         let at_start = from.map(|axis| axis.rounded());
         let plan = if jogs {
-            plan_jog(7, Start::Rest(at_start), &from, &velocity, &ground).ok()
+            plan_jog(7, PlanStart::Rest(at_start), &from, &velocity, &ground).ok()
         } else {
             plan_line(7, at_start, to, &ground).ok()
         };

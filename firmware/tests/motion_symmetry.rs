@@ -3,8 +3,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Centre, Ground, Motion, NoTransition, Plan, Position, Start, Stop, plan_jog, plan_line,
-    plan_stop, plan_transition,
+    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
+    Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
 use motion_bench::grounds::{grounds, rest, velocities};
 use motion_bench::*;
@@ -14,7 +14,7 @@ use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
 /// A line of any size on any ground, if it can be moved along.
-fn lines() -> impl Strategy<Value = (Position, Position, Ground)> {
+fn lines() -> impl Strategy<Value = (Position, Position, Constraints)> {
     (moves(), grounds()).prop_filter_map("no line", |((a, b), ground)| {
         let ends = [rest(a, &ground)?, rest(b, &ground)?];
         let [from, to] = ends.map(|axes| axes.map(|axis| axis.rounded()));
@@ -55,16 +55,16 @@ proptest! {
         let (rest_of, start) = begun_at(&plan, &at_rest(from), since);
         let state = plan.state_after(&at_rest(from), at);
         prop_assert_eq!(rest_of.state_after(&start, at - since), state);
-        let other = Centre::new(ground.centre).unwrap().of_platform(&other);
+        let other = RotationCentre::new(ground.rotation_centre).unwrap().from_platform(&other);
         let both = [(&plan, at_rest(from), at), (&rest_of, start, at - since)];
-        let [one, shifted] = both.map(|(plan, start, at)| plan_transition(8, plan, &start, at, other, &ground).map(unshifted));
+        let [one, shifted] = both.map(|(plan, start, at)| plan_retarget(8, plan, &start, at, other, &ground).map(unshifted));
         prop_assert_eq!(one, shifted);
         for how in [Stop::Smooth, Stop::Urgent] {
             let [one, shifted] = both.map(|(plan, start, at)| plan_stop(8, plan, &start, at, &ground, how).map(unshifted));
             prop_assert_eq!(one, shifted);
         }
         let [one, shifted] = both.map(|(_, _, tick)| {
-            plan_jog(8, Start::Splice { plan: 7, tick }, &state, &velocity, &ground).map(unshifted)
+            plan_jog(8, PlanStart::Splice { plan: 7, tick }, &state, &velocity, &ground).map(unshifted)
         });
         prop_assert_eq!(one, shifted);
     }
@@ -74,7 +74,7 @@ proptest! {
     fn the_tick_plays_it_the_same_whenever_it_begins((from, to) in moves(), late in 0..5_000) {
         let plan = line(from, to);
         let mut motions = [0, late].map(|wait| {
-            let mut motion = Motion::default();
+            let mut motion = PlanFollower::default();
             motion.rest_at(from);
             for _ in 0..wait {
                 motion.advance();
@@ -83,8 +83,8 @@ proptest! {
             motion
         });
         for _ in 0..plan.ticks() {
-            motions.iter_mut().for_each(Motion::advance);
-            let [one, shifted] = motions.each_ref().map(Motion::position);
+            motions.iter_mut().for_each(PlanFollower::advance);
+            let [one, shifted] = motions.each_ref().map(PlanFollower::position);
             prop_assert_eq!(one, shifted);
         }
     }
@@ -93,12 +93,12 @@ proptest! {
     #[test]
     fn whole_turns_change_nothing((from, to, mut ground) in lines(), other in positions(0.3), part in 0.0..1.0_f64, turns in -10_000..10_000_i64) {
         ground.bounds = GROUND.bounds;
-        let other = Centre::new(ground.centre).unwrap().of_platform(&other);
+        let other = RotationCentre::new(ground.rotation_centre).unwrap().from_platform(&other);
         let [one, turned] = [0, turns].map(|turns| {
             let on = |[x, y, theta]: Position| [x, y, theta + (turns << 32)];
             let plan = plan_line(7, on(from), on(to), &ground).expect("without bounds");
             let at = (part * plan.ticks() as f64) as u64;
-            let next = plan_transition(8, &plan, &at_rest(on(from)), at, on(other), &ground);
+            let next = plan_retarget(8, &plan, &at_rest(on(from)), at, on(other), &ground);
             (plan.pieces, next.map(|next| (next.pieces, next.nudge)))
         });
         prop_assert_eq!(one, turned);
@@ -106,7 +106,7 @@ proptest! {
 }
 
 /// The same motion from tick `since` on, as a plan of its own, and where that starts.
-fn begun_at(plan: &Plan, start: &[Axis; 3], since: u64) -> (Plan, [Axis; 3]) {
+fn begun_at(plan: &Plan, start: &[AxisState; 3], since: u64) -> (Plan, [AxisState; 3]) {
     let mut rest_of = plan.clone();
     let mut past = since;
     for piece in &mut rest_of.pieces {
@@ -119,7 +119,7 @@ fn begun_at(plan: &Plan, start: &[Axis; 3], since: u64) -> (Plan, [Axis; 3]) {
 
 /// A plan but for the tick at which it begins.
 fn unshifted(mut plan: Plan) -> Plan {
-    plan.start = Start::Rest([0; 3]);
+    plan.start = PlanStart::Rest([0; 3]);
     plan
 }
 
@@ -171,21 +171,21 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 struct Plans {
     line: Plan,
     at: u64,
-    next: Result<Plan, NoTransition>,
+    next: Result<Plan, RetargetError>,
 }
 
 impl Plans {
-    fn new([from, to, other]: [Position; 3], ground: &Ground, part: f64) -> Option<Self> {
+    fn new([from, to, other]: [Position; 3], ground: &Constraints, part: f64) -> Option<Self> {
         let line = plan_line(7, from, to, ground).ok()?;
         let at = (part * line.ticks() as f64) as u64;
-        let next = plan_transition(8, &line, &at_rest(from), at, other, ground);
+        let next = plan_retarget(8, &line, &at_rest(from), at, other, ground);
         Some(Self { line, at, next })
     }
 }
 
 /// How far apart two plans from rest are that should be images of each other: durations, as a part; and places, track radii
 /// or turns.
-fn apart(one: &Plan, image: &Plan, starts: [&[Axis; 3]; 2], symmetry: &Symmetry) -> [f64; 2] {
+fn apart(one: &Plan, image: &Plan, starts: [&[AxisState; 3]; 2], symmetry: &Symmetry) -> [f64; 2] {
     let (ticks, ticks_image) = (one.ticks(), image.ticks());
     let mut furthest = 0_u64;
     for k in 0..=40 {
@@ -221,12 +221,12 @@ fn the_mechanism_is_the_same_all_round() {
                 mirrored,
                 guides,
             };
-            let image = Ground {
-                centre: symmetry.centre(ground.centre),
+            let image = Constraints {
+                rotation_centre: symmetry.centre(ground.rotation_centre),
                 ..ground
             };
-            let centre = Centre::new(ground.centre).unwrap();
-            let places = places.map(|platform| centre.of_platform(&platform));
+            let centre = RotationCentre::new(ground.rotation_centre).unwrap();
+            let places = places.map(|platform| centre.from_platform(&platform));
             let images = places.map(|place| symmetry.position(place));
             let both = [
                 Plans::new(places, &ground, part),

@@ -1,7 +1,7 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
 use super::Position;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
 /// x and y of a position in track radii.
-pub(super) fn centre(position: &Position) -> [f64; 2] {
+pub(super) fn xy_radii(position: &Position) -> [f64; 2] {
     [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
 }
 
@@ -78,9 +78,9 @@ impl Limits {
     }
 
     /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
-    pub fn along(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
+    pub fn for_line(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
         let least = |translation: f64, rotation: f64| {
-            (translation as f32 / length_mm).smaller(rotation as f32 / turn_deg.abs())
+            (translation as f32 / length_mm).fmin(rotation as f32 / turn_deg.abs())
         };
         PathLimits {
             rate: least(self.speed_mm_s, self.turn_speed_deg_s),

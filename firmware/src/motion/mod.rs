@@ -30,20 +30,23 @@ mod stream;
 mod turn_direction;
 
 pub use crate::number::float::Float;
-pub use constraints::{Bounds, Ground};
+pub use constraints::{Bounds, Constraints};
 pub use jog::plan_jog;
 pub use limits::{Limits, PathLimits};
 pub use line::{check_line, check_target, plan_line};
-pub use plan::axis_state::{Axis, JERK_STEP, SUB_BITS};
-pub use plan::follower::{Motion, Scale, Setpoint, Slowdown, Stale};
-pub use plan::rotation_centre::{Centre, FURTHEST};
-pub use plan::{MAX_PIECES, Piece, Plan, Position, Start};
+pub use plan::axis_state::{AxisState, JERK_STEP, SUB_BITS};
+pub use plan::follower::{FaultStop, PlanFollower, Setpoint, SetpointScale, Stale};
+pub use plan::rotation_centre::{MAX_CENTRE_OFFSET, RotationCentre};
+pub use plan::{MAX_PIECES, Piece, Plan, PlanStart, Position};
 pub use profile::any_state::{AxisLimits, AxisProfile, Task, Unusable, stop_distance};
-pub use profile::rest_to_rest::Profile;
+pub use profile::rest_to_rest::RestToRestProfile;
 pub use profile::tracks::synchronised;
 pub use refusal::Refusal;
 pub use retarget::ahead::Ahead;
-pub use retarget::{Leave, NoTransition, Tries, plan_transition, try_transition};
+pub use retarget::{Leave, RetargetError, Tries, plan_retarget, try_retarget};
 pub use stop::{Stop, plan_stop};
-pub use stream::{CAPACITY, Clock, End, JERK_TOLERANCE, Next, NotTaken, PERIODS, Progress, Stream};
-pub use turn_direction::Way;
+pub use stream::{
+    Clock, JERK_TOLERANCE, PERIOD_RANGE, PlanProgress, PushError, STREAM_CAPACITY, Stream,
+    StreamEnd, StreamStep,
+};
+pub use turn_direction::TurnDirection;

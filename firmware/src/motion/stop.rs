@@ -8,13 +8,13 @@ use super::brake::Brake;
 use super::check::platform::greatest;
 use super::check::sample::Arc;
 use super::check::{Broken, Envelope, Legs, Looks};
-use super::constraints::Ground;
-use super::plan::axis_state::Axis;
-use super::plan::units::UnitLimits;
-use super::plan::{Piece, Plan, Start};
+use super::constraints::Constraints;
+use super::plan::axis_state::AxisState;
+use super::plan::units::TickLimits;
+use super::plan::{Piece, Plan, PlanStart};
 use super::profile::tracks::{Pieces, brake, merged};
 use super::profile::whole_ticks::Track;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,9 +42,9 @@ const GENTLEST: f32 = 0.1;
 pub fn plan_stop(
     id: u32,
     of: &Plan,
-    axes: &[Axis; 3],
+    axes: &[AxisState; 3],
     at: u64,
-    ground: &Ground,
+    ground: &Constraints,
     stop: Stop,
 ) -> Option<Plan> {
     let mut plan = Plan::default();
@@ -59,9 +59,9 @@ pub fn plan_stop(
 pub(super) fn stop_in(
     plan: &mut Plan,
     of: &Plan,
-    axes: &[Axis; 3],
+    axes: &[AxisState; 3],
     at: u64,
-    ground: &Ground,
+    ground: &Constraints,
     stop: Stop,
     attempts: usize,
 ) -> Option<Result<(), Broken>> {
@@ -77,17 +77,17 @@ pub(super) fn stop_in(
     {
         return None;
     }
-    let limits = UnitLimits::new(ground);
+    let limits = TickLimits::new(ground);
     let envelope = Envelope::of_stop(ground);
     let factor = ground.limits.stop_factor as f32;
-    plan.start = Start::Splice {
+    plan.start = PlanStart::Splice {
         plan: of.id,
         tick: at,
     };
     plan.nudge = of.nudge;
     let (most, asked) = hardest(&state, &limits, ground);
     let mut hardness = match stop {
-        Stop::Smooth => [most.smaller(1.0), 1.0],
+        Stop::Smooth => [most.fmin(1.0), 1.0],
         Stop::Urgent => [most, factor * factor],
     };
     let (mut apart, mut legs) = (false, Legs::new());
@@ -111,7 +111,7 @@ pub(super) fn stop_in(
             return None;
         }
         let end = envelope.legs(&plan.pieces, &state, &mut legs);
-        plan.end = [0, 1, 2].map(|i| end[i].end(lasts, plan.nudge[i]));
+        plan.end = [0, 1, 2].map(|i| end[i].rest_position(lasts, plan.nudge[i]));
         // A stop has to be found: none is left unlooked at because others have been looked at before.
         checked = envelope.check(&legs, &mut { Looks::ALL });
         match checked {
@@ -132,7 +132,7 @@ pub(super) fn stop_in(
                     break;
                 }
                 let used = hardness[0] * brake.part(ticks);
-                hardness[0] = (used * (0.98 / over).larger(0.5)).larger(GENTLEST);
+                hardness[0] = (used * (0.98 / over).fmax(0.5)).fmax(GENTLEST);
             }
         }
     }
@@ -140,16 +140,17 @@ pub(super) fn stop_in(
 }
 
 /// Ticks in which translation and rotation each brake as soon as they can.
-fn apart_ticks(state: &[Axis; 3], limits: &UnitLimits, hardness: [f32; 2]) -> [[u64; 3]; 3] {
+fn apart_ticks(state: &[AxisState; 3], limits: &TickLimits, hardness: [f32; 2]) -> [[u64; 3]; 3] {
     let [x, y, theta] = *state;
-    let still = Axis::default();
-    let ticks = |state: [Axis; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
+    let still = AxisState::default();
+    let ticks =
+        |state: [AxisState; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
     let way = ticks([x, y, still]);
     [way, way, ticks([still, still, theta])]
 }
 
 /// Writes the pieces that brake the axes in so many ticks.
-fn lay(state: &[Axis; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
+fn lay(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
     let mut tracks: [Track; 3] = Default::default();
     for (track, (axis, ticks)) in tracks.iter_mut().zip(state.iter().zip(ticks)) {
         brake(track, axis, ticks);
@@ -159,9 +160,9 @@ fn lay(state: &[Axis; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of
 /// the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
-fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> (f32, f32) {
+fn hardest(state: &[AxisState; 3], limits: &TickLimits, ground: &Constraints) -> (f32, f32) {
     let hz = ground.limits.rate_hz as f32;
-    let centre = ground.centre.map(|value| value as f32);
+    let centre = ground.rotation_centre.map(|value| value as f32);
     let most = ground.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
     let arc = Arc::new(state, &Piece::default(), hz);
     let peak = Brake::new(state, limits, 1.0, 1.0).peak_per_second(limits, hz);
@@ -182,5 +183,5 @@ fn hardest(state: &[Axis; 3], limits: &UnitLimits, ground: &Ground) -> (f32, f32
     let [rates, accelerations] = arc.platform(&arc.start, centre).pivots();
     let rate = greatest(&rates) / ground.limits.pivot_rate_rad_s as f32;
     let acceleration = greatest(&accelerations) / ground.limits.pivot_acceleration_rad_s2 as f32;
-    (hardest.larger(GENTLEST), rate.larger(acceleration))
+    (hardest.fmax(GENTLEST), rate.fmax(acceleration))
 }

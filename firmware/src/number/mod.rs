@@ -35,5 +35,5 @@ mod root;
 mod trigonometric;
 
 pub use fixed::Fixed;
-pub(crate) use root::round;
+pub(crate) use root::round_ties_even;
 pub use root::{cbrt_f32, sqrt_f32};

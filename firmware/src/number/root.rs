@@ -55,14 +55,14 @@ pub(super) fn sqrt_fixed(square: i64) -> Fixed {
     let root = rough as i32;
     let residue = multiply::add_product(square, -root, root);
     let correction = (residue >> 8) as i32 as f32 * 128.0 / rough;
-    Fixed::from_bits(root.wrapping_add(round(correction).0))
+    Fixed::from_bits(root.wrapping_add(round_ties_even(correction).0))
 }
 
 /// Nearest integer (of two, the even one), as an integer and as a float, for values within +-2^21.
 ///
 /// So far up the floats are the integers: adding the offset rounds, and the low bits of the sum are the result.
 #[inline]
-pub(crate) fn round(value: f32) -> (i32, f32) {
+pub(crate) fn round_ties_even(value: f32) -> (i32, f32) {
     const OFFSET: f32 = 12_582_912.0; // 1.5 times 2^23
     const SPARE_BITS: u32 = 10;
     let sum = value + OFFSET;
@@ -80,9 +80,12 @@ mod tests {
     fn rounds_to_the_nearest_even_up_to_its_range() {
         for k in -2_097_151..2_097_151 {
             let value = k as f32 + 0.25;
-            assert_eq!(round(value), (k, k as f32), "{value}");
+            assert_eq!(round_ties_even(value), (k, k as f32), "{value}");
         }
-        assert_eq!([0.5, 1.5, -0.5, -1.5].map(|v| round(v).0), [0, 2, 0, -2]);
+        assert_eq!(
+            [0.5, 1.5, -0.5, -1.5].map(|v| round_ties_even(v).0),
+            [0, 2, 0, -2]
+        );
     }
 
     #[test]

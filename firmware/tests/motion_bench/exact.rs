@@ -1,13 +1,13 @@
 //! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
 
 use super::{AXIS_UNIT, GROUND, UNIT, corners};
-use firmware::motion::{Axis, Ground, Plan};
+use firmware::motion::{AxisState, Constraints, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
 
 /// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of position
 /// and a speed under 2 nm/s.
-pub fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
+pub fn ends_at_rest(plan: &Plan, end: &[AxisState; 3]) -> bool {
     end.iter().zip(&plan.end).all(|(axis, &place)| {
         let off = axis.position - (i128::from(place) << 40);
         (-(1_i128 << 36)..1 << 41).contains(&off)
@@ -57,7 +57,7 @@ pub struct Worst {
 
 impl Worst {
     /// Takes another state.
-    pub fn look(&mut self, axes: &[Axis; 3], ground: &Ground) {
+    pub fn look(&mut self, axes: &[AxisState; 3], ground: &Constraints) {
         let limits = &ground.limits;
         let (mm, hz) = (ground.geometry.radius_mm, limits.rate_hz);
         let rate = |i: usize| axes[i].velocity as f64 / AXIS_UNIT * hz;
@@ -87,7 +87,8 @@ impl Worst {
             &mut self.acceleration,
         );
 
-        let (pose, twist, acceleration) = platform([at[0], at[1], theta], v, a, ground.centre);
+        let (pose, twist, acceleration) =
+            platform([at[0], at[1], theta], v, a, ground.rotation_centre);
         self.outside = self
             .outside
             .max(pose.x.hypot(pose.y) - ground.geometry.usable_radius());
@@ -113,13 +114,13 @@ impl Worst {
     }
 
     /// Of one state.
-    pub fn of(axes: &[Axis; 3], ground: &Ground) -> Self {
+    pub fn of(axes: &[AxisState; 3], ground: &Constraints) -> Self {
         let mut worst = Self::default();
         worst.look(axes, ground);
         worst
     }
 
-    fn look_at_jerk(&mut self, jerk: &[i64; 3], ground: &Ground) {
+    fn look_at_jerk(&mut self, jerk: &[i64; 3], ground: &Constraints) {
         let limits = &ground.limits;
         let jerk = jerk.map(|jerk| jerk as f64 / AXIS_UNIT * limits.rate_hz.powi(3));
         let path = jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / limits.jerk_mm_s3;
@@ -128,7 +129,7 @@ impl Worst {
     }
 
     /// Of a plan on the usual ground, looked at where its pieces meet and in their middles only.
-    pub fn of_corners(plan: &Plan, start: [Axis; 3]) -> Self {
+    pub fn of_corners(plan: &Plan, start: [AxisState; 3]) -> Self {
         let mut worst = Self::default();
         for axes in corners(plan, start) {
             worst.look(&axes, &GROUND);
@@ -140,7 +141,12 @@ impl Worst {
     }
 
     /// Takes every tick of a plan from `start`; the state at its end, as the integers give it.
-    pub fn walk(&mut self, plan: &Plan, start: &[Axis; 3], ground: &Ground) -> [Axis; 3] {
+    pub fn walk(
+        &mut self,
+        plan: &Plan,
+        start: &[AxisState; 3],
+        ground: &Constraints,
+    ) -> [AxisState; 3] {
         self.walk_ends(plan, start, ground, u64::MAX)
     }
 
@@ -148,10 +154,10 @@ impl Worst {
     pub fn walk_ends(
         &mut self,
         plan: &Plan,
-        start: &[Axis; 3],
-        ground: &Ground,
+        start: &[AxisState; 3],
+        ground: &Constraints,
         most: u64,
-    ) -> [Axis; 3] {
+    ) -> [AxisState; 3] {
         let mut axes = *start;
         self.look(&axes, ground);
         for piece in &plan.pieces {

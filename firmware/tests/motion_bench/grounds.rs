@@ -1,7 +1,7 @@
 //! Random grounds to plan on, and what can be commanded there.
 
 use super::{GROUND, LIMITS, UNIT, at_rest};
-use firmware::motion::{Axis, Centre, Ground, Position};
+use firmware::motion::{AxisState, Constraints, Position, RotationCentre};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ pub fn velocities() -> impl Strategy<Value = Velocity> {
 }
 
 /// Grounds with and without a centre of rotation beside the platform's, with and without bounds, with strong and weak drives.
-pub fn grounds() -> impl Strategy<Value = Ground> {
+pub fn grounds() -> impl Strategy<Value = Constraints> {
     (
         0.0..0.8_f64,
         -PI..PI,
@@ -45,8 +45,8 @@ pub fn grounds() -> impl Strategy<Value = Ground> {
             ground.limits.pivot_acceleration_rad_s2 *= 0.2 + 0.8 * strength;
             ground.limits.pivot_rate_rad_s *= 0.4 + 0.6 * strength;
             if beside {
-                let centre = Centre::new([r * d.cos(), r * d.sin()]).expect("near");
-                ground.centre = centre.point();
+                let centre = RotationCentre::new([r * d.cos(), r * d.sin()]).expect("near");
+                ground.rotation_centre = centre.point();
             }
             if bounded {
                 let units = (bound * UNIT) as i64;
@@ -57,9 +57,9 @@ pub fn grounds() -> impl Strategy<Value = Ground> {
 }
 
 /// Where the moved point is when the platform is at `platform`, as far as the bounds allow it.
-pub fn rest(platform: Position, ground: &Ground) -> Option<[Axis; 3]> {
-    let centre = Centre::new(ground.centre).expect("near");
-    let point = centre.of_platform(&platform);
+pub fn rest(platform: Position, ground: &Constraints) -> Option<[AxisState; 3]> {
+    let centre = RotationCentre::new(ground.rotation_centre).expect("near");
+    let point = centre.from_platform(&platform);
     let inside = (point.iter().zip(&ground.bounds)).all(|(at, b)| (b[0]..=b[1]).contains(at));
     inside.then(|| at_rest(point))
 }

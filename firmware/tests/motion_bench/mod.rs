@@ -7,7 +7,7 @@ pub mod random;
 pub mod setting;
 pub mod streaming;
 
-use firmware::motion::{Axis, Ground, Limits, Plan, Position, plan_line};
+use firmware::motion::{AxisState, Constraints, Limits, Plan, Position, plan_line};
 use firmware::parameters::Parameters;
 use kinematics::Geometry;
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ pub const SLACK: f64 = 1.0 + 1e-6;
 
 pub const GEOMETRY: Geometry = Geometry::REFERENCE;
 pub const LIMITS: Limits = Parameters::REFERENCE.limits;
-pub const GROUND: Ground = Ground::new(LIMITS, GEOMETRY);
+pub const GROUND: Constraints = Constraints::new(LIMITS, GEOMETRY);
 
 /// Fixed seed, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
 pub fn settings(cases: u32) -> Config {
@@ -71,13 +71,13 @@ pub fn line(from: Position, to: Position) -> Plan {
     plan_line(7, from, to, &GROUND).expect("a move inside the disk")
 }
 
-pub fn at_rest(position: Position) -> [Axis; 3] {
-    position.map(Axis::at_rest)
+pub fn at_rest(position: Position) -> [AxisState; 3] {
+    position.map(AxisState::at_rest)
 }
 
 /// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that the
 /// tick drops at the end.
-pub fn states(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+pub fn states(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     let mut axes = start;
     let mut all = vec![axes];
     for piece in &plan.pieces {
@@ -92,7 +92,7 @@ pub fn states(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
 }
 
 /// The states where pieces meet, and in the middle of each; enough for what is monotonic or linear in a piece.
-pub fn corners(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+pub fn corners(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     let mut axes = start;
     let mut all = vec![axes];
     for piece in &plan.pieces {
@@ -106,12 +106,12 @@ pub fn corners(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
 }
 
 /// Velocity in track radii and turns per second.
-pub fn velocity(axes: &[Axis; 3]) -> [f64; 3] {
+pub fn velocity(axes: &[AxisState; 3]) -> [f64; 3] {
     axes.map(|axis| axis.velocity as f64 / AXIS_UNIT * LIMITS.rate_hz)
 }
 
 /// Distance of a state from the line `from` -> `to`, units: how far its axes disagree on how much of the way is done.
-pub fn off_line(axes: &[Axis; 3], from: &Position, to: &Position) -> f64 {
+pub fn off_line(axes: &[AxisState; 3], from: &Position, to: &Position) -> f64 {
     let way = [0, 1, 2].map(|i| (to[i] - from[i]) as f64);
     // Units with their fraction, relative to the start: small enough for f64.
     let done = [0, 1, 2]

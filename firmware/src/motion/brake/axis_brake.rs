@@ -6,7 +6,7 @@
 
 use super::{SLACK, whole};
 use crate::motion::profile::any_state::AxisLimits;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 
 /// What is to be braked, over the limit of acceleration.
@@ -39,12 +39,12 @@ impl AxisBrake {
         let (v, a) = if released > 0.0 { (v, -a) } else { (-v, a) };
         let square = j * v + a * a / 2.0;
         if a > 1.0 {
-            [(a - 1.0) / j, (v - a * a / (2.0 * j)).larger(0.0), 1.0 / j]
+            [(a - 1.0) / j, (v - a * a / (2.0 * j)).fmax(0.0), 1.0 / j]
         } else if square > 1.0 {
             [(1.0 - a) / j, (square - 1.0) / j, 1.0 / j]
         } else {
-            let peak = sqrt_f32(square.larger(0.0));
-            [(peak - a).larger(0.0) / j, 0.0, peak / j]
+            let peak = sqrt_f32(square.fmax(0.0));
+            [(peak - a).fmax(0.0) / j, 0.0, peak / j]
         }
     }
 
@@ -57,7 +57,7 @@ impl AxisBrake {
     pub fn over(&self, [n1, n2, n3]: [f32; 3]) -> [bool; 3] {
         let left = self.velocity + self.acceleration * (n1 / 2.0);
         let peak = -left / (n1 / 2.0 + n2 + n3 / 2.0);
-        let hardest = self.acceleration.abs().larger(1.0);
+        let hardest = self.acceleration.abs().fmax(1.0);
         [
             (peak - self.acceleration).abs() > self.jerk * n1 * SLACK,
             peak.abs() > hardest * SLACK,

@@ -8,9 +8,9 @@ use super::velocity_change::{Force, Ramp, release};
 use crate::motion::check::instant::{Instant, Limiter};
 use crate::motion::check::pivot_bounds::{Pace, per_second};
 use crate::motion::plan::Piece;
-use crate::motion::plan::axis_state::Axis;
+use crate::motion::plan::axis_state::AxisState;
 use crate::motion::refusal::Refusal;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Release, what it leaves, and the ramp.
@@ -23,10 +23,10 @@ const LONG: u64 = 256;
 
 /// The pieces, and the state after them: at rest, but for what rounding leaves.
 pub(crate) fn halt(
-    state: &[Axis; 3],
+    state: &[AxisState; 3],
     now: &Instant,
     limiter: &Limiter<'_>,
-) -> Result<(Pieces, [Axis; 3]), Refusal> {
+) -> Result<(Pieces, [AxisState; 3]), Refusal> {
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
         let force = Force {
@@ -37,16 +37,16 @@ pub(crate) fn halt(
             jerk: limiter.jerk,
         };
         let pieces = pieces(state, now, &force, limiter);
-        let (worst, end) = walk(state, now, &pieces, limiter).ok_or(Refusal::NoStop)?;
+        let (worst, end) = walk(state, now, &pieces, limiter).ok_or(Refusal::NoRoomToStop)?;
         if worst <= 1.0 {
             return Ok((pieces, end));
         }
-        part *= (0.9 / worst).smaller(0.7);
+        part *= (0.9 / worst).fmin(0.7);
     }
-    Err(Refusal::NoStop)
+    Err(Refusal::NoRoomToStop)
 }
 
-fn pieces(state: &[Axis; 3], now: &Instant, force: &Force, limiter: &Limiter<'_>) -> Pieces {
+fn pieces(state: &[AxisState; 3], now: &Instant, force: &Force, limiter: &Limiter<'_>) -> Pieces {
     let mut pieces = Pieces::new();
     let (hz, jerk) = (limiter.hz, force.jerk);
     let change = release(state, now.acceleration, jerk, hz, &mut pieces).map(|velocity| -velocity);
@@ -62,11 +62,11 @@ fn pieces(state: &[Axis; 3], now: &Instant, force: &Force, limiter: &Limiter<'_>
 
 /// The largest part of its limit that a pivot reaches, and the end; `None` where the workspace is left.
 fn walk(
-    state: &[Axis; 3],
+    state: &[AxisState; 3],
     now: &Instant,
     pieces: &[Piece],
     limiter: &Limiter<'_>,
-) -> Option<(f32, [Axis; 3])> {
+) -> Option<(f32, [AxisState; 3])> {
     let mut axes = *state;
     let mut before = *now;
     let mut worst = 0.0_f32;
@@ -80,7 +80,7 @@ fn walk(
             if ticks == 0 {
                 continue;
             }
-            piece.run(&mut axes, ticks, &[0; 3]);
+            piece.advance(&mut axes, ticks, &[0; 3]);
             // What a tick changes does not show.
             if ticks == 1 {
                 continue;
@@ -89,7 +89,7 @@ fn walk(
             if !limiter.is_inside(&before, &now, ticks as f32 / limiter.hz) {
                 return None;
             }
-            worst = worst.larger(now.pivots[0]).larger(now.pivots[1]);
+            worst = worst.fmax(now.pivots[0]).fmax(now.pivots[1]);
             before = now;
         }
     }
@@ -98,20 +98,20 @@ fn walk(
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::Ground;
+    use crate::motion::Constraints;
     use crate::motion::brake::halt::*;
     use crate::motion::plan::units::AXIS_UNITS;
     use crate::parameters::Parameters;
     use kinematics::Geometry;
 
-    const GROUND: Ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+    const GROUND: Constraints = Constraints::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
 
     /// At `x` track radii, with these mm/s, mm/s and deg/s, and mm/s^2 along x.
-    fn state(x: f64, velocity: [f64; 3], along: f64) -> [Axis; 3] {
+    fn state(x: f64, velocity: [f64; 3], along: f64) -> [AxisState; 3] {
         let hz = GROUND.limits.rate_hz;
         let units = f64::from(AXIS_UNITS);
         let per = [100.0, 100.0, 360.0];
-        let mut axes = [0, 1, 2].map(|i| Axis {
+        let mut axes = [0, 1, 2].map(|i| AxisState {
             position: 0,
             velocity: (velocity[i] / per[i] / hz * units) as i64,
             acceleration: 0,
@@ -121,7 +121,10 @@ mod tests {
         axes
     }
 
-    fn halted(axes: &[Axis; 3], ground: &Ground) -> Result<(Pieces, [Axis; 3]), Refusal> {
+    fn halted(
+        axes: &[AxisState; 3],
+        ground: &Constraints,
+    ) -> Result<(Pieces, [AxisState; 3]), Refusal> {
         let limiter = Limiter::new(ground);
         halt(axes, &limiter.look(axes)?, &limiter)
     }
@@ -163,14 +166,14 @@ mod tests {
     fn near_the_edge_there_is_none() {
         assert!(halted(&state(0.73, [200.0, 0.0, 0.0], 0.0), &GROUND).is_ok());
         let late = halted(&state(0.75, [200.0, 0.0, 0.0], 0.0), &GROUND);
-        assert_eq!(late.err(), Some(Refusal::NoStop));
+        assert_eq!(late.err(), Some(Refusal::NoRoomToStop));
         assert!(halted(&state(0.75, [-200.0, 0.0, 0.0], 0.0), &GROUND).is_ok());
     }
 
     #[test]
     fn with_weak_drives_it_is_softer() {
         let axes = state(0.0, [0.0, 0.0, 300.0], 0.0);
-        let ticks = |ground: &Ground| -> u64 {
+        let ticks = |ground: &Constraints| -> u64 {
             let (pieces, _) = halted(&axes, ground).unwrap();
             pieces.iter().map(|piece| piece.ticks).sum()
         };

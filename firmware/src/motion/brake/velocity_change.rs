@@ -11,8 +11,8 @@
 
 use crate::motion::check::pivot_bounds::Pace;
 use crate::motion::plan::Piece;
-use crate::motion::plan::axis_state::{Axis, JERK_STEP};
-use crate::number::float::{Order, cut, float};
+use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
+use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 use heapless::VecView;
 
 /// Limits of acceleration and jerk in units per second.
@@ -36,8 +36,8 @@ impl Ramp {
         let way = times(change.way, force.acceleration.way, force.jerk.way);
         let turn = times(change.turn, force.acceleration.turn, force.jerk.turn);
         // The longer of both, part by part: neither acceleration nor jerk is over its limit then.
-        let rise = ticks_up(way[0].larger(turn[0]) * hz).max(1);
-        let whole = ticks_up(way[1].larger(turn[1]) * hz).max(rise);
+        let rise = ticks_up(way[0].fmax(turn[0]) * hz).max(1);
+        let whole = ticks_up(way[1].fmax(turn[1]) * hz).max(rise);
         Self {
             rise,
             hold: whole - rise,
@@ -88,7 +88,7 @@ fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
 /// in 2^-72 units).
 #[inline(never)]
 pub(crate) fn release(
-    state: &[Axis; 3],
+    state: &[AxisState; 3],
     force: Pace,
     most: Pace,
     hz: f32,
@@ -120,7 +120,7 @@ pub(crate) fn release(
 
 /// How long it takes to bring an acceleration to zero.
 pub(crate) fn release_seconds(force: Pace, jerk: Pace) -> f32 {
-    (force.way / jerk.way).larger(force.turn / jerk.turn)
+    (force.way / jerk.way).fmax(force.turn / jerk.turn)
 }
 
 /// Longest stretch that is counted: a hundred thousand years.
@@ -128,7 +128,7 @@ const LONGEST: f32 = 36_028_797_018_963_968.0;
 
 /// Rounded up to whole ticks.
 fn ticks_up(ticks: f32) -> u64 {
-    let ticks = ticks.smaller(LONGEST);
-    let down = cut(ticks) as u64;
-    down + u64::from(float(down) * (1.0 + 1e-6) < ticks)
+    let ticks = ticks.fmin(LONGEST);
+    let down = truncate(ticks) as u64;
+    down + u64::from(ticks_to_f32(down) * (1.0 + 1e-6) < ticks)
 }

@@ -2,13 +2,13 @@
 
 use super::pivot_bounds::Pace;
 use super::platform::{Platform, greatest};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::Axis;
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::follower::{ACCELERATION_CUT, VELOCITY_CUT};
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_UNIT};
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT};
 use crate::motion::refusal::Refusal;
 use crate::number::Fixed;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use kinematics::{Angle, Scalar};
 
 /// What is granted over a limit: the rounding of single precision, and of what a sender has computed to the limit itself.
@@ -16,7 +16,7 @@ const SLACK: f32 = 1.0 + 1e-3;
 
 /// The limits, per second, and the workspace, track radii.
 pub(crate) struct Limiter<'a> {
-    ground: &'a Ground,
+    ground: &'a Constraints,
     pub hz: f32,
     usable: f32,
     centre: [f32; 2],
@@ -46,7 +46,7 @@ pub(crate) struct Instant {
 }
 
 impl<'a> Limiter<'a> {
-    pub fn new(ground: &'a Ground) -> Self {
+    pub fn new(ground: &'a Constraints) -> Self {
         let limits = &ground.limits;
         let mm = ground.geometry.radius_mm as f32;
         let hz = limits.rate_hz as f32;
@@ -57,8 +57,8 @@ impl<'a> Limiter<'a> {
         Self {
             ground,
             hz,
-            usable: ground.usable as f32,
-            centre: ground.centre.map(|radii| radii as f32),
+            usable: ground.usable_radius as f32,
+            centre: ground.rotation_centre.map(|radii| radii as f32),
             speed: pace(limits.speed_mm_s, limits.turn_speed_deg_s),
             force: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
             jerk: pace(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
@@ -70,8 +70,8 @@ impl<'a> Limiter<'a> {
     }
 
     /// Looks at a state; an error where the platform's centre is not inside the track or the point out of its bounds.
-    pub fn look(&self, axes: &[Axis; 3]) -> Result<Instant, Refusal> {
-        let at = axes.each_ref().map(Axis::rounded);
+    pub fn look(&self, axes: &[AxisState; 3]) -> Result<Instant, Refusal> {
+        let at = axes.each_ref().map(AxisState::rounded);
         for (axis, (at, [low, high])) in at.iter().zip(&self.ground.bounds).enumerate() {
             if !(low..=high).contains(&at) {
                 return Err(Refusal::OutOfBounds { axis });
@@ -122,15 +122,15 @@ impl<'a> Limiter<'a> {
             return Err(Refusal::Pivots);
         }
         if !self.is_inside(before, now, seconds) {
-            return Err(self.outside(before.out.larger(now.out)));
+            return Err(self.outside(before.out.fmax(now.out)));
         }
         Ok(())
     }
 
     /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at most.
     pub fn is_inside(&self, before: &Instant, now: &Instant, seconds: f32) -> bool {
-        let arc = before.bend.larger(now.bend) * seconds * seconds / 8.0;
-        before.out.larger(now.out) + arc <= self.usable + RIM
+        let arc = before.bend.fmax(now.bend) * seconds * seconds / 8.0;
+        before.out.fmax(now.out) + arc <= self.usable + RIM
     }
 
     fn outside(&self, out: f32) -> Refusal {
@@ -152,7 +152,7 @@ fn rates(cut: [i64; 3], unit: f32) -> [f32; 3] {
 fn radii(units: i64) -> f32 {
     const CUT: u32 = 2;
     let most = i64::from(i32::MAX);
-    (units >> CUT).clamp(-most, most) as i32 as f32 * (PER_UNIT * (1 << CUT) as f32)
+    (units >> CUT).clamp(-most, most) as i32 as f32 * (PER_POSITION_UNIT * (1 << CUT) as f32)
 }
 
 /// 0.05 um on the reference stage.

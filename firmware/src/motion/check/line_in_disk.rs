@@ -6,11 +6,11 @@
 //! orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f is below the limit
 //! by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
 
-use crate::motion::constraints::Ground;
+use crate::motion::constraints::Constraints;
 use crate::motion::line::path::Path;
 use crate::motion::plan::Position;
-use crate::motion::plan::units::UNITS;
-use crate::number::float::{Order, hypot};
+use crate::motion::plan::units::POSITION_UNITS;
+use crate::number::float::{FloatMinMax, hypot};
 use crate::number::{Fixed, sqrt_f32};
 use core::f32::consts::TAU;
 use kinematics::{Angle, Scalar};
@@ -32,17 +32,17 @@ const MOST_STEPS: usize = 150;
 const LOOKS: usize = 48;
 
 /// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(crate) fn exit(from: &Position, to: &Position, ground: &Ground) -> Option<Exit> {
-    let usable = ground.usable as f32;
+pub(crate) fn exit(from: &Position, to: &Position, ground: &Constraints) -> Option<Exit> {
+    let usable = ground.usable_radius as f32;
     // A line of no length has no bend to walk along.
-    if ground.centre == [0.0; 2] || from == to {
+    if ground.rotation_centre == [0.0; 2] || from == to {
         return None;
     }
     let path = Path::new(from, to, ground);
     let there = Walk::new(&path, from[2], ground, false);
     let back = Walk::new(&path, to[2], ground, true);
     let start = there.square(0.0).0;
-    let limit = start.larger(usable * usable) + RIM;
+    let limit = start.fmax(usable * usable) + RIM;
     let [first, second] = near_ends(&path, usable - there.arm + RIM / 2.0)?;
     let ends = [(there, first), (back, second)];
     ends.into_iter()
@@ -55,7 +55,7 @@ fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
     let [way_x, way_y] = path.way;
     let a = way_x * way_x + way_y * way_y;
     let b = x * way_x + y * way_y;
-    let c = x * x + y * y - radius * radius.larger(0.0);
+    let c = x * x + y * y - radius * radius.fmax(0.0);
     let root = b * b - a * c;
     // Never inside: one part, the whole.
     if radius <= 0.0 || root <= 0.0 || a == 0.0 {
@@ -83,12 +83,12 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(path: &Path, theta: i64, ground: &Ground, backwards: bool) -> Self {
-        let centre = ground.centre.map(|part| part as f32);
+    fn new(path: &Path, theta: i64, ground: &Constraints, backwards: bool) -> Self {
+        let centre = ground.rotation_centre.map(|part| part as f32);
         let arm = hypot(centre[0], centre[1]);
         let furthest = [path.from, path.point(1.0)]
             .into_iter()
-            .fold(0.0_f32, |most, [x, y]| most.larger(hypot(x, y)));
+            .fold(0.0_f32, |most, [x, y]| most.fmax(hypot(x, y)));
         let turn = path.turn.abs();
         let (from, sign) = if backwards {
             (path.point(1.0), -1.0)
@@ -110,7 +110,7 @@ impl Walk {
 
     /// f, and f'.
     fn square(&self, s: f32) -> (f32, f32) {
-        let turned = (self.turn * s * (UNITS / TAU)) as i64;
+        let turned = (self.turn * s * (POSITION_UNITS / TAU)) as i64;
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(self.theta.wrapping_add(turned)));
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
         let [p, q] = self.centre;
@@ -127,7 +127,7 @@ impl Walk {
     fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
         let turn = 1.01 * TAU / self.turn.abs();
-        let part = part.smaller(turn);
+        let part = part.fmin(turn);
         if part <= 0.0 || (part < turn && !self.leaves(part, limit)) {
             return None;
         }
@@ -163,7 +163,7 @@ impl Walk {
             } else {
                 (root - slope) / self.bend
             };
-            s = (s + step.larger(LEAST_STEP)).smaller(part);
+            s = (s + step.fmax(LEAST_STEP)).fmin(part);
         }
         true
     }

@@ -3,7 +3,7 @@
 use super::Look;
 use super::pivot_bounds::{Bound, Pace};
 use super::sample::Sample;
-use crate::number::float::{Order, hypot};
+use crate::number::float::{FloatMinMax, hypot};
 
 /// Of translation (track radii) and of rotation (rad), per second, squared and cubed.
 #[derive(Clone, Copy, Debug)]
@@ -18,10 +18,10 @@ impl Sizes {
     pub fn new(j: [f32; 2], from: &Look, to: &Look, t: f32) -> Self {
         let [x, y, theta] = [0, 1, 2].map(|i| fastest(&from.sample, &to.sample, i, t));
         // By its ends too: the greatest speeds of x and y need not come together.
-        let ends = from.v[0].larger(to.v[0]);
+        let ends = from.v[0].fmax(to.v[0]);
         Self {
-            v: [hypot(x, y).smaller(ends + j[0] * t * t / 8.0), theta],
-            a: [0, 1].map(|i| from.a[i].larger(to.a[i])),
+            v: [hypot(x, y).fmin(ends + j[0] * t * t / 8.0), theta],
+            a: [0, 1].map(|i| from.a[i].fmax(to.a[i])),
             j,
         }
     }
@@ -61,12 +61,12 @@ impl Sizes {
 
 /// Largest speed of an axis between two states of the same jerk.
 fn fastest(from: &Sample, to: &Sample, i: usize, t: f32) -> f32 {
-    let ends = from.v[i].abs().larger(to.v[i].abs());
+    let ends = from.v[i].abs().fmax(to.v[i].abs());
     let (a, b) = (from.a[i], to.a[i]);
     if a * b >= 0.0 {
         return ends;
     }
     // Acceleration passes zero after this part of the stretch.
     let part = a / (a - b);
-    ends.larger((from.v[i] + a * part * t / 2.0).abs())
+    ends.fmax((from.v[i] + a * part * t / 2.0).abs())
 }

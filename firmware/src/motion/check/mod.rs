@@ -26,16 +26,16 @@ pub(crate) mod workspace;
 mod tests;
 
 use super::brake::Brake;
-use super::constraints::Ground;
-use super::plan::axis_state::Axis;
-use super::plan::units::UnitLimits;
+use super::constraints::Constraints;
+use super::plan::axis_state::AxisState;
+use super::plan::units::TickLimits;
 use super::plan::{MAX_PIECES, Piece};
 use crate::motion::check::magnitudes::Sizes;
 use crate::motion::check::pivot_bounds::Bound;
 use crate::motion::check::platform::greatest;
 use crate::motion::check::sample::{Arc, Sample};
 use crate::motion::check::workspace::{Braking, Reach};
-use crate::number::float::{Order, cut, float, hypot};
+use crate::number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
@@ -55,7 +55,7 @@ struct Own {
     acceleration: [f32; 2],
     jerk: [f32; 2],
     /// With which a stop brakes, and the same for a bound of its way.
-    stop: UnitLimits,
+    stop: TickLimits,
     braking: Braking,
 }
 
@@ -86,11 +86,11 @@ impl Broken {
     /// This, or what was seen of the same before, when that was worse.
     fn or_worse(self, before: Option<Self>) -> Self {
         match (self, before) {
-            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.larger(over)),
-            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.larger(over)),
-            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.larger(over)),
+            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.fmax(over)),
+            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.fmax(over)),
+            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.fmax(over)),
             (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
-                Self::Acceleration(now.larger(over))
+                Self::Acceleration(now.fmax(over))
             }
             _ => self,
         }
@@ -113,7 +113,7 @@ const SHORTEST: u64 = 4;
 impl Envelope {
     /// The envelope of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
-    pub fn new(ground: &Ground, stop: UnitLimits, start: &[Axis; 3]) -> Self {
+    pub fn new(ground: &Constraints, stop: TickLimits, start: &[AxisState; 3]) -> Self {
         let limits = &ground.limits;
         let mm = ground.geometry.radius_mm as f32;
         let pair = |translation: f64, rotation_deg: f64| {
@@ -126,8 +126,8 @@ impl Envelope {
         let Sample { v, a, .. } = Arc::new(start, &Piece::default(), hz).start;
         let wider = |limit: [f32; 2], now: [f32; 3]| {
             [
-                limit[0].larger(hypot(now[0], now[1])),
-                limit[1].larger(now[2].abs()),
+                limit[0].fmax(hypot(now[0], now[1])),
+                limit[1].fmax(now[2].abs()),
             ]
         };
         let own = Own {
@@ -147,7 +147,7 @@ impl Envelope {
     }
 
     /// The envelope of a stop: pivots, disk and bounds.
-    pub fn of_stop(ground: &Ground) -> Self {
+    pub fn of_stop(ground: &Constraints) -> Self {
         let limits = &ground.limits;
         Self {
             own: None,
@@ -161,7 +161,12 @@ impl Envelope {
     }
 
     /// Writes pieces as they are looked at, from `start`; where they lead to. A plan's nudge does not show in them.
-    pub fn legs(&self, pieces: &[Piece], start: &[Axis; 3], legs: &mut Legs) -> [Axis; 3] {
+    pub fn legs(
+        &self,
+        pieces: &[Piece],
+        start: &[AxisState; 3],
+        legs: &mut Legs,
+    ) -> [AxisState; 3] {
         let mut axes = *start;
         legs.clear();
         for piece in pieces {
@@ -173,7 +178,7 @@ impl Envelope {
                 rooms: self.reach.rooms(&axes),
                 ticks: piece.ticks,
             });
-            piece.run(&mut axes, piece.ticks, &[0; 3]);
+            piece.advance(&mut axes, piece.ticks, &[0; 3]);
         }
         axes
     }
@@ -196,12 +201,12 @@ impl Envelope {
                 ticks = ticks.min(leg.ticks - done);
                 looks.take()?;
                 self.look(&leg.arc, done + ticks, to);
-                match self.stretch(leg, [from, to], float(ticks) / self.hz) {
+                match self.stretch(leg, [from, to], ticks_to_f32(ticks) / self.hz) {
                     Ok(longer) => {
                         core::mem::swap(&mut from, &mut to);
                         done += ticks;
                         looks.seen += ticks;
-                        ticks = cut(float(ticks) * longer) as u64;
+                        ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
                     // In shorter stretches the same instant would be met.
                     Err((Broken::NoStop, _)) => return Err(Broken::Reach),
@@ -217,7 +222,7 @@ impl Envelope {
                         if ticks <= SHORTEST || looks.left == 0 {
                             return worst.map_or(Ok(()), Err);
                         }
-                        ticks = cut(float(ticks) * shorter) as u64;
+                        ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
                     }
                 }
                 ticks = ticks.max(SHORTEST);
@@ -227,7 +232,7 @@ impl Envelope {
     }
 
     fn look(&self, arc: &Arc, ticks: u64, look: &mut Look) {
-        let sample = arc.at(float(ticks) / self.hz);
+        let sample = arc.at(ticks_to_f32(ticks) / self.hz);
         let [x, y] = arc.place(&sample);
         let far = hypot(x, y);
         let Sample { v, a, .. } = sample;
@@ -249,12 +254,12 @@ impl Envelope {
     fn glance(&self, legs: &[Leg]) -> Result<(), Broken> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
         for Leg { arc, ticks, .. } in legs {
-            let seconds = float(*ticks) / self.hz;
+            let seconds = ticks_to_f32(*ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(*ticks > SHORT)] {
                 let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
-                rate = rate.larger(greatest(&rates));
-                acceleration = acceleration.larger(greatest(&accelerations));
+                rate = rate.fmax(greatest(&rates));
+                acceleration = acceleration.fmax(greatest(&accelerations));
             }
         }
         let [rate_limit, acceleration_limit] = self.pivots;
@@ -265,10 +270,7 @@ impl Envelope {
     fn check_jerk(&self, leg: &Leg) -> Result<(), Broken> {
         let Some(own) = &self.own else { return Ok(()) };
         let [way, turn] = leg.jerk;
-        within(
-            (way / own.jerk[0]).larger(turn / own.jerk[1]),
-            Broken::Force,
-        )
+        within((way / own.jerk[0]).fmax(turn / own.jerk[1]), Broken::Force)
     }
 
     /// By how much the next stretch may be longer than this; or what is broken, and by how much shorter a stretch to try.
@@ -292,20 +294,17 @@ impl Envelope {
     ) -> Result<f32, Broken> {
         if let Some(own) = &self.own {
             let [v, turn] = sizes.v;
-            within(
-                (v / own.speed[0]).larger(turn / own.speed[1]),
-                Broken::Speed,
-            )?;
+            within((v / own.speed[0]).fmax(turn / own.speed[1]), Broken::Speed)?;
             let [a, spin] = sizes.a;
             within(
-                (a / own.acceleration[0]).larger(spin / own.acceleration[1]),
+                (a / own.acceleration[0]).fmax(spin / own.acceleration[1]),
                 Broken::Force,
             )?;
         }
         let eighth = t * t / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
         (self.reach).check_way(&leg.rooms, &from.sample, &to.sample, rise)?;
-        let furthest = from.out.larger(to.out) + moving.a[0] * eighth;
+        let furthest = from.out.fmax(to.out) + moving.a[0] * eighth;
         let radius = self.reach.inside(furthest)?;
         if let Some(own) = &self.own {
             self.check_stop(leg, to, own)?;
@@ -343,16 +342,16 @@ impl Envelope {
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
             let [rate, acceleration] = end.pivots(arc, self.reach.centre);
-            rates = rates.larger(rate);
-            accelerations = accelerations.larger(acceleration);
+            rates = rates.fmax(rate);
+            accelerations = accelerations.fmax(acceleration);
         }
         // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
         let mut most = [rate, acceleration];
         for _ in 0..ROUNDS {
             let rises = moving.rises(most, &bound, t);
             most = [
-                most[0].smaller(rates + rises[0]),
-                most[1].smaller(accelerations + rises[1]),
+                most[0].fmin(rates + rises[0]),
+                most[1].fmin(accelerations + rises[1]),
             ];
         }
         let once = rise_within(rates, most[0], rate_limit, Broken::Rate)?;
@@ -362,7 +361,7 @@ impl Envelope {
             acceleration_limit,
             Broken::Acceleration,
         )?;
-        Ok(once.smaller(twice).smaller(ALL))
+        Ok(once.fmin(twice).fmin(ALL))
     }
 }
 
@@ -463,11 +462,11 @@ fn rise_within(
     let room = limit * SLACK - value;
     let rise = most - value;
     if rise <= room {
-        return Ok(PART * sqrt_f32(room / rise.larger(f32::MIN_POSITIVE)));
+        return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
     }
-    let shorter = PART * sqrt_f32(room.larger(0.0) / rise);
+    let shorter = PART * sqrt_f32(room.fmax(0.0) / rise);
     Err((
-        broken((value / limit).larger(1.0)),
+        broken((value / limit).fmax(1.0)),
         shorter.clamp(1.0 / 16.0, 0.7),
     ))
 }

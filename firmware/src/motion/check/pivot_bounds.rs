@@ -10,9 +10,9 @@
 //!
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
-use crate::motion::constraints::Ground;
+use crate::motion::constraints::Constraints;
 use crate::motion::plan::units::PER_AXIS_UNIT;
-use crate::number::float::{Order, hypot, rough};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use crate::number::sqrt_f32;
 
 /// Speed of the moved point, track radii per second, and rate of rotation, rad per second; or their derivatives.
@@ -34,8 +34,8 @@ impl Pace {
     /// The greater of both parts.
     pub fn max(self, other: Self) -> Self {
         Self {
-            way: self.way.larger(other.way),
-            turn: self.turn.larger(other.turn),
+            way: self.way.fmax(other.way),
+            turn: self.turn.fmax(other.turn),
         }
     }
 }
@@ -43,7 +43,7 @@ impl Pace {
 /// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
 pub(crate) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
     let unit = PER_AXIS_UNIT * hz;
-    let [x, y, theta] = rates.map(|rate| rough(rate) * unit);
+    let [x, y, theta] = rates.map(|rate| i64_to_f32_fast(rate) * unit);
     [x, y, theta * core::f32::consts::TAU]
 }
 
@@ -85,11 +85,14 @@ pub(crate) struct Swing {
 }
 
 impl Swing {
-    pub fn new(ground: &Ground) -> Self {
+    pub fn new(ground: &Constraints) -> Self {
         Self {
             rate: ground.limits.pivot_rate_rad_s as f32,
             acceleration: ground.limits.pivot_acceleration_rad_s2 as f32,
-            arm: hypot(ground.centre[0] as f32, ground.centre[1] as f32),
+            arm: hypot(
+                ground.rotation_centre[0] as f32,
+                ground.rotation_centre[1] as f32,
+            ),
         }
     }
 

@@ -2,10 +2,10 @@
 
 use super::platform::Platform;
 use crate::motion::plan::Piece;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_UNIT, UNITS};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
 use crate::number::Fixed;
-use crate::number::float::{cut, rough};
+use crate::number::float::{i64_to_f32_fast, truncate};
 use core::f32::consts::TAU;
 use kinematics::{Angle, Scalar};
 
@@ -33,18 +33,18 @@ const RADIANS: [f32; 3] = [1.0, 1.0, TAU];
 
 impl Arc {
     /// A piece of a plan that starts from `axes`, at `hz` ticks a second.
-    pub fn new(axes: &[Axis; 3], piece: &Piece, hz: f32) -> Self {
+    pub fn new(axes: &[AxisState; 3], piece: &Piece, hz: f32) -> Self {
         let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
         let thrice = twice * hz;
         Self {
-            from: [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT),
+            from: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
             theta: axes[2].rounded() as u32,
             start: Sample {
                 way: [0.0; 3],
-                v: [0, 1, 2].map(|i| rough(axes[i].velocity) * (once * RADIANS[i])),
-                a: [0, 1, 2].map(|i| rough(axes[i].acceleration) * (twice * RADIANS[i])),
+                v: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].velocity) * (once * RADIANS[i])),
+                a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
             },
-            jerk: [0, 1, 2].map(|i| rough(piece.jerk[i]) * (thrice * RADIANS[i])),
+            jerk: [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i])),
         }
     }
 
@@ -70,8 +70,8 @@ impl Arc {
 
     /// Sine and cosine of theta after a way of so many radians.
     pub fn direction(&self, way: f32) -> (f32, f32) {
-        const UNITS_A_RADIAN: f32 = UNITS / TAU;
-        let theta = i64::from(self.theta).wrapping_add(cut(way * UNITS_A_RADIAN));
+        const UNITS_A_RADIAN: f32 = POSITION_UNITS / TAU;
+        let theta = i64::from(self.theta).wrapping_add(truncate(way * UNITS_A_RADIAN));
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
         (sin.to_f32(), cos.to_f32())
     }

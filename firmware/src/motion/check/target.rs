@@ -1,13 +1,13 @@
 //! Whether a target can be moved to, and along a straight line.
 
 use super::line_in_disk;
-use crate::motion::constraints::Ground;
-use crate::motion::limits::centre;
+use crate::motion::constraints::Constraints;
+use crate::motion::limits::xy_radii;
 use crate::motion::plan::Position;
-use crate::motion::plan::units::PER_UNIT;
+use crate::motion::plan::units::PER_POSITION_UNIT;
 use crate::motion::refusal::Refusal;
 use crate::number::Fixed;
-use crate::number::float::rough;
+use crate::number::float::i64_to_f32_fast;
 use kinematics::{Angle, Scalar};
 
 /// A thousand million turns, in units of a position.
@@ -19,7 +19,7 @@ const RIM: f64 = 1e-9;
 const RIM_TURNED: f64 = 1e-8;
 
 /// Whether `target` can be moved to, from anywhere.
-pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
+pub fn check_target(target: &Position, ground: &Constraints) -> Result<(), Refusal> {
     if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
@@ -34,33 +34,33 @@ pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
 }
 
 /// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
-fn is_well_inside(target: &Position, ground: &Ground) -> bool {
-    let [x, y] = [0, 1].map(|i| rough(target[i]) * PER_UNIT);
-    let usable = ground.usable as f32;
-    ground.centre.map(f64::to_bits) == [0; 2] && x * x + y * y < usable * usable * NEARLY
+fn is_well_inside(target: &Position, ground: &Constraints) -> bool {
+    let [x, y] = [0, 1].map(|i| i64_to_f32_fast(target[i]) * PER_POSITION_UNIT);
+    let usable = ground.usable_radius as f32;
+    ground.rotation_centre.map(f64::to_bits) == [0; 2] && x * x + y * y < usable * usable * NEARLY
 }
 
 /// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
 const NEARLY: f32 = 0.999_99;
 
 #[inline(never)]
-fn check_disk(target: &Position, ground: &Ground) -> Result<(), Refusal> {
-    let [mut x, mut y] = centre(target);
+fn check_disk(target: &Position, ground: &Constraints) -> Result<(), Refusal> {
+    let [mut x, mut y] = xy_radii(target);
     let mut rim = RIM;
-    if ground.centre != [0.0; 2] {
+    if ground.rotation_centre != [0.0; 2] {
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
         let (sin, cos) = (sin.to_f64(), cos.to_f64());
-        let [p, q] = ground.centre;
+        let [p, q] = ground.rotation_centre;
         x -= cos * p - sin * q;
         y -= sin * p + cos * q;
         rim = RIM_TURNED;
     }
-    let most = ground.usable + rim;
+    let most = ground.usable_radius + rim;
     let square = x * x + y * y;
     if square > most * most {
         return Err(Refusal::OutsideDisk {
             radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
-            usable_mm: ground.usable * ground.geometry.radius_mm,
+            usable_mm: ground.usable_radius * ground.geometry.radius_mm,
         });
     }
     Ok(())
@@ -68,16 +68,16 @@ fn check_disk(target: &Position, ground: &Ground) -> Result<(), Refusal> {
 
 /// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
 #[inline(never)]
-pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
+pub fn check_line(from: &Position, to: &Position, ground: &Constraints) -> Result<(), Refusal> {
     check_target(to, ground)?;
     if !ground.limits.all_positive() {
-        return Err(Refusal::Limits);
+        return Err(Refusal::InvalidLimits);
     }
     match line_in_disk::exit(from, to, ground) {
         Some(exit) => Err(Refusal::LeavesDisk {
             radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
-            usable_mm: ground.usable * ground.geometry.radius_mm,
-            share: f64::from(exit.share),
+            usable_mm: ground.usable_radius * ground.geometry.radius_mm,
+            fraction: f64::from(exit.share),
         }),
         None => Ok(()),
     }

@@ -2,47 +2,47 @@
 
 use super::*;
 use crate::motion::plan::units::AXIS_UNITS;
-use crate::motion::plan::{Plan, Start};
+use crate::motion::plan::{Plan, PlanStart};
 use crate::parameters::Parameters;
 use core::f64::consts::TAU;
 use heapless::Vec;
 use kinematics::Geometry;
 
-const GROUND: Ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+const GROUND: Constraints = Constraints::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
 const HZ: f64 = GROUND.limits.rate_hz;
 
 /// An axis at track radii or turns, with a rate and its derivative per second.
-fn axis(at: f64, velocity: f64, acceleration: f64) -> Axis {
+fn axis(at: f64, velocity: f64, acceleration: f64) -> AxisState {
     let units = f64::from(AXIS_UNITS);
-    Axis {
+    AxisState {
         position: (at * units) as i128,
         velocity: (velocity / HZ * units) as i64,
         acceleration: (acceleration / HZ / HZ * units) as i64 / 6 * 6,
     }
 }
 
-const STILL: Axis = Axis::at_rest(0);
+const STILL: AxisState = AxisState::at_rest(0);
 
 /// A plan of one piece, with a jerk per second cubed.
 fn plan(ticks: u64, jerk: [f64; 3]) -> Plan {
     let jerk = jerk.map(|jerk| (jerk / HZ.powi(3) * f64::from(AXIS_UNITS)) as i64 / 6 * 6);
     let mut plan = Plan {
-        start: Start::Rest([0; 3]),
+        start: PlanStart::Rest([0; 3]),
         ..Plan::default()
     };
     plan.pieces.push(Piece { ticks, jerk }).unwrap();
     plan
 }
 
-fn check(plan: &Plan, start: &[Axis; 3], ground: &Ground) -> Result<(), Broken> {
-    let envelope = Envelope::new(ground, UnitLimits::new(ground), start);
+fn check(plan: &Plan, start: &[AxisState; 3], ground: &Constraints) -> Result<(), Broken> {
+    let envelope = Envelope::new(ground, TickLimits::new(ground), start);
     looked(&envelope, plan, start, Looks::ALL)
 }
 
 fn looked(
     envelope: &Envelope,
     plan: &Plan,
-    start: &[Axis; 3],
+    start: &[AxisState; 3],
     mut looks: Looks,
 ) -> Result<(), Broken> {
     let mut legs = Legs::new();
@@ -111,7 +111,7 @@ fn the_pivots_rate_is_met_where_it_is_met() {
     let some: Vec<u64, 8> = (0..6).map(|sixth| sixth * 4_000).collect();
     let kept = some.iter().filter(|&&from| {
         let mut now = start;
-        turn.pieces[0].run(&mut now, from, &[0; 3]);
+        turn.pieces[0].advance(&mut now, from, &[0; 3]);
         check(&plan(1_000, [0.0; 3]), &now, &ground).is_ok()
     });
     assert!(kept.count() >= 3);
@@ -149,8 +149,8 @@ fn the_disk_is_kept_by_the_way_and_by_a_stop_from_it() {
 
 #[test]
 fn about_another_point_the_platforms_centre_counts() {
-    let ground = Ground {
-        centre: [0.5, 0.0],
+    let ground = Constraints {
+        rotation_centre: [0.5, 0.0],
         ..GROUND
     };
     let turn = plan(20_000, [0.0; 3]);
@@ -182,8 +182,8 @@ fn without_looks_left_it_fails() {
     let mut undecided = 0;
     for part in 0..12 {
         let mut now = start;
-        turn.pieces[0].run(&mut now, part * 2_000, &[0; 3]);
-        let envelope = Envelope::new(&ground, UnitLimits::new(&ground), &now);
+        turn.pieces[0].advance(&mut now, part * 2_000, &[0; 3]);
+        let envelope = Envelope::new(&ground, TickLimits::new(&ground), &now);
         let part = plan(2_000, [0.0; 3]);
         let with = |left: usize| {
             let looks = Looks { left, ..Looks::ALL };

@@ -3,10 +3,10 @@
 use super::sample::{Arc, Sample};
 use super::{Broken, Look};
 use crate::motion::brake::Brake;
-use crate::motion::constraints::{Bounds, Ground};
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
-use crate::number::float::{Order, hypot, rough};
+use crate::motion::constraints::{Bounds, Constraints};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, TickLimits};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use core::f32::consts::TAU;
 
 /// See the module.
@@ -29,7 +29,7 @@ pub(crate) struct Braking {
 
 impl Braking {
     /// Of limits at `hz` ticks a second.
-    pub fn new(limits: &UnitLimits, hz: f32) -> Self {
+    pub fn new(limits: &TickLimits, hz: f32) -> Self {
         let units = [PER_AXIS_UNIT * hz * hz, PER_AXIS_UNIT * TAU * hz * hz];
         let each = [&limits.translation, &limits.rotation];
         let most = [0, 1].map(|i| each[i].acceleration * units[i]);
@@ -45,10 +45,10 @@ impl Braking {
 const RIM: f32 = 2e-7;
 
 impl Reach {
-    pub fn new(ground: &Ground) -> Self {
-        let centre = ground.centre.map(|value| value as f32);
+    pub fn new(ground: &Constraints) -> Self {
+        let centre = ground.rotation_centre.map(|value| value as f32);
         Self {
-            radius: ground.usable as f32,
+            radius: ground.usable_radius as f32,
             bounds: ground.bounds,
             centre,
             arm: hypot(centre[0], centre[1]),
@@ -56,11 +56,15 @@ impl Reach {
     }
 
     /// How far each axis may go down and up from here, track radii and rad.
-    pub fn rooms(&self, axes: &[Axis; 3]) -> [[f32; 2]; 3] {
-        let unit = [PER_UNIT, PER_UNIT, TAU * PER_UNIT];
+    pub fn rooms(&self, axes: &[AxisState; 3]) -> [[f32; 2]; 3] {
+        let unit = [
+            PER_POSITION_UNIT,
+            PER_POSITION_UNIT,
+            TAU * PER_POSITION_UNIT,
+        ];
         [0, 1, 2].map(|i| {
             let here = axes[i].rounded();
-            self.bounds[i].map(|bound| rough(bound.saturating_sub(here)) * unit[i])
+            self.bounds[i].map(|bound| i64_to_f32_fast(bound.saturating_sub(here)) * unit[i])
         })
     }
 
@@ -75,8 +79,8 @@ impl Reach {
         for i in 0..3 {
             let rise = rise[i / 2];
             let (low, high) = (
-                from.way[i].smaller(to.way[i]) - rise,
-                from.way[i].larger(to.way[i]) + rise,
+                from.way[i].fmin(to.way[i]) - rise,
+                from.way[i].fmax(to.way[i]) + rise,
             );
             if !(rooms[i][0] - RIM <= low && high <= rooms[i][1] + RIM) {
                 return Err(Broken::Reach);
@@ -109,7 +113,7 @@ impl Reach {
         let release = [0, 1].map(|i| (at.a[i] + braking.most[i]) * braking.over_jerk[i]);
         let gained = [0, 1].map(|i| at.v[i] + at.a[i] * release[i]);
         let lasts = [0, 1].map(|i| 2.0 * release[i] + gained[i] * braking.over_most[i]);
-        let [way, turn] = gained.map(|speed| speed * lasts[0].larger(lasts[1]));
+        let [way, turn] = gained.map(|speed| speed * lasts[0].fmax(lasts[1]));
         let ways = [way, way, turn];
         let here = &at.sample.way;
         let clear = |i: usize| rooms[i][0] <= here[i] - ways[i] && here[i] + ways[i] <= rooms[i][1];

@@ -4,8 +4,8 @@ use super::Jog;
 use super::start::Setting;
 use crate::motion::brake::velocity_change::Ramp;
 use crate::motion::check::pivot_bounds::{Pace, per_second};
-use crate::motion::plan::axis_state::Axis;
-use crate::number::float::{Order, cut, float};
+use crate::motion::plan::axis_state::AxisState;
+use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 
 /// Some axes would be over after so many seconds at the velocity wanted: too soon to reach it and to stop.
 pub(super) struct Short {
@@ -24,14 +24,14 @@ impl Jog {
     /// For how many ticks each axis keeps its velocity before it has to brake.
     pub(super) fn hold(
         &self,
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         setting: &Setting,
         from_rest: bool,
     ) -> Result<[u64; 3], Short> {
         let hz = setting.hz;
         let target = per_second(&self.wanted, setting.hz);
         // From rest the ramp goes the same way, at half the speed.
-        let ramp = float(self.ramp) / (2.0 * hz);
+        let ramp = ticks_to_f32(self.ramp) / (2.0 * hz);
         let (from, done) = if from_rest {
             (state, ramp)
         } else {
@@ -41,13 +41,13 @@ impl Jog {
         let bounds = setting
             .steady(&self.steady, &target)
             .within(&setting.ground.bounds);
-        let mut point = (edge.seconds - done).smaller(bounds);
+        let mut point = (edge.seconds - done).fmin(bounds);
         let mut turn = setting.turn_seconds(&self.steady[2], self.wanted[2]);
         if edge.all {
-            point = point.smaller(turn);
+            point = point.fmin(turn);
             turn = point;
         }
-        let brake = float(self.brake.ticks()) / (2.0 * hz);
+        let brake = ticks_to_f32(self.brake.ticks()) / (2.0 * hz);
         let is_short = [
             self.wanted[..2] != [0, 0] && point < brake,
             self.wanted[2] != 0 && turn < brake,
@@ -59,7 +59,7 @@ impl Jog {
                 turn: is_short[1] && (edge.all || !is_short[0]),
             });
         }
-        let ticks = |seconds: f32| cut(((seconds - brake) * hz).smaller(LONGEST)) as u64;
+        let ticks = |seconds: f32| truncate(((seconds - brake) * hz).fmin(LONGEST)) as u64;
         Ok([ticks(point), ticks(point), ticks(turn)])
     }
 
@@ -81,7 +81,7 @@ impl Jog {
         for _ in 0..16 {
             let share = (low + high) / 2.0;
             let pace = Pace::of(&per_second(&slower(share), setting.hz));
-            let ticks = float(Ramp::new(pace, &self.force, setting.hz).ticks());
+            let ticks = ticks_to_f32(Ramp::new(pace, &self.force, setting.hz).ticks());
             if share * ticks <= short.seconds * setting.hz {
                 low = share;
             } else {

@@ -26,13 +26,13 @@ use self::start::{Setting, State};
 use super::brake::velocity_change::{Force, Ramp, release};
 use super::check::pivot_bounds::{Pace, per_second};
 use super::check::{Envelope, Legs, Looks};
-use super::constraints::Ground;
-use super::plan::axis_state::Axis;
-use super::plan::units::UnitLimits;
-use super::plan::{Piece, Plan, Start, after_all};
+use super::constraints::Constraints;
+use super::plan::axis_state::AxisState;
+use super::plan::units::TickLimits;
+use super::plan::{Piece, Plan, PlanStart, state_after_pieces};
 use super::profile::tracks::Pieces;
 use super::refusal::Refusal;
-use super::retarget::NoTransition;
+use super::retarget::RetargetError;
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
 /// says. Zero is a velocity as any other: that axis stops smoothly.
@@ -43,11 +43,11 @@ use super::retarget::NoTransition;
 #[inline(never)]
 pub fn plan_jog(
     id: u32,
-    start: Start,
-    state: &[Axis; 3],
+    start: PlanStart,
+    state: &[AxisState; 3],
     velocity: &[f64; 3],
-    ground: &Ground,
-) -> Result<Plan, NoTransition> {
+    ground: &Constraints,
+) -> Result<Plan, RetargetError> {
     // Written where it stays: a plan has a thousand bytes.
     let mut planned = Ok(Plan {
         id,
@@ -64,17 +64,17 @@ pub fn plan_jog(
 
 fn write(
     plan: &mut Plan,
-    state: &[Axis; 3],
+    state: &[AxisState; 3],
     velocity: &[f64; 3],
-    ground: &Ground,
-) -> Result<(), NoTransition> {
-    let setting = Setting::new(velocity, ground).map_err(NoTransition::Refused)?;
+    ground: &Constraints,
+) -> Result<(), RetargetError> {
+    let setting = Setting::new(velocity, ground).map_err(RetargetError::Refused)?;
     let now = State::new(state, &setting);
-    let from_rest = matches!(plan.start, Start::Rest(_));
+    let from_rest = matches!(plan.start, PlanStart::Rest(_));
     let mut wanted = setting.velocity;
     for _ in 0..ATTEMPTS {
         if from_rest && wanted == [0; 3] && setting.velocity != wanted {
-            return Err(NoTransition::Refused(Refusal::NoWay));
+            return Err(RetargetError::Refused(Refusal::NoRoom));
         }
         let jog = Jog::new(state, &now, wanted, &setting, &mut plan.pieces)?;
         match jog.hold(state, &setting, from_rest) {
@@ -86,24 +86,28 @@ fn write(
                 jog.finish(plan, hold);
                 return Ok(());
             }
-            Err(_) if !from_rest => return Err(NoTransition::NeedsStop),
+            Err(_) if !from_rest => return Err(RetargetError::NeedsStop),
             Err(short) => wanted = jog.slower(&short, &setting),
         }
     }
-    Err(NoTransition::Refused(Refusal::NoWay))
+    Err(RetargetError::Refused(Refusal::NoRoom))
 }
 
 /// The point may be too near to an edge, theta to a bound, and once more for what a lower velocity changes.
 const ATTEMPTS: usize = 4;
 
 /// Looks at the way to the velocity as at any other.
-fn check(pieces: &Pieces, state: &[Axis; 3], ground: &Ground) -> Result<(), NoTransition> {
-    let envelope = Envelope::new(ground, UnitLimits::new(ground), state);
+fn check(
+    pieces: &Pieces,
+    state: &[AxisState; 3],
+    ground: &Constraints,
+) -> Result<(), RetargetError> {
+    let envelope = Envelope::new(ground, TickLimits::new(ground), state);
     let mut legs = Legs::new();
     envelope.legs(pieces, state, &mut legs);
     envelope
         .check(&legs, &mut { Looks::ALL })
-        .map_err(|_| NoTransition::NeedsStop)
+        .map_err(|_| RetargetError::NeedsStop)
 }
 
 /// A jog from the state on in which its velocity is reached.
@@ -111,7 +115,7 @@ struct Jog {
     /// 2^-72 units a tick.
     wanted: [i64; 3],
     /// Where the velocity is reached.
-    steady: [Axis; 3],
+    steady: [AxisState; 3],
     /// Ticks of the change of velocity, release not counted.
     ramp: u64,
     /// Brings the velocity back to zero.
@@ -123,12 +127,12 @@ struct Jog {
 impl Jog {
     /// Writes the pieces of the way there, too.
     fn new(
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         now: &State,
         wanted: [i64; 3],
         setting: &Setting,
         pieces: &mut Pieces,
-    ) -> Result<Self, NoTransition> {
+    ) -> Result<Self, RetargetError> {
         let hz = setting.hz;
         let target = per_second(&wanted, hz);
         let (radius, force) = setting.force(now, &target)?;
@@ -142,7 +146,7 @@ impl Jog {
         }
         Ok(Self {
             wanted,
-            steady: after_all(state, pieces, &[0; 3]),
+            steady: state_after_pieces(state, pieces, &[0; 3]),
             ramp: ramp.ticks(),
             brake: Ramp::new(Pace::of(&target), &force, hz),
             force,
@@ -176,11 +180,11 @@ impl Jog {
                 end.go_on(ticks, &brakes);
             }
         }
-        let rest = after_all(&self.steady, &plan.pieces[begun..], &[0; 3]);
+        let rest = state_after_pieces(&self.steady, &plan.pieces[begun..], &[0; 3]);
         plan.pieces.retain(|piece| piece.ticks > 0);
         // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
         plan.nudge = rest.map(|axis| -axis.velocity);
         let ticks = plan.ticks();
-        plan.end = rest.map(|axis| axis.end(ticks, -axis.velocity));
+        plan.end = rest.map(|axis| axis.rest_position(ticks, -axis.velocity));
     }
 }

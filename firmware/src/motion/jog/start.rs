@@ -4,12 +4,12 @@ use super::super::refusal::Refusal;
 use super::travel::Steady;
 use crate::motion::brake::velocity_change::{Force, release_seconds};
 use crate::motion::check::pivot_bounds::{Pace, Swing, per_second};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::{Axis, SUB_BITS};
-use crate::motion::plan::units::{AXIS_UNITS, PER_UNIT};
-use crate::motion::retarget::NoTransition;
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
+use crate::motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
+use crate::motion::retarget::RetargetError;
 use crate::number::Fixed;
-use crate::number::float::{Order, hypot, rough};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use kinematics::{Angle, Scalar};
 
 /// 0.2 um on the reference stage.
@@ -21,7 +21,7 @@ const LEAST_FORCE: f32 = 0.05;
 
 /// Everything that does not depend on the state.
 pub(super) struct Setting<'a> {
-    pub ground: &'a Ground,
+    pub ground: &'a Constraints,
     pub hz: f32,
     swing: Swing,
     usable: f32,
@@ -43,10 +43,10 @@ pub(super) struct State {
 }
 
 impl<'a> Setting<'a> {
-    pub fn new(velocity: &[f64; 3], ground: &'a Ground) -> Result<Self, Refusal> {
+    pub fn new(velocity: &[f64; 3], ground: &'a Constraints) -> Result<Self, Refusal> {
         let limits = &ground.limits;
         if !limits.all_positive() {
-            return Err(Refusal::Limits);
+            return Err(Refusal::InvalidLimits);
         }
         let [x, y, turning] = *velocity;
         let speed = limits.speed_mm_s;
@@ -66,7 +66,7 @@ impl<'a> Setting<'a> {
             ground,
             hz: limits.rate_hz as f32,
             swing: Swing::new(ground),
-            usable: ground.usable as f32,
+            usable: ground.usable_radius as f32,
             velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
             force: Force {
                 acceleration: pace(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
@@ -76,16 +76,18 @@ impl<'a> Setting<'a> {
     }
 
     /// How far out the jog to `target` may go, and how hard it may be begun and ended there.
-    pub fn force(&self, now: &State, target: &[f32; 3]) -> Result<(f32, Force), NoTransition> {
+    pub fn force(&self, now: &State, target: &[f32; 3]) -> Result<(f32, Force), RetargetError> {
         let swing = &self.swing;
         let pace = Pace::of(target);
         let most = swing
             .radius(pace, self.usable)
-            .ok_or(NoTransition::Refused(Refusal::PivotRate { radius_mm: 0.0 }))?;
+            .ok_or(RetargetError::Refused(Refusal::PivotRate {
+                radius_mm: 0.0,
+            }))?;
         let out = hypot(now.platform[0], now.platform[1]);
         if out > most + RIM {
             let radius_mm = f64::from(most) * self.ground.geometry.radius_mm;
-            return Err(NoTransition::Refused(Refusal::PivotRate { radius_mm }));
+            return Err(RetargetError::Refused(Refusal::PivotRate { radius_mm }));
         }
         let travels = |pace: Pace| pace.way > 0.0 || pace.turn * swing.arm() > 0.0;
         let (speed, force) = (Pace::of(&now.velocity), Pace::of(&now.acceleration));
@@ -101,9 +103,9 @@ impl<'a> Setting<'a> {
         let room = swing.room(radius, pace.max(gained));
         let part = room / swing.need(radius, self.force.acceleration);
         if part < LEAST_FORCE {
-            return Err(NoTransition::NeedsStop);
+            return Err(RetargetError::NeedsStop);
         }
-        let part = part.smaller(1.0);
+        let part = part.fmin(1.0);
         let acceleration = Pace {
             way: self.force.acceleration.way * part,
             turn: self.force.acceleration.turn * part,
@@ -118,7 +120,7 @@ impl<'a> Setting<'a> {
     }
 
     /// Seconds of steady motion until theta meets its bounds.
-    pub fn turn_seconds(&self, theta: &Axis, wanted: i64) -> f32 {
+    pub fn turn_seconds(&self, theta: &AxisState, wanted: i64) -> f32 {
         let [low, high] = self.ground.bounds[2];
         let now = theta.rounded();
         let (way, velocity) = match wanted {
@@ -127,14 +129,15 @@ impl<'a> Setting<'a> {
             _ => (now.saturating_sub(low.max(-MOST_TURNS)), -wanted),
         };
         let units = (1_i64 << SUB_BITS) as f32;
-        rough(way.max(0)) * (1.0 - 5.0 * f32::EPSILON) / (rough(velocity) / units * self.hz)
+        i64_to_f32_fast(way.max(0)) * (1.0 - 5.0 * f32::EPSILON)
+            / (i64_to_f32_fast(velocity) / units * self.hz)
     }
 
     /// The steady motion at `velocity` from a position.
-    pub fn steady(&self, axes: &[Axis; 3], velocity: &[f32; 3]) -> Steady {
+    pub fn steady(&self, axes: &[AxisState; 3], velocity: &[f32; 3]) -> Steady {
         let [x, y, turning] = *velocity;
         Steady {
-            point: [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT),
+            point: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
             theta: axes[2].rounded(),
             velocity: [x, y],
             turning,
@@ -143,14 +146,14 @@ impl<'a> Setting<'a> {
     }
 
     fn centre(&self) -> [f32; 2] {
-        self.ground.centre.map(|radii| radii as f32)
+        self.ground.rotation_centre.map(|radii| radii as f32)
     }
 }
 
 impl State {
-    pub fn new(axes: &[Axis; 3], setting: &Setting) -> Self {
+    pub fn new(axes: &[AxisState; 3], setting: &Setting) -> Self {
         let acceleration = per_second(&axes.map(|axis| axis.acceleration), setting.hz);
-        let point = [0, 1].map(|i| rough(axes[i].rounded()) * PER_UNIT);
+        let point = [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT);
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(axes[2].rounded()));
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
         let [a, b] = setting.centre();

@@ -5,8 +5,8 @@
 //! turn about a point beside its centre that parabola is the thing itself, and the first step the last.
 
 use crate::motion::constraints::Bounds;
-use crate::motion::plan::units::{PER_UNIT, UNITS};
-use crate::number::float::{Order, cut, hypot, rough};
+use crate::motion::plan::units::{PER_POSITION_UNIT, POSITION_UNITS};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use crate::number::{Fixed, sqrt_f32};
 use kinematics::{Angle, Scalar};
 
@@ -35,7 +35,7 @@ const MARGIN: f32 = 2e-6;
 const MOST_STEPS: usize = 100;
 /// A step that is no way worth it any more, s.
 const LEAST_STEP: f32 = 2e-5;
-const UNITS_PER_RAD: f32 = UNITS / core::f32::consts::TAU;
+const UNITS_PER_RAD: f32 = POSITION_UNITS / core::f32::consts::TAU;
 
 impl Steady {
     /// Until the platform's centre meets the edge of the disk of `radius`.
@@ -75,14 +75,14 @@ impl Steady {
     pub fn within(&self, bounds: &Bounds) -> f32 {
         let mut seconds = f32::INFINITY;
         for ((bounds, &point), &velocity) in bounds.iter().zip(&self.point).zip(&self.velocity) {
-            let [low, high] = bounds.map(|units| rough(units) * PER_UNIT);
+            let [low, high] = bounds.map(|units| i64_to_f32_fast(units) * PER_POSITION_UNIT);
             let way = if velocity > 0.0 {
                 high - MARGIN - point
             } else {
                 point - low - MARGIN
             };
             if velocity != 0.0 {
-                seconds = seconds.smaller((way / velocity.abs()).larger(0.0));
+                seconds = seconds.fmin((way / velocity.abs()).fmax(0.0));
             }
         }
         seconds
@@ -121,7 +121,7 @@ impl Steady {
     /// The platform's centre after so many seconds.
     #[inline(never)]
     fn platform(&self, seconds: f32) -> [f32; 2] {
-        let turned = cut(self.turning * seconds * UNITS_PER_RAD);
+        let turned = truncate(self.turning * seconds * UNITS_PER_RAD);
         let angle = Angle::from_units(self.theta.wrapping_add(turned));
         let (sin, cos) = Fixed::sin_cos(angle);
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
@@ -147,7 +147,7 @@ fn crossing(value: f32, slope: f32, bend: f32) -> f32 {
     } else {
         (root - slope) / bend
     };
-    time.larger(0.0)
+    time.fmax(0.0)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use super::path_profile::Pace;
 use super::rounded_ramps::Score;
 use super::segments::{Polygon, STRETCHES};
 use crate::motion::limits::PathLimits;
-use crate::number::float::{Order, up_short};
+use crate::number::float::{FloatMinMax, ceil_i32};
 use heapless::Vec;
 
 /// A ramp of the acceleration.
@@ -64,7 +64,7 @@ fn corners(polygon: &Polygon, slower: f32, hz: f32) -> Option<Ramps> {
         if !(0.0..LONGEST as f32).contains(&ticks) {
             return None;
         }
-        let ticks = up_short(ticks).max(1);
+        let ticks = ceil_i32(ticks).max(1);
         let acceleration = (b.rate - a.rate) / (hz * slower * ticks as f32);
         let change = acceleration - before;
         ramps
@@ -95,7 +95,7 @@ const SHORT: f32 = 1.0 - 1e-6;
 fn widen(ramps: &mut Ramps, most: f32) {
     let half = SHORT / (2.0 * most);
     // Longer than anything when nearly nothing is allowed, and still within 31 bits.
-    let even = |change: f32| 2 * up_short((change * half).smaller(LONGEST as f32)).max(1);
+    let even = |change: f32| 2 * ceil_i32((change * half).fmin(LONGEST as f32)).max(1);
     for ramp in ramps.iter_mut() {
         ramp.ticks = even(ramp.change.abs());
     }
@@ -139,7 +139,7 @@ mod tests {
         let (mut s, mut v, mut a, mut jerk, mut middle) = (0.0, 0.0, 0.0, 0.0_f32, 0.0);
         for beat in &pace.beats {
             let j = beat.jerk as f32 * unit;
-            jerk = jerk.larger(j.abs());
+            jerk = jerk.fmax(j.abs());
             for _ in 0..beat.ticks {
                 let t = 1.0 / HZ;
                 s += t * (v + t * (a / 2.0 + t * j / 6.0));

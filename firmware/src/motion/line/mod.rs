@@ -16,10 +16,10 @@ pub(crate) mod segments;
 pub(crate) mod topp;
 
 pub use super::check::target::{check_line, check_target};
-use super::constraints::Ground;
+use super::constraints::Constraints;
 use super::limits::PathLimits;
-use super::plan::{Plan, Position, Start};
-use super::profile::rest_to_rest::Profile;
+use super::plan::{Plan, PlanStart, Position};
+use super::profile::rest_to_rest::RestToRestProfile;
 use super::refusal::Refusal;
 use crate::motion::line::jerk_ramps::pace;
 use crate::motion::line::path::Path;
@@ -27,17 +27,22 @@ use crate::motion::line::path_profile::Pace;
 use crate::motion::line::pivot_demand::{Grid, Moment};
 use crate::motion::line::segments::{Polygon, thin, under};
 use crate::motion::line::topp::{PLACES, fastest};
-use crate::number::float::{Order, float, rough};
+use crate::number::float::{FloatMinMax, i64_to_f32_fast, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 use heapless::Vec;
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
 #[inline(never)]
-pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Result<Plan, Refusal> {
+pub fn plan_line(
+    id: u32,
+    from: Position,
+    to: Position,
+    ground: &Constraints,
+) -> Result<Plan, Refusal> {
     check_line(&from, &to, ground)?;
     let mut plan = Plan {
         id,
-        start: Start::Rest(from),
+        start: PlanStart::Rest(from),
         pieces: Vec::new(),
         nudge: [0; 3],
         end: to,
@@ -47,16 +52,18 @@ pub fn plan_line(id: u32, from: Position, to: Position, ground: &Ground) -> Resu
     }
     // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so that
     // it does not matter either where on the mechanism it is.
-    let out = |[x, y, _]: Position| rough(x) * rough(x) + rough(y) * rough(y);
+    let out = |[x, y, _]: Position| {
+        i64_to_f32_fast(x) * i64_to_f32_fast(x) + i64_to_f32_fast(y) * i64_to_f32_fast(y)
+    };
     let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
     let path = Path::new(&first, &last, ground);
     let mut pace = Pace::default();
-    (Way::new(&path, ground).write(&mut pace)).ok_or(Refusal::Limits)?;
+    (Way::new(&path, ground).write(&mut pace)).ok_or(Refusal::InvalidLimits)?;
     if turned_round {
         pace.beats.reverse();
     }
-    pace.play(&mut plan, &from).ok_or(Refusal::Limits)?;
+    pace.play(&mut plan, &from).ok_or(Refusal::InvalidLimits)?;
     Ok(plan)
 }
 
@@ -75,12 +82,12 @@ const LOOKS: u32 = 1;
 const SPARE: f32 = 1.001_5;
 
 impl<'a> Way<'a> {
-    fn new(path: &'a Path, ground: &Ground) -> Self {
+    fn new(path: &'a Path, ground: &Constraints) -> Self {
         let limits = &ground.limits;
         let length_mm = path.length * ground.geometry.radius_mm as f32;
         Self {
             path,
-            limits: limits.along(length_mm, path.turn.to_degrees()),
+            limits: limits.for_line(length_mm, path.turn.to_degrees()),
             pivot_rate: limits.pivot_rate_rad_s as f32,
             pivot_acceleration: limits.pivot_acceleration_rad_s2 as f32,
             hz: limits.rate_hz as f32,
@@ -89,7 +96,7 @@ impl<'a> Way<'a> {
 
     /// Writes the fastest motion found.
     fn write(&self, pace: &mut Pace) -> Option<()> {
-        let profile = Profile::new(&self.limits, self.hz)?;
+        let profile = RestToRestProfile::new(&self.limits, self.hz)?;
         profile.write(pace);
         if self.pivots_follow_anywhere(&profile) {
             return Some(());
@@ -130,9 +137,9 @@ impl<'a> Way<'a> {
     }
 
     /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.
-    fn pivots_follow_anywhere(&self, profile: &Profile) -> bool {
-        let rate = self.hz / float(profile.way);
-        let acceleration = rate * self.hz / float(profile.ramp);
+    fn pivots_follow_anywhere(&self, profile: &RestToRestProfile) -> bool {
+        let rate = self.hz / ticks_to_f32(profile.travel);
+        let acceleration = rate * self.hz / ticks_to_f32(profile.ramp);
         let (first, second) = self.path.worst();
         first * rate <= self.pivot_rate
             && first * acceleration + second * rate * rate <= self.pivot_acceleration
@@ -146,24 +153,24 @@ impl<'a> Way<'a> {
         let mut worst = 0.0_f32;
         let (mut acceleration, mut jerk) = (0.0_f32, 0.0_f32);
         for beat in &pace.beats {
-            let seconds = float(beat.ticks) / self.hz;
+            let seconds = ticks_to_f32(beat.ticks) / self.hz;
             let push = beat.jerk as f32 * unit;
-            jerk = jerk.larger(push.abs());
+            jerk = jerk.fmax(push.abs());
             let way = now.after(seconds, push).s - now.s;
             let steps = LOOKS + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);
-                worst = worst.larger(grid.excess(&now));
+                worst = worst.fmax(grid.excess(&now));
             }
             // Largest at an end of a stretch.
-            acceleration = acceleration.larger(now.acceleration.abs());
+            acceleration = acceleration.fmax(now.acceleration.abs());
         }
-        let worst = worst.larger(acceleration / self.limits.acceleration);
+        let worst = worst.fmax(acceleration / self.limits.acceleration);
         let jerk = jerk / self.limits.jerk;
         let worst = sqrt_f32(worst);
         if jerk > 1.0 {
-            worst.larger(cbrt_f32(jerk))
+            worst.fmax(cbrt_f32(jerk))
         } else {
             worst
         }

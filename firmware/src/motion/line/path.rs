@@ -18,10 +18,10 @@
 //! `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a` solves
 //! `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
 
-use crate::motion::constraints::Ground;
+use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
-use crate::motion::plan::units::PER_UNIT;
-use crate::number::float::{Order, rough};
+use crate::motion::plan::units::PER_POSITION_UNIT;
+use crate::number::float::{FloatMinMax, i64_to_f32_fast};
 use crate::number::{Fixed, sqrt_f32};
 use kinematics::{Angle, Scalar};
 
@@ -60,22 +60,22 @@ pub(crate) struct Demand {
 
 impl Path {
     #[inline(never)]
-    pub fn new(from: &Position, to: &Position, ground: &Ground) -> Self {
-        let way = [0, 1].map(|i| rough(to[i].wrapping_sub(from[i])) * PER_UNIT);
+    pub fn new(from: &Position, to: &Position, ground: &Constraints) -> Self {
+        let way = [0, 1].map(|i| i64_to_f32_fast(to[i].wrapping_sub(from[i])) * PER_POSITION_UNIT);
         let turn_units = to[2].wrapping_sub(from[2]);
-        let [x, y] = ground.centre.map(|part| part as f32);
+        let [x, y] = ground.rotation_centre.map(|part| part as f32);
         // n_i of the platform's own axes: its guides point at -30, 90 and 210 deg.
         let half = 0.5;
         let wide = f32::SIN_60;
         Self {
-            from: [0, 1].map(|i| rough(from[i]) * PER_UNIT),
+            from: [0, 1].map(|i| i64_to_f32_fast(from[i]) * PER_POSITION_UNIT),
             way,
             length: sqrt_f32(way[0] * way[0] + way[1] * way[1]),
-            turn: rough(turn_units) * (PER_UNIT * core::f32::consts::TAU),
+            turn: i64_to_f32_fast(turn_units) * (PER_POSITION_UNIT * core::f32::consts::TAU),
             theta: from[2],
             turn_units,
             offsets: [half * x + wide * y, -x, half * x - wide * y],
-            usable: ground.usable as f32,
+            usable: ground.usable_radius as f32,
         }
     }
 
@@ -87,9 +87,9 @@ impl Path {
     /// Bounds of the first and the second derivative anywhere on a line of this kind: the place furthest out counts.
     pub fn worst(&self) -> (f32, f32) {
         let [from, to] = [self.from, self.point(1.0)].map(|[x, y]| sqrt_f32(x * x + y * y));
-        let furthest = from.larger(to);
-        let r = (furthest + self.offset()).smaller(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - r * r).larger(LEAST_COSINE));
+        let furthest = from.fmax(to);
+        let r = (furthest + self.offset()).fmin(self.usable);
+        let over_c = 1.0 / sqrt_f32((1.0 - r * r).fmax(LEAST_COSINE));
         let turn = self.turn.abs();
         let swing = if self.offset() > 0.0 {
             (self.length + turn * furthest) * over_c
@@ -104,7 +104,7 @@ impl Path {
     fn offset(&self) -> f32 {
         self.offsets
             .iter()
-            .fold(0.0, |k, offset| k.larger(offset.abs()))
+            .fold(0.0, |k, offset| k.fmax(offset.abs()))
     }
 
     /// P(s).
@@ -116,7 +116,7 @@ impl Path {
     pub fn places(&self, stretches: usize) -> Places<'_> {
         let step = 1.0 / stretches as f32;
         // A direction is worth nothing on a line that is wound, and not looked at.
-        let turn = (rough(self.turn_units) * step) as i32;
+        let turn = (i64_to_f32_fast(self.turn_units) * step) as i32;
         Places {
             path: self,
             s: 0.0,
@@ -161,7 +161,7 @@ impl Path {
         let d = across - offset;
         let d_1 = way_y * cos - way_x * sin - turn * (x * cos + y * sin);
         let d_2 = -turn * (2.0 * (way_x * cos + way_y * sin) + turn * across);
-        let over_c = 1.0 / sqrt_f32((1.0 - d * d).larger(LEAST_COSINE));
+        let over_c = 1.0 / sqrt_f32((1.0 - d * d).fmax(LEAST_COSINE));
         let swing = d_1 * over_c;
         (turn + swing, (d_2 + swing * swing * d) * over_c)
     }
@@ -178,16 +178,15 @@ impl Path {
         let outwards = if r > 0.0 { outwards } else { self.length };
         let around = (way_y * x - way_x * y) * over_r - self.turn * r;
         let (rk, b) = (r * k, 1.0 - square - k * k);
-        let mut sine = 2.0 * rk / (b + sqrt_f32((b * b - 4.0 * rk * rk).larger(0.0)));
+        let mut sine = 2.0 * rk / (b + sqrt_f32((b * b - 4.0 * rk * rk).fmax(0.0)));
         if !(b > 0.0 && r * sine + k <= self.usable) {
             // Only orientations that keep to the disk are met here: the best of them is the last.
             sine = (self.usable - k) * over_r;
         }
         let d = r * sine + k;
-        let passed =
-            sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).larger(LEAST_COSINE)).larger(0.0));
-        let furthest = (r + k).smaller(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).larger(LEAST_COSINE));
+        let passed = sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).fmax(LEAST_COSINE)).fmax(0.0));
+        let furthest = (r + k).fmin(self.usable);
+        let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).fmax(LEAST_COSINE));
         let swing = around.abs() * passed + outwards.abs() * over_c;
         let turn = self.turn.abs();
         let drawn = turn * (2.0 * self.length + turn * r);
@@ -196,7 +195,7 @@ impl Path {
         let either = if k > 0.0 {
             drawn + thrown
         } else {
-            drawn.larger(thrown)
+            drawn.fmax(thrown)
         };
         let (first, second) = (turn + swing, either * over_c);
         Demand {

@@ -7,8 +7,8 @@
 use super::quotient::quotient;
 use crate::motion::plan::axis_state::{JERK_STEP, SUB_BITS};
 use crate::motion::plan::{MAX_PIECES, Piece, Plan, Position};
-use crate::number::float::{float, rough, rough_long};
-use crate::number::round;
+use crate::number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
+use crate::number::round_ties_even;
 use heapless::Vec;
 
 /// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
@@ -42,7 +42,7 @@ impl Pace {
 
     /// What the path parameter's jerk is, per tick cubed, for one unit of a beat's.
     pub fn unit(&self) -> f32 {
-        6.0 / rough_long(self.sixfold)
+        6.0 / i128_to_f32_fast(self.sixfold)
     }
 
     /// Writes pieces and nudge of a plan from `from` to its end; `None` where a number would be too large.
@@ -102,7 +102,7 @@ impl Pace {
         let mut owed = 0.0;
         for ((piece, beat), lever) in plan.pieces.iter_mut().zip(&self.beats).zip(levers) {
             let (whole, fraction) = self.share(factor, beat.jerk);
-            let ticks = float(beat.ticks);
+            let ticks = ticks_to_f32(beat.ticks);
             let (more, rounded) = rounded(fraction + owed / ticks);
             owed += (fraction - rounded) * ticks;
             let sixth = whole.wrapping_add(more);
@@ -133,10 +133,10 @@ impl Pace {
 fn rounded(value: f32) -> (i64, f32) {
     const MOST: f32 = 2_097_152.0;
     if value.abs() < MOST {
-        let (whole, float) = round(value);
+        let (whole, float) = round_ties_even(value);
         (i64::from(whole), float)
     } else {
         let whole = value as i64;
-        (whole, rough(whole))
+        (whole, i64_to_f32_fast(whole))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use crate::motion::limits::PathLimits;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Most stretches between places.
@@ -81,7 +81,7 @@ impl Grid {
         for _ in 0..=stretches {
             let demand = demands.next();
             let (first, second) = (largest(&demand.first), largest(&demand.second));
-            let rate = (first * over_rate).larger(least);
+            let rate = (first * over_rate).fmax(least);
             let asked = first * self.limits.acceleration + second / (rate * rate);
             // There is room for all.
             let _ = self.places.push(Place {
@@ -119,14 +119,14 @@ impl Grid {
         let rate = between(a.rate, b.rate);
         let mut worst = rate * rate * square;
         // As a rule less is asked of the pivots' acceleration than they have, whatever its signs.
-        let most = [0, 1].map(|k| a.most[k].larger(b.most[k]));
+        let most = [0, 1].map(|k| a.most[k].fmax(b.most[k]));
         if most[0] * moment.acceleration.abs() + most[1] * square <= 1.0 {
             return worst;
         }
         for i in 0..3 {
             let first = between(a.first[i], b.first[i]);
             let second = between(a.second[i], b.second[i]);
-            worst = worst.larger((first * moment.acceleration + second * square).abs());
+            worst = worst.fmax((first * moment.acceleration + second * square).abs());
         }
         worst
     }
@@ -135,13 +135,13 @@ impl Grid {
 /// The largest size.
 fn largest(values: &[f32; 3]) -> f32 {
     let [a, b, c] = values.map(f32::abs);
-    a.larger(b).larger(c)
+    a.fmax(b).fmax(c)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::topp::{PLACES, fastest};
-    use crate::motion::constraints::Ground;
+    use crate::motion::constraints::Constraints;
     use crate::motion::line::pivot_demand::*;
     use crate::motion::plan::Position;
     use crate::parameters::Parameters;
@@ -157,7 +157,7 @@ mod tests {
     /// Through the middle of the disk and near its rim, by parts of a turn and several.
     fn lines() -> impl Iterator<Item = Path> {
         const ONE: f64 = 4_294_967_296.0;
-        let ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+        let ground = Constraints::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
         [0.1, -0.8, 1.7, -2.9, 40.0]
             .into_iter()
             .flat_map(move |turns| {
@@ -187,7 +187,7 @@ mod tests {
                 let close = |a: f32, b: f32| (a - b).abs() <= 2e-5 * (1.0 + b.abs());
                 for i in 0..3 {
                     assert!(close(near.first[i], right.first[i]), "{near:?} {right:?}");
-                    let scale = path.turn.abs().larger(1.0);
+                    let scale = path.turn.abs().fmax(1.0);
                     let [a, b] = [near.second[i], right.second[i]].map(|part| part / scale);
                     assert!(close(a, b), "{near:?} {right:?}");
                 }
@@ -235,7 +235,7 @@ mod tests {
                     let worst = (0..3)
                         .map(|i| place.first[i] * acceleration + place.second[i] * rate * rate)
                         .fold((place.rate * rate) * (place.rate * rate), |worst, part| {
-                            worst.larger(part.abs())
+                            worst.fmax(part.abs())
                         });
                     let told = grid.excess(&moment);
                     over += usize::from(worst > 1.0);

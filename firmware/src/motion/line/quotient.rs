@@ -2,8 +2,8 @@
 //!
 //! A float's guess has 22 of its bits; what they leave is divided in turn.
 
-use crate::motion::plan::axis_state::times;
-use crate::number::float::{rough, rough_long};
+use crate::motion::plan::axis_state::mul_i128_u32;
+use crate::number::float::{i64_to_f32_fast, i128_to_f32_fast};
 
 /// Guesses that 64 bits take.
 const ROUNDS: usize = 4;
@@ -26,7 +26,7 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
         if part == 0 {
             break;
         }
-        let taken = times(divisor, part) << shift;
+        let taken = mul_i128_u32(divisor, part) << shift;
         let part = i64::from(part) << shift;
         if guess < 0.0 {
             rest += taken;
@@ -43,9 +43,9 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
 fn rough_longest(value: i128) -> f32 {
     const UPPER: f32 = 18_446_744_073_709_551_616.0;
     if (value >> 103) == (value >> 127) {
-        rough_long(value)
+        i128_to_f32_fast(value)
     } else {
-        rough((value >> 64) as i64) * UPPER
+        i64_to_f32_fast((value >> 64) as i64) * UPPER
     }
 }
 

@@ -7,8 +7,8 @@ use super::jerk_ramps::{Ramp, Ramps};
 use super::path_profile::{BITS, Beat, Pace};
 use super::segments::STRETCHES;
 use crate::motion::plan::MAX_PIECES;
-use crate::motion::plan::axis_state::{product, times};
-use crate::number::float::{Order, nearest_short, rough, rough_long};
+use crate::motion::plan::axis_state::{mul_i64_u32, mul_i128_u32};
+use crate::number::float::{FloatMinMax, i64_to_f32_fast, i128_to_f32_fast, round_i32};
 use heapless::Vec;
 
 /// The ramps in integers.
@@ -42,7 +42,7 @@ impl Score {
         let jerk = |ramp: &Ramp| ramp.change / ramp.ticks as f32;
         let largest = ramps
             .iter()
-            .fold(0.0_f32, |most, r| most.larger(jerk(r).abs()));
+            .fold(0.0_f32, |most, r| most.fmax(jerk(r).abs()));
         let mut score = Self {
             ramps: Vec::new(),
             start: i32::MAX,
@@ -54,7 +54,7 @@ impl Score {
             let note = Note {
                 start: ramp.middle - half,
                 end: ramp.middle + half,
-                jerk: nearest_short(jerk(ramp) * scale),
+                jerk: round_i32(jerk(ramp) * scale),
             };
             score.start = score.start.min(note.start);
             score.end = score.end.max(note.end);
@@ -69,7 +69,7 @@ impl Score {
         self.ramps.iter().fold((0, 0), |(force, speed), note| {
             let step = i64::from(note.jerk) * i64::from(note.ticks());
             let lever = note.lever(self.end) as u32;
-            (force + step, speed + product(step, lever))
+            (force + step, speed + mul_i64_u32(step, lever))
         })
     }
 
@@ -80,11 +80,12 @@ impl Score {
             return None;
         };
         let (far, near) = (a.lever(self.end), b.lever(self.end));
-        let a_step = -rough_long(speed - product(force, near as u32)) / (far - near) as f32;
-        let a_jerk = nearest_short(a_step / a.ticks() as f32);
+        let a_step =
+            -i128_to_f32_fast(speed - mul_i64_u32(force, near as u32)) / (far - near) as f32;
+        let a_jerk = round_i32(a_step / a.ticks() as f32);
         a.jerk = a.jerk.wrapping_add(a_jerk);
         let force = force + i64::from(a_jerk) * i64::from(a.ticks());
-        b.jerk = (b.jerk).wrapping_sub(nearest_short(rough(force) / b.ticks() as f32));
+        b.jerk = (b.jerk).wrapping_sub(round_i32(i64_to_f32_fast(force) / b.ticks() as f32));
         Some(())
     }
 
@@ -127,9 +128,9 @@ impl Sum {
     #[inline(never)]
     fn push(&mut self, beats: &mut Vec<Beat, MAX_PIECES>, ticks: u32, jerk: i32) -> Option<()> {
         let bent = i64::from(jerk) * i64::from(ticks);
-        let way = 3 * self.speed + product(3 * self.force + bent, ticks);
-        self.sixfold += times(way, ticks);
-        self.speed += product(2 * self.force + bent, ticks);
+        let way = 3 * self.speed + mul_i64_u32(3 * self.force + bent, ticks);
+        self.sixfold += mul_i128_u32(way, ticks);
+        self.speed += mul_i64_u32(2 * self.force + bent, ticks);
         self.force += bent;
         let ticks = u64::from(ticks);
         beats.push(Beat { ticks, jerk }).ok()

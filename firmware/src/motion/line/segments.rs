@@ -7,7 +7,7 @@
 
 use super::topp::Squares;
 use crate::motion::limits::PathLimits;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
@@ -55,8 +55,8 @@ pub(crate) fn under(
         let longer = stretches as f32 / place as f32;
         before = loss;
         loss = (loss * (longer * longer))
-            .larger(STEP * loss + STEP_MORE)
-            .smaller(MOST);
+            .fmax(STEP * loss + STEP_MORE)
+            .fmin(MOST);
     }
     if loss - before >= FINE {
         // Once more, with half of what was added.
@@ -120,20 +120,20 @@ fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Polygon) -> Resul
         let (mut low, mut high) = (-steepest, steepest);
         let mut to = from + 1;
         // The first stretch is taken in any case: at its end a line can be as low as it likes.
-        high = high.smaller(z[to] - start);
-        low = low.larger(z[to] * share - start).smaller(high);
+        high = high.fmin(z[to] - start);
+        low = low.fmax(z[to] * share - start).fmin(high);
         while to < last {
             let steps = (to + 1 - from) as f32;
             let over = 1.0 / steps;
-            let highest = high.smaller((z[to + 1] - start) * over);
-            let lowest = low.larger((z[to + 1] * share - start) * over);
+            let highest = high.fmin((z[to + 1] - start) * over);
+            let lowest = low.fmax((z[to + 1] * share - start) * over);
             if lowest > highest + steepest * ALIKE {
                 break;
             }
-            (low, high) = (lowest.smaller(highest), highest);
+            (low, high) = (lowest.fmin(highest), highest);
             to += 1;
         }
-        start = (start + high * (to - from) as f32).larger(0.0);
+        start = (start + high * (to - from) as f32).fmax(0.0);
         from = to;
         let corner = Corner {
             s: from as f32 * spacing,

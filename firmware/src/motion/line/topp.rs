@@ -7,7 +7,7 @@
 //! based on reachability analysis").
 
 use super::pivot_demand::{Grid, Place};
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Most stretches and one.
@@ -45,7 +45,7 @@ pub(crate) fn fastest(grid: &Grid, z: &mut Squares) {
     for (place, z) in grid.places().iter().zip(z.iter_mut()).take(n).rev() {
         let most = 1.0 / (place.rate * place.rate);
         next = if place.calm {
-            most.smaller(next + steepest)
+            most.fmin(next + steepest)
         } else {
             let node = Node::new(place, grid.limits.acceleration);
             // There is room for all.
@@ -62,7 +62,7 @@ pub(crate) fn fastest(grid: &Grid, z: &mut Squares) {
         } else {
             (nodes.pop()).map_or(0.0, |node| double * node.highest(now))
         };
-        now = z.smaller((now + up).larger(0.0));
+        now = z.fmin((now + up).fmax(0.0));
         *z = now;
     }
 }
@@ -82,7 +82,7 @@ impl Node {
         let mut slopes = [0.0; 3];
         for i in 0..3 {
             let first = place.first[i];
-            let width = 1.0 / first.abs().larger(STILL);
+            let width = 1.0 / first.abs().fmax(STILL);
             widths[i] = width;
             slopes[i] = if first < 0.0 {
                 place.second[i] * width
@@ -100,7 +100,7 @@ impl Node {
     /// The largest acceleration at z.
     fn highest(&self, z: f32) -> f32 {
         (self.widths.iter().zip(&self.slopes)).fold(self.acceleration, |most, (width, slope)| {
-            most.smaller(width + slope * z)
+            most.fmin(width + slope * z)
         })
     }
 

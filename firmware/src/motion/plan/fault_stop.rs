@@ -5,12 +5,12 @@
 //! planning anything: velocity is the plan's times the pace, acceleration the plan's times its square and the plan's velocity
 //! times the pace's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
 
-use super::follower::{ACCELERATION_CUT, Motion, Scale, Setpoint, VELOCITY_CUT};
+use super::follower::{ACCELERATION_CUT, PlanFollower, Setpoint, SetpointScale, VELOCITY_CUT};
 use kinematics::{Acceleration, Twist};
 
 /// How a motion is slowed down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slowdown {
+pub struct FaultStop {
     /// Part of the stop that is a tick.
     step: f32,
     rate_hz: f32,
@@ -18,17 +18,17 @@ pub struct Slowdown {
 
 /// Where in its stop a motion is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Slowing {
+pub(crate) struct TimeScaling {
     /// Part of the stop that is over.
-    over: f32,
+    progress: f32,
     /// Part of the plan's tick that has begun.
     part: f32,
-    pace: f32,
+    rate: f32,
     /// Change of the pace, 1/s.
-    change: f32,
+    rate_change: f32,
 }
 
-impl Slowdown {
+impl FaultStop {
     /// A stop that takes so long.
     pub fn new(duration_s: f64, rate_hz: f64) -> Self {
         Self {
@@ -42,48 +42,51 @@ impl Slowdown {
 const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;
 const ACCELERATION_UNIT: f32 = 1.0 / (1 << (40 - ACCELERATION_CUT)) as f32;
 
-impl Motion {
+impl PlanFollower {
     /// A stop begins at the setpoint of this tick.
-    pub fn begin_slowing(&mut self) {
-        self.slowing = Slowing {
-            pace: 1.0,
-            ..Slowing::default()
+    pub fn begin_fault_stop(&mut self) {
+        self.time_scaling = TimeScaling {
+            rate: 1.0,
+            ..TimeScaling::default()
         };
     }
 
     /// One tick on, in a stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
-    pub fn advance_slower(&mut self, slowdown: &Slowdown) {
+    pub fn advance_fault_stop(&mut self, slowdown: &FaultStop) {
         if !self.moving {
             return;
         }
-        let mut slowing = self.slowing;
-        let before = slowing.pace;
-        slowing.over += slowdown.step;
-        let u = slowing.over;
+        let mut slowing = self.time_scaling;
+        let before = slowing.rate;
+        slowing.progress += slowdown.step;
+        let u = slowing.progress;
         if u >= 1.0 {
-            let rest = self.slowed_position();
+            let rest = self.fault_stop_position();
             self.rest_at(rest);
             return;
         }
-        slowing.pace = 1.0 - u * u * (3.0 - 2.0 * u);
-        slowing.change = -6.0 * u * (1.0 - u) * slowdown.step * slowdown.rate_hz;
-        slowing.part += 0.5 * (before + slowing.pace);
+        slowing.rate = 1.0 - u * u * (3.0 - 2.0 * u);
+        slowing.rate_change = -6.0 * u * (1.0 - u) * slowdown.step * slowdown.rate_hz;
+        slowing.part += 0.5 * (before + slowing.rate);
         if slowing.part >= 1.0 {
             slowing.part -= 1.0;
             self.advance();
         }
-        self.slowing = slowing;
+        self.time_scaling = slowing;
     }
 
     /// The setpoint now, in a stop.
-    pub fn slowed_setpoint(&self, scale: &Scale) -> Setpoint {
+    pub fn fault_stop_setpoint(&self, scale: &SetpointScale) -> Setpoint {
         if !self.moving {
             return self.setpoint(scale);
         }
         let plan = self.setpoint(scale);
-        let Slowing {
-            part, pace, change, ..
-        } = self.slowing;
+        let TimeScaling {
+            part,
+            rate: pace,
+            rate_change: change,
+            ..
+        } = self.time_scaling;
         // Of the plan within its tick.
         let tick = part / scale.rate_hz;
         let (twist, acceleration) = (&plan.twist, &plan.acceleration);
@@ -92,7 +95,7 @@ impl Motion {
         let theta = twist.theta + acceleration.theta * tick;
         let square = pace * pace;
         Setpoint {
-            position: self.slowed_position(),
+            position: self.fault_stop_position(),
             twist: Twist {
                 x: x * pace,
                 y: y * pace,
@@ -107,8 +110,8 @@ impl Motion {
     }
 
     /// The plan's position within its tick.
-    fn slowed_position(&self) -> [i64; 3] {
-        let part = self.slowing.part;
+    fn fault_stop_position(&self) -> [i64; 3] {
+        let part = self.time_scaling.part;
         self.axes.map(|axis| {
             let velocity = (axis.velocity >> VELOCITY_CUT) as i32 as f32 * VELOCITY_UNIT;
             let acceleration =

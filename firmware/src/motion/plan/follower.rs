@@ -1,10 +1,10 @@
 //! Following a plan, tick by tick.
 
-pub use super::fault_stop::Slowdown;
+pub use super::fault_stop::FaultStop;
 
-use super::axis_state::{Axis, Push};
-use super::rotation_centre::Centre;
-use super::{Plan, Position, Start};
+use super::axis_state::{AxisState, TickIncrement};
+use super::rotation_centre::RotationCentre;
+use super::{Plan, PlanStart, Position};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
 
@@ -21,7 +21,7 @@ pub struct Setpoint {
 
 /// Factors from the integers of [`Axis`] to physical rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct SetpointScale {
     pub(super) velocity: f32,
     pub(super) turn_velocity: f32,
     pub(super) acceleration: f32,
@@ -35,7 +35,7 @@ pub struct Scale {
 pub(crate) const VELOCITY_CUT: u32 = 32;
 pub(crate) const ACCELERATION_CUT: u32 = 24;
 
-impl Scale {
+impl SetpointScale {
     /// For `rate_hz` ticks a second.
     pub fn new(rate_hz: f64) -> Self {
         let unit = |cut: u32| libm::exp2(f64::from(cut) - 72.0);
@@ -55,10 +55,10 @@ impl Scale {
 ///
 /// A plan is 900 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
-pub struct Motion {
-    pub(super) axes: [Axis; 3],
+pub struct PlanFollower {
+    pub(super) axes: [AxisState; 3],
     /// The point that is moved.
-    pub(super) centre: Centre,
+    pub(super) centre: RotationCentre,
     pub(super) slots: [Plan; 2],
     /// Slot of the plan under way, or of the last one.
     pub(super) current: usize,
@@ -68,19 +68,19 @@ pub struct Motion {
     pub(super) piece: usize,
     /// Ticks of the piece that are left, and what drives the axes in it.
     pub(super) left: u64,
-    pub(super) pushes: [Push; 3],
+    pub(super) increments: [TickIncrement; 3],
     pub(super) done: u64,
-    pub(super) slowing: super::fault_stop::Slowing,
+    pub(super) time_scaling: super::fault_stop::TimeScaling,
 }
 
 /// A plan does not start where the motion is (any more); nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
 
-impl Motion {
+impl PlanFollower {
     /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
     pub fn rest_at(&mut self, position: Position) {
-        self.axes = position.map(Axis::at_rest);
+        self.axes = position.map(AxisState::at_rest);
         self.moving = false;
         self.splice = None;
         self.done = 0;
@@ -88,25 +88,25 @@ impl Motion {
 
     /// The point of the platform that is moved.
     #[inline]
-    pub fn centre(&self) -> Centre {
+    pub fn centre(&self) -> RotationCentre {
         self.centre
     }
 
     /// Moves another point of the platform from now on. Only at rest: the setpoint is then where that point is, and the
     /// platform stays where it is to the unit.
-    pub fn set_centre(&mut self, centre: Centre) -> Result<(), Stale> {
+    pub fn set_centre(&mut self, centre: RotationCentre) -> Result<(), Stale> {
         if self.moving {
             return Err(Stale);
         }
         let platform = self.centre.to_platform(&self.position());
         self.centre = centre;
-        self.rest_at(centre.of_platform(&platform));
+        self.rest_at(centre.from_platform(&platform));
         Ok(())
     }
 
     /// Whether a plan is under way.
     #[inline]
-    pub fn moving(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.moving
     }
 
@@ -120,11 +120,11 @@ impl Motion {
     pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
         let plan = plan.borrow();
         match plan.start {
-            Start::Rest(from) if !self.moving && same(&from, &self.position()) => {
+            PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
                 self.keep(plan);
                 self.begin();
             }
-            Start::Splice { plan: id, tick }
+            PlanStart::Splice { plan: id, tick }
                 if self.moving && self.progress().0 == id && tick >= self.done =>
             {
                 self.keep(plan);
@@ -146,8 +146,8 @@ impl Motion {
         }
         // None are left where a plan has no pieces.
         if self.left > 0 {
-            for (axis, push) in self.axes.iter_mut().zip(&self.pushes) {
-                axis.push(push);
+            for (axis, push) in self.axes.iter_mut().zip(&self.increments) {
+                axis.advance_by(push);
             }
             self.done += 1;
             self.left -= 1;
@@ -168,12 +168,12 @@ impl Motion {
             return;
         };
         self.left = piece.ticks;
-        self.pushes = [0, 1, 2].map(|i| Push::new(piece.jerk[i], plan.nudge[i]));
+        self.increments = [0, 1, 2].map(|i| TickIncrement::new(piece.jerk[i], plan.nudge[i]));
     }
 
     /// The setpoint now.
     #[inline]
-    pub fn setpoint(&self, scale: &Scale) -> Setpoint {
+    pub fn setpoint(&self, scale: &SetpointScale) -> Setpoint {
         let velocity = self
             .axes
             .map(|axis| (axis.velocity >> VELOCITY_CUT) as i32 as f32);
@@ -231,7 +231,7 @@ impl Motion {
 
     /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
     fn finish(&mut self) {
-        self.axes = self.slots[self.current & 1].end.map(Axis::at_rest);
+        self.axes = self.slots[self.current & 1].end.map(AxisState::at_rest);
         self.moving = false;
         self.splice = None;
     }

@@ -6,7 +6,7 @@ pub(crate) mod follower;
 pub(crate) mod rotation_centre;
 pub(crate) mod units;
 
-use crate::motion::plan::axis_state::{Axis, SUB_BITS};
+use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use heapless::Vec;
 
 /// Pieces a plan can hold: the nine segments of three axes' profiles, no two of which begin together.
@@ -28,7 +28,7 @@ impl Piece {
     /// Takes the axes on by `ticks` of this piece, with a plan's nudge.
     // Inlined wherever plans are walked through, products of 128 bits were a tenth of the generator's code.
     #[inline(never)]
-    pub(super) fn run(&self, axes: &mut [Axis; 3], ticks: u64, nudge: &[i64; 3]) {
+    pub(super) fn advance(&self, axes: &mut [AxisState; 3], ticks: u64, nudge: &[i64; 3]) {
         for (axis, (jerk, nudge)) in axes.iter_mut().zip(self.jerk.iter().zip(nudge)) {
             *axis = axis.after(ticks, *jerk, *nudge);
         }
@@ -36,16 +36,20 @@ impl Piece {
 }
 
 /// The axes after all of these pieces.
-pub(super) fn after_all(state: &[Axis; 3], pieces: &[Piece], nudge: &[i64; 3]) -> [Axis; 3] {
+pub(super) fn state_after_pieces(
+    state: &[AxisState; 3],
+    pieces: &[Piece],
+    nudge: &[i64; 3],
+) -> [AxisState; 3] {
     let mut axes = *state;
     for piece in pieces {
-        piece.run(&mut axes, piece.ticks, nudge);
+        piece.advance(&mut axes, piece.ticks, nudge);
     }
     axes
 }
 
 /// The nudge with which pieces that lead to `end` in `ticks` lead to `to`; `None` where they lead elsewhere.
-pub(super) fn nudge(end: &[Axis; 3], to: &Position, ticks: u64) -> Option<[i64; 3]> {
+pub(super) fn nudge_to(end: &[AxisState; 3], to: &Position, ticks: u64) -> Option<[i64; 3]> {
     let mut nudge = [0; 3];
     for (nudge, (axis, to)) in nudge.iter_mut().zip(end.iter().zip(to)) {
         let rest = (i128::from(*to) << SUB_BITS) - axis.position;
@@ -57,7 +61,7 @@ pub(super) fn nudge(end: &[Axis; 3], to: &Position, ticks: u64) -> Option<[i64; 
 
 /// The state a plan starts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum PlanStart {
     /// At rest at this position.
     Rest(Position),
     /// In motion: where plan `plan` is `tick` ticks after its first.
@@ -75,7 +79,7 @@ pub struct Plan {
     /// Identity, given by who plans; the tick reports progress under it.
     pub id: u32,
     /// What the plan starts from.
-    pub start: Start,
+    pub start: PlanStart,
     /// The pieces, in order.
     pub pieces: Vec<Piece, MAX_PIECES>,
     /// Added to each position at every tick. It spreads what the rounding of the jerks leaves over the whole plan: far below
@@ -91,7 +95,7 @@ impl Default for Plan {
     fn default() -> Self {
         Self {
             id: 0,
-            start: Start::Rest([0; 3]),
+            start: PlanStart::Rest([0; 3]),
             pieces: Vec::new(),
             nudge: [0; 3],
             end: [0; 3],
@@ -107,16 +111,16 @@ impl Plan {
 
     /// The three axes `ticks` after the start from `axes`, as the tick will hold them; at rest at the end from the last
     /// tick on.
-    pub fn state_after(&self, axes: &[Axis; 3], mut ticks: u64) -> [Axis; 3] {
+    pub fn state_after(&self, axes: &[AxisState; 3], mut ticks: u64) -> [AxisState; 3] {
         let mut state = *axes;
         for piece in &self.pieces {
             let now = ticks.min(piece.ticks);
-            piece.run(&mut state, now, &self.nudge);
+            piece.advance(&mut state, now, &self.nudge);
             ticks -= now;
             if now < piece.ticks {
                 return state;
             }
         }
-        self.end.map(Axis::at_rest)
+        self.end.map(AxisState::at_rest)
     }
 }

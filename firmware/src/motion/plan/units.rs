@@ -1,25 +1,25 @@
 //! The units of a [`Position`](crate::motion::Position) and of an [`Axis`](crate::motion::Axis) in floats, and limits in those of the latter and
 //! ticks.
 
-use crate::motion::constraints::Ground;
+use crate::motion::constraints::Constraints;
 use crate::motion::profile::any_state::AxisLimits;
 
 /// Limits of translation and of rotation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct UnitLimits {
+pub(crate) struct TickLimits {
     pub translation: AxisLimits<f32>,
     pub rotation: AxisLimits<f32>,
 }
 
 /// 2^32: units of a [`Position`](crate::motion::Position) in a track radius or a turn, and the inverse.
-pub(crate) const UNITS: f32 = 4_294_967_296.0;
-pub(crate) const PER_UNIT: f32 = 1.0 / UNITS;
+pub(crate) const POSITION_UNITS: f32 = 4_294_967_296.0;
+pub(crate) const PER_POSITION_UNIT: f32 = 1.0 / POSITION_UNITS;
 /// 2^72: units of an [`Axis`](crate::motion::Axis), and the inverse.
 pub(crate) const AXIS_UNITS: f32 = 4_722_366_482_869_645_213_696.0;
 pub(crate) const PER_AXIS_UNIT: f32 = 1.0 / AXIS_UNITS;
 
-impl UnitLimits {
-    pub fn new(ground: &Ground) -> Self {
+impl TickLimits {
+    pub fn new(ground: &Constraints) -> Self {
         let limits = &ground.limits;
         let tick = 1.0 / limits.rate_hz as f32;
         let axis = |unit: f32, [speed, acceleration, jerk]: [f64; 3]| {
@@ -53,7 +53,7 @@ impl UnitLimits {
 
 impl AxisLimits<f32> {
     /// With speed, acceleration and jerk times these.
-    pub(crate) fn times(&self, speed: f32, acceleration: f32, jerk: f32) -> Self {
+    pub(crate) fn scaled(&self, speed: f32, acceleration: f32, jerk: f32) -> Self {
         Self {
             velocity: self.velocity * speed,
             acceleration: self.acceleration * acceleration,

@@ -10,7 +10,7 @@
 
 use super::any_state::Task;
 use super::whole_ticks::{Shape, Solution};
-use crate::number::float::float;
+use crate::number::float::ticks_to_f32;
 
 /// Areas, and what the way gains by the heights when the brake always ends at rest.
 pub(crate) struct Hats {
@@ -24,7 +24,7 @@ pub(crate) struct Hats {
 impl Hats {
     pub fn new(shape: &Shape) -> Self {
         const THIRD: f32 = 1.0 / 3.0;
-        let n = shape.n.map(float);
+        let n = shape.n.map(ticks_to_f32);
         let braking = n[4] + n[5] + n[6];
         let brake = (n[4] + n[6]) / 2.0 + n[5];
         let brake_moment = n[4] / 2.0 * (n[5] + n[6] + n[4] * THIRD)

@@ -12,8 +12,10 @@
 use super::any_state::{AxisLimits, AxisProfile, SEGMENTS, Task};
 use super::hats::Hats;
 use crate::motion::brake::{jerks, stepped};
-use crate::motion::plan::axis_state::Axis;
-use crate::number::float::{Order, float, nearest, rough, rough_long, ticks_up};
+use crate::motion::plan::axis_state::AxisState;
+use crate::number::float::{
+    FloatMinMax, ceil_ticks, i64_to_f32_fast, i128_to_f32_fast, round_i64, ticks_to_f32,
+};
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
@@ -37,7 +39,7 @@ const SLACK: f32 = 1.0 + 5e-7;
 /// the state allows none.
 pub(crate) fn fit(
     track: &mut Track,
-    mut axis: Axis,
+    mut axis: AxisState,
     way: i128,
     limits: &AxisLimits<f32>,
     duration: f32,
@@ -49,14 +51,17 @@ pub(crate) fn fit(
     let target = axis.position + way;
     let mut task = task(&axis, target);
     let mut profile = AxisProfile::lasting(&task, limits, duration).ok()?;
-    let braking = [profile.durations[0] as u64, ticks_up(profile.durations[1])];
+    let braking = [
+        profile.durations[0] as u64,
+        ceil_ticks(profile.durations[1]),
+    ];
     if braking != [0, 0] {
-        let jerk = stepped(nearest(profile.jerks[0]), 1);
+        let jerk = stepped(round_i64(profile.jerks[0]), 1);
         for (ticks, jerk) in [(braking[0], jerk), (braking[1], 0)] {
             run(track, &mut axis, ticks, jerk)?;
         }
         task = self::task(&axis, target);
-        let left = duration - float(braking[0] + braking[1]);
+        let left = duration - ticks_to_f32(braking[0] + braking[1]);
         profile = AxisProfile::lasting(&task, limits, left).ok()?;
     }
     let mut shape = Shape::new(&profile);
@@ -67,15 +72,15 @@ pub(crate) fn fit(
         track.truncate(begun);
         shape.run(track, &mut end, peak)?;
         if closing < CLOSINGS {
-            let missing = rough_long(target - end.position);
-            peak = peak.wrapping_add(nearest(missing / Hats::new(&shape).gain));
+            let missing = i128_to_f32_fast(target - end.position);
+            peak = peak.wrapping_add(round_i64(missing / Hats::new(&shape).gain));
         }
     }
     Some(())
 }
 
 /// What is to be done, in 2^-72 units and ticks.
-pub(crate) fn task(axis: &Axis, target: i128) -> Task {
+pub(crate) fn task(axis: &AxisState, target: i128) -> Task {
     Task {
         distance: (target - axis.position) as f64,
         velocity: axis.velocity as f64,
@@ -84,16 +89,16 @@ pub(crate) fn task(axis: &Axis, target: i128) -> Task {
 }
 
 /// The same in single precision.
-fn rough_task(axis: &Axis, target: i128) -> Task<f32> {
+fn rough_task(axis: &AxisState, target: i128) -> Task<f32> {
     Task {
-        distance: rough_long(target - axis.position),
-        velocity: rough(axis.velocity),
-        acceleration: rough(axis.acceleration),
+        distance: i128_to_f32_fast(target - axis.position),
+        velocity: i64_to_f32_fast(axis.velocity),
+        acceleration: i64_to_f32_fast(axis.acceleration),
     }
 }
 
 #[inline(never)]
-fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> {
+fn run(track: &mut Track, axis: &mut AxisState, ticks: u64, jerk: i64) -> Option<()> {
     if ticks > 0 {
         *axis = axis.after(ticks, jerk, 0);
         track.push((ticks, jerk)).ok()?;
@@ -104,7 +109,7 @@ fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> 
 impl Shape {
     fn new(profile: &AxisProfile<f32>) -> Self {
         // A duration that is whole but for rounding errors is not rounded up.
-        let up = |duration: f32| ticks_up(duration - 1e-3_f32.smaller(duration * 1e-6));
+        let up = |duration: f32| ceil_ticks(duration - 1e-3_f32.fmin(duration * 1e-6));
         let t = &profile.durations[2..];
         let mut n = [0; 7];
         for k in [0, 2, 4, 6] {
@@ -115,7 +120,7 @@ impl Shape {
             n[2] = 0;
         }
         // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the way.
-        let longer = |n: &[u64; 7], k: usize| float(n[k]) - t[k];
+        let longer = |n: &[u64; 7], k: usize| ticks_to_f32(n[k]) - t[k];
         n[1] = up(t[1] - (longer(&n, 0) + longer(&n, 2)) / 2.0);
         n[5] = up(t[5] - (longer(&n, 4) + longer(&n, 6)) / 2.0);
         let all = [0, 1, 2, 4, 5, 6].map(|k| longer(&n, k));
@@ -136,15 +141,15 @@ impl Shape {
             let solution = hats.solution(task)?;
             if !self.lengthen(task, limits, &solution) {
                 // A brake that is only released in part has no peak to lengthen.
-                let most = limits.acceleration.larger(task.acceleration.abs());
-                return (solution.peak.abs() <= most * SLACK).then(|| nearest(solution.peak));
+                let most = limits.acceleration.fmax(task.acceleration.abs());
+                return (solution.peak.abs() <= most * SLACK).then(|| round_i64(solution.peak));
             }
         }
         None
     }
 
     /// Runs the segments with this peak.
-    fn run(&self, track: &mut Track, axis: &mut Axis, peak: i64) -> Option<()> {
+    fn run(&self, track: &mut Track, axis: &mut AxisState, peak: i64) -> Option<()> {
         let n = self.n;
         let first = stepped(peak - axis.acceleration, n[0] as i64);
         run(track, axis, n[0], first)?;
@@ -195,10 +200,10 @@ impl Shape {
             ((2, peak), (4, brake))
         };
         for (k, change) in [(0, peak - start), release, press, (6, brake)] {
-            if change.abs() > limits.jerk * SLACK * float(self.n[k]) {
+            if change.abs() > limits.jerk * SLACK * ticks_to_f32(self.n[k]) {
                 let now = self.n[k];
                 let enough = change.abs() / limits.jerk;
-                let longest = ticks_up(sqrt_f32(enough * float(now))).max(now + 1);
+                let longest = ceil_ticks(sqrt_f32(enough * ticks_to_f32(now))).max(now + 1);
                 longer = true;
                 let turned = !part && self.n[1] == 0 && peak * brake > 0.0;
                 if k < 4 && turned && self.n[3] < longest - now {
@@ -215,7 +220,7 @@ impl Shape {
                 self.n[k] = longest;
             }
         }
-        let hardest = limits.acceleration.larger(start.abs()) * SLACK;
+        let hardest = limits.acceleration.fmax(start.abs()) * SLACK;
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
@@ -227,11 +232,11 @@ impl Shape {
             }
         }
         // The brake released in part leads to no speed in between.
-        let fastest = limits.velocity.larger(task.velocity.abs()) * SLACK;
+        let fastest = limits.velocity.fmax(task.velocity.abs()) * SLACK;
         if !part && top.abs() > fastest && !longer {
             let whole: u64 = self.n.iter().sum();
             let over = top.abs() / limits.velocity - 1.0;
-            self.n[3] += 1 + (over * float(whole) / 2.0) as u64;
+            self.n[3] += 1 + (over * ticks_to_f32(whole) / 2.0) as u64;
             longer = true;
         }
         longer
@@ -259,9 +264,9 @@ mod tests {
     };
 
     /// An axis with these parts of the limits, and what it is to go, in ways that a stop from full speed takes.
-    fn state(velocity: f64, acceleration: f64, way: f64) -> (Axis, i128) {
+    fn state(velocity: f64, acceleration: f64, way: f64) -> (AxisState, i128) {
         let [v, a, j] = [LIMITS.velocity, LIMITS.acceleration, LIMITS.jerk].map(f64::from);
-        let axis = Axis {
+        let axis = AxisState {
             position: 5 << 70,
             velocity: (velocity * v) as i64,
             acceleration: (acceleration * a) as i64 / JERK_STEP * JERK_STEP,
@@ -313,7 +318,7 @@ mod tests {
 
     #[test]
     fn nothing_to_do_is_no_track() {
-        let axis = Axis::at_rest(3);
+        let axis = AxisState::at_rest(3);
         let mut track = Track::new();
         fit(&mut track, axis, 0, &LIMITS, 100.0).unwrap();
         assert!(track.is_empty());

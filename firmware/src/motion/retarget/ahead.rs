@@ -7,12 +7,12 @@
 //!                             \_ stop       \_    any of its ticks: it is the same motion.
 //! ```
 
-use super::{NoTransition, Tries};
+use super::{RetargetError, Tries};
 use crate::motion::check::{Broken, Envelope, Legs, Looks};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::UnitLimits;
-use crate::motion::plan::{MAX_PIECES, Piece, Plan, Start};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::TickLimits;
+use crate::motion::plan::{MAX_PIECES, Piece, Plan, PlanStart};
 use crate::motion::stop::{Stop, stop_in};
 use heapless::Vec;
 
@@ -28,7 +28,7 @@ pub struct Ahead {
     /// All of the transition.
     whole: Plan,
     /// The axes at its start.
-    start: [Axis; 3],
+    start: [AxisState; 3],
     /// Ticks that have been looked at.
     seen: u64,
     /// Ticks of the head before it stops.
@@ -44,9 +44,9 @@ impl Ahead {
     // A plan is a kilobyte: none is handed around by value.
     pub(crate) fn divide(
         plan: &mut Plan,
-        start: &[Axis; 3],
+        start: &[AxisState; 3],
         seen: u64,
-        ground: &Ground,
+        ground: &Constraints,
         ahead: &mut Option<Self>,
     ) -> Result<bool, Broken> {
         let head = seen.min(HEAD);
@@ -93,13 +93,13 @@ impl Ahead {
         &self,
         id: u32,
         at: u64,
-        ground: &Ground,
+        ground: &Constraints,
         tries: &mut Tries,
-    ) -> Result<Plan, NoTransition> {
+    ) -> Result<Plan, RetargetError> {
         self.look(ground).map_err(|broken| tries.after(&broken))?;
         let mut plan = Plan {
             id,
-            start: Start::Splice {
+            start: PlanStart::Splice {
                 plan: self.whole.id,
                 tick: at,
             },
@@ -114,8 +114,8 @@ impl Ahead {
     }
 
     #[inline(never)]
-    fn look(&self, ground: &Ground) -> Result<(), Broken> {
-        let envelope = Envelope::new(ground, UnitLimits::new(ground), &self.start);
+    fn look(&self, ground: &Constraints) -> Result<(), Broken> {
+        let envelope = Envelope::new(ground, TickLimits::new(ground), &self.start);
         let mut legs = Legs::new();
         envelope.legs(&self.whole.pieces, &self.start, &mut legs);
         envelope.check(&legs, &mut Looks::after(self.seen))
@@ -125,9 +125,9 @@ impl Ahead {
     pub(crate) fn whole(
         self,
         plan: &mut Plan,
-        ground: &Ground,
+        ground: &Constraints,
         tries: &mut Tries,
-    ) -> Result<(), NoTransition> {
+    ) -> Result<(), RetargetError> {
         self.look(ground).map_err(|broken| tries.after(&broken))?;
         *plan = self.whole;
         Ok(())

@@ -23,11 +23,11 @@ pub(crate) mod heading;
 pub(crate) mod slower;
 
 use super::check::{Broken, Envelope, LEAST_SEEN, Legs, Looks};
-use super::constraints::Ground;
+use super::constraints::Constraints;
 use super::line::check_target;
-use super::plan::axis_state::Axis;
-use super::plan::units::UnitLimits;
-use super::plan::{Piece, Plan, Position, Start, after_all, nudge};
+use super::plan::axis_state::AxisState;
+use super::plan::units::TickLimits;
+use super::plan::{Piece, Plan, PlanStart, Position, nudge_to, state_after_pieces};
 use super::profile::tracks::{Pieces, brake, merged};
 use super::profile::whole_ticks::{Track, fit};
 use super::refusal::Refusal;
@@ -35,11 +35,11 @@ use crate::motion::retarget::ahead::{Ahead, HEAD};
 use crate::motion::retarget::choice::Choice;
 use crate::motion::retarget::heading::Plane;
 use crate::motion::retarget::slower::Slower;
-use crate::number::float::ticks_up;
+use crate::number::float::ceil_ticks;
 
 /// Why there is no transition. Nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoTransition {
+pub enum RetargetError {
     /// The target can not be moved to at all.
     Refused(Refusal),
     /// It can, but not without a stop before, or not as soon.
@@ -73,32 +73,32 @@ pub struct Leave<'a> {
     /// The plan under way.
     pub of: &'a Plan,
     /// The axes at its start.
-    pub from: &'a [Axis; 3],
+    pub from: &'a [AxisState; 3],
     /// The tick of it at which it is left.
     pub at: u64,
 }
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
 /// takes, all of it at once.
-pub fn plan_transition(
+pub fn plan_retarget(
     id: u32,
     of: &Plan,
-    from: &[Axis; 3],
+    from: &[AxisState; 3],
     at: u64,
     to: Position,
-    ground: &Ground,
-) -> Result<Plan, NoTransition> {
+    ground: &Constraints,
+) -> Result<Plan, RetargetError> {
     let (mut tries, mut plan) = (Tries::NONE, Plan::default());
     loop {
         let mut ahead = None;
         let next = &mut plan;
         let leave = Leave { of, from, at };
-        let tried = try_transition(next, id, leave, to, ground, &mut tries, &mut ahead);
+        let tried = try_retarget(next, id, leave, to, ground, &mut tries, &mut ahead);
         let tried = match ahead {
             Some(ahead) => ahead.whole(&mut plan, ground, &mut tries),
             None => tried,
         };
-        if tried != Err(NoTransition::TooFast) {
+        if tried != Err(RetargetError::TooFast) {
             return tried.map(|()| plan);
         }
     }
@@ -107,42 +107,42 @@ pub fn plan_transition(
 /// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
 /// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
 #[inline(never)]
-pub fn try_transition(
+pub fn try_retarget(
     plan: &mut Plan,
     id: u32,
     Leave { of, from, at }: Leave<'_>,
     to: Position,
-    ground: &Ground,
+    ground: &Constraints,
     tries: &mut Tries,
     ahead: &mut Option<Ahead>,
-) -> Result<(), NoTransition> {
-    check_target(&to, ground).map_err(NoTransition::Refused)?;
+) -> Result<(), RetargetError> {
+    check_target(&to, ground).map_err(RetargetError::Refused)?;
     if !ground.limits.all_positive() {
-        return Err(NoTransition::Refused(Refusal::Limits));
+        return Err(RetargetError::Refused(Refusal::InvalidLimits));
     }
     if at >= of.ticks() {
-        return Err(NoTransition::NeedsStop);
+        return Err(RetargetError::NeedsStop);
     }
     let state = of.state_after(from, at);
-    let limits = UnitLimits::new(ground);
+    let limits = TickLimits::new(ground);
     let choice = tries
         .choice(&state, &to, &limits, ground)
-        .ok_or(NoTransition::NeedsStop)?;
+        .ok_or(RetargetError::NeedsStop)?;
     (plan.id, plan.end) = (id, to);
-    plan.start = Start::Splice {
+    plan.start = PlanStart::Splice {
         plan: of.id,
         tick: at,
     };
     choice
         .lay(&state, &to, &mut plan.pieces)
-        .ok_or(NoTransition::NeedsStop)?;
+        .ok_or(RetargetError::NeedsStop)?;
     let envelope = Envelope::new(ground, limits, &state);
     let mut legs = Legs::new();
     let first = first_slice(&plan.pieces);
     let (now, later) = plan.pieces.split_at(first);
     let then = envelope.legs(now, &state, &mut legs);
-    let end = after_all(&then, later, &[0; 3]);
-    plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
+    let end = state_after_pieces(&then, later, &[0; 3]);
+    plan.nudge = nudge_to(&end, &to, plan.ticks()).ok_or(RetargetError::NeedsStop)?;
     let mut looks = Looks::SLICE;
     let looked = match envelope.check(&legs, &mut looks) {
         Ok(()) if first == plan.pieces.len() => return Ok(()),
@@ -183,10 +183,10 @@ impl Tries {
     /// What is tried next.
     fn choice(
         &mut self,
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         to: &Position,
-        limits: &UnitLimits,
-        ground: &Ground,
+        limits: &TickLimits,
+        ground: &Constraints,
     ) -> Option<Choice> {
         let plane = Plane::new(state, to);
         let first = self.ratio.is_none();
@@ -201,23 +201,23 @@ impl Tries {
     }
 
     /// After a try that broke something.
-    pub(super) fn after(&mut self, broken: &Broken) -> NoTransition {
+    pub(super) fn after(&mut self, broken: &Broken) -> RetargetError {
         self.slower.by(broken);
         self.left = self.left.saturating_sub(1);
         if self.left > 0 && *broken != Broken::Reach {
-            NoTransition::TooFast
+            RetargetError::TooFast
         } else {
-            NoTransition::NeedsStop
+            RetargetError::NeedsStop
         }
     }
 }
 
 impl Choice {
     /// Writes the pieces of this choice.
-    fn lay(&self, state: &[Axis; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
+    fn lay(&self, state: &[AxisState; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
         let view = self.heading.view(state, to);
         let mut tracks: [Track; 3] = Default::default();
-        brake(&mut tracks[1], &view[1].0, self.across.map(ticks_up));
+        brake(&mut tracks[1], &view[1].0, self.across.map(ceil_ticks));
         for i in [0, 2] {
             let (axis, way) = view[i];
             fit(

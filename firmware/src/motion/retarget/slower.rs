@@ -4,11 +4,11 @@ use super::choice::Choice;
 use crate::motion::check::Broken;
 use crate::motion::check::magnitudes::Sizes;
 use crate::motion::check::pivot_bounds::Bound;
-use crate::motion::constraints::Ground;
+use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::{PER_AXIS_UNIT, UNITS};
-use crate::number::float::{Order, hypot, rough};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::{PER_AXIS_UNIT, POSITION_UNITS};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use crate::number::sqrt_f32;
 use core::f32::consts::TAU;
 
@@ -54,35 +54,38 @@ impl Slower {
     /// By what a choice asks of the pivots at the speeds to be expected; whether that is slower.
     pub fn expect(
         &mut self,
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         to: &Position,
         choice: &Choice,
-        ground: &Ground,
+        ground: &Constraints,
     ) -> bool {
         let hz = ground.limits.rate_hz as f32;
         let [along, rotation] = choice.limits;
         let ticks = choice.duration();
-        let place = |position: i64| rough(position) / UNITS;
+        let place = |position: i64| i64_to_f32_fast(position) / POSITION_UNITS;
         let way = [0, 1, 2].map(|i| place(to[i].wrapping_sub(state[i].rounded())));
         // Twice the mean speed at most, whatever the limit.
-        let mean = |way: f32| 2.0 * way * hz / ticks.larger(1.0);
+        let mean = |way: f32| 2.0 * way * hz / ticks.fmax(1.0);
         let once = |limit: f32| limit * PER_AXIS_UNIT * hz;
         let speeds = [
-            once(along.velocity).smaller(mean(hypot(way[0], way[1]))),
-            TAU * once(rotation.velocity).smaller(mean(way[2].abs())),
+            once(along.velocity).fmin(mean(hypot(way[0], way[1]))),
+            TAU * once(rotation.velocity).fmin(mean(way[2].abs())),
         ];
         let twice = |limit: f32| once(limit) * hz;
         let forces = [
             twice(along.acceleration)
-                .smaller(speeds[0] * twice(along.jerk) * hz / twice(along.acceleration)),
+                .fmin(speeds[0] * twice(along.jerk) * hz / twice(along.acceleration)),
             (TAU * twice(rotation.acceleration))
-                .smaller(speeds[1] * twice(rotation.jerk) * hz / twice(rotation.acceleration)),
+                .fmin(speeds[1] * twice(rotation.jerk) * hz / twice(rotation.acceleration)),
         ];
         let radius = hypot(place(state[0].rounded()), place(state[1].rounded()))
-            .larger(hypot(place(to[0]), place(to[1])))
-            .smaller(ground.usable as f32);
+            .fmax(hypot(place(to[0]), place(to[1])))
+            .fmin(ground.usable_radius as f32);
         let bound = Bound::new(radius);
-        let arm = hypot(ground.centre[0] as f32, ground.centre[1] as f32);
+        let arm = hypot(
+            ground.rotation_centre[0] as f32,
+            ground.rotation_centre[1] as f32,
+        );
         let sizes = Sizes {
             v: speeds,
             a: forces,
@@ -100,11 +103,11 @@ impl Slower {
             ground.limits.pivot_acceleration_rad_s2 as f32 / USUAL,
         ];
         if rate > limits[0] {
-            self.speed = (limits[0] / rate).larger(LEAST);
+            self.speed = (limits[0] / rate).fmax(LEAST);
         }
-        let left = (limits[1] - drift * self.speed * self.speed).larger(LEAST * limits[1]);
+        let left = (limits[1] - drift * self.speed * self.speed).fmax(LEAST * limits[1]);
         if acceleration - drift > left {
-            self.force = (left / (acceleration - drift)).larger(LEAST);
+            self.force = (left / (acceleration - drift)).fmax(LEAST);
         }
         self.speed < 1.0 || self.force < 1.0
     }

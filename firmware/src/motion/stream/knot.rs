@@ -12,7 +12,7 @@
 //! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece is made
 //! up in the next: nothing accumulates.
 
-use crate::motion::plan::axis_state::{Axis, JERK_STEP};
+use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
 
 /// The three pieces' lengths, and the inverse of the above with times in units of T.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ impl Knot {
     }
 
     /// The jerks that lead from `from` to `to`, of which the position may be off by what half a jerk step makes.
-    pub fn jerks(&self, from: &Axis, to: &Axis) -> [i64; 3] {
+    pub fn jerks(&self, from: &AxisState, to: &AxisState) -> [i64; 3] {
         let alone = from.after(self.whole(), 0, 0);
         let t = self.whole;
         let missing = [
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn three_pieces_arrive() {
-        let from = Axis {
+        let from = AxisState {
             position: 5 << 60,
             velocity: 3 << 40,
             acceleration: -(6 << 30),
@@ -97,7 +97,7 @@ mod tests {
             let knot = Knot::new(ticks);
             assert_eq!(knot.whole(), u64::from(ticks));
             let t = i64::from(ticks);
-            let to = Axis {
+            let to = AxisState {
                 position: from.position + i128::from(t * (7 << 39)),
                 velocity: -(2 << 40),
                 acceleration: 6 << 31,

@@ -27,20 +27,20 @@ mod messages;
 mod plans;
 mod spline;
 
-pub use messages::{Clock, End, Next, NotTaken, Progress};
+pub use messages::{Clock, PlanProgress, PushError, StreamEnd, StreamStep};
 
 use self::knot::Knot;
 use self::spline::WINDOW;
 use super::check::target::check_target;
-use super::constraints::Ground;
+use super::constraints::Constraints;
 use super::plan::Position;
-use super::plan::axis_state::Axis;
+use super::plan::axis_state::AxisState;
 use heapless::Deque;
 
 /// Targets that can wait.
-pub const CAPACITY: usize = 32;
+pub const STREAM_CAPACITY: usize = 32;
 /// Ticks between two targets: from 2 kHz at a control rate of 20 kHz down to a target in 100 ms.
-pub const PERIODS: core::ops::RangeInclusive<f64> = 10.0..=2_000.0;
+pub const PERIOD_RANGE: core::ops::RangeInclusive<f64> = 10.0..=2_000.0;
 /// By how much the jerk that targets ask for may be over its limit.
 pub const JERK_TOLERANCE: f32 = 10.0;
 
@@ -63,19 +63,19 @@ const AVERAGED: f32 = 32.0;
 
 /// A plan that was sent.
 #[derive(Clone, Copy, Debug)]
-struct Sent {
+struct SentPlan {
     id: u32,
     /// Its tick at which the stop begins, or the next plan.
     splice: u64,
     /// The axes there.
-    state: [Axis; 3],
+    state: [AxisState; 3],
 }
 
 /// A stream of targets, from rest.
 #[derive(Clone, Debug)]
 pub struct Stream {
     /// The window of the curve in front.
-    targets: Deque<Position, CAPACITY>,
+    targets: Deque<Position, STREAM_CAPACITY>,
     knot: Knot,
     knots: u32,
     clock: Clock,
@@ -86,18 +86,18 @@ pub struct Stream {
     part: u64,
     /// Targets more than there should be, averaged.
     surplus: f32,
-    sent: Option<Sent>,
-    before: Option<Sent>,
+    sent: Option<SentPlan>,
+    before: Option<SentPlan>,
     announced: bool,
     /// The curve has come to its last target.
     complete: bool,
-    end: Option<End>,
+    end: Option<StreamEnd>,
 }
 
 impl Stream {
     /// A stream from rest at `start`, of targets `period` ticks apart; `None` unless that is in [`PERIODS`].
     pub fn new(start: Position, period: f64, clock: Clock) -> Option<Self> {
-        if !PERIODS.contains(&period) {
+        if !PERIOD_RANGE.contains(&period) {
             return None;
         }
         let ticks = libm::rint(period) as u32;
@@ -125,31 +125,31 @@ impl Stream {
     }
 
     /// Targets that have to wait before the motion starts: two plans' worth, and the reserve.
-    pub fn start_at(&self) -> usize {
+    pub fn targets_to_start(&self) -> usize {
         2 * self.knots as usize + 1 + RESERVE
     }
 
     /// From the arrival of a target to the setpoint's passing it, in periods.
     pub fn latency(&self) -> usize {
         // The curve is three samples behind the newest of its window.
-        self.start_at() + 2
+        self.targets_to_start() + 2
     }
 
     /// Room for targets.
-    pub fn room(&self) -> usize {
-        CAPACITY - self.targets.len()
+    pub fn free_places(&self) -> usize {
+        STREAM_CAPACITY - self.targets.len()
     }
 
     /// Takes a target.
-    pub fn push(&mut self, target: Position, ground: &Ground) -> Result<(), NotTaken> {
+    pub fn push(&mut self, target: Position, ground: &Constraints) -> Result<(), PushError> {
         if self.announced || self.end.is_some() {
-            return Err(NotTaken::Over);
+            return Err(PushError::Over);
         }
         if let Err(refusal) = check_target(&target, ground) {
-            self.end = Some(End::Refused(refusal));
-            return Err(NotTaken::Refused(refusal));
+            self.end = Some(StreamEnd::Refused(refusal));
+            return Err(PushError::Refused(refusal));
         }
-        self.targets.push_back(target).map_err(|_| NotTaken::Full)
+        self.targets.push_back(target).map_err(|_| PushError::Full)
     }
 
     /// The last target has been sent: the motion ends there.
@@ -158,46 +158,47 @@ impl Stream {
     }
 
     /// What is to be done, `id` being the identity of a plan to come. To be asked whenever there is news of the tick.
-    pub fn next(&mut self, id: u32, progress: &Progress, ground: &Ground) -> Next {
+    pub fn next(&mut self, id: u32, progress: &PlanProgress, ground: &Constraints) -> StreamStep {
         if let Some(end) = self.end {
-            return Next::Over(end);
+            return StreamStep::Over(end);
         }
         let Some(sent) = self.sent else {
             let waiting = self.targets.len() - BEFORE;
-            return if waiting >= self.start_at() || (self.announced && waiting > 0) {
+            return if waiting >= self.targets_to_start() || (self.announced && waiting > 0) {
                 self.send(id, None, ground)
             } else if self.announced {
-                self.over(End::Done)
+                self.over(StreamEnd::Done)
             } else {
-                Next::Wait
+                StreamStep::Wait
             };
         };
         if progress.plan != sent.id {
             // On the plan before. Once that is past its end the last one has come too late.
-            let late = |before: Sent| progress.plan == before.id && progress.tick > before.splice;
+            let late =
+                |before: SentPlan| progress.plan == before.id && progress.tick > before.splice;
             return if self.before.is_some_and(late) {
-                self.over(End::Dry)
+                self.over(StreamEnd::Starved)
             } else {
-                Next::Wait
+                StreamStep::Wait
             };
         }
         if self.complete {
             return if progress.moving {
-                Next::Wait
+                StreamStep::Wait
             } else {
-                self.over(End::Done)
+                self.over(StreamEnd::Done)
             };
         }
         if progress.tick > sent.splice || !progress.moving {
-            return self.over(End::Dry);
+            return self.over(StreamEnd::Starved);
         }
         self.follow(sent.splice - progress.tick);
         self.send(id, Some(sent), ground)
     }
 
-    fn over(&mut self, end: End) -> Next {
+    fn over(&mut self, end: StreamEnd) -> StreamStep {
         self.end = Some(end);
-        Next::Over(end)
+        StreamStep::Over(end)
     }
 
     /// Follows the sender's clock by the number of targets that are left `ticks` before the end of what is planned.
@@ -208,7 +209,7 @@ impl Stream {
         const ONE: f32 = (1_u64 << PART_BITS) as f32;
         let ahead = self.targets.len() as f32
             + (ticks as f32 * self.rate as f32 - self.part as f32) / ONE
-            - (BEFORE + self.start_at()) as f32;
+            - (BEFORE + self.targets_to_start()) as f32;
         self.surplus += (ahead - self.surplus) / AVERAGED;
         let faster = (self.surplus * FOLLOWING).clamp(-MOST_FOLLOWING, MOST_FOLLOWING);
         // Of a small share single precision is enough.
@@ -217,18 +218,18 @@ impl Stream {
     }
 
     /// The next plan, if there are targets enough for it.
-    fn send(&mut self, id: u32, sent: Option<Sent>, ground: &Ground) -> Next {
+    fn send(&mut self, id: u32, sent: Option<SentPlan>, ground: &Constraints) -> StreamStep {
         let ahead = self.part + u64::from(self.knots) * self.knot.whole() * self.rate;
         let needed = (ahead >> PART_BITS) as usize + WINDOW;
         if self.targets.len() < needed && !self.announced {
-            return Next::Wait;
+            return StreamStep::Wait;
         }
         match self.plan(id, sent, ground) {
             Ok((plan, start, sent)) => {
                 self.before = self.sent.replace(sent);
-                Next::Send(plan, start)
+                StreamStep::Send(plan, start)
             }
-            Err(refusal) => self.over(End::Refused(refusal)),
+            Err(refusal) => self.over(StreamEnd::Refused(refusal)),
         }
     }
 }

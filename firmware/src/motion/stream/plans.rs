@@ -1,35 +1,35 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
 
 use super::spline::point;
-use super::{JERK_TOLERANCE, PART_BITS, Sent, Stream};
+use super::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
 use crate::motion::brake::halt::halt;
 use crate::motion::check::instant::{Instant, Limiter};
 use crate::motion::check::pivot_bounds::{Pace, per_second};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::{Axis, SUB_BITS};
-use crate::motion::plan::{Piece, Plan, Position, Start, nudge};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
+use crate::motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use crate::motion::refusal::Refusal;
 use heapless::Vec;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
-pub(super) type Planned = (Plan, [Axis; 3], Sent);
+pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
 
 impl Stream {
     /// The next plan, with the curve passed by its knots; after `sent`, or from rest.
     pub(super) fn plan(
         &mut self,
         id: u32,
-        sent: Option<Sent>,
-        ground: &Ground,
+        sent: Option<SentPlan>,
+        ground: &Constraints,
     ) -> Result<Planned, Refusal> {
         let limiter = Limiter::new(ground);
         let rest = self.target(2);
         let (start, from) = match sent {
-            Some(Sent { id, splice, state }) => {
+            Some(SentPlan { id, splice, state }) => {
                 let (plan, tick) = (id, splice);
-                (Start::Splice { plan, tick }, state)
+                (PlanStart::Splice { plan, tick }, state)
             }
-            None => (Start::Rest(rest), rest.map(Axis::at_rest)),
+            None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
         let mut plan = Plan {
             id,
@@ -42,7 +42,7 @@ impl Stream {
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
-            plan.nudge = nudge(&state, &plan.end, splice).ok_or(Refusal::Limits)?;
+            plan.nudge = nudge_to(&state, &plan.end, splice).ok_or(Refusal::InvalidLimits)?;
         } else {
             let (stop, end) = halt(&state, &now, &limiter)?;
             plan.pieces
@@ -56,16 +56,16 @@ impl Stream {
                 });
             }
         }
-        Ok((plan, from, Sent { id, splice, state }))
+        Ok((plan, from, SentPlan { id, splice, state }))
     }
 
     /// Adds the pieces along the curve; where they lead.
     fn knots(
         &mut self,
         plan: &mut Plan,
-        from: [Axis; 3],
+        from: [AxisState; 3],
         limiter: &Limiter<'_>,
-    ) -> Result<([Axis; 3], Instant), Refusal> {
+    ) -> Result<([AxisState; 3], Instant), Refusal> {
         let mut state = from;
         let mut before = limiter.look(&state)?;
         for _ in 0..self.knots {
@@ -78,7 +78,7 @@ impl Stream {
                 {
                     return Err(Refusal::Jerk);
                 }
-                piece.run(&mut state, piece.ticks, &[0; 3]);
+                piece.advance(&mut state, piece.ticks, &[0; 3]);
                 let now = limiter.look(&state)?;
                 limiter.check(&before, &now, piece.ticks as f32 / limiter.hz)?;
                 before = now;
@@ -106,7 +106,7 @@ impl Stream {
     }
 
     /// The pieces from a state to where the curve is now.
-    fn pieces(&self, state: &[Axis; 3]) -> [Piece; 3] {
+    fn pieces(&self, state: &[AxisState; 3]) -> [Piece; 3] {
         let mut pieces = self.knot.ticks.map(|ticks| Piece {
             ticks,
             jerk: [0; 3],
@@ -119,7 +119,7 @@ impl Stream {
             let units = (1_u64 << SUB_BITS) as f32;
             let velocity = point.rate * rate * units;
             let acceleration = point.acceleration * rate * rate * units;
-            let to = Axis {
+            let to = AxisState {
                 position: (i128::from(window[2][i]) << SUB_BITS)
                     + (i128::from((point.offset * FINE) as i64) << (SUB_BITS - FINE_BITS)),
                 velocity: velocity as i64,
