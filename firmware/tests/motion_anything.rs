@@ -7,8 +7,8 @@ use firmware::motion::{
     AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
     Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
+use motion_bench::constraints::{Velocity, any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
-use motion_bench::grounds::{Velocity, grounds, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
@@ -50,20 +50,24 @@ const MOST: u64 = 20_000;
 struct Course {
     plan: Plan,
     from: [AxisState; 3],
-    ground: Constraints,
+    constraints: Constraints,
 }
 
 impl Course {
     /// At rest.
-    fn resting(from: [AxisState; 3], ground: Constraints) -> Self {
+    fn resting(from: [AxisState; 3], constraints: Constraints) -> Self {
         let at = from.map(|axis| axis.rounded());
-        let plan = plan_line(1, at, at, &ground).expect("where it is");
-        Self { plan, from, ground }
+        let plan = plan_line(1, at, at, &constraints).expect("where it is");
+        Self {
+            plan,
+            from,
+            constraints,
+        }
     }
 
     /// The plan for a command that comes at a tick, `None` where there is none or a stop has to come first.
     fn plan(&self, command: &Command, at: u64) -> Option<Plan> {
-        let (id, ground) = (self.plan.id + 1, &self.ground);
+        let (id, constraints) = (self.plan.id + 1, &self.constraints);
         let (state, moving) = (
             self.plan.state_after(&self.from, at),
             at < self.plan.ticks(),
@@ -71,11 +75,11 @@ impl Course {
         let here = state.map(|axis| axis.rounded());
         match *command {
             Command::Target(platform) => {
-                let to = RotationCentre::new(ground.rotation_centre)?.from_platform(&platform);
+                let to = RotationCentre::new(constraints.rotation_centre)?.from_platform(&platform);
                 if moving {
-                    plan_retarget(id, &self.plan, &self.from, at, to, ground).ok()
+                    plan_retarget(id, &self.plan, &self.from, at, to, constraints).ok()
                 } else {
-                    plan_line(id, here, to, ground).ok()
+                    plan_line(id, here, to, constraints).ok()
                 }
             }
             Command::Velocity(velocity) => {
@@ -85,12 +89,12 @@ impl Course {
                 } else {
                     PlanStart::Rest(here)
                 };
-                match plan_jog(id, start, &state, &velocity, ground) {
+                match plan_jog(id, start, &state, &velocity, constraints) {
                     Err(RetargetError::NeedsStop) if !moving => panic!("at rest"),
                     plan => plan.ok(),
                 }
             }
-            Command::Stop(how) => plan_stop(id, &self.plan, &self.from, at, ground, how),
+            Command::Stop(how) => plan_stop(id, &self.plan, &self.from, at, constraints, how),
         }
     }
 
@@ -102,8 +106,8 @@ impl Course {
         start: &[AxisState; 3],
     ) -> Result<(), TestCaseError> {
         let mut worst = Worst::default();
-        let end = worst.walk_ends(next, start, &self.ground, MOST);
-        let before = Worst::of(start, &self.ground);
+        let end = worst.walk_ends(next, start, &self.constraints, MOST);
+        let before = Worst::of(start, &self.constraints);
         if let Command::Stop(_) = command {
             // It has no limits but the pivots', and the jerk that it is granted.
             worst.speed = 0.0;
@@ -118,7 +122,7 @@ impl Course {
         prop_assert!(
             worst.is_kept_but_for_a_thousandth(),
             "{command:?} {worst:?}\nfrom {before:?} {start:?}\n{next:?}\non {:?}",
-            self.ground
+            self.constraints
         );
         prop_assert!(ends_at_rest(next, &end), "{command:?} {end:?} {next:?}");
         Ok(())
@@ -126,8 +130,8 @@ impl Course {
 }
 
 /// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the acceleration.
-fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Constraints) -> bool {
-    let hz = ground.limits.rate_hz;
+fn is_stepped(before: &Setpoint, now: &Setpoint, constraints: &Constraints) -> bool {
+    let hz = constraints.limits.rate_hz;
     let unit = [1.0, 1.0, 1.0 / std::f64::consts::TAU];
     let rates = |p: &Setpoint| [p.twist.x, p.twist.y, p.twist.theta].map(f64::from);
     let forces = |p: &Setpoint| {
@@ -149,12 +153,12 @@ fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Constraints) -> bool {
 fn limits_workspace_and_continuity_are_kept() {
     // Plans made at rest and in motion, by command.
     let made = Cell::new([[0; 2]; 3]);
-    let all = (positions(0.3), grounds(), commands());
-    let result = TestRunner::new(settings(400)).run(&all, |(platform, ground, all)| {
-        let from = rest(platform, &ground);
+    let all = (positions(0.3), any_constraints(), commands());
+    let result = TestRunner::new(settings(400)).run(&all, |(platform, constraints, all)| {
+        let from = rest(platform, &constraints);
         prop_assume!(from.is_some());
-        let mut course = Course::resting(from.unwrap(), ground);
-        let scale = SetpointScale::new(ground.limits.rate_hz);
+        let mut course = Course::resting(from.unwrap(), constraints);
+        let scale = SetpointScale::new(constraints.limits.rate_hz);
         let mut motion = PlanFollower::default();
         motion.rest_at(course.plan.end);
         let mut at = 0;
@@ -171,7 +175,7 @@ fn limits_workspace_and_continuity_are_kept() {
                 course = Course {
                     plan: next,
                     from: start,
-                    ground,
+                    constraints,
                 };
                 at = 0;
             }
@@ -181,7 +185,7 @@ fn limits_workspace_and_continuity_are_kept() {
                 motion.advance();
                 let now = motion.setpoint(&scale);
                 prop_assert!(
-                    !is_stepped(&seen, &now, &ground),
+                    !is_stepped(&seen, &now, &constraints),
                     "{seen:?} {now:?} {command:?}"
                 );
                 seen = now;

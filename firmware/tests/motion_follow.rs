@@ -73,7 +73,7 @@ proptest! {
     fn a_stop_takes_over_without_a_seam((from, to) in moves(), fraction in 0.0..1.0_f64, ahead in 0..200_u64) {
         let plan = line(from, to);
         let at = (fraction * plan.ticks() as f64) as u64;
-        let stop = plan_stop(8, &plan, &at_rest(from), at, &GROUND, Stop::Urgent);
+        let stop = plan_stop(8, &plan, &at_rest(from), at, &CONSTRAINTS, Stop::Urgent);
         prop_assume!(stop.is_some());
         let stop = stop.unwrap();
         let mut motion = started(&plan);
@@ -100,7 +100,7 @@ proptest! {
 fn plans_that_do_not_start_where_the_motion_is_are_stale() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
     let plan = line(from, to);
-    let splice = |tick| plan_stop(8, &plan, &at_rest(from), tick, &GROUND, Stop::Smooth);
+    let splice = |tick| plan_stop(8, &plan, &at_rest(from), tick, &CONSTRAINTS, Stop::Smooth);
     let splice = |tick| splice(tick).expect("far from the end");
     let mut motion = PlanFollower::default();
     motion.rest_at(to);
@@ -142,7 +142,7 @@ fn plans_that_do_not_start_where_the_motion_is_are_stale() {
 fn the_tick_of_a_splice_may_be_this_one() {
     let from = at(0.0, 0.0, 0.0);
     let plan = line(from, at(10.0, 5.0, 0.2));
-    let stop = plan_stop(8, &plan, &at_rest(from), 100, &GROUND, Stop::Smooth).unwrap();
+    let stop = plan_stop(8, &plan, &at_rest(from), 100, &CONSTRAINTS, Stop::Smooth).unwrap();
     let mut motion = started(&plan);
     for _ in 0..100 {
         motion.advance();
@@ -160,7 +160,7 @@ fn the_tick_of_a_splice_may_be_this_one() {
 fn a_later_stop_replaces_an_accepted_one() {
     let from = at(0.0, 0.0, 0.0);
     let plan = line(from, at(60.0, 5.0, 0.2));
-    let stop = |at, how| plan_stop(8, &plan, &at_rest(from), at, &GROUND, how).unwrap();
+    let stop = |at, how| plan_stop(8, &plan, &at_rest(from), at, &CONSTRAINTS, how).unwrap();
     let mut motion = started(&plan);
     assert_eq!(motion.accept(stop(5_000, Stop::Smooth)), Ok(()));
     let urgent = stop(3_000, Stop::Urgent);

@@ -58,9 +58,9 @@ proptest! {
     #[test]
     fn where_the_pivots_follow_the_duration_is_the_optimum_and_four_ticks((from, to) in moves()) {
         prop_assume!(from != to);
-        let ground = Constraints::new(Limits { pivot_rate_rad_s: 1e3, pivot_acceleration_rad_s2: 1e5, ..LIMITS }, GEOMETRY);
+        let constraints = Constraints::new(Limits { pivot_rate_rad_s: 1e3, pivot_acceleration_rad_s2: 1e5, ..LIMITS }, GEOMETRY);
         let optimum = optimum_of_line(&from, &to);
-        let ticks = plan_line(7, from, to, &ground).unwrap().ticks() as f64;
+        let ticks = plan_line(7, from, to, &constraints).unwrap().ticks() as f64;
         // Lengths and limits are f32 on the way: a millionth.
         prop_assert!(ticks >= optimum * (1.0 - 2e-6), "{ticks} < {optimum}");
         prop_assert!(ticks < optimum * (1.0 + 2e-6) + 4.0, "{ticks} > {optimum}");
@@ -70,7 +70,7 @@ proptest! {
     #[test]
     fn outside_the_disk_is_refused(from in positions(2.0), beyond in 80.0001..500.0_f64, direction in -3.2..3.2_f64) {
         let to = at(beyond * direction.cos(), beyond * direction.sin(), 0.5);
-        let refusal = plan_line(1, from, to, &GROUND).unwrap_err();
+        let refusal = plan_line(1, from, to, &CONSTRAINTS).unwrap_err();
         let Refusal::OutsideDisk { radius_mm, usable_mm } = refusal else {
             return Err(TestCaseError::fail(format!("{refusal:?}")));
         };
@@ -79,13 +79,13 @@ proptest! {
 
     #[test]
     fn the_rim_itself_is_inside(direction in -3.2..3.2_f64) {
-        prop_assert_eq!(check_target(&at(80.0 * direction.cos(), 80.0 * direction.sin(), 0.0), &GROUND), Ok(()));
+        prop_assert_eq!(check_target(&at(80.0 * direction.cos(), 80.0 * direction.sin(), 0.0), &CONSTRAINTS), Ok(()));
     }
 }
 
 /// Part of its limit that a pivot's rate reaches.
 fn pivot_rate(axes: &[AxisState; 3]) -> f64 {
-    Worst::of(axes, &GROUND).pivot_rate
+    Worst::of(axes, &CONSTRAINTS).pivot_rate
 }
 
 /// Optimum of a line without the pivots' limits, ticks.
@@ -266,7 +266,10 @@ fn limits_that_allow_no_motion_are_refused() {
         Err(Refusal::InvalidLimits)
     );
     let far = [0, 0, (1_000_000_000 << 32) + 1];
-    assert_eq!(plan_line(1, from, far, &GROUND), Err(Refusal::TooManyTurns));
+    assert_eq!(
+        plan_line(1, from, far, &CONSTRAINTS),
+        Err(Refusal::TooManyTurns)
+    );
 }
 
 proptest! {

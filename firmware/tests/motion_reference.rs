@@ -157,25 +157,28 @@ fn three_axes_take_as_long_as_the_reference() {
 fn new_targets_in_motion_beside_the_reference() {
     let (seed, cases) = (setting("SEED", 20_260_402), setting("STATES", 4_000));
     println!("seed {seed}");
-    let mut free = GROUND;
+    let mut free = CONSTRAINTS;
     free.limits.pivot_rate_rad_s = 1e3;
     free.limits.pivot_acceleration_rad_s2 = 1e5;
-    for (what, ground, most_stops) in [("without pivots", free, 10), ("with pivots", GROUND, 4)] {
+    for (what, constraints, most_stops) in [
+        ("without pivots", free, 10),
+        ("with pivots", CONSTRAINTS, 4),
+    ] {
         let mut random = Random::new(seed);
         let mut ratios = [Vec::new(), Vec::new()];
         let mut stops = 0;
         for _ in 0..cases {
-            let [from, to, other] = [0; 3].map(|_| random.place(&ground));
-            let line = plan_line(1, from, to, &ground).expect("a line");
+            let [from, to, other] = [0; 3].map(|_| random.place(&constraints));
+            let line = plan_line(1, from, to, &constraints).expect("a line");
             let at = (random.unit() * line.ticks() as f64) as u64;
             let start = line.state_after(&at_rest(from), at);
-            let Ok(next) = plan_retarget(2, &line, &at_rest(from), at, other, &ground) else {
+            let Ok(next) = plan_retarget(2, &line, &at_rest(from), at, other, &constraints) else {
                 stops += 1;
                 continue;
             };
             let ticks = played(&next, &start);
             for (ratios, part) in ratios.iter_mut().zip([0.5_f64.sqrt(), 1.0]) {
-                let limits = per_axis(&ground.limits, part);
+                let limits = per_axis(&constraints.limits, part);
                 if let Some(theirs) = reference(&start, &other, &limits) {
                     ratios.push(ticks / theirs);
                 }

@@ -23,7 +23,7 @@ struct Left {
 
 impl Left {
     fn new(random: &mut Random) -> Self {
-        let [from, to, other] = [0; 3].map(|_| random.place(&GROUND));
+        let [from, to, other] = [0; 3].map(|_| random.place(&CONSTRAINTS));
         let line = line(from, to);
         Self {
             at: (random.unit() * line.ticks() as f64) as u64,
@@ -42,7 +42,15 @@ impl Left {
             from: &self.from,
             at: self.at,
         };
-        let tried = try_retarget(&mut plan, 2, leave, self.to, &GROUND, tries, &mut ahead);
+        let tried = try_retarget(
+            &mut plan,
+            2,
+            leave,
+            self.to,
+            &CONSTRAINTS,
+            tries,
+            &mut ahead,
+        );
         (tried.map(|()| plan), ahead)
     }
 }
@@ -64,17 +72,17 @@ fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
         heads += 1;
         let start = left.line.state_after(&left.from, left.at);
         let mut worst = Worst::default();
-        let end = worst.walk(&head, &start, &GROUND);
+        let end = worst.walk(&head, &start, &CONSTRAINTS);
         assert!(ends_at_rest(&head, &end), "{end:?} {head:?}");
         // As of any stop: while it releases an acceleration the speed goes on to rise.
         let pivots = worst.pivot_rate.max(worst.pivot_acceleration);
         assert!(pivots <= 1.001 && worst.is_inside(), "{worst:?} {head:?}");
-        let whole = plan_retarget(2, &left.line, &left.from, left.at, left.to, &GROUND);
+        let whole = plan_retarget(2, &left.line, &left.from, left.at, left.to, &CONSTRAINTS);
         for at in TAKEN_OVER {
             if !ahead.follows(2, at) {
                 continue;
             }
-            let Ok(rest) = ahead.go_on(3, at, &GROUND, &mut { tries }) else {
+            let Ok(rest) = ahead.go_on(3, at, &CONSTRAINTS, &mut { tries }) else {
                 continue;
             };
             rests += 1;
@@ -116,7 +124,7 @@ fn tries_are_no_more_than_three() {
             assert!(count <= 3);
             let (plan, ahead) = left.first(&mut tries);
             let looked = match &ahead {
-                Some(ahead) => ahead.go_on(3, 0, &GROUND, &mut tries).map(drop),
+                Some(ahead) => ahead.go_on(3, 0, &CONSTRAINTS, &mut tries).map(drop),
                 None => plan.map(drop),
             };
             if looked != Err(RetargetError::TooFast) {

@@ -139,7 +139,7 @@ fn sampled_paths_are_followed() {
                 position(path(0.0)),
                 targets(path, period),
                 &own(period),
-                &GROUND,
+                &CONSTRAINTS,
                 false,
             );
             assert_eq!(run.end, Some(StreamEnd::Done), "{name} {hz}");
@@ -198,7 +198,13 @@ fn jitter_and_a_foreign_clock_do_not_show() {
                 clock: Clock::Sender,
             };
             let start = position([50.0, 0.0, 0.0]);
-            let run = run(start, circles(period, seconds), &sender, &GROUND, false);
+            let run = run(
+                start,
+                circles(period, seconds),
+                &sender,
+                &CONSTRAINTS,
+                false,
+            );
             assert_eq!(run.end, Some(StreamEnd::Done), "{hz} {ppm}");
             let um = off_circle(&run);
             println!("{hz} Hz {ppm} ppm: {um:.4} um, waiting {:?}", run.waiting);
@@ -219,7 +225,13 @@ fn a_stream_that_dries_up_stops_by_itself() {
     for hz in [100.0, 500.0, 1_000.0, 2_000.0] {
         let period = period(hz);
         let targets = targets(circle, period).take((1.3 * hz) as usize);
-        let run = run(position(circle(0.0)), targets, &own(period), &GROUND, true);
+        let run = run(
+            position(circle(0.0)),
+            targets,
+            &own(period),
+            &CONSTRAINTS,
+            true,
+        );
         assert_eq!(run.end, Some(StreamEnd::Starved), "{hz}");
         assert!(run.worst.is_kept_but_for_jerk(), "{:?}", run.worst);
         // 188 mm/s take 4.4 mm of acceleration, and jerk.
@@ -240,25 +252,25 @@ fn a_target_that_comes_too_late_is_one_that_is_missing() {
     let targets = || circles(period(500.0), 4.0);
     let late = |k| if k > 800 { 8.0 * 40.0 } else { 0.0 };
     assert_eq!(
-        run(start, targets(), &sender(late), &GROUND, false).end,
+        run(start, targets(), &sender(late), &CONSTRAINTS, false).end,
         Some(StreamEnd::Starved)
     );
     let late = |k| if k > 800 { 1.9 * 40.0 } else { 0.0 };
     assert_eq!(
-        run(start, targets(), &sender(late), &GROUND, false).end,
+        run(start, targets(), &sender(late), &CONSTRAINTS, false).end,
         Some(StreamEnd::Done)
     );
 }
 
 /// What ends a stream of poses, and that the stage is at rest inside then, all limits kept.
-fn end_of(poses: impl Iterator<Item = [f64; 3]>, ground: &Constraints) -> Option<StreamEnd> {
+fn end_of(poses: impl Iterator<Item = [f64; 3]>, constraints: &Constraints) -> Option<StreamEnd> {
     let mut poses = poses.peekable();
     let start = position(*poses.peek().unwrap());
     let run = run(
         start,
         poses.map(position),
         &own(period(500.0)),
-        ground,
+        constraints,
         false,
     );
     assert!(run.worst.is_kept_but_for_jerk(), "{:?}", run.worst);
@@ -268,7 +280,7 @@ fn end_of(poses: impl Iterator<Item = [f64; 3]>, ground: &Constraints) -> Option
 #[test]
 fn targets_that_ask_for_too_much_end_the_stream() {
     let eased = |rate: f64| (0..1_500).map(move |k| rate * gone(k as f64 / 500.0, 3.0));
-    let end = |poses: &mut dyn Iterator<Item = [f64; 3]>| end_of(poses, &GROUND);
+    let end = |poses: &mut dyn Iterator<Item = [f64; 3]>| end_of(poses, &CONSTRAINTS);
     // Along a line from (-60, 0): 190 mm/s are possible, 205 are not.
     let line = |mm_s: f64| {
         eased(mm_s)
@@ -322,23 +334,23 @@ fn targets_that_ask_for_too_much_end_the_stream() {
 
 #[test]
 fn bounds_and_a_centre_of_rotation_hold_for_streams() {
-    let mut ground = GROUND;
-    ground.bounds[1] = [-(1 << 30), 1 << 30];
+    let mut constraints = CONSTRAINTS;
+    constraints.bounds[1] = [-(1 << 30), 1 << 30];
     let line =
         |mm: f64| (0..1_500).map(move |k| [0.0, mm * gone(k as f64 / 500.0, 3.0) / 2.5, 0.0]);
-    assert_eq!(end_of(line(24.9), &ground), Some(StreamEnd::Done));
+    assert_eq!(end_of(line(24.9), &constraints), Some(StreamEnd::Done));
     assert_eq!(
-        end_of(line(25.1), &ground),
+        end_of(line(25.1), &constraints),
         Some(StreamEnd::Refused(Refusal::OutOfBounds { axis: 1 }))
     );
     // About a point 60 mm from the platform's centre, at first in the middle: a third of a turn is too much.
-    let mut ground = GROUND;
-    ground.rotation_centre = [0.6, 0.0];
+    let mut constraints = CONSTRAINTS;
+    constraints.rotation_centre = [0.6, 0.0];
     let turn = |turns: f64| {
         (0..1_500).map(move |k| [60.0, 0.0, turns * gone(k as f64 / 500.0, 3.0) / 2.5])
     };
-    assert_eq!(end_of(turn(0.2), &ground), Some(StreamEnd::Done));
-    let end = end_of(turn(0.33), &ground);
+    assert_eq!(end_of(turn(0.2), &constraints), Some(StreamEnd::Done));
+    let end = end_of(turn(0.33), &constraints);
     assert!(
         matches!(
             end,
@@ -356,16 +368,16 @@ fn what_a_stream_does_not_take() {
     assert!(Stream::new([0; 3], f64::NAN, Clock::Sender).is_none());
     let mut stream = Stream::new([0; 3], 20.0, Clock::Sender).expect("1 kHz");
     while stream.free_places() > 0 {
-        assert_eq!(stream.push([0; 3], &GROUND), Ok(()));
+        assert_eq!(stream.push([0; 3], &CONSTRAINTS), Ok(()));
     }
-    assert_eq!(stream.push([0; 3], &GROUND), Err(PushError::Full));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Full));
     stream.finish();
-    assert_eq!(stream.push([0; 3], &GROUND), Err(PushError::Over));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Over));
     let mut stream = Stream::new([0; 3], 20.0, Clock::Sender).expect("1 kHz");
-    let outside = stream.push(at(90.0, 0.0, 0.0), &GROUND);
+    let outside = stream.push(at(90.0, 0.0, 0.0), &CONSTRAINTS);
     assert!(matches!(
         outside,
         Err(PushError::Refused(Refusal::OutsideDisk { .. }))
     ));
-    assert_eq!(stream.push([0; 3], &GROUND), Err(PushError::Over));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Over));
 }

@@ -17,7 +17,7 @@ fn retarget(
     at: u64,
     to: Position,
 ) -> Result<Plan, RetargetError> {
-    plan_retarget(of.id + 1, of, from, at, to, &GROUND)
+    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS)
 }
 
 /// A line and further targets, each with the part of the motion before after which it comes.
@@ -31,7 +31,7 @@ fn tours() -> impl Strategy<Value = ((Position, Position), Vec<(Position, f64)>)
 /// Everything a plan that is followed from `start` has to keep, tick by tick.
 fn keeps_the_law(plan: &Plan, start: [AxisState; 3]) -> Result<(), TestCaseError> {
     let mut worst = Worst::default();
-    let end = worst.walk(plan, &start, &GROUND);
+    let end = worst.walk(plan, &start, &CONSTRAINTS);
     prop_assert!(
         worst.is_kept_but_for_a_thousandth(),
         "{worst:?} {start:?} {plan:?}"
@@ -104,7 +104,14 @@ fn the_tick_follows_a_tour_without_a_step() {
         let leave = 1 + (part * 0.8 * plan.ticks() as f64) as u64;
         let next = match retarget(&plan, &start, leave, to) {
             Ok(next) => next,
-            Err(_) => match plan_stop(plan.id + 1, &plan, &start, leave, &GROUND, Stop::Smooth) {
+            Err(_) => match plan_stop(
+                plan.id + 1,
+                &plan,
+                &start,
+                leave,
+                &CONSTRAINTS,
+                Stop::Smooth,
+            ) {
                 Some(stop) => stop,
                 None => continue,
             },
@@ -170,7 +177,7 @@ fn durations_with_a_stop_for_one(turns: f64) -> (Vec<f64>, usize) {
             refused += 1;
             continue;
         };
-        let (rest, ticks) = match plan_stop(8, &plan, &start, leave, &GROUND, Stop::Smooth) {
+        let (rest, ticks) = match plan_stop(8, &plan, &start, leave, &CONSTRAINTS, Stop::Smooth) {
             Some(stop) => (stop.end, stop.ticks()),
             None => (plan.end, plan.ticks() - leave),
         };
@@ -219,7 +226,10 @@ fn near_the_rim_and_the_bounds_it_needs_a_stop() {
             &at_rest(from),
             middle,
             back,
-            &Constraints { bounds, ..GROUND },
+            &Constraints {
+                bounds,
+                ..CONSTRAINTS
+            },
         )
     };
     assert!(plan_within(30.0).is_ok());

@@ -16,35 +16,35 @@ const ENCODER_BITS: u32 = 26;
 
 /// As fast as the integers allow, so that twenty thousand turns are eleven million ticks and not four hundred million.
 fn fast() -> Constraints {
-    let mut ground = GROUND;
-    let limits = &mut ground.limits;
+    let mut constraints = CONSTRAINTS;
+    let limits = &mut constraints.limits;
     limits.turn_speed_deg_s = 36.0 * 360.0;
     limits.turn_acceleration_deg_s2 = 36.0 * 7_200.0;
     limits.turn_jerk_deg_s3 = 36.0 * 720_000.0;
     limits.pivot_rate_rad_s = 1e3;
     limits.pivot_acceleration_rad_s2 = 1e6;
-    ground.rotation_centre = RotationCentre::new([0.1, -0.2]).expect("near").point();
-    ground
+    constraints.rotation_centre = RotationCentre::new([0.1, -0.2]).expect("near").point();
+    constraints
 }
 
 /// The setpoint's motion, tick by tick.
 struct Stage {
     motion: PlanFollower,
-    ground: Constraints,
+    constraints: Constraints,
     id: u32,
 }
 
 impl Stage {
     fn new() -> Self {
-        let ground = fast();
+        let constraints = fast();
         let mut motion = PlanFollower::default();
         motion
-            .set_centre(RotationCentre::new(ground.rotation_centre).expect("near"))
+            .set_centre(RotationCentre::new(constraints.rotation_centre).expect("near"))
             .expect("at rest");
         motion.rest_at(at(7.0, -5.0, 33.0 / 360.0));
         Self {
             motion,
-            ground,
+            constraints,
             id: 0,
         }
     }
@@ -65,7 +65,7 @@ impl Stage {
         self.id += 1;
         let from = self.motion.position();
         let to = [from[0], from[1], theta];
-        let plan = plan_line(self.id, from, to, &self.ground).expect("inside");
+        let plan = plan_line(self.id, from, to, &self.constraints).expect("inside");
         self.follow(&plan, plan.ticks());
         assert_eq!(
             (self.motion.position(), self.motion.is_moving()),
@@ -77,7 +77,13 @@ impl Stage {
     fn jog(&mut self, deg_s: f64, ticks: u64) {
         let axes = self.motion.position().map(AxisState::at_rest);
         let start = PlanStart::Rest(self.motion.position());
-        let jog = plan_jog(self.id + 1, start, &axes, &[0.0, 0.0, deg_s], &self.ground);
+        let jog = plan_jog(
+            self.id + 1,
+            start,
+            &axes,
+            &[0.0, 0.0, deg_s],
+            &self.constraints,
+        );
         let jog = jog.expect("room");
         self.follow(&jog, ticks);
         let state = jog.state_after(&axes, ticks);
@@ -86,7 +92,7 @@ impl Stage {
             tick: ticks,
         };
         self.id += 2;
-        let stop = plan_jog(self.id, splice, &state, &[0.0; 3], &self.ground).expect("a stop");
+        let stop = plan_jog(self.id, splice, &state, &[0.0; 3], &self.constraints).expect("a stop");
         self.follow(&stop, stop.ticks());
         assert!(!self.motion.is_moving());
     }

@@ -1,6 +1,6 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
-use super::Position;
+use super::plan::Position;
 use crate::number::float::FloatMinMax;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).

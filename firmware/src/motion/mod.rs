@@ -1,7 +1,7 @@
 //! Motion: plans of constant-jerk pieces, made outside the tick, followed exactly inside it.
 //!
 //! A plan is a list of stretches of constant jerk for the three axes together ([`Plan`]). The tick integrates it in integers
-//! ([`Axis`]), so setpoints are continuous by construction and the end is exact. Planning needs divisions and roots and runs
+//! ([`AxisState`]), so setpoints are continuous by construction and the end is exact. Planning needs divisions and roots and runs
 //! at low priority ([`plan_line`], [`plan_stop`]); a plan reaches the tick through the command queue and is taken only if it
 //! starts where the motion is.
 //!
@@ -10,7 +10,7 @@
 //!
 //! | slice | what comes of it |
 //! |---|---|
-//! | 1 ([`try_transition`]) | the transition, when there is little to look at; else its head, which ends in a stop |
+//! | 1 ([`try_retarget`]) | the transition, when there is little to look at; else its head, which ends in a stop |
 //! | 2 ([`Ahead::go_on`]) | the rest of the transition takes over from the head: the same motion to the bit |
 //! | 1 again, when 2 has found it too fast | a slower one that leaves the head; when 1 has, one that leaves a stop just begun |
 

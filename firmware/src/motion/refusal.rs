@@ -62,11 +62,11 @@ impl fmt::Display for Refusal {
             Self::LeavesDisk {
                 radius_mm,
                 usable_mm,
-                fraction: share,
+                fraction,
             } => write!(
                 f,
                 "after {:.1} % of the way the platform centre would be {radius_mm:.3} mm from the track's, the usable disk ends at {usable_mm:.3} mm",
-                share * 100.0
+                fraction * 100.0
             ),
             Self::OutOfBounds { axis } => {
                 let name = ["x", "y", "theta"].get(*axis).unwrap_or(&"an axis");

@@ -6,8 +6,8 @@
 
 use super::brake::Brake;
 use super::check::platform::greatest;
-use super::check::sample::Arc;
-use super::check::{Broken, Envelope, Legs, Looks};
+use super::check::sample::CubicSegment;
+use super::check::{CheckBudget, CheckedPieces, PlanCheck, Violation};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::units::TickLimits;
@@ -44,27 +44,27 @@ pub fn plan_stop(
     of: &Plan,
     axes: &[AxisState; 3],
     at: u64,
-    ground: &Constraints,
+    constraints: &Constraints,
     stop: Stop,
 ) -> Option<Plan> {
     let mut plan = Plan::default();
     // A stop has to be found: what is still broken after the last attempt can not be helped.
-    let _ = stop_in(&mut plan, of, axes, at, ground, stop, ATTEMPTS)?;
+    let _ = write_stop(&mut plan, of, axes, at, constraints, stop, ATTEMPTS)?;
     plan.id = id;
     Some(plan)
 }
 
 /// Writes the same, found in so many attempts, and what is broken even so.
 #[inline(never)]
-pub(super) fn stop_in(
+pub(super) fn write_stop(
     plan: &mut Plan,
     of: &Plan,
     axes: &[AxisState; 3],
     at: u64,
-    ground: &Constraints,
+    constraints: &Constraints,
     stop: Stop,
     attempts: usize,
-) -> Option<Result<(), Broken>> {
+) -> Option<Result<(), Violation>> {
     let whole = of.ticks();
     let last = of.pieces.last().map_or(0, |piece| piece.ticks);
     if at + last >= whole {
@@ -77,20 +77,20 @@ pub(super) fn stop_in(
     {
         return None;
     }
-    let limits = TickLimits::new(ground);
-    let envelope = Envelope::of_stop(ground);
-    let factor = ground.limits.stop_factor as f32;
+    let limits = TickLimits::new(constraints);
+    let plan_check = PlanCheck::for_stop(constraints);
+    let factor = constraints.limits.stop_factor as f32;
     plan.start = PlanStart::Splice {
         plan: of.id,
         tick: at,
     };
     plan.nudge = of.nudge;
-    let (most, asked) = hardest(&state, &limits, ground);
+    let (most, asked) = hardest(&state, &limits, constraints);
     let mut hardness = match stop {
         Stop::Smooth => [most.fmin(1.0), 1.0],
         Stop::Urgent => [most, factor * factor],
     };
-    let (mut apart, mut legs) = (false, Legs::new());
+    let (mut apart, mut legs) = (false, CheckedPieces::new());
     let mut checked = Ok(());
     for _ in 0..attempts {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
@@ -110,22 +110,22 @@ pub(super) fn stop_in(
         if at + lasts >= whole {
             return None;
         }
-        let end = envelope.legs(&plan.pieces, &state, &mut legs);
+        let end = plan_check.prepare(&plan.pieces, &state, &mut legs);
         plan.end = [0, 1, 2].map(|i| end[i].rest_position(lasts, plan.nudge[i]));
         // A stop has to be found: none is left unlooked at because others have been looked at before.
-        checked = envelope.check(&legs, &mut { Looks::ALL });
+        checked = plan_check.check(&legs, &mut { CheckBudget::WHOLE });
         match checked {
-            Ok(()) | Err(Broken::Unseen) => break,
+            Ok(()) | Err(Violation::Unchecked) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Broken::Reach | Broken::NoStop) if !apart => apart = true,
-            Err(Broken::Reach | Broken::NoStop) => {
+            Err(Violation::Workspace | Violation::NoRoomToStop) if !apart => apart = true,
+            Err(Violation::Workspace | Violation::NoRoomToStop) => {
                 hardness = [hardness[0] * 1.3, factor * factor];
             }
             Err(
-                Broken::Rate(over)
-                | Broken::Acceleration(over)
-                | Broken::Speed(over)
-                | Broken::Force(over),
+                Violation::PivotRate(over)
+                | Violation::PivotAcceleration(over)
+                | Violation::Speed(over)
+                | Violation::Acceleration(over),
             ) => {
                 // What the motion asks of the pivots already, no brake takes from them.
                 if over <= asked {
@@ -160,11 +160,11 @@ fn lay(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of
 /// the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
-fn hardest(state: &[AxisState; 3], limits: &TickLimits, ground: &Constraints) -> (f32, f32) {
-    let hz = ground.limits.rate_hz as f32;
-    let centre = ground.rotation_centre.map(|value| value as f32);
-    let most = ground.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
-    let arc = Arc::new(state, &Piece::default(), hz);
+fn hardest(state: &[AxisState; 3], limits: &TickLimits, constraints: &Constraints) -> (f32, f32) {
+    let hz = constraints.limits.rate_hz as f32;
+    let centre = constraints.rotation_centre.map(|value| value as f32);
+    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
+    let arc = CubicSegment::new(state, &Piece::default(), hz);
     let peak = Brake::new(state, limits, 1.0, 1.0).peak_per_second(limits, hz);
     let mut drifting = arc.start;
     drifting.a = [0.0; 3];
@@ -181,7 +181,8 @@ fn hardest(state: &[AxisState; 3], limits: &TickLimits, ground: &Constraints) ->
         }
     }
     let [rates, accelerations] = arc.platform(&arc.start, centre).pivots();
-    let rate = greatest(&rates) / ground.limits.pivot_rate_rad_s as f32;
-    let acceleration = greatest(&accelerations) / ground.limits.pivot_acceleration_rad_s2 as f32;
+    let rate = greatest(&rates) / constraints.limits.pivot_rate_rad_s as f32;
+    let acceleration =
+        greatest(&accelerations) / constraints.limits.pivot_acceleration_rad_s2 as f32;
     (hardest.fmax(GENTLEST), rate.fmax(acceleration))
 }

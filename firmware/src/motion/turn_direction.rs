@@ -62,18 +62,21 @@ mod tests {
     }
 
     #[test]
-    fn every_way_but_the_literal_keeps_the_orientation_and_its_own_range() {
+    fn every_direction_but_as_given_keeps_the_orientation_and_its_own_range() {
         for now in angles() {
             for target in angles() {
                 assert_eq!(TurnDirection::AsGiven.resolve(now, target), target);
-                for (way, range) in [
+                for (turn_direction, range) in [
                     (TurnDirection::Shortest, -TURN / 2..TURN / 2),
                     (TurnDirection::Positive, 0..TURN),
                     (TurnDirection::Negative, 1 - TURN..1),
                 ] {
-                    let to = way.resolve(now, target);
-                    assert_eq!((to - target) % TURN, 0, "{way:?} {now} {target}");
-                    assert!(range.contains(&(to - now)), "{way:?} {now} {target}");
+                    let to = turn_direction.resolve(now, target);
+                    assert_eq!((to - target) % TURN, 0, "{turn_direction:?} {now} {target}");
+                    assert!(
+                        range.contains(&(to - now)),
+                        "{turn_direction:?} {now} {target}"
+                    );
                 }
             }
         }
@@ -96,9 +99,12 @@ mod tests {
                 TurnDirection::Positive,
                 TurnDirection::Negative,
             ];
-            for (way, expected) in ways.into_iter().zip(expected) {
-                let to = degrees(way.resolve(units(now), units(target)));
-                assert!((to - expected).abs() < 1e-6, "{way:?} {now} {target}: {to}");
+            for (turn_direction, expected) in ways.into_iter().zip(expected) {
+                let to = degrees(turn_direction.resolve(units(now), units(target)));
+                assert!(
+                    (to - expected).abs() < 1e-6,
+                    "{turn_direction:?} {now} {target}: {to}"
+                );
             }
         }
     }

@@ -206,7 +206,7 @@ mod tests {
     use crate::number::float::*;
 
     #[test]
-    fn rough_numbers_are_near_the_right_ones() {
+    fn fast_conversions_are_near_the_right_ones() {
         for bits in 0..64 {
             for value in [
                 1_i64 << bits,

@@ -1,6 +1,6 @@
 //! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
 
-use super::{AXIS_UNIT, GROUND, UNIT, corners};
+use super::{AXIS_UNIT, CONSTRAINTS, UNIT, corners};
 use firmware::motion::{AxisState, Constraints, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
@@ -57,9 +57,9 @@ pub struct Worst {
 
 impl Worst {
     /// Takes another state.
-    pub fn look(&mut self, axes: &[AxisState; 3], ground: &Constraints) {
-        let limits = &ground.limits;
-        let (mm, hz) = (ground.geometry.radius_mm, limits.rate_hz);
+    pub fn look(&mut self, axes: &[AxisState; 3], constraints: &Constraints) {
+        let limits = &constraints.limits;
+        let (mm, hz) = (constraints.geometry.radius_mm, limits.rate_hz);
         let rate = |i: usize| axes[i].velocity as f64 / AXIS_UNIT * hz;
         let force = |i: usize| axes[i].acceleration as f64 / AXIS_UNIT * hz * hz;
         let at = [0, 1].map(|i| axes[i].position as f64 / AXIS_UNIT);
@@ -88,10 +88,10 @@ impl Worst {
         );
 
         let (pose, twist, acceleration) =
-            platform([at[0], at[1], theta], v, a, ground.rotation_centre);
+            platform([at[0], at[1], theta], v, a, constraints.rotation_centre);
         self.outside = self
             .outside
-            .max(pose.x.hypot(pose.y) - ground.geometry.usable_radius());
+            .max(pose.x.hypot(pose.y) - constraints.geometry.usable_radius());
         let guides = inverse(&pose).expect("inside the track").guides;
         let pivots = pivot_motion(&guides, &twist, &acceleration);
         for i in 0..3 {
@@ -106,7 +106,7 @@ impl Worst {
                 &mut self.pivot_acceleration,
             );
         }
-        for (axis, &[low, high]) in axes.iter().zip(&ground.bounds) {
+        for (axis, &[low, high]) in axes.iter().zip(&constraints.bounds) {
             let here = axis.rounded();
             let beyond = low.saturating_sub(here).max(here.saturating_sub(high));
             self.out_of_bounds = self.out_of_bounds.max(beyond as f64 / UNIT);
@@ -114,28 +114,28 @@ impl Worst {
     }
 
     /// Of one state.
-    pub fn of(axes: &[AxisState; 3], ground: &Constraints) -> Self {
+    pub fn of(axes: &[AxisState; 3], constraints: &Constraints) -> Self {
         let mut worst = Self::default();
-        worst.look(axes, ground);
+        worst.look(axes, constraints);
         worst
     }
 
-    fn look_at_jerk(&mut self, jerk: &[i64; 3], ground: &Constraints) {
-        let limits = &ground.limits;
+    fn look_at_jerk(&mut self, jerk: &[i64; 3], constraints: &Constraints) {
+        let limits = &constraints.limits;
         let jerk = jerk.map(|jerk| jerk as f64 / AXIS_UNIT * limits.rate_hz.powi(3));
-        let path = jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / limits.jerk_mm_s3;
+        let path = jerk[0].hypot(jerk[1]) * constraints.geometry.radius_mm / limits.jerk_mm_s3;
         let turn = jerk[2].abs() * 360.0 / limits.turn_jerk_deg_s3;
         self.jerk = self.jerk.max(path).max(turn);
     }
 
-    /// Of a plan on the usual ground, looked at where its pieces meet and in their middles only.
+    /// Of a plan within the usual constraints, looked at where its pieces meet and in their middles only.
     pub fn of_corners(plan: &Plan, start: [AxisState; 3]) -> Self {
         let mut worst = Self::default();
         for axes in corners(plan, start) {
-            worst.look(&axes, &GROUND);
+            worst.look(&axes, &CONSTRAINTS);
         }
         for piece in &plan.pieces {
-            worst.look_at_jerk(&piece.jerk, &GROUND);
+            worst.look_at_jerk(&piece.jerk, &CONSTRAINTS);
         }
         worst
     }
@@ -145,9 +145,9 @@ impl Worst {
         &mut self,
         plan: &Plan,
         start: &[AxisState; 3],
-        ground: &Constraints,
+        constraints: &Constraints,
     ) -> [AxisState; 3] {
-        self.walk_ends(plan, start, ground, u64::MAX)
+        self.walk_ends(plan, start, constraints, u64::MAX)
     }
 
     /// The same, of a piece longer than `most` ticks only so many: half of them at its start, half at its end.
@@ -155,13 +155,13 @@ impl Worst {
         &mut self,
         plan: &Plan,
         start: &[AxisState; 3],
-        ground: &Constraints,
+        constraints: &Constraints,
         most: u64,
     ) -> [AxisState; 3] {
         let mut axes = *start;
-        self.look(&axes, ground);
+        self.look(&axes, constraints);
         for piece in &plan.pieces {
-            self.look_at_jerk(&piece.jerk, ground);
+            self.look_at_jerk(&piece.jerk, constraints);
             let skipped = piece.ticks.saturating_sub(most);
             for tick in 0..piece.ticks - skipped {
                 for (i, axis) in axes.iter_mut().enumerate() {
@@ -170,7 +170,7 @@ impl Worst {
                     }
                     axis.advance(piece.jerk[i], plan.nudge[i]);
                 }
-                self.look(&axes, ground);
+                self.look(&axes, constraints);
             }
         }
         axes

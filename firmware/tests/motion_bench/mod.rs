@@ -1,8 +1,8 @@
 //! What the motion tests share: random positions and moves, and the limits that every tick is held against.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub mod constraints;
 pub mod exact;
-pub mod grounds;
 pub mod random;
 pub mod setting;
 pub mod streaming;
@@ -16,14 +16,14 @@ use std::f64::consts::PI;
 
 /// 2^32: units of a position in a track radius or a turn.
 pub const UNIT: f64 = 4_294_967_296.0;
-/// 2^72: units of an [`Axis`].
+/// 2^72: units of an [`AxisState`].
 pub const AXIS_UNIT: f64 = 4_722_366_482_869_645_213_696.0;
 /// Room for the roundings of f64 when a limit is checked.
 pub const SLACK: f64 = 1.0 + 1e-6;
 
 pub const GEOMETRY: Geometry = Geometry::REFERENCE;
 pub const LIMITS: Limits = Parameters::REFERENCE.limits;
-pub const GROUND: Constraints = Constraints::new(LIMITS, GEOMETRY);
+pub const CONSTRAINTS: Constraints = Constraints::new(LIMITS, GEOMETRY);
 
 /// Fixed seed, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
 pub fn settings(cases: u32) -> Config {
@@ -68,7 +68,7 @@ pub fn moves() -> impl Strategy<Value = (Position, Position)> {
 }
 
 pub fn line(from: Position, to: Position) -> Plan {
-    plan_line(7, from, to, &GROUND).expect("a move inside the disk")
+    plan_line(7, from, to, &CONSTRAINTS).expect("a move inside the disk")
 }
 
 pub fn at_rest(position: Position) -> [AxisState; 3] {

@@ -52,7 +52,7 @@ pub fn run(
     start: Position,
     targets: impl Iterator<Item = Position>,
     sender: &Sender,
-    ground: &Constraints,
+    constraints: &Constraints,
     quiet: bool,
 ) -> Run {
     let mut targets = targets.peekable();
@@ -77,7 +77,7 @@ pub fn run(
         while targets.peek().is_some()
             && sent as f64 * sender.true_period + (sender.late)(sent) <= tick as f64
         {
-            match stream.push(*targets.peek().unwrap(), ground) {
+            match stream.push(*targets.peek().unwrap(), constraints) {
                 Ok(()) | Err(PushError::Refused(_)) => {}
                 Err(PushError::Full) => panic!("full after {sent}"),
                 Err(PushError::Over) => {}
@@ -94,7 +94,7 @@ pub fn run(
             tick: done,
             moving: motion.is_moving(),
         };
-        match stream.next(out.plans + 1, &progress, ground) {
+        match stream.next(out.plans + 1, &progress, constraints) {
             StreamStep::Wait => {}
             StreamStep::Send(plan, start) => {
                 out.plans += 1;
@@ -104,7 +104,7 @@ pub fn run(
                 motion.accept(&plan).expect("in time");
                 // What the tick would do if nothing came any more.
                 if out.plans % 7 == 1 {
-                    out.worst.walk(&plan, &start, ground);
+                    out.worst.walk(&plan, &start, constraints);
                 }
                 pending = Some((plan, start));
             }
@@ -129,7 +129,7 @@ pub fn run(
         assert_eq!(state.map(|axis| axis.rounded()), motion.position());
         // What is worst lasts longer than a millisecond.
         if tick % 8 == 0 {
-            out.worst.look(&state, ground);
+            out.worst.look(&state, constraints);
         }
         for i in 0..3 {
             let step = (state[i].velocity - last[i].velocity) as f64 / AXIS_UNIT * LIMITS.rate_hz;

@@ -4,7 +4,7 @@
 //! acceleration `a`. Up to a peak `p` and back to zero gains `(p^2 - a^2) / (2 j) + p^2 / (2 j)`, so `p^2 = j v + a^2 / 2`;
 //! beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down to it.
 
-use super::{SLACK, whole};
+use super::{BRAKE_SLACK, whole};
 use crate::motion::profile::any_state::AxisLimits;
 use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
@@ -59,9 +59,9 @@ impl AxisBrake {
         let peak = -left / (n1 / 2.0 + n2 + n3 / 2.0);
         let hardest = self.acceleration.abs().fmax(1.0);
         [
-            (peak - self.acceleration).abs() > self.jerk * n1 * SLACK,
-            peak.abs() > hardest * SLACK,
-            peak.abs() > self.jerk * n3 * SLACK,
+            (peak - self.acceleration).abs() > self.jerk * n1 * BRAKE_SLACK,
+            peak.abs() > hardest * BRAKE_SLACK,
+            peak.abs() > self.jerk * n3 * BRAKE_SLACK,
         ]
     }
 }

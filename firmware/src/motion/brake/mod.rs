@@ -18,7 +18,7 @@ pub(crate) mod axis_brake;
 pub(crate) mod halt;
 pub(crate) mod velocity_change;
 
-use super::check::sample::Sample;
+use super::check::sample::MotionState;
 use super::plan::axis_state::{AxisState, JERK_STEP};
 use super::plan::units::{AXIS_UNITS, TickLimits};
 use crate::number::float::{
@@ -33,7 +33,7 @@ const SETTLED: f32 = 1e-3;
 const NEARLY_SETTLED: f32 = 0.2;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
-pub(super) const SLACK: f32 = 1.0 + 5e-7;
+pub(super) const BRAKE_SLACK: f32 = 1.0 + 5e-7;
 
 /// What is to be braked, over the limits of acceleration.
 pub(super) struct Brake {
@@ -55,7 +55,7 @@ impl Brake {
     }
 
     /// Of a state in floats, with the ordinary limits.
-    pub fn in_seconds(at: &Sample, limits: &TickLimits, hz: f32) -> Self {
+    pub fn in_seconds(at: &MotionState, limits: &TickLimits, hz: f32) -> Self {
         let once = AXIS_UNITS / hz;
         let each = |per: f32| [per, per, per / core::f32::consts::TAU];
         Self::of(
@@ -156,9 +156,9 @@ impl Brake {
         let change = [0, 1, 2].map(|i| peak[i] - self.acceleration[i]);
         let hardest = size(&self.acceleration).fmax(1.0);
         [
-            self.jerk_ticks(&change) > n1 * SLACK,
-            size(&peak) > hardest * SLACK,
-            self.jerk_ticks(&peak) > n3 * SLACK,
+            self.jerk_ticks(&change) > n1 * BRAKE_SLACK,
+            size(&peak) > hardest * BRAKE_SLACK,
+            self.jerk_ticks(&peak) > n3 * BRAKE_SLACK,
         ]
     }
 

@@ -21,29 +21,29 @@ pub(crate) struct Exit {
     /// Distance from the track's centre, track radii.
     pub radius: f32,
     /// Share of the way.
-    pub share: f32,
+    pub fraction: f32,
 }
 
 /// How far out of the disk is still the rim, as a part of f: 50 nm on a track of 100 mm, ten roundings of an f32.
-const RIM: f32 = 1e-6;
+const LINE_RIM: f32 = 1e-6;
 /// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
 const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
 const LOOKS: usize = 48;
 
 /// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(crate) fn exit(from: &Position, to: &Position, ground: &Constraints) -> Option<Exit> {
-    let usable = ground.usable_radius as f32;
+pub(crate) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
+    let usable = constraints.usable_radius as f32;
     // A line of no length has no bend to walk along.
-    if ground.rotation_centre == [0.0; 2] || from == to {
+    if constraints.rotation_centre == [0.0; 2] || from == to {
         return None;
     }
-    let path = Path::new(from, to, ground);
-    let there = Walk::new(&path, from[2], ground, false);
-    let back = Walk::new(&path, to[2], ground, true);
+    let path = Path::new(from, to, constraints);
+    let there = Walk::new(&path, from[2], constraints, false);
+    let back = Walk::new(&path, to[2], constraints, true);
     let start = there.square(0.0).0;
-    let limit = start.fmax(usable * usable) + RIM;
-    let [first, second] = near_ends(&path, usable - there.arm + RIM / 2.0)?;
+    let limit = start.fmax(usable * usable) + LINE_RIM;
+    let [first, second] = near_ends(&path, usable - there.arm + LINE_RIM / 2.0)?;
     let ends = [(there, first), (back, second)];
     ends.into_iter()
         .find_map(|(walk, way)| walk.exit(way, limit))
@@ -52,7 +52,7 @@ pub(crate) fn exit(from: &Position, to: &Position, ground: &Constraints) -> Opti
 /// The parts of the way, from the start and from the end, on which P is further out than `radius`; `None` without any.
 fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
     let [x, y] = path.from;
-    let [way_x, way_y] = path.way;
+    let [way_x, way_y] = path.displacement;
     let a = way_x * way_x + way_y * way_y;
     let b = x * way_x + y * way_y;
     let c = x * x + y * y - radius * radius.fmax(0.0);
@@ -69,7 +69,7 @@ fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
 /// A walk from one end of a line.
 struct Walk {
     from: [f32; 2],
-    way: [f32; 2],
+    displacement: [f32; 2],
     /// theta at this end, 2^-32 turns.
     theta: i64,
     /// rad.
@@ -83,8 +83,8 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(path: &Path, theta: i64, ground: &Constraints, backwards: bool) -> Self {
-        let centre = ground.rotation_centre.map(|part| part as f32);
+    fn new(path: &Path, theta: i64, constraints: &Constraints, backwards: bool) -> Self {
+        let centre = constraints.rotation_centre.map(|part| part as f32);
         let arm = hypot(centre[0], centre[1]);
         let furthest = [path.from, path.point(1.0)]
             .into_iter()
@@ -97,7 +97,7 @@ impl Walk {
         };
         Self {
             from,
-            way: path.way.map(|way| way * sign),
+            displacement: path.displacement.map(|way| way * sign),
             theta,
             turn: path.turn * sign,
             centre,
@@ -115,10 +115,10 @@ impl Walk {
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
         let [p, q] = self.centre;
         let (arm_x, arm_y) = (cos * p - sin * q, sin * p + cos * q);
-        let x = self.from[0] + self.way[0] * s - arm_x;
-        let y = self.from[1] + self.way[1] * s - arm_y;
-        let rate_x = self.way[0] + self.turn * arm_y;
-        let rate_y = self.way[1] - self.turn * arm_x;
+        let x = self.from[0] + self.displacement[0] * s - arm_x;
+        let y = self.from[1] + self.displacement[1] * s - arm_y;
+        let rate_x = self.displacement[0] + self.turn * arm_y;
+        let rate_y = self.displacement[1] - self.turn * arm_x;
         (x * x + y * y, 2.0 * (x * rate_x + y * rate_y))
     }
 
@@ -133,14 +133,14 @@ impl Walk {
         }
         let mut worst = Exit {
             radius: 0.0,
-            share: 0.0,
+            fraction: 0.0,
         };
         for k in 0..=LOOKS {
             let s = part * k as f32 / LOOKS as f32;
             let radius = sqrt_f32(self.square(s).0);
             if radius > worst.radius {
-                let share = if self.backwards { 1.0 - s } else { s };
-                worst = Exit { radius, share };
+                let fraction = if self.backwards { 1.0 - s } else { s };
+                worst = Exit { radius, fraction };
             }
         }
         Some(worst)

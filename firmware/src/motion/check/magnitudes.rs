@@ -1,21 +1,21 @@
 //! How large velocity, acceleration and jerk are over a stretch, and what the pivots can make of them at most.
 
-use super::Look;
-use super::pivot_bounds::{Bound, Pace};
-use super::sample::Sample;
+use super::IntervalEnd;
+use super::pivot_bounds::{PivotGain, Speeds};
+use super::sample::MotionState;
 use crate::number::float::{FloatMinMax, hypot};
 
 /// Of translation (track radii) and of rotation (rad), per second, squared and cubed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sizes {
+pub(crate) struct IntervalBounds {
     pub v: [f32; 2],
     pub a: [f32; 2],
     pub j: [f32; 2],
 }
 
-impl Sizes {
+impl IntervalBounds {
     /// Over the `t` seconds from one state to the other, with jerks of these sizes.
-    pub fn new(j: [f32; 2], from: &Look, to: &Look, t: f32) -> Self {
+    pub fn new(j: [f32; 2], from: &IntervalEnd, to: &IntervalEnd, t: f32) -> Self {
         let [x, y, theta] = [0, 1, 2].map(|i| fastest(&from.sample, &to.sample, i, t));
         // By its ends too: the greatest speeds of x and y need not come together.
         let ends = from.v[0].fmax(to.v[0]);
@@ -27,7 +27,7 @@ impl Sizes {
     }
 
     /// Of a point as far as `arm` from the moved one.
-    pub fn at_arm(&self, arm: f32) -> Self {
+    pub fn at_offset(&self, arm: f32) -> Self {
         let ([v, turn], [a, spin], [j, twitch]) = (self.v, self.a, self.j);
         Self {
             v: [v + arm * turn, turn],
@@ -40,15 +40,18 @@ impl Sizes {
     }
 
     /// Bounds of the pivots' rates and accelerations when these sizes are the platform centre's, at any orientation.
-    pub fn pivots(&self, bound: &Bound) -> [f32; 2] {
-        let [pace, force] = [self.v, self.a].map(|[way, turn]| Pace { way, turn });
-        [bound.asked(pace), bound.asked(force) + bound.coasting(pace)]
+    pub fn pivot_bounds(&self, bound: &PivotGain) -> [f32; 2] {
+        let [speeds, force] = [self.v, self.a].map(|[linear, angular]| Speeds { linear, angular });
+        [
+            bound.rate(speeds),
+            bound.rate(force) + bound.bias_acceleration(speeds),
+        ]
     }
 
     /// How far rate and acceleration of a pivot can rise between the ends of a stretch, from the bounds of both: a pivot's
     /// third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds how fast
     /// `1 / c` changes.
-    pub fn rises(&self, [u, w]: [f32; 2], bound: &Bound, t: f32) -> [f32; 2] {
+    pub fn pivot_rises(&self, [u, w]: [f32; 2], bound: &PivotGain, t: f32) -> [f32; 2] {
         let k = bound.k;
         let jerk = k * (self.j[0] + 2.0 * self.j[1]);
         let ku = k * u;
@@ -60,7 +63,7 @@ impl Sizes {
 }
 
 /// Largest speed of an axis between two states of the same jerk.
-fn fastest(from: &Sample, to: &Sample, i: usize, t: f32) -> f32 {
+fn fastest(from: &MotionState, to: &MotionState, i: usize, t: f32) -> f32 {
     let ends = from.v[i].abs().fmax(to.v[i].abs());
     let (a, b) = (from.a[i], to.a[i]);
     if a * b >= 0.0 {

@@ -30,67 +30,69 @@ use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::units::TickLimits;
 use super::plan::{MAX_PIECES, Piece};
-use crate::motion::check::magnitudes::Sizes;
-use crate::motion::check::pivot_bounds::Bound;
+use crate::motion::check::magnitudes::IntervalBounds;
+use crate::motion::check::pivot_bounds::PivotGain;
 use crate::motion::check::platform::greatest;
-use crate::motion::check::sample::{Arc, Sample};
-use crate::motion::check::workspace::{Braking, Reach};
+use crate::motion::check::sample::{CubicSegment, MotionState};
+use crate::motion::check::workspace::{StopLimits, Workspace};
 use crate::number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
 /// What a plan is held against.
-pub(super) struct Envelope {
+pub(super) struct PlanCheck {
     /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
-    own: Option<Own>,
+    motion_limits: Option<MotionLimits>,
     /// Rate and acceleration, rad/s and rad/s^2.
     pivots: [f32; 2],
-    reach: Reach,
+    workspace: Workspace,
     hz: f32,
 }
 
 /// Limits of translation and rotation.
-struct Own {
+struct MotionLimits {
     speed: [f32; 2],
     acceleration: [f32; 2],
     jerk: [f32; 2],
     /// With which a stop brakes, and the same for a bound of its way.
     stop: TickLimits,
-    braking: Braking,
+    braking: StopLimits,
 }
 
 /// What a plan breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Broken {
+pub(crate) enum Violation {
     /// Disk or bounds, on the way or in a stop.
-    Reach,
+    Workspace,
     /// Speed, by this factor.
     Speed(f32),
     /// Acceleration or jerk, by this factor.
-    Force(f32),
-    /// The pivots' rate, by this factor.
-    Rate(f32),
-    /// The pivots' acceleration, by this factor.
     Acceleration(f32),
+    /// The pivots' rate, by this factor.
+    PivotRate(f32),
+    /// The pivots' acceleration, by this factor.
+    PivotAcceleration(f32),
     /// Disk or bounds, in a stop from an instant on the way.
-    NoStop,
+    NoRoomToStop,
     /// Nothing yet: not all has been looked at.
-    Unseen,
+    Unchecked,
 }
 
-impl Broken {
+impl Violation {
     fn is_of_pivots(&self) -> bool {
-        matches!(self, Self::Rate(_) | Self::Acceleration(_))
+        matches!(self, Self::PivotRate(_) | Self::PivotAcceleration(_))
     }
 
     /// This, or what was seen of the same before, when that was worse.
     fn or_worse(self, before: Option<Self>) -> Self {
         match (self, before) {
             (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.fmax(over)),
-            (Self::Force(now), Some(Self::Force(over))) => Self::Force(now.fmax(over)),
-            (Self::Rate(now), Some(Self::Rate(over))) => Self::Rate(now.fmax(over)),
             (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
                 Self::Acceleration(now.fmax(over))
+            }
+            (Self::PivotRate(now), Some(Self::PivotRate(over))) => Self::PivotRate(now.fmax(over)),
+            (Self::PivotAcceleration(now), Some(Self::PivotAcceleration(over))) => {
+                Self::PivotAcceleration(now.fmax(over))
             }
             _ => self,
         }
@@ -98,24 +100,24 @@ impl Broken {
 }
 
 /// Slack of single precision.
-const SLACK: f32 = 1.0 + 1e-4;
+const PLAN_SLACK: f32 = 1.0 + 1e-4;
 /// Stretches that may be looked at, failed ones included, before the next failure counts.
 const MOST_LOOKS: usize = 60;
 /// Stretches in the first slice.
 const SLICE: usize = 16;
 /// What has to have been seen, ticks, for the rest to be left for later.
-pub(super) const LEAST_SEEN: u64 = 100;
-/// Pieces up to this many ticks have no middle to glance at.
+pub(super) const MIN_CHECKED_TICKS: u64 = 100;
+/// Pieces up to this many ticks have no middle to sample.
 const SHORT: u64 = 200;
 /// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
-impl Envelope {
-    /// The envelope of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
+impl PlanCheck {
+    /// The check of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
-    pub fn new(ground: &Constraints, stop: TickLimits, start: &[AxisState; 3]) -> Self {
-        let limits = &ground.limits;
-        let mm = ground.geometry.radius_mm as f32;
+    pub fn new(constraints: &Constraints, stop: TickLimits, start: &[AxisState; 3]) -> Self {
+        let limits = &constraints.limits;
+        let mm = constraints.geometry.radius_mm as f32;
         let pair = |translation: f64, rotation_deg: f64| {
             [
                 translation as f32 / mm,
@@ -123,14 +125,14 @@ impl Envelope {
             ]
         };
         let hz = limits.rate_hz as f32;
-        let Sample { v, a, .. } = Arc::new(start, &Piece::default(), hz).start;
+        let MotionState { v, a, .. } = CubicSegment::new(start, &Piece::default(), hz).start;
         let wider = |limit: [f32; 2], now: [f32; 3]| {
             [
                 limit[0].fmax(hypot(now[0], now[1])),
                 limit[1].fmax(now[2].abs()),
             ]
         };
-        let own = Own {
+        let motion_limits = MotionLimits {
             speed: wider(pair(limits.speed_mm_s, limits.turn_speed_deg_s), v),
             acceleration: wider(
                 pair(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
@@ -138,44 +140,44 @@ impl Envelope {
             ),
             jerk: pair(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
             stop,
-            braking: Braking::new(&stop, hz),
+            braking: StopLimits::new(&stop, hz),
         };
         Self {
-            own: Some(own),
-            ..Self::of_stop(ground)
+            motion_limits: Some(motion_limits),
+            ..Self::for_stop(constraints)
         }
     }
 
-    /// The envelope of a stop: pivots, disk and bounds.
-    pub fn of_stop(ground: &Constraints) -> Self {
-        let limits = &ground.limits;
+    /// The check of a stop: pivots, disk and bounds.
+    pub fn for_stop(constraints: &Constraints) -> Self {
+        let limits = &constraints.limits;
         Self {
-            own: None,
+            motion_limits: None,
             pivots: [
                 limits.pivot_rate_rad_s as f32,
                 limits.pivot_acceleration_rad_s2 as f32,
             ],
-            reach: Reach::new(ground),
+            workspace: Workspace::new(constraints),
             hz: limits.rate_hz as f32,
         }
     }
 
     /// Writes pieces as they are looked at, from `start`; where they lead to. A plan's nudge does not show in them.
-    pub fn legs(
+    pub fn prepare(
         &self,
         pieces: &[Piece],
         start: &[AxisState; 3],
-        legs: &mut Legs,
+        legs: &mut CheckedPieces,
     ) -> [AxisState; 3] {
         let mut axes = *start;
         legs.clear();
         for piece in pieces {
-            let arc = Arc::new(&axes, piece, self.hz);
+            let arc = CubicSegment::new(&axes, piece, self.hz);
             // Room for all pieces of a plan.
-            let _ = legs.push(Leg {
+            let _ = legs.push(CheckedPiece {
                 jerk: [hypot(arc.jerk[0], arc.jerk[1]), arc.jerk[2].abs()],
                 arc,
-                rooms: self.reach.rooms(&axes),
+                bound_distances: self.workspace.bound_distances(&axes),
                 ticks: piece.ticks,
             });
             piece.advance(&mut axes, piece.ticks, &[0; 3]);
@@ -184,9 +186,9 @@ impl Envelope {
     }
 
     /// Whether these stay inside, from what `looks` have seen of them before.
-    pub fn check(&self, legs: &[Leg], looks: &mut Looks) -> Result<(), Broken> {
-        let (mut worst, mut glanced) = (None, false);
-        let mut before = looks.seen;
+    pub fn check(&self, legs: &[CheckedPiece], looks: &mut CheckBudget) -> Result<(), Violation> {
+        let (mut worst, mut pivots_sampled) = (None, false);
+        let mut before = looks.checked_ticks;
         for leg in legs {
             if before >= leg.ticks {
                 before -= leg.ticks;
@@ -194,7 +196,7 @@ impl Envelope {
             }
             self.check_jerk(leg)?;
             let (mut done, mut ticks) = (core::mem::take(&mut before), leg.ticks);
-            let [mut first, mut second] = [Look::default(); 2];
+            let [mut first, mut second] = [IntervalEnd::default(); 2];
             let (mut from, mut to) = (&mut first, &mut second);
             self.look(&leg.arc, done, from);
             while done < leg.ticks {
@@ -205,17 +207,17 @@ impl Envelope {
                     Ok(longer) => {
                         core::mem::swap(&mut from, &mut to);
                         done += ticks;
-                        looks.seen += ticks;
+                        looks.checked_ticks += ticks;
                         ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
                     // In shorter stretches the same instant would be met.
-                    Err((Broken::NoStop, _)) => return Err(Broken::Reach),
+                    Err((Violation::NoRoomToStop, _)) => return Err(Violation::Workspace),
                     Err((broken, shorter)) => {
-                        if broken.is_of_pivots() && !glanced {
+                        if broken.is_of_pivots() && !pivots_sampled {
                             looks.leave_for_later()?;
-                            // Where a limit is passed indeed, a glance tells by how much.
-                            self.glance(legs)?;
-                            glanced = true;
+                            // Where a limit is passed indeed, sampling the pivots tells by how much.
+                            self.sample_pivots(legs)?;
+                            pivots_sampled = true;
                         }
                         // Stretches close in on where a limit is met; how far it is passed was seen before.
                         worst = Some(broken.or_worse(worst));
@@ -231,17 +233,17 @@ impl Envelope {
         Ok(())
     }
 
-    fn look(&self, arc: &Arc, ticks: u64, look: &mut Look) {
+    fn look(&self, arc: &CubicSegment, ticks: u64, look: &mut IntervalEnd) {
         let sample = arc.at(ticks_to_f32(ticks) / self.hz);
-        let [x, y] = arc.place(&sample);
-        let far = hypot(x, y);
-        let Sample { v, a, .. } = sample;
-        *look = Look {
-            far,
-            out: if self.reach.arm > 0.0 {
-                self.reach.distance(arc, &sample)
+        let [x, y] = arc.point(&sample);
+        let point_distance = hypot(x, y);
+        let MotionState { v, a, .. } = sample;
+        *look = IntervalEnd {
+            point_distance,
+            centre_distance: if self.workspace.arm > 0.0 {
+                self.workspace.centre_distance(arc, &sample)
             } else {
-                far
+                point_distance
             },
             v: [hypot(v[0], v[1]), v[2].abs()],
             a: [hypot(a[0], a[1]), a[2].abs()],
@@ -251,33 +253,47 @@ impl Envelope {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn glance(&self, legs: &[Leg]) -> Result<(), Broken> {
+    fn sample_pivots(&self, legs: &[CheckedPiece]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        for Leg { arc, ticks, .. } in legs {
+        for CheckedPiece { arc, ticks, .. } in legs {
             let seconds = ticks_to_f32(*ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(*ticks > SHORT)] {
-                let [rates, accelerations] = arc.platform(&arc.at(t), self.reach.centre).pivots();
+                let [rates, accelerations] =
+                    arc.platform(&arc.at(t), self.workspace.centre).pivots();
                 rate = rate.fmax(greatest(&rates));
                 acceleration = acceleration.fmax(greatest(&accelerations));
             }
         }
         let [rate_limit, acceleration_limit] = self.pivots;
-        within(acceleration / acceleration_limit, Broken::Acceleration)?;
-        within(rate / rate_limit, Broken::Rate)
+        within(
+            acceleration / acceleration_limit,
+            Violation::PivotAcceleration,
+        )?;
+        within(rate / rate_limit, Violation::PivotRate)
     }
 
-    fn check_jerk(&self, leg: &Leg) -> Result<(), Broken> {
-        let Some(own) = &self.own else { return Ok(()) };
+    fn check_jerk(&self, leg: &CheckedPiece) -> Result<(), Violation> {
+        let Some(motion_limits) = &self.motion_limits else {
+            return Ok(());
+        };
         let [way, turn] = leg.jerk;
-        within((way / own.jerk[0]).fmax(turn / own.jerk[1]), Broken::Force)
+        within(
+            (way / motion_limits.jerk[0]).fmax(turn / motion_limits.jerk[1]),
+            Violation::Acceleration,
+        )
     }
 
     /// By how much the next stretch may be longer than this; or what is broken, and by how much shorter a stretch to try.
-    fn stretch(&self, leg: &Leg, [from, to]: [&mut Look; 2], t: f32) -> Result<f32, (Broken, f32)> {
+    fn stretch(
+        &self,
+        leg: &CheckedPiece,
+        [from, to]: [&mut IntervalEnd; 2],
+        t: f32,
+    ) -> Result<f32, (Violation, f32)> {
         const HALF: f32 = 0.5;
-        let sizes = Sizes::new(leg.jerk, from, to, t);
-        let moving = sizes.at_arm(self.reach.arm);
+        let sizes = IntervalBounds::new(leg.jerk, from, to, t);
+        let moving = sizes.at_offset(self.workspace.arm);
         let radius = self
             .path(leg, [from, to], t, [&sizes, &moving])
             .map_err(|broken| (broken, HALF))?;
@@ -287,124 +303,138 @@ impl Envelope {
     /// All but the pivots; the greatest distance of the platform's centre from the track's.
     fn path(
         &self,
-        leg: &Leg,
-        [from, to]: [&Look; 2],
+        leg: &CheckedPiece,
+        [from, to]: [&IntervalEnd; 2],
         t: f32,
-        [sizes, moving]: [&Sizes; 2],
-    ) -> Result<f32, Broken> {
-        if let Some(own) = &self.own {
+        [sizes, moving]: [&IntervalBounds; 2],
+    ) -> Result<f32, Violation> {
+        if let Some(motion_limits) = &self.motion_limits {
             let [v, turn] = sizes.v;
-            within((v / own.speed[0]).fmax(turn / own.speed[1]), Broken::Speed)?;
+            within(
+                (v / motion_limits.speed[0]).fmax(turn / motion_limits.speed[1]),
+                Violation::Speed,
+            )?;
             let [a, spin] = sizes.a;
             within(
-                (a / own.acceleration[0]).fmax(spin / own.acceleration[1]),
-                Broken::Force,
+                (a / motion_limits.acceleration[0]).fmax(spin / motion_limits.acceleration[1]),
+                Violation::Acceleration,
             )?;
         }
         let eighth = t * t / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
-        (self.reach).check_way(&leg.rooms, &from.sample, &to.sample, rise)?;
-        let furthest = from.out.fmax(to.out) + moving.a[0] * eighth;
-        let radius = self.reach.inside(furthest)?;
-        if let Some(own) = &self.own {
-            self.check_stop(leg, to, own)?;
+        (self.workspace).check_bounds(&leg.bound_distances, &from.sample, &to.sample, rise)?;
+        let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
+        let radius = self.workspace.check_disk(furthest)?;
+        if let Some(motion_limits) = &self.motion_limits {
+            self.check_stop(leg, to, motion_limits)?;
         }
         Ok(radius)
     }
 
     /// A stop from here.
-    fn check_stop(&self, leg: &Leg, at: &Look, own: &Own) -> Result<(), Broken> {
-        if self.reach.far_inside(&leg.rooms, at, &own.braking) {
+    fn check_stop(
+        &self,
+        leg: &CheckedPiece,
+        at: &IntervalEnd,
+        motion_limits: &MotionLimits,
+    ) -> Result<(), Violation> {
+        if self
+            .workspace
+            .stop_is_clear_of_edges(&leg.bound_distances, at, &motion_limits.braking)
+        {
             return Ok(());
         }
-        let brake = Brake::in_seconds(&at.sample, &own.stop, self.hz);
-        (self.reach)
-            .check_stop(&leg.arc, &leg.rooms, &at.sample, &brake, self.hz)
-            .map_err(|_| Broken::NoStop)
+        let brake = Brake::in_seconds(&at.sample, &motion_limits.stop, self.hz);
+        (self.workspace)
+            .check_stop(&leg.arc, &leg.bound_distances, &at.sample, &brake, self.hz)
+            .map_err(|_| Violation::NoRoomToStop)
     }
 
     fn check_pivots(
         &self,
-        arc: &Arc,
-        ends: [&mut Look; 2],
+        arc: &CubicSegment,
+        ends: [&mut IntervalEnd; 2],
         t: f32,
-        moving: &Sizes,
+        moving: &IntervalBounds,
         radius: f32,
-    ) -> Result<f32, (Broken, f32)> {
+    ) -> Result<f32, (Violation, f32)> {
         const ALL: f32 = 4.0;
         const ROUNDS: usize = 3;
-        let bound = Bound::new(radius);
-        let [rate, acceleration] = moving.pivots(&bound);
+        let bound = PivotGain::new(radius);
+        let [rate, acceleration] = moving.pivot_bounds(&bound);
         let [rate_limit, acceleration_limit] = self.pivots;
         if rate <= rate_limit && acceleration <= acceleration_limit {
             return Ok(ALL);
         }
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
-            let [rate, acceleration] = end.pivots(arc, self.reach.centre);
+            let [rate, acceleration] = end.pivots(arc, self.workspace.centre);
             rates = rates.fmax(rate);
             accelerations = accelerations.fmax(acceleration);
         }
         // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
         let mut most = [rate, acceleration];
         for _ in 0..ROUNDS {
-            let rises = moving.rises(most, &bound, t);
+            let rises = moving.pivot_rises(most, &bound, t);
             most = [
                 most[0].fmin(rates + rises[0]),
                 most[1].fmin(accelerations + rises[1]),
             ];
         }
-        let once = rise_within(rates, most[0], rate_limit, Broken::Rate)?;
+        let once = rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
         let twice = rise_within(
             accelerations,
             most[1],
             acceleration_limit,
-            Broken::Acceleration,
+            Violation::PivotAcceleration,
         )?;
         Ok(once.fmin(twice).fmin(ALL))
     }
 }
 
 /// How a motion is looked at.
-pub(super) struct Looks {
+pub(super) struct CheckBudget {
     left: usize,
     /// Stretches until the rest is left for later.
     slice: usize,
     /// Ticks from the start on that have been found inside.
-    pub seen: u64,
+    pub checked_ticks: u64,
 }
 
-impl Looks {
+impl CheckBudget {
     /// At all of it, at once.
-    pub const ALL: Self = Self {
+    pub const WHOLE: Self = Self {
         left: MOST_LOOKS,
         slice: usize::MAX,
-        seen: 0,
+        checked_ticks: 0,
     };
 
     /// At the start of it.
     pub const SLICE: Self = Self {
         slice: SLICE,
-        ..Self::ALL
+        ..Self::WHOLE
     };
 
     /// At the rest of it.
     pub const fn after(seen: u64) -> Self {
-        Self { seen, ..Self::ALL }
+        Self {
+            checked_ticks: seen,
+            ..Self::WHOLE
+        }
     }
 
-    fn take(&mut self) -> Result<(), Broken> {
+    fn take(&mut self) -> Result<(), Violation> {
         if self.slice == 0 {
-            return Err(Broken::Unseen);
+            return Err(Violation::Unchecked);
         }
         self.slice = self.slice.saturating_sub(1);
         self.left = self.left.saturating_sub(1);
         Ok(())
     }
 
-    fn leave_for_later(&self) -> Result<(), Broken> {
-        if self.slice <= SLICE && self.seen >= LEAST_SEEN {
-            Err(Broken::Unseen)
+    fn leave_for_later(&self) -> Result<(), Violation> {
+        if self.slice <= SLICE && self.checked_ticks >= MIN_CHECKED_TICKS {
+            Err(Violation::Unchecked)
         } else {
             Ok(())
         }
@@ -412,36 +442,36 @@ impl Looks {
 }
 
 /// A piece as it is looked at.
-pub(super) struct Leg {
-    arc: Arc,
+pub(super) struct CheckedPiece {
+    arc: CubicSegment,
     /// Of translation and of rotation.
     jerk: [f32; 2],
     /// How far each axis may go from its start.
-    rooms: [[f32; 2]; 3],
+    bound_distances: [[f32; 2]; 3],
     ticks: u64,
 }
 
 /// The pieces of a plan.
-pub(super) type Legs = Vec<Leg, MAX_PIECES>;
+pub(super) type CheckedPieces = Vec<CheckedPiece, MAX_PIECES>;
 
 /// One end of a stretch.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Look {
-    pub sample: Sample,
+pub(super) struct IntervalEnd {
+    pub sample: MotionState,
     /// Velocity of translation and of rotation.
     pub v: [f32; 2],
     /// Their acceleration.
     pub a: [f32; 2],
     /// Distance of the moved point from the track's centre.
-    pub far: f32,
+    pub point_distance: f32,
     /// Distance of the platform's centre from it.
-    out: f32,
+    centre_distance: f32,
     /// The greatest rate and acceleration of a pivot, once they have been asked for.
     pivots: Option<[f32; 2]>,
 }
 
-impl Look {
-    fn pivots(&mut self, arc: &Arc, centre: [f32; 2]) -> [f32; 2] {
+impl IntervalEnd {
+    fn pivots(&mut self, arc: &CubicSegment, centre: [f32; 2]) -> [f32; 2] {
         *self.pivots.get_or_insert_with(|| {
             let pivots = arc.platform(&self.sample, centre).pivots();
             pivots.map(|three| greatest(&three))
@@ -455,11 +485,11 @@ fn rise_within(
     value: f32,
     most: f32,
     limit: f32,
-    broken: fn(f32) -> Broken,
-) -> Result<f32, (Broken, f32)> {
+    broken: fn(f32) -> Violation,
+) -> Result<f32, (Violation, f32)> {
     /// What is used of that, because the value changes too.
     const PART: f32 = 0.75;
-    let room = limit * SLACK - value;
+    let room = limit * PLAN_SLACK - value;
     let rise = most - value;
     if rise <= room {
         return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
@@ -472,8 +502,8 @@ fn rise_within(
 }
 
 /// The part of a limit that is used is not over one.
-fn within(part: f32, broken: fn(f32) -> Broken) -> Result<(), Broken> {
-    if part <= SLACK {
+fn within(part: f32, broken: fn(f32) -> Violation) -> Result<(), Violation> {
+    if part <= PLAN_SLACK {
         Ok(())
     } else {
         Err(broken(part))

@@ -17,25 +17,25 @@ use crate::number::sqrt_f32;
 
 /// Speed of the moved point, track radii per second, and rate of rotation, rad per second; or their derivatives.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pace {
-    pub way: f32,
-    pub turn: f32,
+pub(crate) struct Speeds {
+    pub linear: f32,
+    pub angular: f32,
 }
 
-impl Pace {
+impl Speeds {
     /// Of a vector of x, y and theta.
     pub fn of(vector: &[f32; 3]) -> Self {
         Self {
-            way: hypot(vector[0], vector[1]),
-            turn: vector[2].abs(),
+            linear: hypot(vector[0], vector[1]),
+            angular: vector[2].abs(),
         }
     }
 
     /// The greater of both parts.
     pub fn max(self, other: Self) -> Self {
         Self {
-            way: self.way.fmax(other.way),
-            turn: self.turn.fmax(other.turn),
+            linear: self.linear.fmax(other.linear),
+            angular: self.angular.fmax(other.angular),
         }
     }
 }
@@ -49,13 +49,13 @@ pub(crate) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
 
 /// The bounds of the module's head, for a platform's centre within a radius.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bound {
+pub(crate) struct PivotGain {
     radius: f32,
     /// How much faster than the platform a pivot is at most.
     pub k: f32,
 }
 
-impl Bound {
+impl PivotGain {
     /// For a radius inside the track.
     pub fn new(radius: f32) -> Self {
         Self {
@@ -64,34 +64,36 @@ impl Bound {
         }
     }
 
-    /// Rate of a pivot when the platform's centre moves at `pace`; what its acceleration adds to that of a pivot, likewise.
-    pub fn asked(&self, pace: Pace) -> f32 {
-        self.k * pace.way + pace.turn * (1.0 + self.radius)
+    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot, likewise.
+    pub fn rate(&self, speeds: Speeds) -> f32 {
+        self.k * speeds.linear + speeds.angular * (1.0 + self.radius)
     }
 
-    /// Acceleration of a pivot when the platform's centre moves at `pace` and is not accelerated.
-    pub fn coasting(&self, pace: Pace) -> f32 {
-        let Pace { way, turn } = pace;
-        let swing = self.k * way + turn * self.radius;
-        self.k * (turn * (2.0 * way + turn * self.radius) + swing * swing * self.radius)
+    /// Acceleration of a pivot when the platform's centre moves at `speeds` and is not accelerated.
+    pub fn bias_acceleration(&self, speeds: Speeds) -> f32 {
+        let Speeds { linear, angular } = speeds;
+        let relative_rate = self.k * linear + angular * self.radius;
+        self.k
+            * (angular * (2.0 * linear + angular * self.radius)
+                + relative_rate * relative_rate * self.radius)
     }
 }
 
 /// The pivots' limits, and how far the moved point lies from the platform's centre.
-pub(crate) struct Swing {
+pub(crate) struct PivotBound {
     rate: f32,
     acceleration: f32,
     arm: f32,
 }
 
-impl Swing {
-    pub fn new(ground: &Constraints) -> Self {
+impl PivotBound {
+    pub fn new(constraints: &Constraints) -> Self {
         Self {
-            rate: ground.limits.pivot_rate_rad_s as f32,
-            acceleration: ground.limits.pivot_acceleration_rad_s2 as f32,
+            rate: constraints.limits.pivot_rate_rad_s as f32,
+            acceleration: constraints.limits.pivot_acceleration_rad_s2 as f32,
             arm: hypot(
-                ground.rotation_centre[0] as f32,
-                ground.rotation_centre[1] as f32,
+                constraints.rotation_centre[0] as f32,
+                constraints.rotation_centre[1] as f32,
             ),
         }
     }
@@ -101,30 +103,31 @@ impl Swing {
         self.arm
     }
 
-    /// Whether the pivots' rate holds at `pace` anywhere within `radius`.
-    pub fn rate_holds(&self, radius: f32, pace: Pace) -> bool {
-        Bound::new(radius).asked(self.platform(pace)) <= self.rate
+    /// Whether the pivots' rate holds at `speeds` anywhere within `radius`.
+    pub fn rate_is_within(&self, radius: f32, speeds: Speeds) -> bool {
+        PivotGain::new(radius).rate(self.platform_speeds(speeds)) <= self.rate
     }
 
-    /// What is left of the pivots' acceleration when the platform moves at `pace` within `radius`.
+    /// What is left of the pivots' acceleration when the platform moves at `speeds` within `radius`.
     #[inline(never)]
-    pub fn room(&self, radius: f32, pace: Pace) -> f32 {
-        let bound = Bound::new(radius);
+    pub fn acceleration_margin(&self, radius: f32, speeds: Speeds) -> f32 {
+        let bound = PivotGain::new(radius);
         // Turning alone accelerates the centre towards the point.
-        let inward = bound.k * pace.turn * pace.turn * self.arm;
-        self.acceleration - bound.coasting(self.platform(pace)) - inward
+        let inward = bound.k * speeds.angular * speeds.angular * self.arm;
+        self.acceleration - bound.bias_acceleration(self.platform_speeds(speeds)) - inward
     }
 
     /// What accelerations of the moved point and of theta ask of the pivots.
-    pub fn need(&self, radius: f32, force: Pace) -> f32 {
-        Bound::new(radius).asked(self.platform(force))
+    pub fn acceleration_demand(&self, radius: f32, force: Speeds) -> f32 {
+        PivotGain::new(radius).rate(self.platform_speeds(force))
     }
 
-    /// How far from the track's centre, up to `most`, the pivots can follow `pace` with half of their acceleration to spare;
+    /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to spare;
     /// `None` where they can nowhere.
-    pub fn radius(&self, pace: Pace, most: f32) -> Option<f32> {
+    pub fn max_radius(&self, speeds: Speeds, most: f32) -> Option<f32> {
         let follows = |radius: f32| {
-            self.rate_holds(radius, pace) && self.room(radius, pace) >= self.acceleration / 2.0
+            self.rate_is_within(radius, speeds)
+                && self.acceleration_margin(radius, speeds) >= self.acceleration / 2.0
         };
         if follows(most) {
             return Some(most);
@@ -145,11 +148,11 @@ impl Swing {
         Some(low)
     }
 
-    /// Pace, or acceleration, of the platform's centre at most.
-    fn platform(&self, pace: Pace) -> Pace {
-        Pace {
-            way: pace.way + pace.turn * self.arm,
-            ..pace
+    /// Speeds, or accelerations, of the platform's centre at most.
+    fn platform_speeds(&self, speeds: Speeds) -> Speeds {
+        Speeds {
+            linear: speeds.linear + speeds.angular * self.arm,
+            ..speeds
         }
     }
 }
@@ -178,7 +181,7 @@ mod tests {
             } else {
                 next().abs() * 0.8
             };
-            let swing = Swing {
+            let pivot_bound = PivotBound {
                 rate: 0.0,
                 acceleration: 0.0,
                 arm: arm as f32,
@@ -206,14 +209,17 @@ mod tests {
             let guides = inverse(&pose).expect("inside").guides;
             let exact = pivot_motion(&guides, &twist, &acceleration);
             let worst = |all: [f64; 3]| all.iter().fold(0.0_f64, |worst, x| worst.max(x.abs()));
-            let pace = |v: [f64; 2], turn: f64| Pace {
-                way: v[0].hypot(v[1]) as f32,
-                turn: turn.abs() as f32,
+            let speeds = |v: [f64; 2], turn: f64| Speeds {
+                linear: v[0].hypot(v[1]) as f32,
+                angular: turn.abs() as f32,
             };
-            let (pace, force) = (pace(v, turn), pace(a, turn_force));
+            let (speeds, force) = (speeds(v, turn), speeds(a, turn_force));
             let r = r as f32;
-            let rate = f64::from(Bound::new(r).asked(swing.platform(pace)));
-            let asked = f64::from(swing.need(r, force) - swing.room(r, pace));
+            let rate = f64::from(PivotGain::new(r).rate(pivot_bound.platform_speeds(speeds)));
+            let asked = f64::from(
+                pivot_bound.acceleration_demand(r, force)
+                    - pivot_bound.acceleration_margin(r, speeds),
+            );
             rates = rates.max(worst(exact.rates) / rate);
             forces = forces.max(worst(exact.accelerations) / asked);
         }
@@ -225,18 +231,18 @@ mod tests {
     /// Without an acceleration of its own the platform asks for some.
     #[test]
     fn a_steady_motion_leaves_less_room() {
-        let swing = Swing {
+        let pivot_bound = PivotBound {
             rate: 10.0,
             acceleration: 300.0,
             arm: 0.0,
         };
-        let pace = Pace {
-            way: 0.0,
-            turn: 5.0,
+        let speeds = Speeds {
+            linear: 0.0,
+            angular: 5.0,
         };
-        assert_eq!(swing.room(0.0, pace), 300.0);
+        assert_eq!(pivot_bound.acceleration_margin(0.0, speeds), 300.0);
         // Half a radius out, guide across: theta'^2 d / c.
         let least = 25.0 * 0.5 / 0.75_f32.sqrt();
-        assert!(swing.room(0.5, pace) <= 300.0 - least);
+        assert!(pivot_bound.acceleration_margin(0.5, speeds) <= 300.0 - least);
     }
 }

@@ -56,7 +56,7 @@ impl Platform {
     }
 
     /// Size of the centre's acceleration.
-    pub fn bend(&self) -> f32 {
+    pub fn centre_acceleration(&self) -> f32 {
         hypot(self.acceleration.x, self.acceleration.y)
     }
 

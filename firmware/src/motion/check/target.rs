@@ -11,22 +11,23 @@ use crate::number::float::i64_to_f32_fast;
 use kinematics::{Angle, Scalar};
 
 /// A thousand million turns, in units of a position.
-const MOST_TURNS: i64 = 1_000_000_000 << 32;
+const MAX_TURNS: i64 = 1_000_000_000 << 32;
 
 /// Slack for a target on the rim itself, track radii: its coordinates are rounded to 2^-32.
-const RIM: f64 = 1e-9;
+const TARGET_RIM: f64 = 1e-9;
 /// The same where the platform centre follows from another point by sines that are good to 2^-29.
-const RIM_TURNED: f64 = 1e-8;
+const TARGET_RIM_OFF_CENTRE: f64 = 1e-8;
 
 /// Whether `target` can be moved to, from anywhere.
-pub fn check_target(target: &Position, ground: &Constraints) -> Result<(), Refusal> {
-    if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
+pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
+    if target[2].unsigned_abs() > MAX_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
-    if !is_well_inside(target, ground) {
-        check_disk(target, ground)?;
+    if !is_well_inside(target, constraints) {
+        check_disk(target, constraints)?;
     }
-    let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
+    let inside =
+        |i: usize| (constraints.bounds[i][0]..=constraints.bounds[i][1]).contains(&target[i]);
     if let Some(axis) = (0..3).find(|&i| !inside(i)) {
         return Err(Refusal::OutOfBounds { axis });
     }
@@ -34,33 +35,34 @@ pub fn check_target(target: &Position, ground: &Constraints) -> Result<(), Refus
 }
 
 /// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
-fn is_well_inside(target: &Position, ground: &Constraints) -> bool {
+fn is_well_inside(target: &Position, constraints: &Constraints) -> bool {
     let [x, y] = [0, 1].map(|i| i64_to_f32_fast(target[i]) * PER_POSITION_UNIT);
-    let usable = ground.usable_radius as f32;
-    ground.rotation_centre.map(f64::to_bits) == [0; 2] && x * x + y * y < usable * usable * NEARLY
+    let usable = constraints.usable_radius as f32;
+    constraints.rotation_centre.map(f64::to_bits) == [0; 2]
+        && x * x + y * y < usable * usable * NEARLY
 }
 
 /// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
 const NEARLY: f32 = 0.999_99;
 
 #[inline(never)]
-fn check_disk(target: &Position, ground: &Constraints) -> Result<(), Refusal> {
+fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
     let [mut x, mut y] = xy_radii(target);
-    let mut rim = RIM;
-    if ground.rotation_centre != [0.0; 2] {
+    let mut rim = TARGET_RIM;
+    if constraints.rotation_centre != [0.0; 2] {
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
         let (sin, cos) = (sin.to_f64(), cos.to_f64());
-        let [p, q] = ground.rotation_centre;
+        let [p, q] = constraints.rotation_centre;
         x -= cos * p - sin * q;
         y -= sin * p + cos * q;
-        rim = RIM_TURNED;
+        rim = TARGET_RIM_OFF_CENTRE;
     }
-    let most = ground.usable_radius + rim;
+    let most = constraints.usable_radius + rim;
     let square = x * x + y * y;
     if square > most * most {
         return Err(Refusal::OutsideDisk {
-            radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
-            usable_mm: ground.usable_radius * ground.geometry.radius_mm,
+            radius_mm: libm::sqrt(square) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
         });
     }
     Ok(())
@@ -68,16 +70,20 @@ fn check_disk(target: &Position, ground: &Constraints) -> Result<(), Refusal> {
 
 /// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
 #[inline(never)]
-pub fn check_line(from: &Position, to: &Position, ground: &Constraints) -> Result<(), Refusal> {
-    check_target(to, ground)?;
-    if !ground.limits.all_positive() {
+pub fn check_line(
+    from: &Position,
+    to: &Position,
+    constraints: &Constraints,
+) -> Result<(), Refusal> {
+    check_target(to, constraints)?;
+    if !constraints.limits.all_positive() {
         return Err(Refusal::InvalidLimits);
     }
-    match line_in_disk::exit(from, to, ground) {
+    match line_in_disk::exit(from, to, constraints) {
         Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
-            usable_mm: ground.usable_radius * ground.geometry.radius_mm,
-            fraction: f64::from(exit.share),
+            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
+            fraction: f64::from(exit.fraction),
         }),
         None => Ok(()),
     }

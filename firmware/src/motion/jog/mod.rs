@@ -8,7 +8,7 @@
 //!          _/
 //! ```
 //!
-//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (see `swing`): the faster
+//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (see `check/pivot_bounds`): the faster
 //! the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it is too fast.
 //! Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point beside its centre,
 //! its centre goes in circles: the point then stays where every orientation is possible, or, where it is not, point and theta
@@ -21,11 +21,11 @@ mod hold;
 mod start;
 mod travel;
 
-use self::end::End;
-use self::start::{Setting, State};
-use super::brake::velocity_change::{Force, Ramp, release};
-use super::check::pivot_bounds::{Pace, per_second};
-use super::check::{Envelope, Legs, Looks};
+use self::end::HoldThenStop;
+use self::start::{InitialState, JogRequest};
+use super::brake::velocity_change::{AccelerationLimits, VelocityRamp, release_acceleration};
+use super::check::pivot_bounds::{Speeds, per_second};
+use super::check::{CheckBudget, CheckedPieces, PlanCheck};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::units::TickLimits;
@@ -38,7 +38,7 @@ use super::retarget::RetargetError;
 /// says. Zero is a velocity as any other: that axis stops smoothly.
 ///
 /// # Errors
-/// [`NoTransition::Refused`] when there is no such jog, with the reason; [`NoTransition::NeedsStop`] when there is, but not
+/// [`RetargetError::Refused`] when there is no such jog, with the reason; [`RetargetError::NeedsStop`] when there is, but not
 /// without a stop before.
 #[inline(never)]
 pub fn plan_jog(
@@ -46,7 +46,7 @@ pub fn plan_jog(
     start: PlanStart,
     state: &[AxisState; 3],
     velocity: &[f64; 3],
-    ground: &Constraints,
+    constraints: &Constraints,
 ) -> Result<Plan, RetargetError> {
     // Written where it stays: a plan has a thousand bytes.
     let mut planned = Ok(Plan {
@@ -55,7 +55,7 @@ pub fn plan_jog(
         ..Plan::default()
     });
     if let Ok(plan) = &mut planned
-        && let Err(no) = write(plan, state, velocity, ground)
+        && let Err(no) = write(plan, state, velocity, constraints)
     {
         planned = Err(no);
     }
@@ -66,28 +66,28 @@ fn write(
     plan: &mut Plan,
     state: &[AxisState; 3],
     velocity: &[f64; 3],
-    ground: &Constraints,
+    constraints: &Constraints,
 ) -> Result<(), RetargetError> {
-    let setting = Setting::new(velocity, ground).map_err(RetargetError::Refused)?;
-    let now = State::new(state, &setting);
+    let request = JogRequest::new(velocity, constraints).map_err(RetargetError::Refused)?;
+    let now = InitialState::new(state, &request);
     let from_rest = matches!(plan.start, PlanStart::Rest(_));
-    let mut wanted = setting.velocity;
+    let mut wanted = request.velocity;
     for _ in 0..ATTEMPTS {
-        if from_rest && wanted == [0; 3] && setting.velocity != wanted {
+        if from_rest && wanted == [0; 3] && request.velocity != wanted {
             return Err(RetargetError::Refused(Refusal::NoRoom));
         }
-        let jog = Jog::new(state, &now, wanted, &setting, &mut plan.pieces)?;
-        match jog.hold(state, &setting, from_rest) {
+        let jog = Jog::new(state, &now, wanted, &request, &mut plan.pieces)?;
+        match jog.hold(state, &request, from_rest) {
             Ok(hold) => {
                 // From rest the way there is the first part of the way on, which was looked at for the time that it is held.
                 if !from_rest {
-                    check(&plan.pieces, state, ground)?;
+                    check(&plan.pieces, state, constraints)?;
                 }
                 jog.finish(plan, hold);
                 return Ok(());
             }
             Err(_) if !from_rest => return Err(RetargetError::NeedsStop),
-            Err(short) => wanted = jog.slower(&short, &setting),
+            Err(short) => wanted = jog.slower(&short, &request),
         }
     }
     Err(RetargetError::Refused(Refusal::NoRoom))
@@ -100,13 +100,13 @@ const ATTEMPTS: usize = 4;
 fn check(
     pieces: &Pieces,
     state: &[AxisState; 3],
-    ground: &Constraints,
+    constraints: &Constraints,
 ) -> Result<(), RetargetError> {
-    let envelope = Envelope::new(ground, TickLimits::new(ground), state);
-    let mut legs = Legs::new();
-    envelope.legs(pieces, state, &mut legs);
-    envelope
-        .check(&legs, &mut { Looks::ALL })
+    let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), state);
+    let mut legs = CheckedPieces::new();
+    plan_check.prepare(pieces, state, &mut legs);
+    plan_check
+        .check(&legs, &mut { CheckBudget::WHOLE })
         .map_err(|_| RetargetError::NeedsStop)
 }
 
@@ -119,8 +119,8 @@ struct Jog {
     /// Ticks of the change of velocity, release not counted.
     ramp: u64,
     /// Brings the velocity back to zero.
-    brake: Ramp,
-    force: Force,
+    brake: VelocityRamp,
+    force: AccelerationLimits,
     radius: f32,
 }
 
@@ -128,18 +128,19 @@ impl Jog {
     /// Writes the pieces of the way there, too.
     fn new(
         state: &[AxisState; 3],
-        now: &State,
+        now: &InitialState,
         wanted: [i64; 3],
-        setting: &Setting,
+        request: &JogRequest,
         pieces: &mut Pieces,
     ) -> Result<Self, RetargetError> {
-        let hz = setting.hz;
+        let hz = request.hz;
         let target = per_second(&wanted, hz);
-        let (radius, force) = setting.force(now, &target)?;
+        let (radius, force) = request.limits_towards(now, &target)?;
         pieces.clear();
-        let released = release(state, Pace::of(&now.acceleration), force.jerk, hz, pieces);
+        let released =
+            release_acceleration(state, Speeds::of(&now.acceleration), force.jerk, hz, pieces);
         let change = [0, 1, 2].map(|i| wanted[i] - released[i]);
-        let ramp = Ramp::new(Pace::of(&per_second(&change, hz)), &force, hz);
+        let ramp = VelocityRamp::new(Speeds::of(&per_second(&change, hz)), &force, hz);
         for piece in ramp.pieces(change) {
             // Release and ramp are five.
             let _ = pieces.push(piece);
@@ -148,7 +149,7 @@ impl Jog {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),
             ramp: ramp.ticks(),
-            brake: Ramp::new(Pace::of(&target), &force, hz),
+            brake: VelocityRamp::new(Speeds::of(&target), &force, hz),
             force,
             radius,
         })
@@ -163,11 +164,11 @@ impl Jog {
         });
         let brakes = self.brake.pieces(change);
         let mut ends = [
-            End::new(change[..2] != [0, 0], point),
-            End::new(change[2] != 0, turn),
+            HoldThenStop::new(change[..2] != [0, 0], point),
+            HoldThenStop::new(change[2] != 0, turn),
         ];
         // Whatever begins or ends somewhere begins a piece.
-        while let Some(ticks) = ends[0].soonest(&ends[1]) {
+        while let Some(ticks) = ends[0].next_change(&ends[1]) {
             let jerks = [0, 1].map(|i| ends[i].jerk(&brakes));
             if ticks > 0 {
                 // Room for the ramp's five and eight for two ends.
@@ -177,7 +178,7 @@ impl Jog {
                 });
             }
             for end in &mut ends {
-                end.go_on(ticks, &brakes);
+                end.advance(ticks, &brakes);
             }
         }
         let rest = state_after_pieces(&self.steady, &plan.pieces[begun..], &[0; 3]);

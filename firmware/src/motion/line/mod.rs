@@ -1,9 +1,9 @@
 //! Planning a straight line from rest to rest.
 //!
-//! First the fastest motion under the limits of the line alone, in closed form ([`Profile`]). If the pivots can follow it, as
-//! most short and slow lines, that is it. Otherwise the demands on the pivots are laid out along the line ([`Grid`]), the
-//! fastest speed that they allow at every place is found ([`fastest`]), replaced by a few stretches of constant acceleration
-//! ([`under`]) and limited in jerk ([`pace`]). What roundings and corners still leave over a limit is taken off the whole
+//! First the fastest motion under the limits of the line alone, in closed form ([`RestToRestProfile`]). If the pivots can follow it, as
+//! most short and slow lines, that is it. Otherwise the demands on the pivots are laid out along the line ([`DemandGrid`]), the
+//! fastest speed that they allow at every place is found ([`velocity_limit_squared`]), replaced by a few stretches of constant acceleration
+//! ([`fit_segments_below`]) and limited in jerk ([`write_path_profile`]). What roundings and corners still leave over a limit is taken off the whole
 //! motion. The profile, slowed down until the pivots follow, competes: the shorter of the two is taken.
 
 pub(crate) mod jerk_ramps;
@@ -21,12 +21,12 @@ use super::limits::PathLimits;
 use super::plan::{Plan, PlanStart, Position};
 use super::profile::rest_to_rest::RestToRestProfile;
 use super::refusal::Refusal;
-use crate::motion::line::jerk_ramps::pace;
+use crate::motion::line::jerk_ramps::write_path_profile;
 use crate::motion::line::path::Path;
-use crate::motion::line::path_profile::Pace;
-use crate::motion::line::pivot_demand::{Grid, Moment};
-use crate::motion::line::segments::{Polygon, thin, under};
-use crate::motion::line::topp::{PLACES, fastest};
+use crate::motion::line::path_profile::PathProfile;
+use crate::motion::line::pivot_demand::{DemandGrid, PathState};
+use crate::motion::line::segments::{Corners, fit_segments_below, remove_close_corners};
+use crate::motion::line::topp::{GRID_POINTS, velocity_limit_squared};
 use crate::number::float::{FloatMinMax, i64_to_f32_fast, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 use heapless::Vec;
@@ -37,9 +37,9 @@ pub fn plan_line(
     id: u32,
     from: Position,
     to: Position,
-    ground: &Constraints,
+    constraints: &Constraints,
 ) -> Result<Plan, Refusal> {
-    check_line(&from, &to, ground)?;
+    check_line(&from, &to, constraints)?;
     let mut plan = Plan {
         id,
         start: PlanStart::Rest(from),
@@ -57,18 +57,21 @@ pub fn plan_line(
     };
     let turned_round = (out(from), from) > (out(to), to);
     let [first, last] = if turned_round { [to, from] } else { [from, to] };
-    let path = Path::new(&first, &last, ground);
-    let mut pace = Pace::default();
-    (Way::new(&path, ground).write(&mut pace)).ok_or(Refusal::InvalidLimits)?;
+    let path = Path::new(&first, &last, constraints);
+    let mut path_profile = PathProfile::default();
+    (LinePlanner::new(&path, constraints).write(&mut path_profile))
+        .ok_or(Refusal::InvalidLimits)?;
     if turned_round {
-        pace.beats.reverse();
+        path_profile.segments.reverse();
     }
-    pace.play(&mut plan, &from).ok_or(Refusal::InvalidLimits)?;
+    path_profile
+        .write_plan(&mut plan, &from)
+        .ok_or(Refusal::InvalidLimits)?;
     Ok(plan)
 }
 
 /// A line and what limits motion along it.
-struct Way<'a> {
+struct LinePlanner<'a> {
     path: &'a Path,
     limits: PathLimits,
     pivot_rate: f32,
@@ -79,12 +82,12 @@ struct Way<'a> {
 /// Looks at a motion in a stretch of it, besides those at the places it passes.
 const LOOKS: u32 = 1;
 /// Room that a motion gets for roundings when it is slowed down.
-const SPARE: f32 = 1.001_5;
+const ROUNDING_MARGIN: f32 = 1.001_5;
 
-impl<'a> Way<'a> {
-    fn new(path: &'a Path, ground: &Constraints) -> Self {
-        let limits = &ground.limits;
-        let length_mm = path.length * ground.geometry.radius_mm as f32;
+impl<'a> LinePlanner<'a> {
+    fn new(path: &'a Path, constraints: &Constraints) -> Self {
+        let limits = &constraints.limits;
+        let length_mm = path.length * constraints.geometry.radius_mm as f32;
         Self {
             path,
             limits: limits.for_line(length_mm, path.turn.to_degrees()),
@@ -95,45 +98,57 @@ impl<'a> Way<'a> {
     }
 
     /// Writes the fastest motion found.
-    fn write(&self, pace: &mut Pace) -> Option<()> {
+    fn write(&self, path_profile: &mut PathProfile) -> Option<()> {
         let profile = RestToRestProfile::new(&self.limits, self.hz)?;
-        profile.write(pace);
+        profile.write(path_profile);
         if self.pivots_follow_anywhere(&profile) {
             return Some(());
         }
-        let mut grid = Grid::new(&self.limits);
+        let mut grid = DemandGrid::new(&self.limits);
         grid.fill(self.path, self.pivot_rate, self.pivot_acceleration);
-        let excess = self.excess(pace, &grid);
+        let excess = self.excess(path_profile, &grid);
         if excess <= 1.0 {
             return Some(());
         }
         let slowed = profile.slowed(excess)?;
-        let shaped = self.shape(&grid, pace);
-        if shaped.is_none() || pace.ticks() >= slowed.ticks() {
-            slowed.write(pace);
+        let shaped = self.write_topp_profile(&grid, path_profile);
+        if shaped.is_none() || path_profile.ticks() >= slowed.ticks() {
+            slowed.write(path_profile);
         }
         Some(())
     }
 
     /// Writes the motion that follows the pivots' limits.
-    fn shape(&self, grid: &Grid, paced: &mut Pace) -> Option<()> {
-        let mut z = [0.0; PLACES];
-        fastest(grid, &mut z);
-        let mut polygon = Polygon::new();
-        under(&z, grid.stretches(), self.limits.acceleration, &mut polygon)?;
-        thin(&mut polygon, &self.limits);
-        pace(&polygon, SPARE, &self.limits, self.hz, paced)?;
-        let excess = self.excess(paced, grid);
+    fn write_topp_profile(&self, grid: &DemandGrid, path_profile: &mut PathProfile) -> Option<()> {
+        let mut z = [0.0; GRID_POINTS];
+        velocity_limit_squared(grid, &mut z);
+        let mut corners = Corners::new();
+        fit_segments_below(&z, grid.stretches(), self.limits.acceleration, &mut corners)?;
+        remove_close_corners(&mut corners, &self.limits);
+        write_path_profile(
+            &corners,
+            ROUNDING_MARGIN,
+            &self.limits,
+            self.hz,
+            path_profile,
+        )?;
+        let excess = self.excess(path_profile, grid);
         if excess <= 1.0 {
             return Some(());
         }
         // With the jerk of the same motion played slower it is just that, and needs no second look.
-        let slower = excess * SPARE;
+        let slower = excess * ROUNDING_MARGIN;
         let limits = PathLimits {
             jerk: self.limits.jerk / (slower * slower * slower),
             ..self.limits
         };
-        pace(&polygon, SPARE * slower, &limits, self.hz, paced)
+        write_path_profile(
+            &corners,
+            ROUNDING_MARGIN * slower,
+            &limits,
+            self.hz,
+            path_profile,
+        )
     }
 
     /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.
@@ -145,16 +160,16 @@ impl<'a> Way<'a> {
             && first * acceleration + second * rate * rate <= self.pivot_acceleration
     }
 
-    /// The largest excess of a motion over its limits (see [`Grid::excess`]), jerk included.
-    fn excess(&self, pace: &Pace, grid: &Grid) -> f32 {
+    /// The largest excess of a motion over its limits (see [`DemandGrid::excess`]), jerk included.
+    fn excess(&self, path_profile: &PathProfile, grid: &DemandGrid) -> f32 {
         let places = grid.stretches() as f32;
-        let unit = pace.unit() * self.hz * self.hz * self.hz;
-        let mut now = Moment::default();
+        let unit = path_profile.unit() * self.hz * self.hz * self.hz;
+        let mut now = PathState::default();
         let mut worst = 0.0_f32;
         let (mut acceleration, mut jerk) = (0.0_f32, 0.0_f32);
-        for beat in &pace.beats {
-            let seconds = ticks_to_f32(beat.ticks) / self.hz;
-            let push = beat.jerk as f32 * unit;
+        for segment in &path_profile.segments {
+            let seconds = ticks_to_f32(segment.ticks) / self.hz;
+            let push = segment.jerk as f32 * unit;
             jerk = jerk.fmax(push.abs());
             let way = now.after(seconds, push).s - now.s;
             let steps = LOOKS + (way.abs() * places) as u32;
@@ -177,7 +192,7 @@ impl<'a> Way<'a> {
     }
 }
 
-impl Moment {
+impl PathState {
     /// `seconds` later under a constant jerk.
     fn after(&self, seconds: f32, jerk: f32) -> Self {
         let half = 0.5 * seconds;

@@ -34,7 +34,7 @@ pub(crate) struct Path {
     /// P(0).
     pub from: [f32; 2],
     /// L.
-    pub way: [f32; 2],
+    pub displacement: [f32; 2],
     /// |L|.
     pub length: f32,
     /// T.
@@ -60,27 +60,28 @@ pub(crate) struct Demand {
 
 impl Path {
     #[inline(never)]
-    pub fn new(from: &Position, to: &Position, ground: &Constraints) -> Self {
-        let way = [0, 1].map(|i| i64_to_f32_fast(to[i].wrapping_sub(from[i])) * PER_POSITION_UNIT);
+    pub fn new(from: &Position, to: &Position, constraints: &Constraints) -> Self {
+        let displacement =
+            [0, 1].map(|i| i64_to_f32_fast(to[i].wrapping_sub(from[i])) * PER_POSITION_UNIT);
         let turn_units = to[2].wrapping_sub(from[2]);
-        let [x, y] = ground.rotation_centre.map(|part| part as f32);
+        let [x, y] = constraints.rotation_centre.map(|part| part as f32);
         // n_i of the platform's own axes: its guides point at -30, 90 and 210 deg.
         let half = 0.5;
         let wide = f32::SIN_60;
         Self {
             from: [0, 1].map(|i| i64_to_f32_fast(from[i]) * PER_POSITION_UNIT),
-            way,
-            length: sqrt_f32(way[0] * way[0] + way[1] * way[1]),
+            displacement,
+            length: sqrt_f32(displacement[0] * displacement[0] + displacement[1] * displacement[1]),
             turn: i64_to_f32_fast(turn_units) * (PER_POSITION_UNIT * core::f32::consts::TAU),
             theta: from[2],
             turn_units,
             offsets: [half * x + wide * y, -x, half * x - wide * y],
-            usable: ground.usable_radius as f32,
+            usable: constraints.usable_radius as f32,
         }
     }
 
     /// Whether the line turns so far that the pivots are not followed through each turn.
-    pub fn is_wound(&self) -> bool {
+    pub fn spans_many_turns(&self) -> bool {
         self.turn_units.unsigned_abs() > FOLLOWED
     }
 
@@ -91,13 +92,16 @@ impl Path {
         let r = (furthest + self.offset()).fmin(self.usable);
         let over_c = 1.0 / sqrt_f32((1.0 - r * r).fmax(LEAST_COSINE));
         let turn = self.turn.abs();
-        let swing = if self.offset() > 0.0 {
+        let relative_rate = if self.offset() > 0.0 {
             (self.length + turn * furthest) * over_c
         } else {
             self.length * over_c + turn * furthest
         };
         let drawn = turn * (2.0 * self.length + turn * furthest);
-        (turn + swing, (drawn + swing * swing * r) * over_c)
+        (
+            turn + relative_rate,
+            (drawn + relative_rate * relative_rate * r) * over_c,
+        )
     }
 
     /// K.
@@ -109,15 +113,15 @@ impl Path {
 
     /// P(s).
     pub fn point(&self, s: f32) -> [f32; 2] {
-        [0, 1].map(|i| self.from[i] + self.way[i] * s)
+        [0, 1].map(|i| self.from[i] + self.displacement[i] * s)
     }
 
     /// The demands at places evenly spaced, from s = 0 on, with so many stretches in all.
-    pub fn places(&self, stretches: usize) -> Places<'_> {
+    pub fn demands(&self, stretches: usize) -> Demands<'_> {
         let step = 1.0 / stretches as f32;
-        // A direction is worth nothing on a line that is wound, and not looked at.
+        // A direction is worth nothing on a line that is of many turns, and not looked at.
         let turn = (i64_to_f32_fast(self.turn_units) * step) as i32;
-        Places {
+        Demands {
             path: self,
             s: 0.0,
             step,
@@ -129,7 +133,7 @@ impl Path {
     /// The demand at s, by sine and cosine of theta there.
     #[cfg(test)]
     pub fn at(&self, s: f32) -> Demand {
-        if self.is_wound() {
+        if self.spans_many_turns() {
             return self.demand_of_any_orientation(s);
         }
         let turned = (self.turn_units as f64 * f64::from(s)) as i64;
@@ -155,21 +159,24 @@ impl Path {
     /// phi' and phi'' of the pivot on the guide of direction `u`.
     #[inline]
     fn pivot(&self, [x, y]: &[f32; 2], [cos, sin]: &[f32; 2], offset: f32) -> (f32, f32) {
-        let [way_x, way_y] = self.way;
+        let [way_x, way_y] = self.displacement;
         let turn = self.turn;
         let across = y * cos - x * sin;
         let d = across - offset;
         let d_1 = way_y * cos - way_x * sin - turn * (x * cos + y * sin);
         let d_2 = -turn * (2.0 * (way_x * cos + way_y * sin) + turn * across);
         let over_c = 1.0 / sqrt_f32((1.0 - d * d).fmax(LEAST_COSINE));
-        let swing = d_1 * over_c;
-        (turn + swing, (d_2 + swing * swing * d) * over_c)
+        let relative_rate = d_1 * over_c;
+        (
+            turn + relative_rate,
+            (d_2 + relative_rate * relative_rate * d) * over_c,
+        )
     }
 
     /// The largest demand of any orientation; with both signs of the second derivative.
     fn demand_of_any_orientation(&self, s: f32) -> Demand {
         let [x, y] = self.point(s);
-        let [way_x, way_y] = self.way;
+        let [way_x, way_y] = self.displacement;
         let square = x * x + y * y;
         let r = sqrt_f32(square);
         let k = self.offset();
@@ -187,17 +194,17 @@ impl Path {
         let passed = sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).fmax(LEAST_COSINE)).fmax(0.0));
         let furthest = (r + k).fmin(self.usable);
         let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).fmax(LEAST_COSINE));
-        let swing = around.abs() * passed + outwards.abs() * over_c;
+        let relative_rate = around.abs() * passed + outwards.abs() * over_c;
         let turn = self.turn.abs();
         let drawn = turn * (2.0 * self.length + turn * r);
         // Of a guide through the moved point the two parts of phi'' oppose each other.
-        let thrown = swing * swing * furthest;
+        let thrown = relative_rate * relative_rate * furthest;
         let either = if k > 0.0 {
             drawn + thrown
         } else {
             drawn.fmax(thrown)
         };
-        let (first, second) = (turn + swing, either * over_c);
+        let (first, second) = (turn + relative_rate, either * over_c);
         Demand {
             first: [first; 3],
             second: [second, -second, second],
@@ -211,8 +218,8 @@ fn direction(theta: i64) -> [f32; 2] {
     [cos.to_f32(), sin.to_f32()]
 }
 
-/// Places along a line; see [`Path::places`].
-pub(crate) struct Places<'a> {
+/// Demands along a line; see [`Path::demands`].
+pub(crate) struct Demands<'a> {
     path: &'a Path,
     s: f32,
     step: f32,
@@ -222,11 +229,11 @@ pub(crate) struct Places<'a> {
     turn: [f32; 2],
 }
 
-impl Places<'_> {
+impl Demands<'_> {
     /// The demand at the next place.
     pub fn next(&mut self) -> Demand {
         let path = self.path;
-        let demand = if path.is_wound() {
+        let demand = if path.spans_many_turns() {
             path.demand_of_any_orientation(self.s)
         } else {
             path.demand(self.s, self.direction)

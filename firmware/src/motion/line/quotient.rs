@@ -14,10 +14,10 @@ const MANTISSA: u32 = (1 << 23) - 1;
 /// `numerator` / `divisor` (positive), off by less than 2, and what it leaves. `None` if it has more than 62 bits.
 pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
     const MOST: f32 = (1_u64 << 62) as f32;
-    let over = 1.0 / rough_longest(divisor);
+    let over = 1.0 / any_i128_to_f32_fast(divisor);
     let (mut quotient, mut rest) = (0_i64, numerator);
     for _ in 0..ROUNDS {
-        let guess = rough_longest(rest) * over;
+        let guess = any_i128_to_f32_fast(rest) * over;
         // Nor is a NaN below it.
         if !(guess.abs() < MOST) {
             return None;
@@ -40,7 +40,7 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
 }
 
 /// Any number as a float, to 22 bits.
-fn rough_longest(value: i128) -> f32 {
+fn any_i128_to_f32_fast(value: i128) -> f32 {
     const UPPER: f32 = 18_446_744_073_709_551_616.0;
     if (value >> 103) == (value >> 127) {
         i128_to_f32_fast(value)

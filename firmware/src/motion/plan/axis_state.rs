@@ -37,7 +37,7 @@ pub struct TickIncrement {
 }
 
 impl TickIncrement {
-    /// Of a jerk and a nudge as [`Axis::advance`] takes them.
+    /// Of a jerk and a nudge as [`AxisState::advance`] takes them.
     #[inline]
     pub fn new(jerk: i64, nudge: i64) -> Self {
         let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
@@ -67,16 +67,16 @@ impl AxisState {
 
     /// The state one tick later.
     #[inline]
-    pub fn advance_by(&mut self, push: &TickIncrement) {
+    pub fn advance_by(&mut self, increment: &TickIncrement) {
         // Both are even, so that the shifts are the halves.
         let step = (self.velocity)
             .wrapping_add(self.acceleration >> 1)
-            .wrapping_add(push.sixth);
+            .wrapping_add(increment.sixth);
         self.position = self.position.wrapping_add(i128::from(step));
         self.velocity = (self.velocity)
             .wrapping_add(self.acceleration)
-            .wrapping_add(push.jerk >> 1);
-        self.acceleration = self.acceleration.wrapping_add(push.jerk);
+            .wrapping_add(increment.jerk >> 1);
+        self.acceleration = self.acceleration.wrapping_add(increment.jerk);
     }
 
     /// The state `ticks` later, the same to the bit as that many calls of [`advance`](Self::advance).

@@ -1,9 +1,9 @@
 //! The controlled stop of a fault: the plan under way is followed slower and slower.
 //!
-//! The plan's own time runs at a pace that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is over. So
+//! The plan's own time runs at a rate that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is over. So
 //! the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of any plan, without
-//! planning anything: velocity is the plan's times the pace, acceleration the plan's times its square and the plan's velocity
-//! times the pace's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
+//! planning anything: velocity is the plan's times the rate, acceleration the plan's times its square and the plan's velocity
+//! times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
 
 use super::follower::{ACCELERATION_CUT, PlanFollower, Setpoint, SetpointScale, VELOCITY_CUT};
 use kinematics::{Acceleration, Twist};
@@ -24,7 +24,7 @@ pub(crate) struct TimeScaling {
     /// Part of the plan's tick that has begun.
     part: f32,
     rate: f32,
-    /// Change of the pace, 1/s.
+    /// Change of the rate, 1/s.
     rate_change: f32,
 }
 
@@ -52,27 +52,27 @@ impl PlanFollower {
     }
 
     /// One tick on, in a stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
-    pub fn advance_fault_stop(&mut self, slowdown: &FaultStop) {
+    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop) {
         if !self.moving {
             return;
         }
-        let mut slowing = self.time_scaling;
-        let before = slowing.rate;
-        slowing.progress += slowdown.step;
-        let u = slowing.progress;
+        let mut time_scaling = self.time_scaling;
+        let before = time_scaling.rate;
+        time_scaling.progress += fault_stop.step;
+        let u = time_scaling.progress;
         if u >= 1.0 {
             let rest = self.fault_stop_position();
             self.rest_at(rest);
             return;
         }
-        slowing.rate = 1.0 - u * u * (3.0 - 2.0 * u);
-        slowing.rate_change = -6.0 * u * (1.0 - u) * slowdown.step * slowdown.rate_hz;
-        slowing.part += 0.5 * (before + slowing.rate);
-        if slowing.part >= 1.0 {
-            slowing.part -= 1.0;
+        time_scaling.rate = 1.0 - u * u * (3.0 - 2.0 * u);
+        time_scaling.rate_change = -6.0 * u * (1.0 - u) * fault_stop.step * fault_stop.rate_hz;
+        time_scaling.part += 0.5 * (before + time_scaling.rate);
+        if time_scaling.part >= 1.0 {
+            time_scaling.part -= 1.0;
             self.advance();
         }
-        self.time_scaling = slowing;
+        self.time_scaling = time_scaling;
     }
 
     /// The setpoint now, in a stop.
@@ -83,8 +83,8 @@ impl PlanFollower {
         let plan = self.setpoint(scale);
         let TimeScaling {
             part,
-            rate: pace,
-            rate_change: change,
+            rate,
+            rate_change,
             ..
         } = self.time_scaling;
         // Of the plan within its tick.
@@ -93,18 +93,18 @@ impl PlanFollower {
         let x = twist.x + acceleration.x * tick;
         let y = twist.y + acceleration.y * tick;
         let theta = twist.theta + acceleration.theta * tick;
-        let square = pace * pace;
+        let square = rate * rate;
         Setpoint {
             position: self.fault_stop_position(),
             twist: Twist {
-                x: x * pace,
-                y: y * pace,
-                theta: theta * pace,
+                x: x * rate,
+                y: y * rate,
+                theta: theta * rate,
             },
             acceleration: Acceleration {
-                x: acceleration.x * square + x * change,
-                y: acceleration.y * square + y * change,
-                theta: acceleration.theta * square + theta * change,
+                x: acceleration.x * square + x * rate_change,
+                y: acceleration.y * square + y * rate_change,
+                theta: acceleration.theta * square + theta * rate_change,
             },
         }
     }

@@ -19,7 +19,7 @@ pub struct Setpoint {
     pub acceleration: Acceleration<f32>,
 }
 
-/// Factors from the integers of [`Axis`] to physical rates.
+/// Factors from the integers of [`AxisState`] to physical rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetpointScale {
     pub(super) velocity: f32,
@@ -146,8 +146,8 @@ impl PlanFollower {
         }
         // None are left where a plan has no pieces.
         if self.left > 0 {
-            for (axis, push) in self.axes.iter_mut().zip(&self.increments) {
-                axis.advance_by(push);
+            for (axis, increment) in self.axes.iter_mut().zip(&self.increments) {
+                axis.advance_by(increment);
             }
             self.done += 1;
             self.left -= 1;

@@ -28,7 +28,7 @@ impl RotationCentre {
     /// The platform's own centre.
     pub const PLATFORM: Self = Self([Fixed::ZERO; 2]);
 
-    /// The point at `point` (track radii), to the nearest 2^-29; `None` beyond [`FURTHEST`] or when it is no point.
+    /// The point at `point` (track radii), to the nearest 2^-29; `None` beyond [`MAX_CENTRE_OFFSET`] or when it is no point.
     pub fn new(point: [f64; 2]) -> Option<Self> {
         (libm::hypot(point[0], point[1]) <= MAX_CENTRE_OFFSET)
             .then(|| Self(point.map(Fixed::from_f64)))
@@ -46,7 +46,7 @@ impl RotationCentre {
         [x.wrapping_add(arm[0]), y.wrapping_add(arm[1]), theta]
     }
 
-    /// Position of the platform's centre when this point is at `point`: the inverse of [`of_platform`](Self::of_platform),
+    /// Position of the platform's centre when this point is at `point`: the inverse of [`from_platform`](Self::from_platform),
     /// to the unit.
     pub fn to_platform(&self, point: &Position) -> Position {
         let [x, y, theta] = *point;

@@ -1,4 +1,4 @@
-//! The units of a [`Position`](crate::motion::Position) and of an [`Axis`](crate::motion::Axis) in floats, and limits in those of the latter and
+//! The units of a [`Position`](crate::motion::Position) and of an [`AxisState`](crate::motion::AxisState) in floats, and limits in those of the latter and
 //! ticks.
 
 use crate::motion::constraints::Constraints;
@@ -14,13 +14,13 @@ pub(crate) struct TickLimits {
 /// 2^32: units of a [`Position`](crate::motion::Position) in a track radius or a turn, and the inverse.
 pub(crate) const POSITION_UNITS: f32 = 4_294_967_296.0;
 pub(crate) const PER_POSITION_UNIT: f32 = 1.0 / POSITION_UNITS;
-/// 2^72: units of an [`Axis`](crate::motion::Axis), and the inverse.
+/// 2^72: units of an [`AxisState`](crate::motion::AxisState), and the inverse.
 pub(crate) const AXIS_UNITS: f32 = 4_722_366_482_869_645_213_696.0;
 pub(crate) const PER_AXIS_UNIT: f32 = 1.0 / AXIS_UNITS;
 
 impl TickLimits {
-    pub fn new(ground: &Constraints) -> Self {
-        let limits = &ground.limits;
+    pub fn new(constraints: &Constraints) -> Self {
+        let limits = &constraints.limits;
         let tick = 1.0 / limits.rate_hz as f32;
         let axis = |unit: f32, [speed, acceleration, jerk]: [f64; 3]| {
             let velocity = unit * tick;
@@ -32,7 +32,7 @@ impl TickLimits {
         };
         Self {
             translation: axis(
-                AXIS_UNITS / ground.geometry.radius_mm as f32,
+                AXIS_UNITS / constraints.geometry.radius_mm as f32,
                 [
                     limits.speed_mm_s,
                     limits.acceleration_mm_s2,

@@ -13,11 +13,11 @@
 //! themselves, a millionth.
 
 use crate::motion::limits::PathLimits;
-use crate::motion::line::path_profile::{Beat, Pace};
+use crate::motion::line::path_profile::{JerkSegment, PathProfile};
 use crate::number::float::{FloatMinMax, ceil_ticks, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 
-/// Lengths of the three moving averages in ticks: `jerk <= ramp`, `way >= jerk + ramp`.
+/// Lengths of the three moving averages in ticks: `jerk <= ramp`, `travel >= jerk + ramp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RestToRestProfile {
     /// b1: how long jerk acts.
@@ -52,12 +52,8 @@ impl RestToRestProfile {
     fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
         let jerk = ticks(b1)?;
         let ramp = ticks(b2)?.max(jerk);
-        let way = ticks(b3)?.max(jerk + ramp);
-        Some(Self {
-            jerk,
-            ramp,
-            travel: way,
-        })
+        let travel = ticks(b3)?.max(jerk + ramp);
+        Some(Self { jerk, ramp, travel })
     }
 
     /// Duration in ticks.
@@ -86,17 +82,17 @@ impl RestToRestProfile {
         i128::from(self.jerk * self.ramp) * i128::from(self.travel)
     }
 
-    /// Writes it as a pace: its jerks are 1 and -1.
-    pub(crate) fn write(&self, pace: &mut Pace) {
-        pace.beats.clear();
+    /// Writes it as a path profile: its jerks are 1 and -1.
+    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
+        path_profile.segments.clear();
         for (ticks, jerk) in self.segments() {
             if ticks > 0 {
                 // Seven segments, room for more.
-                let _ = pace.beats.push(Beat { ticks, jerk });
+                let _ = path_profile.segments.push(JerkSegment { ticks, jerk });
             }
         }
-        pace.sixfold = 6 * self.volume();
-        pace.bits = 0;
+        path_profile.six_times_distance = 6 * self.volume();
+        path_profile.bits = 0;
     }
 }
 

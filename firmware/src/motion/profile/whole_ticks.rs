@@ -33,7 +33,7 @@ const MOST_ROUNDS: usize = 24;
 /// How often the way that is missing is made up for. Each time it becomes a millionth.
 const CLOSINGS: usize = 1;
 /// How much of a limit is granted to the roundings of floats.
-const SLACK: f32 = 1.0 + 5e-7;
+const FIT_SLACK: f32 = 1.0 + 5e-7;
 
 /// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None` where
 /// the state allows none.
@@ -142,7 +142,7 @@ impl Shape {
             if !self.lengthen(task, limits, &solution) {
                 // A brake that is only released in part has no peak to lengthen.
                 let most = limits.acceleration.fmax(task.acceleration.abs());
-                return (solution.peak.abs() <= most * SLACK).then(|| round_i64(solution.peak));
+                return (solution.peak.abs() <= most * FIT_SLACK).then(|| round_i64(solution.peak));
             }
         }
         None
@@ -200,7 +200,7 @@ impl Shape {
             ((2, peak), (4, brake))
         };
         for (k, change) in [(0, peak - start), release, press, (6, brake)] {
-            if change.abs() > limits.jerk * SLACK * ticks_to_f32(self.n[k]) {
+            if change.abs() > limits.jerk * FIT_SLACK * ticks_to_f32(self.n[k]) {
                 let now = self.n[k];
                 let enough = change.abs() / limits.jerk;
                 let longest = ceil_ticks(sqrt_f32(enough * ticks_to_f32(now))).max(now + 1);
@@ -220,7 +220,7 @@ impl Shape {
                 self.n[k] = longest;
             }
         }
-        let hardest = limits.acceleration.fmax(start.abs()) * SLACK;
+        let hardest = limits.acceleration.fmax(start.abs()) * FIT_SLACK;
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
@@ -232,7 +232,7 @@ impl Shape {
             }
         }
         // The brake released in part leads to no speed in between.
-        let fastest = limits.velocity.fmax(task.velocity.abs()) * SLACK;
+        let fastest = limits.velocity.fmax(task.velocity.abs()) * FIT_SLACK;
         if !part && top.abs() > fastest && !longer {
             let whole: u64 = self.n.iter().sum();
             let over = top.abs() / limits.velocity - 1.0;

@@ -8,12 +8,12 @@
 //! ```
 
 use super::{RetargetError, Tries};
-use crate::motion::check::{Broken, Envelope, Legs, Looks};
+use crate::motion::check::{CheckBudget, CheckedPieces, PlanCheck, Violation};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::units::TickLimits;
 use crate::motion::plan::{MAX_PIECES, Piece, Plan, PlanStart};
-use crate::motion::stop::{Stop, stop_in};
+use crate::motion::stop::{Stop, write_stop};
 use heapless::Vec;
 
 /// Ticks of a head: enough for the slices that follow, 10 ms at 20 kHz.
@@ -46,12 +46,20 @@ impl Ahead {
         plan: &mut Plan,
         start: &[AxisState; 3],
         seen: u64,
-        ground: &Constraints,
+        constraints: &Constraints,
         ahead: &mut Option<Self>,
-    ) -> Result<bool, Broken> {
+    ) -> Result<bool, Violation> {
         let head = seen.min(HEAD);
         let mut stop = Plan::default();
-        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, ATTEMPTS);
+        let stopped = write_stop(
+            &mut stop,
+            plan,
+            start,
+            head,
+            constraints,
+            Stop::Smooth,
+            ATTEMPTS,
+        );
         let kept = begun(&plan.pieces, head);
         match stopped {
             // The plan itself comes to rest as soon.
@@ -93,10 +101,11 @@ impl Ahead {
         &self,
         id: u32,
         at: u64,
-        ground: &Constraints,
+        constraints: &Constraints,
         tries: &mut Tries,
     ) -> Result<Plan, RetargetError> {
-        self.look(ground).map_err(|broken| tries.after(&broken))?;
+        self.look(constraints)
+            .map_err(|broken| tries.after(&broken))?;
         let mut plan = Plan {
             id,
             start: PlanStart::Splice {
@@ -114,21 +123,22 @@ impl Ahead {
     }
 
     #[inline(never)]
-    fn look(&self, ground: &Constraints) -> Result<(), Broken> {
-        let envelope = Envelope::new(ground, TickLimits::new(ground), &self.start);
-        let mut legs = Legs::new();
-        envelope.legs(&self.whole.pieces, &self.start, &mut legs);
-        envelope.check(&legs, &mut Looks::after(self.seen))
+    fn look(&self, constraints: &Constraints) -> Result<(), Violation> {
+        let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), &self.start);
+        let mut legs = CheckedPieces::new();
+        plan_check.prepare(&self.whole.pieces, &self.start, &mut legs);
+        plan_check.check(&legs, &mut CheckBudget::after(self.seen))
     }
 
     /// Writes all of the transition, looked at.
     pub(crate) fn whole(
         self,
         plan: &mut Plan,
-        ground: &Constraints,
+        constraints: &Constraints,
         tries: &mut Tries,
     ) -> Result<(), RetargetError> {
-        self.look(ground).map_err(|broken| tries.after(&broken))?;
+        self.look(constraints)
+            .map_err(|broken| tries.after(&broken))?;
         *plan = self.whole;
         Ok(())
     }

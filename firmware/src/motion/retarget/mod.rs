@@ -14,7 +14,7 @@
 //! ```
 //!
 //! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of it
-//! ([`Envelope`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
+//! ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
 //! where a stop and a straight line are sooner, the stage has to stop first.
 
 pub(crate) mod ahead;
@@ -22,7 +22,7 @@ pub(crate) mod choice;
 pub(crate) mod heading;
 pub(crate) mod slower;
 
-use super::check::{Broken, Envelope, LEAST_SEEN, Legs, Looks};
+use super::check::{CheckBudget, CheckedPieces, MIN_CHECKED_TICKS, PlanCheck, Violation};
 use super::constraints::Constraints;
 use super::line::check_target;
 use super::plan::axis_state::AxisState;
@@ -86,16 +86,16 @@ pub fn plan_retarget(
     from: &[AxisState; 3],
     at: u64,
     to: Position,
-    ground: &Constraints,
+    constraints: &Constraints,
 ) -> Result<Plan, RetargetError> {
     let (mut tries, mut plan) = (Tries::NONE, Plan::default());
     loop {
         let mut ahead = None;
         let next = &mut plan;
         let leave = Leave { of, from, at };
-        let tried = try_retarget(next, id, leave, to, ground, &mut tries, &mut ahead);
+        let tried = try_retarget(next, id, leave, to, constraints, &mut tries, &mut ahead);
         let tried = match ahead {
-            Some(ahead) => ahead.whole(&mut plan, ground, &mut tries),
+            Some(ahead) => ahead.whole(&mut plan, constraints, &mut tries),
             None => tried,
         };
         if tried != Err(RetargetError::TooFast) {
@@ -112,21 +112,21 @@ pub fn try_retarget(
     id: u32,
     Leave { of, from, at }: Leave<'_>,
     to: Position,
-    ground: &Constraints,
+    constraints: &Constraints,
     tries: &mut Tries,
     ahead: &mut Option<Ahead>,
 ) -> Result<(), RetargetError> {
-    check_target(&to, ground).map_err(RetargetError::Refused)?;
-    if !ground.limits.all_positive() {
+    check_target(&to, constraints).map_err(RetargetError::Refused)?;
+    if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
     }
     if at >= of.ticks() {
         return Err(RetargetError::NeedsStop);
     }
     let state = of.state_after(from, at);
-    let limits = TickLimits::new(ground);
+    let limits = TickLimits::new(constraints);
     let choice = tries
-        .choice(&state, &to, &limits, ground)
+        .choice(&state, &to, &limits, constraints)
         .ok_or(RetargetError::NeedsStop)?;
     (plan.id, plan.end) = (id, to);
     plan.start = PlanStart::Splice {
@@ -136,18 +136,18 @@ pub fn try_retarget(
     choice
         .lay(&state, &to, &mut plan.pieces)
         .ok_or(RetargetError::NeedsStop)?;
-    let envelope = Envelope::new(ground, limits, &state);
-    let mut legs = Legs::new();
+    let plan_check = PlanCheck::new(constraints, limits, &state);
+    let mut legs = CheckedPieces::new();
     let first = first_slice(&plan.pieces);
     let (now, later) = plan.pieces.split_at(first);
-    let then = envelope.legs(now, &state, &mut legs);
+    let then = plan_check.prepare(now, &state, &mut legs);
     let end = state_after_pieces(&then, later, &[0; 3]);
     plan.nudge = nudge_to(&end, &to, plan.ticks()).ok_or(RetargetError::NeedsStop)?;
-    let mut looks = Looks::SLICE;
-    let looked = match envelope.check(&legs, &mut looks) {
+    let mut looks = CheckBudget::SLICE;
+    let looked = match plan_check.check(&legs, &mut looks) {
         Ok(()) if first == plan.pieces.len() => return Ok(()),
-        Ok(()) | Err(Broken::Unseen) if looks.seen >= LEAST_SEEN => {
-            Ahead::divide(plan, &state, looks.seen, ground, ahead)
+        Ok(()) | Err(Violation::Unchecked) if looks.checked_ticks >= MIN_CHECKED_TICKS => {
+            Ahead::divide(plan, &state, looks.checked_ticks, constraints, ahead)
         }
         Ok(()) => Ok(false),
         Err(broken) => Err(broken),
@@ -156,8 +156,8 @@ pub fn try_retarget(
         if divided {
             return Ok(());
         }
-        envelope.legs(&plan.pieces, &state, &mut legs);
-        envelope.check(&legs, &mut Looks::after(looks.seen))
+        plan_check.prepare(&plan.pieces, &state, &mut legs);
+        plan_check.check(&legs, &mut CheckBudget::after(looks.checked_ticks))
     });
     looked.map_err(|broken| tries.after(&broken))
 }
@@ -186,12 +186,12 @@ impl Tries {
         state: &[AxisState; 3],
         to: &Position,
         limits: &TickLimits,
-        ground: &Constraints,
+        constraints: &Constraints,
     ) -> Option<Choice> {
         let plane = Plane::new(state, to);
         let first = self.ratio.is_none();
         let mut choice = Choice::new(state, to, &plane, limits, &self.slower, self.ratio)?;
-        if first && self.slower.expect(state, to, &choice, ground) {
+        if first && self.slower.expect(state, to, &choice, constraints) {
             choice = Choice::new(state, to, &plane, limits, &self.slower, Some(choice.ratio))?;
         }
         self.ratio = Some(choice.ratio);
@@ -201,10 +201,10 @@ impl Tries {
     }
 
     /// After a try that broke something.
-    pub(super) fn after(&mut self, broken: &Broken) -> RetargetError {
+    pub(super) fn after(&mut self, broken: &Violation) -> RetargetError {
         self.slower.by(broken);
         self.left = self.left.saturating_sub(1);
-        if self.left > 0 && *broken != Broken::Reach {
+        if self.left > 0 && *broken != Violation::Workspace {
             RetargetError::TooFast
         } else {
             RetargetError::NeedsStop

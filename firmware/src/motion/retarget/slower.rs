@@ -1,9 +1,9 @@
 //! By how much speeds and accelerations of a transition are lower than their limits, and why.
 
 use super::choice::Choice;
-use crate::motion::check::Broken;
-use crate::motion::check::magnitudes::Sizes;
-use crate::motion::check::pivot_bounds::Bound;
+use crate::motion::check::Violation;
+use crate::motion::check::magnitudes::IntervalBounds;
+use crate::motion::check::pivot_bounds::PivotGain;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
 use crate::motion::plan::axis_state::AxisState;
@@ -37,17 +37,17 @@ impl Slower {
     };
 
     /// By what was broken, and a little for what changes with it.
-    pub fn by(&mut self, broken: &Broken) {
+    pub fn by(&mut self, broken: &Violation) {
         const MORE: f32 = 0.97;
         match broken {
-            Broken::Speed(over) => self.path *= MORE / over,
-            Broken::Force(over) => self.force *= MORE / over,
-            Broken::Rate(over) => self.speed *= MORE / over,
-            Broken::Acceleration(over) => {
+            Violation::Speed(over) => self.path *= MORE / over,
+            Violation::Acceleration(over) => self.force *= MORE / over,
+            Violation::PivotRate(over) => self.speed *= MORE / over,
+            Violation::PivotAcceleration(over) => {
                 self.force *= MORE / over;
                 self.speed *= sqrt_f32(MORE / over);
             }
-            Broken::Reach | Broken::NoStop | Broken::Unseen => {}
+            Violation::Workspace | Violation::NoRoomToStop | Violation::Unchecked => {}
         }
     }
 
@@ -57,9 +57,9 @@ impl Slower {
         state: &[AxisState; 3],
         to: &Position,
         choice: &Choice,
-        ground: &Constraints,
+        constraints: &Constraints,
     ) -> bool {
-        let hz = ground.limits.rate_hz as f32;
+        let hz = constraints.limits.rate_hz as f32;
         let [along, rotation] = choice.limits;
         let ticks = choice.duration();
         let place = |position: i64| i64_to_f32_fast(position) / POSITION_UNITS;
@@ -80,27 +80,27 @@ impl Slower {
         ];
         let radius = hypot(place(state[0].rounded()), place(state[1].rounded()))
             .fmax(hypot(place(to[0]), place(to[1])))
-            .fmin(ground.usable_radius as f32);
-        let bound = Bound::new(radius);
+            .fmin(constraints.usable_radius as f32);
+        let bound = PivotGain::new(radius);
         let arm = hypot(
-            ground.rotation_centre[0] as f32,
-            ground.rotation_centre[1] as f32,
+            constraints.rotation_centre[0] as f32,
+            constraints.rotation_centre[1] as f32,
         );
-        let sizes = Sizes {
+        let sizes = IntervalBounds {
             v: speeds,
             a: forces,
             j: [0.0; 2],
         };
-        let [rate, acceleration] = sizes.at_arm(arm).pivots(&bound);
-        let [_, drift] = Sizes {
+        let [rate, acceleration] = sizes.at_offset(arm).pivot_bounds(&bound);
+        let [_, drift] = IntervalBounds {
             a: [0.0; 2],
             ..sizes
         }
-        .at_arm(arm)
-        .pivots(&bound);
+        .at_offset(arm)
+        .pivot_bounds(&bound);
         let limits = [
-            ground.limits.pivot_rate_rad_s as f32 / USUAL,
-            ground.limits.pivot_acceleration_rad_s2 as f32 / USUAL,
+            constraints.limits.pivot_rate_rad_s as f32 / USUAL,
+            constraints.limits.pivot_acceleration_rad_s2 as f32 / USUAL,
         ];
         if rate > limits[0] {
             self.speed = (limits[0] / rate).fmax(LEAST);

@@ -95,7 +95,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// A stream from rest at `start`, of targets `period` ticks apart; `None` unless that is in [`PERIODS`].
+    /// A stream from rest at `start`, of targets `period` ticks apart; `None` unless that is in [`PERIOD_RANGE`].
     pub fn new(start: Position, period: f64, clock: Clock) -> Option<Self> {
         if !PERIOD_RANGE.contains(&period) {
             return None;
@@ -141,11 +141,11 @@ impl Stream {
     }
 
     /// Takes a target.
-    pub fn push(&mut self, target: Position, ground: &Constraints) -> Result<(), PushError> {
+    pub fn push(&mut self, target: Position, constraints: &Constraints) -> Result<(), PushError> {
         if self.announced || self.end.is_some() {
             return Err(PushError::Over);
         }
-        if let Err(refusal) = check_target(&target, ground) {
+        if let Err(refusal) = check_target(&target, constraints) {
             self.end = Some(StreamEnd::Refused(refusal));
             return Err(PushError::Refused(refusal));
         }
@@ -158,14 +158,19 @@ impl Stream {
     }
 
     /// What is to be done, `id` being the identity of a plan to come. To be asked whenever there is news of the tick.
-    pub fn next(&mut self, id: u32, progress: &PlanProgress, ground: &Constraints) -> StreamStep {
+    pub fn next(
+        &mut self,
+        id: u32,
+        progress: &PlanProgress,
+        constraints: &Constraints,
+    ) -> StreamStep {
         if let Some(end) = self.end {
             return StreamStep::Over(end);
         }
         let Some(sent) = self.sent else {
             let waiting = self.targets.len() - BEFORE;
             return if waiting >= self.targets_to_start() || (self.announced && waiting > 0) {
-                self.send(id, None, ground)
+                self.send(id, None, constraints)
             } else if self.announced {
                 self.over(StreamEnd::Done)
             } else {
@@ -193,7 +198,7 @@ impl Stream {
             return self.over(StreamEnd::Starved);
         }
         self.follow(sent.splice - progress.tick);
-        self.send(id, Some(sent), ground)
+        self.send(id, Some(sent), constraints)
     }
 
     fn over(&mut self, end: StreamEnd) -> StreamStep {
@@ -218,13 +223,13 @@ impl Stream {
     }
 
     /// The next plan, if there are targets enough for it.
-    fn send(&mut self, id: u32, sent: Option<SentPlan>, ground: &Constraints) -> StreamStep {
+    fn send(&mut self, id: u32, sent: Option<SentPlan>, constraints: &Constraints) -> StreamStep {
         let ahead = self.part + u64::from(self.knots) * self.knot.whole() * self.rate;
         let needed = (ahead >> PART_BITS) as usize + WINDOW;
         if self.targets.len() < needed && !self.announced {
             return StreamStep::Wait;
         }
-        match self.plan(id, sent, ground) {
+        match self.plan(id, sent, constraints) {
             Ok((plan, start, sent)) => {
                 self.before = self.sent.replace(sent);
                 StreamStep::Send(plan, start)

@@ -1,10 +1,10 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
 
-use super::spline::point;
+use super::spline::curve_point;
 use super::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
-use crate::motion::brake::halt::halt;
-use crate::motion::check::instant::{Instant, Limiter};
-use crate::motion::check::pivot_bounds::{Pace, per_second};
+use crate::motion::brake::halt::final_stop;
+use crate::motion::check::instant::{InstantCheck, InstantState};
+use crate::motion::check::pivot_bounds::{Speeds, per_second};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use crate::motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
@@ -20,9 +20,9 @@ impl Stream {
         &mut self,
         id: u32,
         sent: Option<SentPlan>,
-        ground: &Constraints,
+        constraints: &Constraints,
     ) -> Result<Planned, Refusal> {
-        let limiter = Limiter::new(ground);
+        let instant_check = InstantCheck::new(constraints);
         let rest = self.target(2);
         let (start, from) = match sent {
             Some(SentPlan { id, splice, state }) => {
@@ -38,13 +38,13 @@ impl Stream {
             nudge: [0; 3],
             end: rest,
         };
-        let (state, now) = self.knots(&mut plan, from, &limiter)?;
+        let (state, now) = self.knots(&mut plan, from, &instant_check)?;
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
             plan.nudge = nudge_to(&state, &plan.end, splice).ok_or(Refusal::InvalidLimits)?;
         } else {
-            let (stop, end) = halt(&state, &now, &limiter)?;
+            let (stop, end) = final_stop(&state, &now, &instant_check)?;
             plan.pieces
                 .extend(stop.into_iter().filter(|piece| piece.ticks > 0));
             plan.end = end.map(|axis| axis.rounded());
@@ -64,23 +64,23 @@ impl Stream {
         &mut self,
         plan: &mut Plan,
         from: [AxisState; 3],
-        limiter: &Limiter<'_>,
-    ) -> Result<([AxisState; 3], Instant), Refusal> {
+        instant_check: &InstantCheck<'_>,
+    ) -> Result<([AxisState; 3], InstantState), Refusal> {
         let mut state = from;
-        let mut before = limiter.look(&state)?;
+        let mut before = instant_check.evaluate(&state)?;
         for _ in 0..self.knots {
             self.pass();
             for piece in self.pieces(&state) {
-                let jerk = per_second(&piece.jerk, limiter.hz);
-                let jerk = Pace::of(&jerk.map(|jerk| jerk * limiter.hz * limiter.hz));
-                if jerk.way > limiter.jerk.way * JERK_TOLERANCE
-                    || jerk.turn > limiter.jerk.turn * JERK_TOLERANCE
+                let jerk = per_second(&piece.jerk, instant_check.hz);
+                let jerk = Speeds::of(&jerk.map(|jerk| jerk * instant_check.hz * instant_check.hz));
+                if jerk.linear > instant_check.jerk_limit.linear * JERK_TOLERANCE
+                    || jerk.angular > instant_check.jerk_limit.angular * JERK_TOLERANCE
                 {
                     return Err(Refusal::Jerk);
                 }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
-                let now = limiter.look(&state)?;
-                limiter.check(&before, &now, piece.ticks as f32 / limiter.hz)?;
+                let now = instant_check.evaluate(&state)?;
+                instant_check.check(&before, &now, piece.ticks as f32 / instant_check.hz)?;
                 before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
@@ -115,7 +115,7 @@ impl Stream {
         let window = [0, 1, 2, 3, 4, 5].map(|k| self.target(k));
         let (part, rate) = (self.part as f32 / ONE, self.rate as f32 / ONE);
         for (i, axis) in state.iter().enumerate() {
-            let point = point(&window, i, part);
+            let point = curve_point(&window, i, part);
             let units = (1_u64 << SUB_BITS) as f32;
             let velocity = point.rate * rate * units;
             let acceleration = point.acceleration * rate * rate * units;

@@ -1,13 +1,13 @@
 //! The fastest main part, by cases; see the module above. Distances count from the fastest stop.
 
-use super::start::{Main, Start};
+use super::start::{Main, ProfileStart};
 use super::state::{State, peak};
 use crate::number::float::Float;
 
 /// Rounds of the solutions; a few are needed.
 const MOST_ROUNDS: usize = 40;
 
-impl<F: Float> Start<F> {
+impl<F: Float> ProfileStart<F> {
     pub fn fastest(&self) -> Main<F> {
         let mut beyond = self.beyond;
         if self.state.a < F::ZERO && self.v_z > F::ZERO {
@@ -99,7 +99,7 @@ struct Touching<F> {
 }
 
 impl<F: Float> Touching<F> {
-    fn new(start: &Start<F>) -> Self {
+    fn new(start: &ProfileStart<F>) -> Self {
         let least = if start.v_z > F::ZERO {
             start.state.a.max(F::ZERO)
         } else {

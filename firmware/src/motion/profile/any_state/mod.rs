@@ -51,7 +51,7 @@ mod start;
 mod state;
 
 use crate::number::float::Float;
-use start::Start;
+use start::ProfileStart;
 
 /// Limits of one axis, the same both ways, in any consistent units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,13 +101,13 @@ pub struct AxisProfile<F> {
 impl<F: Float> AxisProfile<F> {
     /// The fastest profile.
     pub fn fastest(task: &Task, limits: &AxisLimits<F>) -> Result<Self, Unusable> {
-        let start = Start::new(task, limits)?;
+        let start = ProfileStart::new(task, limits)?;
         start.profile(&start.fastest(), limits.jerk)
     }
 
     /// The duration of the fastest profile.
     pub fn shortest<T: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> Result<F, Unusable> {
-        let start = Start::new(task, limits)?;
+        let start = ProfileStart::new(task, limits)?;
         let main = start.fastest().t.into_iter();
         let duration = main.fold(start.braked(), |sum, t| sum + t);
         if duration.is_finite() {
@@ -120,7 +120,7 @@ impl<F: Float> AxisProfile<F> {
     /// The profile that arrives after `duration`, or the fastest where there is none. It never arrives later, unless the
     /// fastest does.
     pub fn lasting(task: &Task, limits: &AxisLimits<F>, duration: F) -> Result<Self, Unusable> {
-        let start = Start::new(task, limits)?;
+        let start = ProfileStart::new(task, limits)?;
         let fastest = start.fastest();
         let slower = start.slower(&fastest, duration - start.braked());
         start.profile(&slower.unwrap_or(fastest), limits.jerk)
