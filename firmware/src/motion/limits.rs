@@ -1,6 +1,5 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
-use super::plan::Position;
 use crate::number::float::FloatMinMax;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
@@ -42,13 +41,6 @@ pub struct PathLimits {
 /// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30 instructions more
 /// than.
 const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
-
-const UNIT: f64 = 1.0 / 4_294_967_296.0;
-
-/// x and y of a position in track radii.
-pub(super) fn xy_radii(position: &Position) -> [f64; 2] {
-    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
-}
 
 impl Limits {
     /// Whether every limit is a positive number: along a line the smallest counts, which would hide one that is not.

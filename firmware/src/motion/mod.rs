@@ -25,25 +25,34 @@ mod line;
 mod plan;
 mod refusal;
 mod retarget;
+mod speeds;
 mod stop;
 mod stream;
 mod turn_direction;
 
 pub use crate::number::float::Float;
+pub use check::target::check_target;
 pub use constraints::{Bounds, Constraints};
 pub use jog::plan_jog;
 pub use limits::{Limits, PathLimits};
-pub use line::{check_line, check_target, plan_line};
+pub use line::disk::check_line;
+pub use line::plan_line;
 pub use plan::axis_state::{AxisState, JERK_STEP, SUB_BITS};
-pub use plan::follower::{FaultStop, PlanFollower, Setpoint, SetpointScale, Stale};
+pub use plan::follower::{PlanFollower, Stale};
 pub use plan::rotation_centre::{MAX_CENTRE_OFFSET, RotationCentre};
+pub use plan::setpoint::{Setpoint, SetpointScale};
+pub use plan::time_scaling::FaultStop;
+pub use plan::units::AxisLimits;
 pub use plan::{MAX_PIECES, Piece, Plan, PlanStart, Position};
-pub use profile::any_state::{AxisLimits, AxisProfile, Task, Unusable, stop_distance};
+pub use profile::any_state::stop_distance;
+pub use profile::any_state::task::{AxisProfile, Task, Unusable};
 pub use profile::rest_to_rest::RestToRestProfile;
 pub use profile::tracks::synchronised;
 pub use refusal::Refusal;
+pub use refusal::RetargetError;
 pub use retarget::ahead::Ahead;
-pub use retarget::{Leave, RetargetError, Tries, plan_retarget, try_retarget};
+pub use retarget::tries::Tries;
+pub use retarget::{Leave, plan_retarget, try_retarget};
 pub use stop::{Stop, plan_stop};
 pub use stream::{
     Clock, JERK_TOLERANCE, PERIOD_RANGE, PlanProgress, PushError, STREAM_CAPACITY, Stream,

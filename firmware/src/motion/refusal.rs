@@ -93,3 +93,14 @@ impl fmt::Display for Refusal {
 }
 
 impl core::error::Error for Refusal {}
+
+/// Why there is no transition. Nothing has changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RetargetError {
+    /// The target can not be moved to at all.
+    Refused(Refusal),
+    /// It can, but not without a stop before, or not as soon.
+    NeedsStop,
+    /// Not so fast: the next of the [`Tries`] may find one.
+    TooFast,
+}

@@ -6,13 +6,14 @@
 
 use super::brake::Brake;
 use super::check::platform::greatest;
-use super::check::sample::CubicSegment;
-use super::check::{CheckBudget, CheckedPieces, PlanCheck, Violation};
+use super::check::violation::Violation;
+use super::check::{CheckBudget, CheckedPieces, PlanCheck};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
+use super::plan::cubic_segment::CubicSegment;
 use super::plan::units::TickLimits;
-use super::plan::{Piece, Plan, PlanStart};
-use super::profile::tracks::{Pieces, brake, merged};
+use super::plan::{Piece, Pieces, Plan, PlanStart};
+use super::profile::tracks::{brake, merged};
 use super::profile::whole_ticks::Track;
 use crate::number::float::FloatMinMax;
 

@@ -6,7 +6,8 @@
 //!
 //! Three at a time: a coefficient takes two instructions to load and one to use.
 
-use super::{Fixed, multiply, root};
+use super::fixed::Fixed;
+use super::{multiply, root};
 use kinematics::Angle;
 
 /// P(z), coefficients times 2^33 (z carries 32 fraction bits: the point stays).

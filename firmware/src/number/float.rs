@@ -1,6 +1,6 @@
 //! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with references.
 
-use crate::number::sqrt_f32;
+use super::root::sqrt_f32;
 use kinematics::Real;
 
 /// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same integer

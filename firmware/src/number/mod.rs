@@ -26,12 +26,14 @@
 //! `--flip` it shows that a single bit is found. How far all of it is from exact: tests `exactness`, `fifty_digits` and `all_inputs`.
 
 pub(crate) mod float;
+pub(crate) mod wide_integer;
 
 mod arcsine;
 mod fixed;
 mod multiply;
 mod polar;
 mod root;
+mod scalar;
 mod trigonometric;
 
 pub use fixed::Fixed;

@@ -1,6 +1,7 @@
 //! Direction of a vector: a coarse arctangent in floats, corrected once in fixed point.
 
-use super::{Fixed, root, trigonometric};
+use super::fixed::Fixed;
+use super::{root, trigonometric};
 use kinematics::Angle;
 
 /// Shorter vectors have no direction worth the name (no feasible pose comes near: the sum of the three guides, at least

@@ -1,6 +1,7 @@
 //! Square roots: one instruction in f32 on the chip, and a corrected one in fixed point.
 
-use super::{Fixed, multiply};
+use super::fixed::Fixed;
+use super::multiply;
 
 #[cfg(target_arch = "arm")]
 mod chip {

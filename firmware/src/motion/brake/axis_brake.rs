@@ -5,7 +5,7 @@
 //! beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down to it.
 
 use super::{BRAKE_SLACK, whole};
-use crate::motion::profile::any_state::AxisLimits;
+use crate::motion::plan::units::AxisLimits;
 use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 

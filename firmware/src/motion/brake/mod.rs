@@ -15,11 +15,10 @@
 //! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 pub(crate) mod axis_brake;
-pub(crate) mod halt;
 pub(crate) mod velocity_change;
 
-use super::check::sample::MotionState;
 use super::plan::axis_state::{AxisState, JERK_STEP};
+use super::plan::cubic_segment::MotionState;
 use super::plan::units::{AXIS_UNITS, TickLimits};
 use crate::number::float::{
     FloatMinMax, ceil, ceil_ticks, floor, hypot, i64_to_f32_fast, ticks_to_f32,

@@ -9,9 +9,9 @@
 //!
 //! A jog lasts: a single unit of acceleration left would be a velocity after a year.
 
-use crate::motion::check::pivot_bounds::Speeds;
 use crate::motion::plan::Piece;
 use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
+use crate::motion::speeds::Speeds;
 use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 use heapless::VecView;
 

@@ -1,12 +1,12 @@
 //! One instant of a motion against every limit, in single precision: for motions that others shape, sample by sample.
 
-use super::pivot_bounds::Speeds;
 use super::platform::{Platform, greatest};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::follower::{ACCELERATION_CUT, VELOCITY_CUT};
+use crate::motion::plan::setpoint::{ACCELERATION_CUT, VELOCITY_CUT};
 use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT};
 use crate::motion::refusal::Refusal;
+use crate::motion::speeds::Speeds;
 use crate::number::Fixed;
 use crate::number::float::FloatMinMax;
 use kinematics::{Angle, Scalar};

@@ -4,6 +4,7 @@
 //! `C'' = P'' - theta'' E p + theta'^2 p`, with E the quarter turn. Track radii, radians and seconds. Single precision is off
 //! by less than 1e-7 track radii (10 nm): enough to hold a motion against its limits, not to make one.
 
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::number::float::hypot;
 use crate::number::sqrt_f32;
 use kinematics::{Acceleration, Twist, guides_along_axes, pivot_motion_in_platform_axes};
@@ -67,6 +68,14 @@ impl Platform {
         };
         let motion = pivot_motion_in_platform_axes(&guides, &self.twist, &self.acceleration);
         [motion.rates, motion.accelerations]
+    }
+}
+
+impl CubicSegment {
+    /// The platform there, when `centre` is the moved point in its axes.
+    pub fn platform(&self, sample: &MotionState, centre: [f32; 2]) -> Platform {
+        let direction = self.sin_cos(sample.displacement[2]);
+        Platform::new(self.point(sample), direction, sample.v, sample.a, centre)
     }
 }
 

@@ -1,10 +1,8 @@
 //! Whether a target can be moved to, and along a straight line.
 
-use super::line_in_disk;
 use crate::motion::constraints::Constraints;
-use crate::motion::limits::xy_radii;
 use crate::motion::plan::Position;
-use crate::motion::plan::units::PER_POSITION_UNIT;
+use crate::motion::plan::units::{PER_POSITION_UNIT, xy_radii};
 use crate::motion::refusal::Refusal;
 use crate::number::Fixed;
 use crate::number::float::i64_to_f32_fast;
@@ -66,25 +64,4 @@ fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusa
         });
     }
     Ok(())
-}
-
-/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
-#[inline(never)]
-pub fn check_line(
-    from: &Position,
-    to: &Position,
-    constraints: &Constraints,
-) -> Result<(), Refusal> {
-    check_target(to, constraints)?;
-    if !constraints.limits.all_positive() {
-        return Err(Refusal::InvalidLimits);
-    }
-    match line_in_disk::exit(from, to, constraints) {
-        Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
-            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
-            fraction: f64::from(exit.fraction),
-        }),
-        None => Ok(()),
-    }
 }

@@ -1,8 +1,11 @@
 //! One plan of one piece for each thing that can be broken, and its twin that keeps it.
 
+use super::budget::MOST_LOOKS;
 use super::*;
-use crate::motion::plan::units::AXIS_UNITS;
-use crate::motion::plan::{Plan, PlanStart};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::{AXIS_UNITS, TickLimits};
+use crate::motion::plan::{Piece, Plan, PlanStart};
 use crate::parameters::Parameters;
 use core::f64::consts::TAU;
 use heapless::Vec;

@@ -1,10 +1,11 @@
 //! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
 
-use super::sample::{CubicSegment, MotionState};
-use super::{IntervalEnd, Violation};
+use super::interval::IntervalEnd;
+use super::violation::Violation;
 use crate::motion::brake::Brake;
 use crate::motion::constraints::{Bounds, Constraints};
 use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, TickLimits};
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use core::f32::consts::TAU;

@@ -15,25 +15,11 @@
 //! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by it.
 
 use super::path_profile::PathProfile;
+use super::ramp::{JerkRamp, JerkRamps};
 use super::rounded_ramps::RoundedRamps;
-use super::segments::{Corners, MAX_SEGMENTS};
+use super::segments::Corners;
 use crate::motion::limits::PathLimits;
 use crate::number::float::{FloatMinMax, ceil_i32};
-use heapless::Vec;
-
-/// A ramp of the acceleration.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct JerkRamp {
-    /// Where its middle is, ticks.
-    pub middle: i32,
-    /// How long it is, ticks: even.
-    pub ticks: i32,
-    /// How much the acceleration changes, s per tick squared.
-    pub change: f32,
-}
-
-/// Ramps that make a motion.
-pub(crate) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;
 
 /// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
 const LONGEST: i32 = 1 << 21;

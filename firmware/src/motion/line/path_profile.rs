@@ -4,11 +4,12 @@
 //! integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What rounding takes from
 //! the acceleration in one piece is given back in the next, and what is left at the end is spread as the plan's nudge.
 
-use super::quotient::quotient;
 use crate::motion::plan::axis_state::{JERK_STEP, SUB_BITS};
 use crate::motion::plan::{MAX_PIECES, Piece, Plan, Position};
+use crate::motion::profile::rest_to_rest::RestToRestProfile;
 use crate::number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
 use crate::number::round_ties_even;
+use crate::number::wide_integer::quotient;
 use heapless::Vec;
 
 /// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
@@ -125,6 +126,21 @@ impl PathProfile {
         let fraction = low as u32 & ((1 << JERK_BITS) - 1);
         let whole = (high << (32 - JERK_BITS)).wrapping_add(low >> JERK_BITS);
         (whole, fraction as f32 * PART)
+    }
+}
+
+impl RestToRestProfile {
+    /// Writes it as a path profile: its jerks are 1 and -1.
+    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
+        path_profile.segments.clear();
+        for (ticks, jerk) in self.segments() {
+            if ticks > 0 {
+                // Seven segments, room for more.
+                let _ = path_profile.segments.push(JerkSegment { ticks, jerk });
+            }
+        }
+        path_profile.six_times_distance = 6 * self.volume();
+        path_profile.bits = 0;
     }
 }
 

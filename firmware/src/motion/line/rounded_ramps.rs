@@ -3,12 +3,12 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
 //! a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::jerk_ramps::{JerkRamp, JerkRamps};
 use super::path_profile::{JERK_BITS, JerkSegment, PathProfile};
+use super::ramp::{JerkRamp, JerkRamps};
 use super::segments::MAX_SEGMENTS;
 use crate::motion::plan::MAX_PIECES;
-use crate::motion::plan::axis_state::{mul_i64_u32, mul_i128_u32};
 use crate::number::float::{FloatMinMax, i64_to_f32_fast, i128_to_f32_fast, round_i32};
+use crate::number::wide_integer::{mul_i64_u32, mul_i128_u32};
 use heapless::Vec;
 
 /// The ramps in integers.

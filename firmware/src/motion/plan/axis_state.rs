@@ -4,6 +4,8 @@
 //! tick squared and per tick cubed. In integers a cubic is followed exactly: no rounding grows with time or with the
 //! number of turns, x86 and the chip agree to the bit, and a position can not step, because it is only ever added to.
 
+use crate::number::wide_integer::mul_i64_u32;
+
 /// Bits of an axis position below the 2^-32 track radii or turns of a [`Position`](crate::motion::Position).
 ///
 /// 40 leaves velocity, in 64 bits, a range of 2^-9 turns a tick (39 turns/s at 20 kHz), while the jerk of the slowest
@@ -128,25 +130,6 @@ impl AxisState {
     pub fn rounded(&self) -> i64 {
         (self.position >> SUB_BITS) as i64
     }
-}
-
-/// The product.
-#[inline]
-pub(crate) fn mul_i64_u32(value: i64, factor: u32) -> i128 {
-    let low = u64::from(value as u32) * u64::from(factor);
-    let high = (value >> 32) * i64::from(factor) + (low >> 32) as i64;
-    (i128::from(high) << 32) | i128::from(low as u32)
-}
-
-/// The product modulo 2^128.
-#[inline]
-pub(crate) fn mul_i128_u32(value: i128, factor: u32) -> i128 {
-    let factor = u64::from(factor);
-    let (low, high) = (value as u64, (value >> 64) as u64);
-    let first = u64::from(low as u32) * factor;
-    let second = (low >> 32) * factor + (first >> 32);
-    let third = high.wrapping_mul(factor).wrapping_add(second >> 32);
-    (i128::from(third as i64) << 64) | i128::from(second << 32 | first & 0xFFFF_FFFF)
 }
 
 #[cfg(test)]

@@ -5,38 +5,10 @@
 //! planning anything: velocity is the plan's times the rate, acceleration the plan's times its square and the plan's velocity
 //! times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
 
-use super::follower::{ACCELERATION_CUT, PlanFollower, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::follower::PlanFollower;
+use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::time_scaling::{FaultStop, TimeScaling};
 use kinematics::{Acceleration, Twist};
-
-/// How a motion is slowed down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FaultStop {
-    /// Part of the stop that is a tick.
-    step: f32,
-    rate_hz: f32,
-}
-
-/// Where in its stop a motion is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct TimeScaling {
-    /// Part of the stop that is over.
-    progress: f32,
-    /// Part of the plan's tick that has begun.
-    part: f32,
-    rate: f32,
-    /// Change of the rate, 1/s.
-    rate_change: f32,
-}
-
-impl FaultStop {
-    /// A stop that takes so long.
-    pub fn new(duration_s: f64, rate_hz: f64) -> Self {
-        Self {
-            step: (1.0 / (duration_s * rate_hz)) as f32,
-            rate_hz: rate_hz as f32,
-        }
-    }
-}
 
 /// 2^-32 turns or track radii in what a velocity and an acceleration are cut to.
 const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;

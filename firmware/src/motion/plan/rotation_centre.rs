@@ -12,7 +12,7 @@
 //! may be chosen at rest and the platform does not move by a single unit.
 
 use super::Position;
-use super::follower::Setpoint;
+use super::setpoint::Setpoint;
 use crate::number::Fixed;
 use kinematics::{Acceleration, Scalar, Twist};
 

@@ -1,8 +1,8 @@
 //! The units of a [`Position`](crate::motion::Position) and of an [`AxisState`](crate::motion::AxisState) in floats, and limits in those of the latter and
 //! ticks.
 
+use super::piece::Position;
 use crate::motion::constraints::Constraints;
-use crate::motion::profile::any_state::AxisLimits;
 
 /// Limits of translation and of rotation.
 #[derive(Clone, Copy, Debug)]
@@ -60,4 +60,21 @@ impl AxisLimits<f32> {
             jerk: self.jerk * jerk,
         }
     }
+}
+
+/// Limits of one axis, the same both ways, in any consistent units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisLimits<F> {
+    /// Speed.
+    pub velocity: F,
+    /// Acceleration.
+    pub acceleration: F,
+    /// Jerk.
+    pub jerk: F,
+}
+
+/// x and y of a position in track radii.
+pub(crate) fn xy_radii(position: &Position) -> [f64; 2] {
+    const UNIT: f64 = 1.0 / 4_294_967_296.0;
+    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
 }

@@ -8,8 +8,8 @@
 //!         n0    n1   n2   n3    \_/ Q   Q = -(v + a0 f0 + P f1) / f2
 //! ```
 
-use super::any_state::Task;
-use super::whole_ticks::{Shape, Solution};
+use super::any_state::task::Task;
+use super::shape::{Shape, Solution};
 use crate::number::float::ticks_to_f32;
 
 /// Areas, and what the way gains by the heights when the brake always ends at rest.

@@ -13,7 +13,6 @@
 //! themselves, a millionth.
 
 use crate::motion::limits::PathLimits;
-use crate::motion::line::path_profile::{JerkSegment, PathProfile};
 use crate::number::float::{FloatMinMax, ceil_ticks, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 
@@ -80,19 +79,6 @@ impl RestToRestProfile {
     /// Jerk times this is the way: b1 b2 b3.
     pub fn volume(&self) -> i128 {
         i128::from(self.jerk * self.ramp) * i128::from(self.travel)
-    }
-
-    /// Writes it as a path profile: its jerks are 1 and -1.
-    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
-        path_profile.segments.clear();
-        for (ticks, jerk) in self.segments() {
-            if ticks > 0 {
-                // Seven segments, room for more.
-                let _ = path_profile.segments.push(JerkSegment { ticks, jerk });
-            }
-        }
-        path_profile.six_times_distance = 6 * self.volume();
-        path_profile.bits = 0;
     }
 }
 

@@ -1,15 +1,12 @@
 //! Three axes that arrive together, each on its own track, and their tracks as one list of pieces.
 
-use super::any_state::{AxisLimits, AxisProfile};
+use super::any_state::task::AxisProfile;
 use super::whole_ticks::{Track, fit, task};
 use crate::motion::brake::jerks;
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::{MAX_PIECES, Piece};
+use crate::motion::plan::units::AxisLimits;
+use crate::motion::plan::{Piece, Pieces};
 use crate::number::float::FloatMinMax;
-use heapless::Vec;
-
-/// Pieces of a plan.
-pub(crate) type Pieces = Vec<Piece, MAX_PIECES>;
 
 /// An axis and its way to where it is to be at rest, 2^-72 track radii or turns.
 pub type AxisWay = (AxisState, i128);

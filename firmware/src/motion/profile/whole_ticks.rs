@@ -9,10 +9,12 @@
 //! The integers then close what the floats left: the segments are run exactly up to the brake, the brake is the one that
 //! comes to rest from there, and the way that is missing is made up by another `P`.
 
-use super::any_state::{AxisLimits, AxisProfile, SEGMENTS, Task};
+use super::any_state::task::{AxisProfile, SEGMENTS, Task};
 use super::hats::Hats;
+use super::shape::{Shape, Solution};
 use crate::motion::brake::{jerks, stepped};
 use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::AxisLimits;
 use crate::number::float::{
     FloatMinMax, ceil_ticks, i64_to_f32_fast, i128_to_f32_fast, round_i64, ticks_to_f32,
 };
@@ -21,12 +23,6 @@ use heapless::Vec;
 
 /// Stretches of constant jerk of one axis: ticks, and jerk in 2^-72 units per tick cubed.
 pub(crate) type Track = Vec<(u64, i64), SEGMENTS>;
-
-/// Durations of the main segments in ticks.
-pub(crate) struct Shape {
-    pub n: [u64; 7],
-    pub released_in_part: bool,
-}
 
 /// How often segments may have to be lengthened.
 const MOST_ROUNDS: usize = 24;
@@ -241,13 +237,6 @@ impl Shape {
         }
         longer
     }
-}
-
-/// Peak, brake, and the speed between.
-pub(crate) struct Solution {
-    pub peak: f32,
-    pub brake: f32,
-    pub top: f32,
 }
 
 #[cfg(test)]

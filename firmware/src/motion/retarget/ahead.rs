@@ -7,12 +7,14 @@
 //!                             \_ stop       \_    any of its ticks: it is the same motion.
 //! ```
 
-use super::{RetargetError, Tries};
-use crate::motion::check::{CheckBudget, CheckedPieces, PlanCheck, Violation};
+use super::tries::Tries;
+use crate::motion::check::violation::Violation;
+use crate::motion::check::{CheckBudget, CheckedPieces, PlanCheck};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::units::TickLimits;
 use crate::motion::plan::{MAX_PIECES, Piece, Plan, PlanStart};
+use crate::motion::refusal::RetargetError;
 use crate::motion::stop::{Stop, write_stop};
 use heapless::Vec;
 

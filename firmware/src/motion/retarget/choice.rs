@@ -6,8 +6,8 @@ use crate::motion::brake::axis_brake::AxisBrake;
 use crate::motion::brake::{Brake, gains};
 use crate::motion::plan::Position;
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::units::TickLimits;
-use crate::motion::profile::any_state::{AxisLimits, AxisProfile, Task};
+use crate::motion::plan::units::{AxisLimits, TickLimits};
+use crate::motion::profile::any_state::task::{AxisProfile, Task};
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast, i128_to_f32_fast};
 use crate::number::sqrt_f32;
 

@@ -4,8 +4,8 @@
 //! It turns integers by integers (30 fraction bits), so that turning there and back leaves 1e-9 of them.
 
 use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
-use crate::motion::plan::{Piece, Position};
-use crate::motion::profile::tracks::{AxisWay, Pieces};
+use crate::motion::plan::{Piece, Pieces, Position};
+use crate::motion::profile::tracks::AxisWay;
 use crate::number::float::{hypot, i64_to_f32_fast, i128_to_f32_fast};
 
 /// Direction of the axis along, 2^-30.

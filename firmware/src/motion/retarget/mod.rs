@@ -17,55 +17,27 @@
 //! ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
 //! where a stop and a straight line are sooner, the stage has to stop first.
 
-pub(crate) mod ahead;
-pub(crate) mod choice;
-pub(crate) mod heading;
-pub(crate) mod slower;
-
-use super::check::{CheckBudget, CheckedPieces, MIN_CHECKED_TICKS, PlanCheck, Violation};
+use super::check::target::check_target;
+use super::check::violation::Violation;
+use super::check::{CheckBudget, CheckedPieces, MIN_CHECKED_TICKS, PlanCheck};
 use super::constraints::Constraints;
-use super::line::check_target;
 use super::plan::axis_state::AxisState;
 use super::plan::units::TickLimits;
-use super::plan::{Piece, Plan, PlanStart, Position, nudge_to, state_after_pieces};
-use super::profile::tracks::{Pieces, brake, merged};
+use super::plan::{Piece, Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use super::profile::tracks::{brake, merged};
 use super::profile::whole_ticks::{Track, fit};
-use super::refusal::Refusal;
-use crate::motion::retarget::ahead::{Ahead, HEAD};
-use crate::motion::retarget::choice::Choice;
-use crate::motion::retarget::heading::Plane;
-use crate::motion::retarget::slower::Slower;
+use super::refusal::{Refusal, RetargetError};
 use crate::number::float::ceil_ticks;
+use ahead::{Ahead, HEAD};
+use choice::Choice;
+use tries::Tries;
 
-/// Why there is no transition. Nothing has changed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RetargetError {
-    /// The target can not be moved to at all.
-    Refused(Refusal),
-    /// It can, but not without a stop before, or not as soon.
-    NeedsStop,
-    /// Not so fast: the next of the [`Tries`] may find one.
-    TooFast,
-}
-
-/// What has been tried of a transition, so that the next try is as much slower as the last one asked for. The next may leave
-/// the motion at another tick, or leave what has taken its place: as a rule a stop that has just begun.
-#[derive(Clone, Copy, Debug)]
-pub struct Tries {
-    slower: Slower,
-    /// What was chosen first: it serves for what differs little.
-    ratio: Option<f32>,
-    left: usize,
-}
-
-impl Tries {
-    /// Nothing yet.
-    pub const NONE: Self = Self {
-        slower: Slower::NOT,
-        ratio: None,
-        left: 3,
-    };
-}
+pub(crate) mod ahead;
+pub(crate) mod choice;
+pub(crate) mod expected_demand;
+pub(crate) mod heading;
+pub(crate) mod slower;
+pub(crate) mod tries;
 
 /// What is left for another target.
 #[derive(Clone, Copy)]
@@ -178,39 +150,6 @@ fn first_slice(pieces: &[Piece]) -> usize {
 
 /// So many pieces are looked at at once.
 const FEW: usize = 12;
-
-impl Tries {
-    /// What is tried next.
-    fn choice(
-        &mut self,
-        state: &[AxisState; 3],
-        to: &Position,
-        limits: &TickLimits,
-        constraints: &Constraints,
-    ) -> Option<Choice> {
-        let plane = Plane::new(state, to);
-        let first = self.ratio.is_none();
-        let mut choice = Choice::new(state, to, &plane, limits, &self.slower, self.ratio)?;
-        if first && self.slower.expect(state, to, &choice, constraints) {
-            choice = Choice::new(state, to, &plane, limits, &self.slower, Some(choice.ratio))?;
-        }
-        self.ratio = Some(choice.ratio);
-        choice
-            .is_sooner_than_a_stop(state, to, limits, &self.slower)
-            .then_some(choice)
-    }
-
-    /// After a try that broke something.
-    pub(super) fn after(&mut self, broken: &Violation) -> RetargetError {
-        self.slower.by(broken);
-        self.left = self.left.saturating_sub(1);
-        if self.left > 0 && *broken != Violation::Workspace {
-            RetargetError::TooFast
-        } else {
-            RetargetError::NeedsStop
-        }
-    }
-}
 
 impl Choice {
     /// Writes the pieces of this choice.

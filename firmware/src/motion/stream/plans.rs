@@ -1,14 +1,14 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
 
+use super::final_stop::final_stop;
 use super::spline::curve_point;
-use super::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
-use crate::motion::brake::halt::final_stop;
+use super::state::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
 use crate::motion::check::instant::{InstantCheck, InstantState};
-use crate::motion::check::pivot_bounds::{Speeds, per_second};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use crate::motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use crate::motion::refusal::Refusal;
+use crate::motion::speeds::{Speeds, per_second};
 use heapless::Vec;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.

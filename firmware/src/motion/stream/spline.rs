@@ -10,7 +10,7 @@
 //! the fourth order of the distance between them: `h^4 P'''' (k + f^2 (1 - f)^2) / 24` with a k of a sixth at most. It takes
 //! six samples, so it is three samples behind the newest.
 
-use super::super::plan::Position;
+use crate::motion::plan::Position;
 
 /// Samples that the curve between the third and the fourth is made of.
 pub(super) const WINDOW: usize = 6;

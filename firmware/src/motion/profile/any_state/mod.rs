@@ -45,58 +45,16 @@
 //! Accepted are all finite states and distances and all finite positive limits; see [`Unusable`]. A start over a limit comes
 //! below it at full jerk and, over the speed limit, full acceleration, and meets the speed limit with zero acceleration.
 
+use crate::motion::plan::units::AxisLimits;
+use crate::number::float::Float;
+use start::ProfileStart;
+use task::{AxisProfile, Task, Unusable};
+
 mod fastest;
 mod slower;
 mod start;
 mod state;
-
-use crate::number::float::Float;
-use start::ProfileStart;
-
-/// Limits of one axis, the same both ways, in any consistent units.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AxisLimits<F> {
-    /// Speed.
-    pub velocity: F,
-    /// Acceleration.
-    pub acceleration: F,
-    /// Jerk.
-    pub jerk: F,
-}
-
-/// What an axis is to do, in the units of its limits. In doubles where the last digits of a distance count.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Task<T = f64> {
-    /// Way to the target, where it is to be at rest.
-    pub distance: T,
-    /// Velocity now.
-    pub velocity: T,
-    /// Acceleration now.
-    pub acceleration: T,
-}
-
-/// Why there is no profile.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unusable {
-    /// A limit is not a finite positive number.
-    Limits,
-    /// The state or the distance is not finite, or so large that the duration is not.
-    Task,
-}
-
-/// Segments of a profile, some of no duration.
-pub const SEGMENTS: usize = 9;
-
-/// A profile: nine segments of constant jerk, of which the first two only bring a start over a limit below it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisProfile<F> {
-    /// Durations of the segments.
-    pub durations: [F; SEGMENTS],
-    /// Their jerks: plus or minus the limit, or zero.
-    pub jerks: [F; SEGMENTS],
-    /// Whether the brake is only released in part: segment 7 then sets out from another acceleration than zero.
-    pub released_in_part: bool,
-}
+pub(crate) mod task;
 
 impl<F: Float> AxisProfile<F> {
     /// The fastest profile.

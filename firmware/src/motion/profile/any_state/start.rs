@@ -1,7 +1,8 @@
 //! Where the main part of a profile sets out, and how far beyond the fastest stop its target lies.
 
 use super::state::{Scaled, State};
-use super::{AxisLimits, AxisProfile, Task, Unusable};
+use super::task::{AxisProfile, Task, Unusable};
+use crate::motion::plan::units::AxisLimits;
 use crate::number::float::Float;
 
 /// Where the main part starts: within the limits, and mirrored so that the target lies beyond the fastest stop.

@@ -1,6 +1,6 @@
 //! A state over jerk: the ramp it is part of, its fastest stop, its way back into the limits.
 
-use super::Task;
+use super::task::Task;
 use crate::number::float::Float;
 
 /// Limits over jerk: that of acceleration is a time.

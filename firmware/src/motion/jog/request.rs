@@ -1,13 +1,13 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
-use super::super::refusal::Refusal;
-use super::travel::SteadyMotion;
+use super::travel_time::SteadyMotion;
 use crate::motion::brake::velocity_change::{AccelerationLimits, release_seconds};
-use crate::motion::check::pivot_bounds::{PivotBound, Speeds, per_second};
+use crate::motion::check::pivot_bounds::PivotBound;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use crate::motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
-use crate::motion::retarget::RetargetError;
+use crate::motion::refusal::{Refusal, RetargetError};
+use crate::motion::speeds::{Speeds, per_second};
 use crate::number::Fixed;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use kinematics::{Angle, Scalar};

@@ -1,9 +1,35 @@
 //! How large velocity, acceleration and jerk are over a stretch, and what the pivots can make of them at most.
 
-use super::IntervalEnd;
-use super::pivot_bounds::{PivotGain, Speeds};
-use super::sample::MotionState;
+use super::pivot_bounds::PivotGain;
+use super::platform::greatest;
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
+use crate::motion::speeds::Speeds;
 use crate::number::float::{FloatMinMax, hypot};
+
+/// One end of a stretch.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct IntervalEnd {
+    pub sample: MotionState,
+    /// Velocity of translation and of rotation.
+    pub v: [f32; 2],
+    /// Their acceleration.
+    pub a: [f32; 2],
+    /// Distance of the moved point from the track's centre.
+    pub point_distance: f32,
+    /// Distance of the platform's centre from it.
+    pub(super) centre_distance: f32,
+    /// The greatest rate and acceleration of a pivot, once they have been asked for.
+    pub(super) pivots: Option<[f32; 2]>,
+}
+
+impl IntervalEnd {
+    pub(super) fn pivots(&mut self, arc: &CubicSegment, centre: [f32; 2]) -> [f32; 2] {
+        *self.pivots.get_or_insert_with(|| {
+            let pivots = arc.platform(&self.sample, centre).pivots();
+            pivots.map(|three| greatest(&three))
+        })
+    }
+}
 
 /// Of translation (track radii) and of rotation (rad), per second, squared and cubed.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,10 @@
 //! How long a jog can be held before its axes have to brake, and how much slower it has to be where that is too short.
 
-use super::Jog;
-use super::start::JogRequest;
+use super::request::JogRequest;
+use super::trajectory::Jog;
 use crate::motion::brake::velocity_change::VelocityRamp;
-use crate::motion::check::pivot_bounds::{Speeds, per_second};
 use crate::motion::plan::axis_state::AxisState;
+use crate::motion::speeds::{Speeds, per_second};
 use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 
 /// Some axes would be over after so many seconds at the velocity wanted: too soon to reach it and to stop.

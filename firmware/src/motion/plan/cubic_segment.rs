@@ -1,9 +1,8 @@
 //! The state of a motion at an instant of a stretch, in floats: track radii, radians and seconds.
 
-use super::platform::Platform;
-use crate::motion::plan::Piece;
-use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
+use super::Piece;
+use super::axis_state::AxisState;
+use super::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
 use crate::number::Fixed;
 use crate::number::float::{i64_to_f32_fast, truncate};
 use core::f32::consts::TAU;
@@ -77,11 +76,5 @@ impl CubicSegment {
         let theta = i64::from(self.theta).wrapping_add(truncate(way * UNITS_A_RADIAN));
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
         (sin.to_f32(), cos.to_f32())
-    }
-
-    /// The platform there, when `centre` is the moved point in its axes.
-    pub fn platform(&self, sample: &MotionState, centre: [f32; 2]) -> Platform {
-        let direction = self.sin_cos(sample.displacement[2]);
-        Platform::new(self.point(sample), direction, sample.v, sample.a, centre)
     }
 }

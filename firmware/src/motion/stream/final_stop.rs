@@ -4,17 +4,19 @@
 //! `change`). Every instant that may be the worst is held against the limits; where a pivot is asked for too much, the stop
 //! is softer.
 
-use super::velocity_change::{AccelerationLimits, VelocityRamp, release_acceleration};
+use crate::motion::brake::velocity_change::{
+    AccelerationLimits, VelocityRamp, release_acceleration,
+};
 use crate::motion::check::instant::{InstantCheck, InstantState};
-use crate::motion::check::pivot_bounds::{Speeds, per_second};
 use crate::motion::plan::Piece;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::refusal::Refusal;
+use crate::motion::speeds::{Speeds, per_second};
 use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Release, what it leaves, and the ramp.
-pub(crate) type Pieces = Vec<Piece, 5>;
+pub(crate) type StopPieces = Vec<Piece, 5>;
 
 /// How often a softer stop is tried.
 const ATTEMPTS: usize = 3;
@@ -26,7 +28,7 @@ pub(crate) fn final_stop(
     state: &[AxisState; 3],
     now: &InstantState,
     instant_check: &InstantCheck<'_>,
-) -> Result<(Pieces, [AxisState; 3]), Refusal> {
+) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
         let force = AccelerationLimits {
@@ -51,8 +53,8 @@ fn pieces(
     now: &InstantState,
     force: &AccelerationLimits,
     instant_check: &InstantCheck<'_>,
-) -> Pieces {
-    let mut pieces = Pieces::new();
+) -> StopPieces {
+    let mut pieces = StopPieces::new();
     let (hz, jerk) = (instant_check.hz, force.jerk);
     let change = release_acceleration(state, now.acceleration, jerk, hz, &mut pieces)
         .map(|velocity| -velocity);
@@ -105,8 +107,8 @@ fn walk(
 #[cfg(test)]
 mod tests {
     use crate::motion::Constraints;
-    use crate::motion::brake::halt::*;
     use crate::motion::plan::units::AXIS_UNITS;
+    use crate::motion::stream::final_stop::*;
     use crate::parameters::Parameters;
     use kinematics::Geometry;
 
@@ -131,7 +133,7 @@ mod tests {
     fn halted(
         axes: &[AxisState; 3],
         constraints: &Constraints,
-    ) -> Result<(Pieces, [AxisState; 3]), Refusal> {
+    ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
         let instant_check = InstantCheck::new(constraints);
         final_stop(axes, &instant_check.evaluate(axes)?, &instant_check)
     }

@@ -6,10 +6,12 @@
 //! orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f is below the limit
 //! by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
 
+use super::path::Path;
+use crate::motion::check::target::check_target;
 use crate::motion::constraints::Constraints;
-use crate::motion::line::path::Path;
 use crate::motion::plan::Position;
 use crate::motion::plan::units::POSITION_UNITS;
+use crate::motion::refusal::Refusal;
 use crate::number::float::{FloatMinMax, hypot};
 use crate::number::{Fixed, sqrt_f32};
 use core::f32::consts::TAU;
@@ -30,6 +32,27 @@ const LINE_RIM: f32 = 1e-6;
 const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
 const LOOKS: usize = 48;
+
+/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
+#[inline(never)]
+pub fn check_line(
+    from: &Position,
+    to: &Position,
+    constraints: &Constraints,
+) -> Result<(), Refusal> {
+    check_target(to, constraints)?;
+    if !constraints.limits.all_positive() {
+        return Err(Refusal::InvalidLimits);
+    }
+    match exit(from, to, constraints) {
+        Some(exit) => Err(Refusal::LeavesDisk {
+            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
+            fraction: f64::from(exit.fraction),
+        }),
+        None => Ok(()),
+    }
+}
 
 /// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
 pub(crate) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {

@@ -155,7 +155,7 @@ fn crossing(value: f32, slope: f32, bend: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::jog::travel::*;
+    use crate::motion::jog::travel_time::*;
 
     fn steady(point: [f32; 2], velocity: [f32; 2], turning: f32, centre: [f32; 2]) -> SteadyMotion {
         SteadyMotion {

@@ -1,6 +1,6 @@
 //! The end of a jog, of the point or of theta: a velocity held, and given up in three pieces.
 
-use super::super::plan::Piece;
+use crate::motion::plan::Piece;
 
 /// What is left of it from some tick on.
 pub(super) struct HoldThenStop {

@@ -2,8 +2,7 @@
 //!
 //! A float's guess has 22 of its bits; what they leave is divided in turn.
 
-use crate::motion::plan::axis_state::mul_i128_u32;
-use crate::number::float::{i64_to_f32_fast, i128_to_f32_fast};
+use super::float::{i64_to_f32_fast, i128_to_f32_fast};
 
 /// Guesses that 64 bits take.
 const ROUNDS: usize = 4;
@@ -39,6 +38,25 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
     Some((quotient, rest))
 }
 
+/// The product.
+#[inline]
+pub(crate) fn mul_i64_u32(value: i64, factor: u32) -> i128 {
+    let low = u64::from(value as u32) * u64::from(factor);
+    let high = (value >> 32) * i64::from(factor) + (low >> 32) as i64;
+    (i128::from(high) << 32) | i128::from(low as u32)
+}
+
+/// The product modulo 2^128.
+#[inline]
+pub(crate) fn mul_i128_u32(value: i128, factor: u32) -> i128 {
+    let factor = u64::from(factor);
+    let (low, high) = (value as u64, (value >> 64) as u64);
+    let first = u64::from(low as u32) * factor;
+    let second = (low >> 32) * factor + (first >> 32);
+    let third = high.wrapping_mul(factor).wrapping_add(second >> 32);
+    (i128::from(third as i64) << 64) | i128::from(second << 32 | first & 0xFFFF_FFFF)
+}
+
 /// Any number as a float, to 22 bits.
 fn any_i128_to_f32_fast(value: i128) -> f32 {
     const UPPER: f32 = 18_446_744_073_709_551_616.0;
@@ -62,7 +80,7 @@ fn split(value: f32) -> (u32, u32) {
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::line::quotient::*;
+    use crate::number::wide_integer::*;
 
     /// Numbers of all lengths, with bits all over.
     fn numbers(most: u32) -> impl Iterator<Item = i128> {
