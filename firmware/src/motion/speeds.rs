@@ -1,4 +1,4 @@
-//! How fast a motion is: translation and rotation.
+//! Speed of translation and of rotation as one pair, and rates of the axes per second.
 
 use super::plan::units::PER_AXIS_UNIT;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};

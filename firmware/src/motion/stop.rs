@@ -1,4 +1,4 @@
-//! Planning a stop from any tick of any plan: all axes brake together (`brake`).
+//! Planning a stop from any tick of any plan: all axes brake together (see `brake`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration point; a
 //! curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in which theta comes to
@@ -91,7 +91,7 @@ pub(super) fn write_stop(
         Stop::Smooth => [most.fmin(1.0), 1.0],
         Stop::Urgent => [most, factor * factor],
     };
-    let (mut apart, mut legs) = (false, CheckedPieces::new());
+    let (mut apart, mut checked_pieces) = (false, CheckedPieces::new());
     let mut checked = Ok(());
     for _ in 0..attempts {
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
@@ -111,10 +111,10 @@ pub(super) fn write_stop(
         if at + lasts >= whole {
             return None;
         }
-        let end = plan_check.prepare(&plan.pieces, &state, &mut legs);
+        let end = plan_check.prepare(&plan.pieces, &state, &mut checked_pieces);
         plan.end = [0, 1, 2].map(|i| end[i].rest_position(lasts, plan.nudge[i]));
         // A stop has to be found: none is left unlooked at because others have been looked at before.
-        checked = plan_check.check(&legs, &mut { CheckBudget::WHOLE });
+        checked = plan_check.check(&checked_pieces, &mut { CheckBudget::WHOLE });
         match checked {
             Ok(()) | Err(Violation::Unchecked) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
@@ -165,14 +165,14 @@ fn hardest(state: &[AxisState; 3], limits: &TickLimits, constraints: &Constraint
     let hz = constraints.limits.rate_hz as f32;
     let centre = constraints.rotation_centre.map(|value| value as f32);
     let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
-    let arc = CubicSegment::new(state, &Piece::default(), hz);
+    let segment = CubicSegment::new(state, &Piece::default(), hz);
     let peak = Brake::new(state, limits, 1.0, 1.0).peak_per_second(limits, hz);
-    let mut drifting = arc.start;
+    let mut drifting = segment.start;
     drifting.a = [0.0; 3];
     let mut braking = drifting;
     braking.a = peak;
-    let [_, drift] = arc.platform(&drifting, centre).pivots();
-    let [_, braked] = arc.platform(&braking, centre).pivots();
+    let [_, drift] = segment.platform(&drifting, centre).pivots();
+    let [_, braked] = segment.platform(&braking, centre).pivots();
     let mut hardest = HARDEST;
     for i in 0..3 {
         let part = braked[i] - drift[i];
@@ -181,7 +181,7 @@ fn hardest(state: &[AxisState; 3], limits: &TickLimits, constraints: &Constraint
             hardest = left / part.abs();
         }
     }
-    let [rates, accelerations] = arc.platform(&arc.start, centre).pivots();
+    let [rates, accelerations] = segment.platform(&segment.start, centre).pivots();
     let rate = greatest(&rates) / constraints.limits.pivot_rate_rad_s as f32;
     let acceleration =
         greatest(&accelerations) / constraints.limits.pivot_acceleration_rad_s2 as f32;

@@ -5,6 +5,14 @@
 //! FPU multiplies floats, so fixed point costs nothing here and has 29 fraction bits where a float has at most 24.
 //! Rates, accelerations and torques are differences and corrections: there a float's range is worth more than its last bits.
 //!
+//! | file | idea |
+//! |---|---|
+//! | `fixed`, `scalar` | the fixed-point number, and what the kinematics ask of it |
+//! | `multiply`, `root` | products, square and cube roots: one instruction each where the chip has one |
+//! | `trigonometric`, `arcsine`, `polar` | sine and cosine, and back |
+//! | `float` | conversions and comparisons of floats that are cheap on the chip; the float that profiles are computed in |
+//! | `wide_integer` | products and quotients of 128 bits |
+//!
 //! # The same bits on chip and desktop
 //!
 //! Tick and planning compute with nothing that may come out differently from machine to machine:

@@ -1,6 +1,7 @@
-//! A quotient of numbers of 128 bits, without the library's division, which goes bit by bit: some 3,000 instructions on the chip.
+//! Products and quotients of numbers of up to 128 bits.
 //!
-//! A float's guess has 22 of its bits; what they leave is divided in turn.
+//! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A float's guess
+//! has 22 of its bits; what they leave is divided in turn.
 
 use super::float::{i64_to_f32_fast, i128_to_f32_fast};
 

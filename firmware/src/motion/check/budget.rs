@@ -2,10 +2,10 @@
 
 use super::violation::Violation;
 
-/// Stretches that may be looked at, failed ones included, before the next failure counts.
+/// Intervals that may be looked at, failed ones included, before the next failure counts.
 pub(super) const MOST_LOOKS: usize = 60;
 
-/// Stretches in the first slice.
+/// Intervals in the first slice.
 const SLICE: usize = 16;
 
 /// What has to have been seen, ticks, for the rest to be left for later.
@@ -14,7 +14,7 @@ pub(crate) const MIN_CHECKED_TICKS: u64 = 100;
 /// How a motion is looked at.
 pub(crate) struct CheckBudget {
     pub(super) left: usize,
-    /// Stretches until the rest is left for later.
+    /// Intervals until the rest is left for later.
     pub(super) slice: usize,
     /// Ticks from the start on that have been found inside.
     pub checked_ticks: u64,

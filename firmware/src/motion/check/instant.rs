@@ -135,9 +135,9 @@ impl<'a> InstantCheck<'a> {
 
     /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at most.
     pub fn is_inside(&self, before: &InstantState, now: &InstantState, seconds: f32) -> bool {
-        let arc =
+        let segment =
             before.centre_acceleration.fmax(now.centre_acceleration) * seconds * seconds / 8.0;
-        before.centre_distance.fmax(now.centre_distance) + arc <= self.usable + STREAM_RIM
+        before.centre_distance.fmax(now.centre_distance) + segment <= self.usable + STREAM_RIM
     }
 
     fn outside(&self, centre_distance: f32) -> Refusal {

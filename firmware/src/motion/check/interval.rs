@@ -1,4 +1,5 @@
-//! How large velocity, acceleration and jerk are over a stretch, and what the pivots can make of them at most.
+//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, and what the
+//! pivots can make of them at most.
 
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
@@ -6,7 +7,7 @@ use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::motion::speeds::Speeds;
 use crate::number::float::{FloatMinMax, hypot};
 
-/// One end of a stretch.
+/// One end of an interval.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct IntervalEnd {
     pub sample: MotionState,
@@ -23,9 +24,9 @@ pub(crate) struct IntervalEnd {
 }
 
 impl IntervalEnd {
-    pub(super) fn pivots(&mut self, arc: &CubicSegment, centre: [f32; 2]) -> [f32; 2] {
+    pub(super) fn pivots(&mut self, segment: &CubicSegment, centre: [f32; 2]) -> [f32; 2] {
         *self.pivots.get_or_insert_with(|| {
-            let pivots = arc.platform(&self.sample, centre).pivots();
+            let pivots = segment.platform(&self.sample, centre).pivots();
             pivots.map(|three| greatest(&three))
         })
     }
@@ -54,27 +55,31 @@ impl IntervalBounds {
 
     /// Of a point as far as `arm` from the moved one.
     pub fn at_offset(&self, arm: f32) -> Self {
-        let ([v, turn], [a, spin], [j, twitch]) = (self.v, self.a, self.j);
+        let ([v, turn], [a, angular_acceleration], [j, angular_jerk]) = (self.v, self.a, self.j);
         Self {
             v: [v + arm * turn, turn],
-            a: [a + arm * (spin + turn * turn), spin],
+            a: [
+                a + arm * (angular_acceleration + turn * turn),
+                angular_acceleration,
+            ],
             j: [
-                j + arm * (twitch + turn * (3.0 * spin + turn * turn)),
-                twitch,
+                j + arm * (angular_jerk + turn * (3.0 * angular_acceleration + turn * turn)),
+                angular_jerk,
             ],
         }
     }
 
     /// Bounds of the pivots' rates and accelerations when these sizes are the platform centre's, at any orientation.
     pub fn pivot_bounds(&self, bound: &PivotGain) -> [f32; 2] {
-        let [speeds, force] = [self.v, self.a].map(|[linear, angular]| Speeds { linear, angular });
+        let [speeds, accelerations] =
+            [self.v, self.a].map(|[linear, angular]| Speeds { linear, angular });
         [
             bound.rate(speeds),
-            bound.rate(force) + bound.bias_acceleration(speeds),
+            bound.rate(accelerations) + bound.bias_acceleration(speeds),
         ]
     }
 
-    /// How far rate and acceleration of a pivot can rise between the ends of a stretch, from the bounds of both: a pivot's
+    /// How far rate and acceleration of a pivot can rise between the ends of an interval, from the bounds of both: a pivot's
     /// third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds how fast
     /// `1 / c` changes.
     pub fn pivot_rises(&self, [u, w]: [f32; 2], bound: &PivotGain, t: f32) -> [f32; 2] {
@@ -95,7 +100,7 @@ fn fastest(from: &MotionState, to: &MotionState, i: usize, t: f32) -> f32 {
     if a * b >= 0.0 {
         return ends;
     }
-    // Acceleration passes zero after this part of the stretch.
+    // Acceleration passes zero after this part of the interval.
     let part = a / (a - b);
     ends.fmax((from.v[i] + a * part * t / 2.0).abs())
 }

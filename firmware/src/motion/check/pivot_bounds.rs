@@ -1,4 +1,4 @@
-//! What a motion asks of the pivots at worst, whatever the orientation: for motions that have no end to look at.
+//! What a motion asks of the pivots at worst, at any orientation: for motions without an end, which cannot be checked piece by piece.
 //!
 //! With the platform's centre `r` from the track's (DESIGN section 2; `k = 1 / sqrt(1 - r^2)`, lengths in track radii, a point
 //! moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
@@ -86,8 +86,8 @@ impl PivotBound {
     }
 
     /// What accelerations of the moved point and of theta ask of the pivots.
-    pub fn acceleration_demand(&self, radius: f32, force: Speeds) -> f32 {
-        PivotGain::new(radius).rate(self.platform_speeds(force))
+    pub fn acceleration_demand(&self, radius: f32, accelerations: Speeds) -> f32 {
+        PivotGain::new(radius).rate(self.platform_speeds(accelerations))
     }
 
     /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to spare;
@@ -142,7 +142,7 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
         };
-        let (mut rates, mut forces) = (0.0_f64, 0.0_f64);
+        let (mut rates, mut largest) = (0.0_f64, 0.0_f64);
         for round in 0..40_000 {
             let arm = if round % 2 == 0 {
                 0.0
@@ -156,7 +156,7 @@ mod tests {
             };
             let (r, direction, theta) = (next().abs() * 0.8, next() * TAU, next() * TAU);
             let (v, turn) = ([next() * 2.0, next() * 2.0], next() * 6.0);
-            let (a, turn_force) = ([next() * 40.0, next() * 40.0], next() * 120.0);
+            let (a, turn_acceleration) = ([next() * 40.0, next() * 40.0], next() * 120.0);
             let to_point = next() * TAU;
             let (e, n) = (arm * to_point.cos(), arm * to_point.sin());
             let pose = Pose {
@@ -170,9 +170,9 @@ mod tests {
                 theta: turn,
             };
             let acceleration = Acceleration {
-                x: a[0] + turn_force * n + turn * turn * e,
-                y: a[1] - turn_force * e + turn * turn * n,
-                theta: turn_force,
+                x: a[0] + turn_acceleration * n + turn * turn * e,
+                y: a[1] - turn_acceleration * e + turn * turn * n,
+                theta: turn_acceleration,
             };
             let guides = inverse(&pose).expect("inside").guides;
             let exact = pivot_motion(&guides, &twist, &acceleration);
@@ -181,19 +181,19 @@ mod tests {
                 linear: v[0].hypot(v[1]) as f32,
                 angular: turn.abs() as f32,
             };
-            let (speeds, force) = (speeds(v, turn), speeds(a, turn_force));
+            let (speeds, accelerations) = (speeds(v, turn), speeds(a, turn_acceleration));
             let r = r as f32;
             let rate = f64::from(PivotGain::new(r).rate(pivot_bound.platform_speeds(speeds)));
             let asked = f64::from(
-                pivot_bound.acceleration_demand(r, force)
+                pivot_bound.acceleration_demand(r, accelerations)
                     - pivot_bound.acceleration_margin(r, speeds),
             );
             rates = rates.max(worst(exact.rates) / rate);
-            forces = forces.max(worst(exact.accelerations) / asked);
+            largest = largest.max(worst(exact.accelerations) / asked);
         }
-        println!("largest share of the bounds: rate {rates:.3}, acceleration {forces:.3}");
+        println!("largest share of the bounds: rate {rates:.3}, acceleration {largest:.3}");
         assert!((0.95..=1.000_01).contains(&rates), "{rates}");
-        assert!((0.8..=1.000_01).contains(&forces), "{forces}");
+        assert!((0.8..=1.000_01).contains(&largest), "{largest}");
     }
 
     /// Without an acceleration of its own the platform asks for some.

@@ -1,4 +1,4 @@
-//! Holds the pieces of a plan against every limit, stretch by stretch.
+//! Holds the pieces of a plan against every limit, interval by interval.
 
 use super::budget::CheckBudget;
 use super::interval::{IntervalBounds, IntervalEnd};
@@ -38,7 +38,7 @@ struct MotionLimits {
 
 /// A piece as it is looked at.
 pub(crate) struct CheckedPiece {
-    arc: CubicSegment,
+    segment: CubicSegment,
     /// Of translation and of rotation.
     jerk: [f32; 2],
     /// How far each axis may go from its start.
@@ -55,7 +55,7 @@ const PLAN_SLACK: f32 = 1.0 + 1e-4;
 /// Pieces up to this many ticks have no middle to sample.
 const SHORT: u64 = 200;
 
-/// A stretch is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
+/// An interval is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
 impl PlanCheck {
@@ -113,16 +113,19 @@ impl PlanCheck {
         &self,
         pieces: &[Piece],
         start: &[AxisState; 3],
-        legs: &mut CheckedPieces,
+        checked_pieces: &mut CheckedPieces,
     ) -> [AxisState; 3] {
         let mut axes = *start;
-        legs.clear();
+        checked_pieces.clear();
         for piece in pieces {
-            let arc = CubicSegment::new(&axes, piece, self.hz);
+            let segment = CubicSegment::new(&axes, piece, self.hz);
             // Room for all pieces of a plan.
-            let _ = legs.push(CheckedPiece {
-                jerk: [hypot(arc.jerk[0], arc.jerk[1]), arc.jerk[2].abs()],
-                arc,
+            let _ = checked_pieces.push(CheckedPiece {
+                jerk: [
+                    hypot(segment.jerk[0], segment.jerk[1]),
+                    segment.jerk[2].abs(),
+                ],
+                segment,
                 bound_distances: self.workspace.bound_distances(&axes),
                 ticks: piece.ticks,
             });
@@ -131,43 +134,47 @@ impl PlanCheck {
         axes
     }
 
-    /// Whether these stay inside, from what `looks` have seen of them before.
-    pub fn check(&self, legs: &[CheckedPiece], looks: &mut CheckBudget) -> Result<(), Violation> {
+    /// Whether these stay inside, from what has been checked of them before.
+    pub fn check(
+        &self,
+        checked_pieces: &[CheckedPiece],
+        budget: &mut CheckBudget,
+    ) -> Result<(), Violation> {
         let (mut worst, mut pivots_sampled) = (None, false);
-        let mut before = looks.checked_ticks;
-        for leg in legs {
-            if before >= leg.ticks {
-                before -= leg.ticks;
+        let mut before = budget.checked_ticks;
+        for piece in checked_pieces {
+            if before >= piece.ticks {
+                before -= piece.ticks;
                 continue;
             }
-            self.check_jerk(leg)?;
-            let (mut done, mut ticks) = (core::mem::take(&mut before), leg.ticks);
+            self.check_jerk(piece)?;
+            let (mut done, mut ticks) = (core::mem::take(&mut before), piece.ticks);
             let [mut first, mut second] = [IntervalEnd::default(); 2];
             let (mut from, mut to) = (&mut first, &mut second);
-            self.look(&leg.arc, done, from);
-            while done < leg.ticks {
-                ticks = ticks.min(leg.ticks - done);
-                looks.take()?;
-                self.look(&leg.arc, done + ticks, to);
-                match self.stretch(leg, [from, to], ticks_to_f32(ticks) / self.hz) {
+            self.evaluate(&piece.segment, done, from);
+            while done < piece.ticks {
+                ticks = ticks.min(piece.ticks - done);
+                budget.take()?;
+                self.evaluate(&piece.segment, done + ticks, to);
+                match self.check_interval(piece, [from, to], ticks_to_f32(ticks) / self.hz) {
                     Ok(longer) => {
                         core::mem::swap(&mut from, &mut to);
                         done += ticks;
-                        looks.checked_ticks += ticks;
+                        budget.checked_ticks += ticks;
                         ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
-                    // In shorter stretches the same instant would be met.
+                    // In shorter intervals the same instant would be met.
                     Err((Violation::NoRoomToStop, _)) => return Err(Violation::Workspace),
                     Err((broken, shorter)) => {
                         if broken.is_of_pivots() && !pivots_sampled {
-                            looks.leave_for_later()?;
+                            budget.leave_for_later()?;
                             // Where a limit is passed indeed, sampling the pivots tells by how much.
-                            self.sample_pivots(legs)?;
+                            self.sample_pivots(checked_pieces)?;
                             pivots_sampled = true;
                         }
-                        // Stretches close in on where a limit is met; how far it is passed was seen before.
+                        // Intervals close in on where a limit is met; how far it is passed was seen before.
                         worst = Some(broken.or_worse(worst));
-                        if ticks <= SHORTEST || looks.left == 0 {
+                        if ticks <= SHORTEST || budget.left == 0 {
                             return worst.map_or(Ok(()), Err);
                         }
                         ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
@@ -179,15 +186,15 @@ impl PlanCheck {
         Ok(())
     }
 
-    fn look(&self, arc: &CubicSegment, ticks: u64, look: &mut IntervalEnd) {
-        let sample = arc.at(ticks_to_f32(ticks) / self.hz);
-        let [x, y] = arc.point(&sample);
+    fn evaluate(&self, segment: &CubicSegment, ticks: u64, end: &mut IntervalEnd) {
+        let sample = segment.at(ticks_to_f32(ticks) / self.hz);
+        let [x, y] = segment.point(&sample);
         let point_distance = hypot(x, y);
         let MotionState { v, a, .. } = sample;
-        *look = IntervalEnd {
+        *end = IntervalEnd {
             point_distance,
             centre_distance: if self.workspace.arm > 0.0 {
-                self.workspace.centre_distance(arc, &sample)
+                self.workspace.centre_distance(segment, &sample)
             } else {
                 point_distance
             },
@@ -199,14 +206,15 @@ impl PlanCheck {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn sample_pivots(&self, legs: &[CheckedPiece]) -> Result<(), Violation> {
+    fn sample_pivots(&self, checked_pieces: &[CheckedPiece]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        for CheckedPiece { arc, ticks, .. } in legs {
+        for CheckedPiece { segment, ticks, .. } in checked_pieces {
             let seconds = ticks_to_f32(*ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(*ticks > SHORT)] {
-                let [rates, accelerations] =
-                    arc.platform(&arc.at(t), self.workspace.centre).pivots();
+                let [rates, accelerations] = segment
+                    .platform(&segment.at(t), self.workspace.centre)
+                    .pivots();
                 rate = rate.fmax(greatest(&rates));
                 acceleration = acceleration.fmax(greatest(&accelerations));
             }
@@ -219,37 +227,37 @@ impl PlanCheck {
         within(rate / rate_limit, Violation::PivotRate)
     }
 
-    fn check_jerk(&self, leg: &CheckedPiece) -> Result<(), Violation> {
+    fn check_jerk(&self, piece: &CheckedPiece) -> Result<(), Violation> {
         let Some(motion_limits) = &self.motion_limits else {
             return Ok(());
         };
-        let [way, turn] = leg.jerk;
+        let [way, turn] = piece.jerk;
         within(
             (way / motion_limits.jerk[0]).fmax(turn / motion_limits.jerk[1]),
             Violation::Acceleration,
         )
     }
 
-    /// By how much the next stretch may be longer than this; or what is broken, and by how much shorter a stretch to try.
-    fn stretch(
+    /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to try.
+    fn check_interval(
         &self,
-        leg: &CheckedPiece,
+        piece: &CheckedPiece,
         [from, to]: [&mut IntervalEnd; 2],
         t: f32,
     ) -> Result<f32, (Violation, f32)> {
         const HALF: f32 = 0.5;
-        let sizes = IntervalBounds::new(leg.jerk, from, to, t);
+        let sizes = IntervalBounds::new(piece.jerk, from, to, t);
         let moving = sizes.at_offset(self.workspace.arm);
         let radius = self
-            .path(leg, [from, to], t, [&sizes, &moving])
+            .path(piece, [from, to], t, [&sizes, &moving])
             .map_err(|broken| (broken, HALF))?;
-        self.check_pivots(&leg.arc, [from, to], t, &moving, radius)
+        self.check_pivots(&piece.segment, [from, to], t, &moving, radius)
     }
 
     /// All but the pivots; the greatest distance of the platform's centre from the track's.
     fn path(
         &self,
-        leg: &CheckedPiece,
+        piece: &CheckedPiece,
         [from, to]: [&IntervalEnd; 2],
         t: f32,
         [sizes, moving]: [&IntervalBounds; 2],
@@ -268,11 +276,11 @@ impl PlanCheck {
         }
         let eighth = t * t / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
-        (self.workspace).check_bounds(&leg.bound_distances, &from.sample, &to.sample, rise)?;
+        (self.workspace).check_bounds(&piece.bound_distances, &from.sample, &to.sample, rise)?;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
         let radius = self.workspace.check_disk(furthest)?;
         if let Some(motion_limits) = &self.motion_limits {
-            self.check_stop(leg, to, motion_limits)?;
+            self.check_stop(piece, to, motion_limits)?;
         }
         Ok(radius)
     }
@@ -280,25 +288,31 @@ impl PlanCheck {
     /// A stop from here.
     fn check_stop(
         &self,
-        leg: &CheckedPiece,
+        piece: &CheckedPiece,
         at: &IntervalEnd,
         motion_limits: &MotionLimits,
     ) -> Result<(), Violation> {
         if self
             .workspace
-            .stop_is_clear_of_edges(&leg.bound_distances, at, &motion_limits.braking)
+            .stop_is_clear_of_edges(&piece.bound_distances, at, &motion_limits.braking)
         {
             return Ok(());
         }
         let brake = Brake::in_seconds(&at.sample, &motion_limits.stop, self.hz);
         (self.workspace)
-            .check_stop(&leg.arc, &leg.bound_distances, &at.sample, &brake, self.hz)
+            .check_stop(
+                &piece.segment,
+                &piece.bound_distances,
+                &at.sample,
+                &brake,
+                self.hz,
+            )
             .map_err(|_| Violation::NoRoomToStop)
     }
 
     fn check_pivots(
         &self,
-        arc: &CubicSegment,
+        segment: &CubicSegment,
         ends: [&mut IntervalEnd; 2],
         t: f32,
         moving: &IntervalBounds,
@@ -314,7 +328,7 @@ impl PlanCheck {
         }
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
-            let [rate, acceleration] = end.pivots(arc, self.workspace.centre);
+            let [rate, acceleration] = end.pivots(segment, self.workspace.centre);
             rates = rates.fmax(rate);
             accelerations = accelerations.fmax(acceleration);
         }
@@ -338,8 +352,8 @@ impl PlanCheck {
     }
 }
 
-/// The same for a value at the ends of a stretch that may rise in between; what is told is what is sure. A rise goes with the
-/// square of the time: how much longer a stretch may be than this one, or how much shorter it has to be.
+/// The same for a value at the ends of an interval that may rise in between; what is told is what is sure. A rise goes with the
+/// square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
 fn rise_within(
     value: f32,
     most: f32,

@@ -33,7 +33,7 @@ impl Platform {
         let (x, y) = turned(point[0], point[1]);
         let (v_x, v_y) = turned(v[0], v[1]);
         let (a_x, a_y) = turned(a[0], a[1]);
-        let (turn, spin) = (v[2], a[2]);
+        let (turn, angular_acceleration) = (v[2], a[2]);
         let inward = turn * turn;
         Self {
             x: x - p,
@@ -44,9 +44,9 @@ impl Platform {
                 theta: turn,
             },
             acceleration: Acceleration {
-                x: a_x + spin * q + inward * p,
-                y: a_y - spin * p + inward * q,
-                theta: spin,
+                x: a_x + angular_acceleration * q + inward * p,
+                y: a_y - angular_acceleration * p + inward * q,
+                theta: angular_acceleration,
             },
         }
     }

@@ -1,4 +1,4 @@
-//! Whether a target can be moved to, and along a straight line.
+//! Whether a target can be moved to, from anywhere.
 
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
@@ -8,15 +8,15 @@ use crate::number::Fixed;
 use crate::number::float::i64_to_f32_fast;
 use kinematics::{Angle, Scalar};
 
-/// A thousand million turns, in units of a position.
-const MAX_TURNS: i64 = 1_000_000_000 << 32;
+/// Most turns that a target may have, a thousand million, in units of a position.
+pub(crate) const MAX_TURNS: i64 = 1_000_000_000 << 32;
 
 /// Slack for a target on the rim itself, track radii: its coordinates are rounded to 2^-32.
 const TARGET_RIM: f64 = 1e-9;
 /// The same where the platform centre follows from another point by sines that are good to 2^-29.
 const TARGET_RIM_OFF_CENTRE: f64 = 1e-8;
 
-/// Whether `target` can be moved to, from anywhere.
+/// Whether `target` lies inside the workspace.
 pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
     if target[2].unsigned_abs() > MAX_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);

@@ -47,11 +47,11 @@ fn looked(
     plan_check: &PlanCheck,
     plan: &Plan,
     start: &[AxisState; 3],
-    mut looks: CheckBudget,
+    mut budget: CheckBudget,
 ) -> Result<(), Violation> {
-    let mut legs = CheckedPieces::new();
-    plan_check.prepare(&plan.pieces, start, &mut legs);
-    plan_check.check(&legs, &mut looks)
+    let mut checked_pieces = CheckedPieces::new();
+    plan_check.prepare(&plan.pieces, start, &mut checked_pieces);
+    plan_check.check(&checked_pieces, &mut budget)
 }
 
 #[test]
@@ -218,11 +218,11 @@ fn without_looks_left_it_fails() {
         let plan_check = PlanCheck::new(&constraints, TickLimits::new(&constraints), &now);
         let part = plan(2_000, [0.0; 3]);
         let with = |left: usize| {
-            let looks = CheckBudget {
+            let budget = CheckBudget {
                 left,
                 ..CheckBudget::WHOLE
             };
-            looked(&plan_check, &part, &now, looks).is_ok()
+            looked(&plan_check, &part, &now, budget).is_ok()
         };
         assert!(with(MOST_LOOKS) || !with(1));
         undecided += usize::from(with(MOST_LOOKS) && !with(1));

@@ -69,7 +69,7 @@ impl Workspace {
         })
     }
 
-    /// Holds a stretch against the bounds; `rise` is how far translation and rotation can rise between its ends.
+    /// Holds an interval against the bounds; `rise` is how far translation and rotation can rise between its ends.
     pub fn check_bounds(
         &self,
         bound_distances: &[[f32; 2]; 3],
@@ -102,11 +102,11 @@ impl Workspace {
     }
 
     /// Of the platform's centre from the track's.
-    pub fn centre_distance(&self, arc: &CubicSegment, sample: &MotionState) -> f32 {
+    pub fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
         if self.arm > 0.0 {
-            arc.platform(sample, self.centre).radius()
+            segment.platform(sample, self.centre).radius()
         } else {
-            let [x, y] = arc.point(sample);
+            let [x, y] = segment.point(sample);
             hypot(x, y)
         }
     }
@@ -133,7 +133,7 @@ impl Workspace {
     /// Holds a stop from a state against disk and bounds: at the ends of its three segments.
     pub fn check_stop(
         &self,
-        arc: &CubicSegment,
+        segment: &CubicSegment,
         bound_distances: &[[f32; 2]; 3],
         at: &MotionState,
         brake: &Brake,
@@ -156,7 +156,7 @@ impl Workspace {
         }
         for spot in &spots {
             self.check_bounds(bound_distances, spot, spot, [0.0; 2])?;
-            self.check_disk(self.centre_distance(arc, spot))?;
+            self.check_disk(self.centre_distance(segment, spot))?;
         }
         Ok(())
     }

@@ -81,14 +81,16 @@ impl Jog {
         for _ in 0..16 {
             let share = (low + high) / 2.0;
             let speeds = Speeds::of(&per_second(&slower(share), request.hz));
-            let ticks = ticks_to_f32(VelocityRamp::new(speeds, &self.force, request.hz).ticks());
+            let ticks = ticks_to_f32(
+                VelocityRamp::new(speeds, &self.acceleration_limits, request.hz).ticks(),
+            );
             if share * ticks <= short.seconds * request.hz {
                 low = share;
             } else {
                 high = share;
             }
         }
-        // A little less, for what a slower motion has besides: a larger disk, and in it less force.
+        // A little less, for what a slower motion has besides: a larger disk, and in it less acceleration.
         slower(if low < LEAST_SHARE { 0.0 } else { low * 0.95 })
     }
 }

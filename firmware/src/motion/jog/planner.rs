@@ -1,4 +1,4 @@
-//! Planning a jog: velocities tried, the way there checked.
+//! Planning a jog: velocities are tried until one can be reached and given up again.
 
 use super::request::{InitialState, JogRequest};
 use super::trajectory::Jog;
@@ -78,9 +78,9 @@ fn check(
     constraints: &Constraints,
 ) -> Result<(), RetargetError> {
     let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), state);
-    let mut legs = CheckedPieces::new();
-    plan_check.prepare(pieces, state, &mut legs);
+    let mut checked_pieces = CheckedPieces::new();
+    plan_check.prepare(pieces, state, &mut checked_pieces);
     plan_check
-        .check(&legs, &mut { CheckBudget::WHOLE })
+        .check(&checked_pieces, &mut { CheckBudget::WHOLE })
         .map_err(|_| RetargetError::NeedsStop)
 }

@@ -3,6 +3,7 @@
 use super::travel_time::SteadyMotion;
 use crate::motion::brake::velocity_change::{AccelerationLimits, release_seconds};
 use crate::motion::check::pivot_bounds::PivotBound;
+use crate::motion::check::target::MAX_TURNS;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use crate::motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
@@ -14,8 +15,6 @@ use kinematics::{Angle, Scalar};
 
 /// 0.2 um on the reference stage.
 const JOG_RIM: f32 = 2e-6;
-/// A thousand million turns.
-const MAX_TURNS: i64 = 1_000_000_000 << 32;
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
 
@@ -27,7 +26,7 @@ pub(super) struct JogRequest<'a> {
     usable: f32,
     /// Wanted, 2^-72 units a tick.
     pub velocity: [i64; 3],
-    force: AccelerationLimits,
+    acceleration_limits: AccelerationLimits,
 }
 
 /// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see [`Limits`](crate::motion::Limits).
@@ -68,7 +67,7 @@ impl<'a> JogRequest<'a> {
             pivot_bound: PivotBound::new(constraints),
             usable: constraints.usable_radius as f32,
             velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
-            force: AccelerationLimits {
+            acceleration_limits: AccelerationLimits {
                 acceleration: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
                 jerk: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
             },
@@ -95,31 +94,32 @@ impl<'a> JogRequest<'a> {
         }
         let travels =
             |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm() > 0.0;
-        let (speed, force) = (Speeds::of(&now.velocity), Speeds::of(&now.acceleration));
-        let radius = if travels(speeds) || travels(speed) || travels(force) {
+        let (speed, acceleration) = (Speeds::of(&now.velocity), Speeds::of(&now.acceleration));
+        let radius = if travels(speeds) || travels(speed) || travels(acceleration) {
             most
         } else {
             out
         };
         // An acceleration under way adds to the velocity while it is released: straight from the one to this.
-        let half = release_seconds(force, self.force.jerk) / 2.0;
+        let half = release_seconds(acceleration, self.acceleration_limits.jerk) / 2.0;
         let released = [0, 1, 2].map(|i| now.velocity[i] + now.acceleration[i] * half);
         let gained = speed.max(Speeds::of(&released));
-        let room = pivot_bound.acceleration_margin(radius, speeds.max(gained));
-        let part = room / pivot_bound.acceleration_demand(radius, self.force.acceleration);
+        let margin = pivot_bound.acceleration_margin(radius, speeds.max(gained));
+        let part =
+            margin / pivot_bound.acceleration_demand(radius, self.acceleration_limits.acceleration);
         if part < LEAST_FORCE {
             return Err(RetargetError::NeedsStop);
         }
         let part = part.fmin(1.0);
         let acceleration = Speeds {
-            linear: self.force.acceleration.linear * part,
-            angular: self.force.acceleration.angular * part,
+            linear: self.acceleration_limits.acceleration.linear * part,
+            angular: self.acceleration_limits.acceleration.angular * part,
         };
         Ok((
             radius,
             AccelerationLimits {
                 acceleration,
-                ..self.force
+                ..self.acceleration_limits
             },
         ))
     }

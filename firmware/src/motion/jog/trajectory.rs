@@ -1,4 +1,4 @@
-//! A jog from the state on in which its velocity is reached.
+//! A jog: the way to a velocity, the velocity held, and the way to rest.
 
 use super::hold_then_stop::HoldThenStop;
 use super::request::{InitialState, JogRequest};
@@ -20,7 +20,7 @@ pub(super) struct Jog {
     pub(super) ramp: u64,
     /// Brings the velocity back to zero.
     pub(super) brake: VelocityRamp,
-    pub(super) force: AccelerationLimits,
+    pub(super) acceleration_limits: AccelerationLimits,
     pub(super) radius: f32,
 }
 
@@ -35,12 +35,21 @@ impl Jog {
     ) -> Result<Self, RetargetError> {
         let hz = request.hz;
         let target = per_second(&wanted, hz);
-        let (radius, force) = request.limits_towards(now, &target)?;
+        let (radius, acceleration_limits) = request.limits_towards(now, &target)?;
         pieces.clear();
-        let released =
-            release_acceleration(state, Speeds::of(&now.acceleration), force.jerk, hz, pieces);
+        let released = release_acceleration(
+            state,
+            Speeds::of(&now.acceleration),
+            acceleration_limits.jerk,
+            hz,
+            pieces,
+        );
         let change = [0, 1, 2].map(|i| wanted[i] - released[i]);
-        let ramp = VelocityRamp::new(Speeds::of(&per_second(&change, hz)), &force, hz);
+        let ramp = VelocityRamp::new(
+            Speeds::of(&per_second(&change, hz)),
+            &acceleration_limits,
+            hz,
+        );
         for piece in ramp.pieces(change) {
             // Release and ramp are five.
             let _ = pieces.push(piece);
@@ -49,8 +58,8 @@ impl Jog {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),
             ramp: ramp.ticks(),
-            brake: VelocityRamp::new(Speeds::of(&target), &force, hz),
-            force,
+            brake: VelocityRamp::new(Speeds::of(&target), &acceleration_limits, hz),
+            acceleration_limits,
             radius,
         })
     }

@@ -97,10 +97,10 @@ impl Path {
         } else {
             self.length * over_c + turn * furthest
         };
-        let drawn = turn * (2.0 * self.length + turn * furthest);
+        let d_2 = turn * (2.0 * self.length + turn * furthest);
         (
             turn + relative_rate,
-            (drawn + relative_rate * relative_rate * r) * over_c,
+            (d_2 + relative_rate * relative_rate * r) * over_c,
         )
     }
 
@@ -196,13 +196,13 @@ impl Path {
         let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).fmax(LEAST_COSINE));
         let relative_rate = around.abs() * passed + outwards.abs() * over_c;
         let turn = self.turn.abs();
-        let drawn = turn * (2.0 * self.length + turn * r);
+        let d_2 = turn * (2.0 * self.length + turn * r);
         // Of a guide through the moved point the two parts of phi'' oppose each other.
-        let thrown = relative_rate * relative_rate * furthest;
+        let squared_rate = relative_rate * relative_rate * furthest;
         let either = if k > 0.0 {
-            drawn + thrown
+            d_2 + squared_rate
         } else {
-            drawn.fmax(thrown)
+            d_2.fmax(squared_rate)
         };
         let (first, second) = (turn + relative_rate, either * over_c);
         Demand {

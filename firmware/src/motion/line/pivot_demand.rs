@@ -237,10 +237,10 @@ mod tests {
                         .fold((place.rate * rate) * (place.rate * rate), |worst, part| {
                             worst.fmax(part.abs())
                         });
-                    let told = grid.excess(&state);
+                    let given = grid.excess(&state);
                     over += usize::from(worst > 1.0);
-                    let same = (told - worst).abs() <= 1e-3 * worst;
-                    assert!(same || (told <= 1.0 && worst <= 1.0), "{told} {worst}");
+                    let same = (given - worst).abs() <= 1e-3 * worst;
+                    assert!(same || (given <= 1.0 && worst <= 1.0), "{given} {worst}");
                 }
             }
         }

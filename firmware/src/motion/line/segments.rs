@@ -1,4 +1,4 @@
-//! From the fastest speed along a line to a few stretches of constant acceleration.
+//! From the fastest speed along a line to a few segments of constant acceleration.
 //!
 //! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is one
 //! already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it stays

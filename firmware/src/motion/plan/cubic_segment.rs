@@ -1,4 +1,4 @@
-//! The state of a motion at an instant of a stretch, in floats: track radii, radians and seconds.
+//! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
 
 use super::Piece;
 use super::axis_state::AxisState;

@@ -1,4 +1,4 @@
-//! Following a plan, tick by tick.
+//! Following a plan tick by tick, and taking the next one.
 
 use super::axis_state::{AxisState, TickIncrement};
 use super::rotation_centre::RotationCentre;

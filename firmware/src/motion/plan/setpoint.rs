@@ -14,7 +14,7 @@ pub struct Setpoint {
     pub acceleration: Acceleration<f32>,
 }
 
-/// Factors from the integers of [`AxisState`] to physical rates.
+/// Factors from the integers of [`AxisState`](super::axis_state::AxisState) to physical rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetpointScale {
     pub(super) velocity: f32,
@@ -28,7 +28,6 @@ pub struct SetpointScale {
 /// second squared at 20 kHz, resolution 1e-7 rad/s and 9e-6 rad/s^2. An urgent stop brakes as hard as a pivot can, 300 rad/s^2 by
 /// default: some 350 track radii per second squared.
 pub(crate) const VELOCITY_CUT: u32 = 32;
-
 pub(crate) const ACCELERATION_CUT: u32 = 24;
 
 impl SetpointScale {

@@ -1,5 +1,5 @@
-//! The units of a [`Position`](crate::motion::Position) and of an [`AxisState`](crate::motion::AxisState) in floats, and limits in those of the latter and
-//! ticks.
+//! The units of a [`Position`] and of an [`AxisState`](super::axis_state::AxisState) as floats, and limits in those of the
+//! latter and ticks.
 
 use super::piece::Position;
 use crate::motion::constraints::Constraints;
@@ -11,10 +11,10 @@ pub(crate) struct TickLimits {
     pub rotation: AxisLimits<f32>,
 }
 
-/// 2^32: units of a [`Position`](crate::motion::Position) in a track radius or a turn, and the inverse.
+/// 2^32: units of a [`Position`] in a track radius or a turn, and the inverse.
 pub(crate) const POSITION_UNITS: f32 = 4_294_967_296.0;
 pub(crate) const PER_POSITION_UNIT: f32 = 1.0 / POSITION_UNITS;
-/// 2^72: units of an [`AxisState`](crate::motion::AxisState), and the inverse.
+/// 2^72: units of an [`AxisState`](super::axis_state::AxisState), and the inverse.
 pub(crate) const AXIS_UNITS: f32 = 4_722_366_482_869_645_213_696.0;
 pub(crate) const PER_AXIS_UNIT: f32 = 1.0 / AXIS_UNITS;
 

@@ -127,9 +127,9 @@ impl Ahead {
     #[inline(never)]
     fn look(&self, constraints: &Constraints) -> Result<(), Violation> {
         let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), &self.start);
-        let mut legs = CheckedPieces::new();
-        plan_check.prepare(&self.whole.pieces, &self.start, &mut legs);
-        plan_check.check(&legs, &mut CheckBudget::after(self.seen))
+        let mut checked_pieces = CheckedPieces::new();
+        plan_check.prepare(&self.whole.pieces, &self.start, &mut checked_pieces);
+        plan_check.check(&checked_pieces, &mut CheckBudget::after(self.seen))
     }
 
     /// Writes all of the transition, looked at.

@@ -16,6 +16,15 @@
 //! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of it
 //! ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
 //! where a stop and a straight line are sooner, the stage has to stop first.
+//!
+//! | file | idea |
+//! |---|---|
+//! | here | one slice of planning |
+//! | `heading` | the frame along the way to go and across it |
+//! | `choice` | shares, heading and speeds: the soonest of a few |
+//! | `slower`, `expected_demand` | by how much less than the limits, and why |
+//! | `tries` | what has been tried, and what is tried next |
+//! | `ahead` | what is checked in the next slice |
 
 use super::check::target::check_target;
 use super::check::violation::Violation;
@@ -109,17 +118,17 @@ pub fn try_retarget(
         .lay(&state, &to, &mut plan.pieces)
         .ok_or(RetargetError::NeedsStop)?;
     let plan_check = PlanCheck::new(constraints, limits, &state);
-    let mut legs = CheckedPieces::new();
+    let mut checked_pieces = CheckedPieces::new();
     let first = first_slice(&plan.pieces);
     let (now, later) = plan.pieces.split_at(first);
-    let then = plan_check.prepare(now, &state, &mut legs);
+    let then = plan_check.prepare(now, &state, &mut checked_pieces);
     let end = state_after_pieces(&then, later, &[0; 3]);
     plan.nudge = nudge_to(&end, &to, plan.ticks()).ok_or(RetargetError::NeedsStop)?;
-    let mut looks = CheckBudget::SLICE;
-    let looked = match plan_check.check(&legs, &mut looks) {
+    let mut budget = CheckBudget::SLICE;
+    let looked = match plan_check.check(&checked_pieces, &mut budget) {
         Ok(()) if first == plan.pieces.len() => return Ok(()),
-        Ok(()) | Err(Violation::Unchecked) if looks.checked_ticks >= MIN_CHECKED_TICKS => {
-            Ahead::divide(plan, &state, looks.checked_ticks, constraints, ahead)
+        Ok(()) | Err(Violation::Unchecked) if budget.checked_ticks >= MIN_CHECKED_TICKS => {
+            Ahead::divide(plan, &state, budget.checked_ticks, constraints, ahead)
         }
         Ok(()) => Ok(false),
         Err(broken) => Err(broken),
@@ -128,8 +137,11 @@ pub fn try_retarget(
         if divided {
             return Ok(());
         }
-        plan_check.prepare(&plan.pieces, &state, &mut legs);
-        plan_check.check(&legs, &mut CheckBudget::after(looks.checked_ticks))
+        plan_check.prepare(&plan.pieces, &state, &mut checked_pieces);
+        plan_check.check(
+            &checked_pieces,
+            &mut CheckBudget::after(budget.checked_ticks),
+        )
     });
     looked.map_err(|broken| tries.after(&broken))
 }

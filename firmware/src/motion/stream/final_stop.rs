@@ -1,7 +1,7 @@
 //! The stop that a motion carries with it: from any state, whatever the velocity and the acceleration point to.
 //!
 //! The acceleration is released, then the velocity given up, along its own direction: the pieces of a change of velocity (see
-//! `change`). Every instant that may be the worst is held against the limits; where a pivot is asked for too much, the stop
+//! `brake/velocity_change`). Every instant that may be the worst is held against the limits; where a pivot is asked for too much, the stop
 //! is softer.
 
 use crate::motion::brake::velocity_change::{
@@ -31,14 +31,14 @@ pub(crate) fn final_stop(
 ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
-        let force = AccelerationLimits {
+        let limits = AccelerationLimits {
             acceleration: Speeds {
                 linear: instant_check.acceleration_limit.linear * part,
                 angular: instant_check.acceleration_limit.angular * part,
             },
             jerk: instant_check.jerk_limit,
         };
-        let pieces = pieces(state, now, &force, instant_check);
+        let pieces = pieces(state, now, &limits, instant_check);
         let (worst, end) = walk(state, now, &pieces, instant_check).ok_or(Refusal::NoRoomToStop)?;
         if worst <= 1.0 {
             return Ok((pieces, end));
@@ -51,15 +51,15 @@ pub(crate) fn final_stop(
 fn pieces(
     state: &[AxisState; 3],
     now: &InstantState,
-    force: &AccelerationLimits,
+    limits: &AccelerationLimits,
     instant_check: &InstantCheck<'_>,
 ) -> StopPieces {
     let mut pieces = StopPieces::new();
-    let (hz, jerk) = (instant_check.hz, force.jerk);
+    let (hz, jerk) = (instant_check.hz, limits.jerk);
     let change = release_acceleration(state, now.acceleration, jerk, hz, &mut pieces)
         .map(|velocity| -velocity);
     if change != [0; 3] {
-        let ramp = VelocityRamp::new(Speeds::of(&per_second(&change, hz)), force, hz);
+        let ramp = VelocityRamp::new(Speeds::of(&per_second(&change, hz)), limits, hz);
         for piece in ramp.pieces(change) {
             // Two and three of five.
             let _ = pieces.push(piece);
@@ -130,7 +130,7 @@ mod tests {
         axes
     }
 
-    fn halted(
+    fn stopped(
         axes: &[AxisState; 3],
         constraints: &Constraints,
     ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
@@ -142,7 +142,7 @@ mod tests {
     fn it_comes_to_rest_along_its_way_in_the_time_that_the_limits_ask_for() {
         // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm.
         let axes = state(0.0, [200.0, 0.0, 0.0], 0.0);
-        let (pieces, end) = halted(&axes, &CONSTRAINTS).unwrap();
+        let (pieces, end) = stopped(&axes, &CONSTRAINTS).unwrap();
         let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
         assert!(ticks.abs_diff(1_200) <= 2, "{ticks}");
         let mm = (end[0].position - axes[0].position) as f64 / f64::from(AXIS_UNITS) * 100.0;
@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn an_acceleration_under_way_is_released_first() {
         let axes = state(0.0, [100.0, 30.0, 90.0], 3_000.0);
-        let (pieces, end) = halted(&axes, &CONSTRAINTS).unwrap();
+        let (pieces, end) = stopped(&axes, &CONSTRAINTS).unwrap();
         assert_eq!(pieces.len(), 5);
         assert!(end.iter().all(|axis| axis.acceleration == 0));
         assert!(
@@ -167,23 +167,23 @@ mod tests {
 
     #[test]
     fn at_rest_there_is_nothing_to_do() {
-        let (pieces, _) = halted(&state(0.0, [0.0; 3], 0.0), &CONSTRAINTS).unwrap();
+        let (pieces, _) = stopped(&state(0.0, [0.0; 3], 0.0), &CONSTRAINTS).unwrap();
         assert!(pieces.is_empty());
     }
 
     #[test]
     fn near_the_edge_there_is_none() {
-        assert!(halted(&state(0.73, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
-        let late = halted(&state(0.75, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS);
+        assert!(stopped(&state(0.73, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
+        let late = stopped(&state(0.75, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS);
         assert_eq!(late.err(), Some(Refusal::NoRoomToStop));
-        assert!(halted(&state(0.75, [-200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
+        assert!(stopped(&state(0.75, [-200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
     }
 
     #[test]
     fn with_weak_drives_it_is_softer() {
         let axes = state(0.0, [0.0, 0.0, 300.0], 0.0);
         let ticks = |constraints: &Constraints| -> u64 {
-            let (pieces, _) = halted(&axes, constraints).unwrap();
+            let (pieces, _) = stopped(&axes, constraints).unwrap();
             pieces.iter().map(|piece| piece.ticks).sum()
         };
         let mut weak = CONSTRAINTS;

@@ -4,7 +4,7 @@ use crate::motion::plan::Plan;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::refusal::Refusal;
 
-/// Who sets the pace.
+/// Whose clock the targets follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The sender, whose clock is followed.

@@ -8,7 +8,7 @@
 //!  curve          ~~~~~~~~~~~              a spline through them (`spline`)
 //!                  |   |   |
 //!  plans          [k k k|stop]             knots on the curve, three pieces of constant jerk each (`knot`), and a stop
-//!                       [k k k|stop]       that the next plan takes the place of (`halt`)
+//!                       [k k k|stop]       that the next plan takes the place of (`final_stop`)
 //! ```
 //!
 //! Every plan ends in a stop of its own. A stream that dries up comes to rest by itself, with nobody's help, within the limits
@@ -21,6 +21,16 @@
 //!
 //! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock differs a little
 //! (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `messages` | what goes between a stream, its sender and the tick |
+//! | `state` | the targets that wait, and what has been sent of them |
+//! | `sequence` | which plan is sent when; the sender's clock |
+//! | `plans` | a plan: knots along the curve, each held against every limit |
+//! | `spline` | the curve through the targets |
+//! | `knot` | from a state to a given one in three pieces |
+//! | `final_stop` | the stop at the end of every plan |
 
 mod final_stop;
 mod knot;

@@ -1,4 +1,4 @@
-//! Which plan of a stream is sent when.
+//! Which plan of a stream is sent when, and how the sender's clock is followed.
 
 use super::messages::{Clock, PlanProgress, StreamEnd, StreamStep};
 use super::spline::WINDOW;

@@ -1,4 +1,4 @@
-//! A stream: its targets, what has been sent of it, and what its sender does.
+//! A stream: the targets that wait, what has been sent of them, and the sender's clock.
 
 use super::knot::Knot;
 use super::messages::{Clock, PushError, StreamEnd};

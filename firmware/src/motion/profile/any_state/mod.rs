@@ -36,7 +36,8 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | what is asked and answered |
+//! | `task` | what is asked and answered |
+//! | here | the fastest profile, and one that lasts longer |
 //! | `state` | a state over jerk: its stop, its way back into the limits |
 //! | `start` | where the main part sets out, and how far beyond the stop its target lies |
 //! | `fastest` | cases A, B and C |
