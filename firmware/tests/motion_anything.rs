@@ -1,5 +1,6 @@
-//! Anything after anything: targets, constant velocities and stops, each at any tick of the one before, about any point of the
-//! platform, within bounds of x, y and theta, with strong and weak drives. Every tick keeps limits, workspace and continuity.
+//! Anything after anything: targets, constant velocities and stops, each at any tick of the one before, about any point
+//! of the platform, within bounds of x, y and theta, with strong and weak drives. Every tick keeps limits, workspace
+//! and continuity.
 
 mod motion_bench;
 
@@ -129,7 +130,8 @@ impl Course {
     }
 }
 
-/// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the acceleration.
+/// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the
+/// acceleration.
 fn is_stepped(before: &Setpoint, now: &Setpoint, constraints: &Constraints) -> bool {
     let hz = constraints.limits.rate_hz;
     let unit = [1.0, 1.0, 1.0 / std::f64::consts::TAU];

@@ -1,5 +1,5 @@
-//! Lines about another point than the platform centre: refused when the platform centre would leave the usable disk on its
-//! way, and only then.
+//! Lines about another point than the platform centre: refused when the platform centre would leave the usable disk on
+//! its way, and only then.
 
 mod motion_bench;
 
@@ -8,10 +8,12 @@ use motion_bench::*;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Two positions of a point of the platform that have the platform centre inside the disk, and the constraints for them.
+/// Two positions of a point of the platform that have the platform centre inside the disk, and the constraints for
+/// them.
 fn lines() -> impl Strategy<Value = (Position, Position, Constraints)> {
     let place = || (0.0..0.8_f64, -PI..PI, -0.7..0.7_f64);
-    // Half of them long and about a point not far off: they go through the middle, and may leave the disk near either end.
+    // Half of them long and about a point not far off: they go through the middle, and may leave the disk near either
+    // end.
     let arm = prop_oneof![0.0..0.7_f64, 0.05..0.25_f64];
     let exponent = prop_oneof![Just(0.0), -2.0..=0.0_f64];
     ((arm, -PI..PI), place(), place(), exponent).prop_map(|((arm, direction), a, b, exponent)| {

@@ -1,7 +1,7 @@
 //! Straight lines against the numerical optimum, and every tick of them against every limit.
 //!
-//! `LINES=1000 cargo test -p firmware --release --test motion_optimum -- --nocapture` prints the distribution over 1,000
-//! moves; without it there are 200. `SEED` in the environment takes other moves.
+//! `LINES=1000 cargo test -p firmware --release --test motion_optimum -- --nocapture` prints the distribution over
+//! 1,000 moves; without it there are 200. `SEED` in the environment takes other moves.
 
 mod motion_bench;
 mod optimum;
@@ -14,8 +14,8 @@ use motion_bench::*;
 use optimum::Optimum;
 use std::f64::consts::TAU;
 
-/// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of them
-/// of any size from 0.1 mm up; one in four about another point than the platform centre.
+/// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of
+/// them of any size from 0.1 mm up; one in four about another point than the platform centre.
 fn random_move(random: &mut Random) -> (Position, Position, Constraints) {
     let mut constraints = CONSTRAINTS;
     if random.unit() < 0.25 {

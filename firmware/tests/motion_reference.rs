@@ -1,7 +1,8 @@
-//! What the chip computes, in single precision and integers and as the tick plays it, beside rsruckig in doubles: durations of
-//! three axes from motion to rest.
+//! What the chip computes, in single precision and integers and as the tick plays it, beside rsruckig in doubles:
+//! durations of three axes from motion to rest.
 //!
-//! `STATES=20000 cargo test --release -p firmware --test motion_reference -- --nocapture` takes more states, `SEED` others.
+//! `STATES=20000 cargo test --release -p firmware --test motion_reference -- --nocapture` takes more states, `SEED`
+//! others.
 
 mod motion_bench;
 
@@ -150,9 +151,9 @@ fn three_axes_take_as_long_as_the_reference() {
     assert!(median < 1.001 && most < 1.005 && worst < 1.05 && none <= 2 + cases / 4_000);
 }
 
-/// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of the
-/// path's it is a bound from below, with a square within the circle what it could be used for here. The pivots' limits, which
-/// it does not know either, are out of the way first.
+/// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of
+/// the path's it is a bound from below, with a square within the circle what it could be used for here. The pivots'
+/// limits, which it does not know either, are out of the way first.
 #[test]
 fn new_targets_in_motion_beside_the_reference() {
     let (seed, cases) = (setting("SEED", 20_260_402), setting("STATES", 4_000));

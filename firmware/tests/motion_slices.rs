@@ -55,8 +55,8 @@ impl Left {
     }
 }
 
-/// All of it keeps the law: the head, which comes to rest by itself, and what takes over from it at any of its ticks, which is
-/// the very motion that is planned when there is all the time in the world.
+/// All of it keeps the law: the head, which comes to rest by itself, and what takes over from it at any of its ticks,
+/// which is the very motion that is planned when there is all the time in the world.
 #[test]
 fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
     let seed = setting("SEED", 20_261_121);

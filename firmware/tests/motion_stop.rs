@@ -136,8 +136,8 @@ fn from_full_speed_a_stop_takes_what_the_limits_ask() {
             (stop.end[0] - start) as f64 / UNIT * GEOMETRY.radius_mm,
         )
     };
-    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm. Urgent: the pivots allow 28 m/s^2 here, more than the 17.9 m/s^2
-    // that 1,600 m/s^3 lead to; 2 sqrt(v / j) = 22.4 ms, 2.24 mm.
+    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm. Urgent: the pivots allow 28 m/s^2 here, more than
+    // the 17.9 m/s^2 that 1,600 m/s^3 lead to; 2 sqrt(v / j) = 22.4 ms, 2.24 mm.
     let (ticks, mm) = way(Stop::Smooth);
     assert!(
         ticks.abs_diff(1_200) <= 2 && (mm - 6.0).abs() < 0.02,

@@ -51,7 +51,8 @@ fn spiral(t: f64) -> [f64; 3] {
     [radius * angle.cos(), radius * angle.sin(), 0.3 * done]
 }
 
-/// Lines of 20 mm at 100 mm/s, 1 mm apart, turned round in 0.1 s without a step in acceleration, which reaches 3.1 m/s^2.
+/// Lines of 20 mm at 100 mm/s, 1 mm apart, turned round in 0.1 s without a step in acceleration, which reaches 3.1
+/// m/s^2.
 fn raster(t: f64) -> [f64; 3] {
     const SPEED: f64 = 100.0;
     const LINE: f64 = 0.2;

@@ -123,8 +123,8 @@ fn unshifted(mut plan: Plan) -> Plan {
     plan
 }
 
-/// A symmetry of the mechanism: the whole turned about the track's centre by an angle, mirrored in x or not, and the guides
-/// taken for one another.
+/// A symmetry of the mechanism: the whole turned about the track's centre by an angle, mirrored in x or not, and the
+/// guides taken for one another.
 #[derive(Clone, Copy, Debug)]
 struct Symmetry {
     angle: f64,
@@ -183,8 +183,8 @@ impl Plans {
     }
 }
 
-/// How far apart two plans from rest are that should be images of each other: durations, as a part; and places, track radii
-/// or turns.
+/// How far apart two plans from rest are that should be images of each other: durations, as a part; and places, track
+/// radii or turns.
 fn apart(one: &Plan, image: &Plan, starts: [&[AxisState; 3]; 2], symmetry: &Symmetry) -> [f64; 2] {
     let (ticks, ticks_image) = (one.ticks(), image.ticks());
     let mut furthest = 0_u64;
@@ -200,8 +200,9 @@ fn apart(one: &Plan, image: &Plan, starts: [&[AxisState; 3]; 2], symmetry: &Symm
     [part, furthest as f64 / UNIT]
 }
 
-/// Lines and new targets take as long, and are at the same places, on the turned and mirrored mechanism. Not to the bit: single
-/// precision rounds differently, and where it does, another of nearly equal motions may be taken. How often is counted.
+/// Lines and new targets take as long, and are at the same places, on the turned and mirrored mechanism. Not to the
+/// bit: single precision rounds differently, and where it does, another of nearly equal motions may be taken. How often
+/// is counted.
 #[test]
 fn the_mechanism_is_the_same_all_round() {
     let all = (

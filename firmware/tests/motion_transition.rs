@@ -82,8 +82,8 @@ proptest! {
     }
 }
 
-/// The setpoint of a tour in the very code of the tick: no position, velocity or acceleration is ever off what the integers
-/// of one plan after the other give.
+/// The setpoint of a tour in the very code of the tick: no position, velocity or acceleration is ever off what the
+/// integers of one plan after the other give.
 #[test]
 fn the_tick_follows_a_tour_without_a_step() {
     let from = at(-50.0, 10.0, 0.2);
@@ -141,8 +141,8 @@ fn the_tick_follows_a_tour_without_a_step() {
     assert_eq!(motion.position(), plan.end);
 }
 
-/// How good transitions are: where one is planned it is faster than stopping first, but for what an estimate of the line is
-/// off. Most of those that are not planned would not be.
+/// How good transitions are: where one is planned it is faster than stopping first, but for what an estimate of the
+/// line is off. Most of those that are not planned would not be.
 #[test]
 fn a_transition_is_the_rule_and_saves_time() {
     for (turns, most_refused) in [(2.0, 200), (0.02, 230)] {

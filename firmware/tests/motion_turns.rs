@@ -1,4 +1,5 @@
-//! Theta is exact at any number of turns: ten thousand of them in odd steps and back, tick by tick, and jogging besides.
+//! Theta is exact at any number of turns: ten thousand of them in odd steps and back, tick by tick, and jogging
+//! besides.
 
 mod motion_bench;
 

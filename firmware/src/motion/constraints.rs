@@ -17,8 +17,8 @@ pub struct Constraints {
     pub usable_radius: f64,
     /// Where the point that is moved may go.
     pub bounds: Bounds,
-    /// The point that is moved and about which the platform turns (the centre of rotation): x and y in the platform's own
-    /// axes, track radii. x and y of every [`Position`](super::Position) are those of this point in the base frame.
+    /// The point that is moved and about which the platform turns (the centre of rotation): x and y in the platform's
+    /// own axes, track radii. x and y of every [`Position`](super::Position) are those of this point in the base frame.
     pub rotation_centre: [f64; 2],
 }
 

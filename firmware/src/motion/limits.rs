@@ -38,8 +38,8 @@ pub struct PathLimits {
     pub jerk: f32,
 }
 
-/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30 instructions more
-/// than.
+/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30
+/// instructions more than.
 const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
 
 impl Limits {

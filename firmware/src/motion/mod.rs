@@ -3,9 +3,9 @@
 //! # What a plan is
 //!
 //! A [`Plan`] is a list of pieces of constant jerk for the three axes together. The tick integrates it in integers
-//! ([`AxisState`]), so setpoints are continuous by construction and the end is exact. Every plan ends at rest: whatever becomes
-//! of the next one, the motion can stop. Planning needs divisions and roots and runs at low priority; a plan reaches the tick
-//! through the command queue and is taken only if it starts where the motion is.
+//! ([`AxisState`]), so setpoints are continuous by construction and the end is exact. Every plan ends at rest: whatever
+//! becomes of the next one, the motion can stop. Planning needs divisions and roots and runs at low priority; a plan
+//! reaches the tick through the command queue and is taken only if it starts where the motion is.
 //!
 //! # Which planner when
 //!
@@ -18,8 +18,8 @@
 //! | a stop | motion | [`plan_stop`], smooth or urgent |
 //! | the stop of a fault | motion | none: the plan under way is followed slower and slower ([`FaultStop`]) |
 //!
-//! A new target in motion is planned in slices, so that the first setpoint towards it does not wait for all that lies ahead.
-//! All of what is handed over has been checked.
+//! A new target in motion is planned in slices, so that the first setpoint towards it does not wait for all that lies
+//! ahead. All of what is handed over has been checked.
 //!
 //! | slice | what comes of it |
 //! |---|---|

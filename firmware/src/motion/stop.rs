@@ -1,8 +1,9 @@
 //! Planning a stop from any tick of any plan: all axes brake together (see `brake`).
 //!
-//! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration point; a
-//! curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in which theta comes to
-//! rest later than the point, leaves no room for a brake that takes as long for both: then each has its own.
+//! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
+//! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
+//! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
+//! has its own.
 
 use super::brake::Brake;
 use super::check::platform::greatest;
@@ -34,12 +35,12 @@ const HARDEST: f32 = 30.0;
 /// Gentlest.
 const GENTLEST: f32 = 0.1;
 
-/// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself comes to
-/// rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor at its start,
-/// where nothing moves yet.
+/// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself
+/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor
+/// at its start, where nothing moves yet.
 ///
-/// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the workspace
-/// asks for.
+/// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
+/// workspace asks for.
 pub fn plan_stop(
     id: u32,
     of: &Plan,
@@ -105,8 +106,8 @@ pub(super) fn write_stop(
         } else {
             lay(&state, [ticks; 3], &mut plan.pieces);
         }
-        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond it. So
-        // may one that had to be made softer.
+        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
+        // it. So may one that had to be made softer.
         let lasts = plan.ticks();
         if at + lasts >= whole {
             return None;
@@ -159,8 +160,8 @@ fn lay(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
     merged(&tracks, pieces);
 }
 
-/// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that comes of
-/// the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
+/// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
+/// comes of the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
 fn hardest(state: &[AxisState; 3], limits: &TickLimits, constraints: &Constraints) -> (f32, f32) {
     let hz = constraints.limits.rate_hz as f32;
     let centre = constraints.rotation_centre.map(|value| value as f32);

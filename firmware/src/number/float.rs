@@ -1,10 +1,11 @@
-//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with references.
+//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with
+//! references.
 
 use super::root::sqrt_f32;
 use kinematics::Real;
 
-/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same integer
-/// arithmetic everywhere: the chip and a desktop get the same bits.
+/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same
+/// integer arithmetic everywhere: the chip and a desktop get the same bits.
 pub trait Float: Real + Default {
     /// Whether differences of large numbers are worth more digits than this float has.
     const COARSE: bool;
@@ -76,8 +77,8 @@ pub(crate) fn ticks_to_f32(ticks: u64) -> f32 {
     }
 }
 
-/// A whole number as a float, 1.5 units in the last place off at most: two conversions in hardware, where the correctly rounded
-/// one is a call.
+/// A whole number as a float, 1.5 units in the last place off at most: two conversions in hardware, where the correctly
+/// rounded one is a call.
 #[inline]
 pub(crate) fn i64_to_f32_fast(value: i64) -> f32 {
     let (high, low) = ((value >> 32) as i32, value as i32);
@@ -179,8 +180,9 @@ pub(crate) fn ceil_i32(value: f32) -> i32 {
     down + i32::from(value > down as f32)
 }
 
-/// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no instruction for
-/// what the standard asks of it. What is not a number stays what it is on the left, and counts for nothing on the right.
+/// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no
+/// instruction for what the standard asks of it. What is not a number stays what it is on the left, and counts for
+/// nothing on the right.
 pub(crate) trait FloatMinMax: PartialOrd + Sized {
     #[inline]
     fn fmax(self, other: Self) -> Self {

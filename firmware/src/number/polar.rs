@@ -11,8 +11,8 @@ const SHORTEST: u32 = 1 << 20;
 /// Units of angle in a radian.
 const UNITS_PER_RADIAN: f32 = (4_294_967_296.0 / core::f64::consts::TAU) as f32;
 
-/// atan(t) / t for t in [0, 1], a polynomial in t^2: Hastings' (Approximations for Digital Computers, 1955, sheet 9), off
-/// by 1e-5 rad at most.
+/// atan(t) / t for t in [0, 1], a polynomial in t^2: Hastings' (Approximations for Digital Computers, 1955, sheet 9),
+/// off by 1e-5 rad at most.
 const ARCTANGENT: [f32; 5] = [0.999_866, -0.330_299_5, 0.180_141, -0.085_133, 0.020_835_1];
 
 /// Angle of (`re`, `im`) in 2^-32 turns, good to 1.1e-5 rad.
@@ -58,7 +58,8 @@ pub(super) fn polar(re: Fixed, im: Fixed) -> Option<(Angle, Fixed, Fixed)> {
     }
     let rough = coarse_angle(re, im);
     let (s, c) = trigonometric::sin_cos(rough);
-    // What is left is found by turning the vector back by the rough angle. It is under 1.2e-5 rad, its square under 2e-10.
+    // What is left is found by turning the vector back by the rough angle. It is under 1.2e-5 rad, its square under
+    // 2e-10.
     let along = Fixed::add_product(Fixed::add_product(0, re, c), im, s);
     let across = Fixed::add_product(Fixed::add_product(0, im, c), -re, s);
     let across = (across >> 20) as i32 as f32;

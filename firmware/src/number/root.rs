@@ -5,8 +5,8 @@ use super::multiply;
 
 #[cfg(target_arch = "arm")]
 mod chip {
-    // `core` has no square root on stable Rust, and libm's takes 60 instructions. Inline assembly can not name the FPU's
-    // single registers on this target, so the instruction stands in a function of its own.
+    // `core` has no square root on stable Rust, and libm's takes 60 instructions. Inline assembly can not name the
+    // FPU's single registers on this target, so the instruction stands in a function of its own.
     core::arch::global_asm!(
         ".fpu fpv4-sp-d16",
         ".section .text.tripivot_sqrt_f32,\"ax\",%progbits",
@@ -46,8 +46,8 @@ pub fn cbrt_f32(value: f32) -> f32 {
     root
 }
 
-/// Square root of `square` / 2^58, for 2^28 <= `square` <= 2^58: a float's root and one Newton step, to about one LSB of
-/// [`Fixed`] for results over 0.05.
+/// Square root of `square` / 2^58, for 2^28 <= `square` <= 2^58: a float's root and one Newton step, to about one LSB
+/// of [`Fixed`] for results over 0.05.
 #[inline]
 pub(super) fn sqrt_fixed(square: i64) -> Fixed {
     const UP_TO_FIXED: f32 = (1u32 << 14) as f32;

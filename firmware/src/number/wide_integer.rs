@@ -1,13 +1,14 @@
 //! Products and quotients of numbers of up to 128 bits.
 //!
-//! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A float's guess
-//! has 22 of its bits; what they leave is divided in turn.
+//! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A
+//! float's guess has 22 of its bits; what they leave is divided in turn.
 
 use super::float::{i64_to_f32_fast, i128_to_f32_fast};
 
 /// Guesses that 64 bits take.
 const ROUNDS: usize = 4;
-/// Exponent field of a float of 2^23, whose mantissa is the number; and the mantissa's bits, the first of which is not kept.
+/// Exponent field of a float of 2^23, whose mantissa is the number; and the mantissa's bits, the first of which is not
+/// kept.
 const WHOLE: i32 = 150;
 const MANTISSA: u32 = (1 << 23) - 1;
 

@@ -30,7 +30,8 @@ pub fn velocities() -> impl Strategy<Value = Velocity> {
         })
 }
 
-/// Constraints with and without a centre of rotation beside the platform's, with and without bounds, with strong and weak drives.
+/// Constraints with and without a centre of rotation beside the platform's, with and without bounds, with strong and
+/// weak drives.
 pub fn any_constraints() -> impl Strategy<Value = Constraints> {
     (
         0.0..0.8_f64,

@@ -5,8 +5,8 @@ use firmware::motion::{AxisState, Constraints, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
 
-/// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of position
-/// and a speed under 2 nm/s.
+/// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of
+/// position and a speed under 2 nm/s.
 pub fn ends_at_rest(plan: &Plan, end: &[AxisState; 3]) -> bool {
     end.iter().zip(&plan.end).all(|(axis, &place)| {
         let off = axis.position - (i128::from(place) << 40);
@@ -16,7 +16,8 @@ pub fn ends_at_rest(plan: &Plan, end: &[AxisState; 3]) -> bool {
     })
 }
 
-/// Pose and motion of a platform whose point `centre` is at a place and has these velocities and accelerations: track radii, rad.
+/// Pose and motion of a platform whose point `centre` is at a place and has these velocities and accelerations: track
+/// radii, rad.
 pub fn platform(
     [x, y, theta]: [f64; 3],
     v: [f64; 3],
@@ -43,7 +44,8 @@ pub fn platform(
     (pose, twist, acceleration)
 }
 
-/// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or turns.
+/// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or
+/// turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     pub speed: f64,
@@ -195,8 +197,8 @@ impl Worst {
             && self.out_of_bounds == 0.0
     }
 
-    /// Whether everything is kept as plans in motion have to: speed, acceleration and jerk to 1e-4, pivots to 1e-3, the disk to
-    /// 0.1 um.
+    /// Whether everything is kept as plans in motion have to: speed, acceleration and jerk to 1e-4, pivots to 1e-3, the
+    /// disk to 0.1 um.
     pub fn is_kept_but_for_a_thousandth(&self) -> bool {
         const OWN: f64 = 1.0 + 2e-4;
         const PIVOTS: f64 = 1.0 + 1e-3;

@@ -75,8 +75,8 @@ pub fn at_rest(position: Position) -> [AxisState; 3] {
     position.map(AxisState::at_rest)
 }
 
-/// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that the
-/// tick drops at the end.
+/// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that
+/// the tick drops at the end.
 pub fn states(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     let mut axes = start;
     let mut all = vec![axes];
@@ -131,7 +131,8 @@ pub fn off_line(axes: &[AxisState; 3], from: &Position, to: &Position) -> f64 {
 }
 
 /// Duration in ticks of the fastest motion over a path parameter of 1, in continuous time, after the textbook's cases
-/// (Biagiotti and Melchiorri, 2008, section 3.4: `tj` is the time of constant jerk, `ta` that of the whole acceleration).
+/// (Biagiotti and Melchiorri, 2008, section 3.4: `tj` is the time of constant jerk, `ta` that of the whole
+/// acceleration).
 pub fn optimum_ticks(rate: f64, acceleration: f64, jerk: f64) -> f64 {
     let (tj, ta) = if rate * jerk >= acceleration * acceleration {
         let tj = acceleration / jerk;

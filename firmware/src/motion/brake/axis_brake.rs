@@ -1,8 +1,9 @@
 //! The fastest brake of one axis, in closed form: `brake` without the vectors.
 //!
-//! Over the limit of acceleration, with jerk `j` a tick, and seen along the braking force: velocity `-v` is to be gained from
-//! acceleration `a`. Up to a peak `p` and back to zero gains `(p^2 - a^2) / (2 j) + p^2 / (2 j)`, so `p^2 = j v + a^2 / 2`;
-//! beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down to it.
+//! Over the limit of acceleration, with jerk `j` a tick, and seen along the braking force: velocity `-v` is to be
+//! gained from acceleration `a`. Up to a peak `p` and back to zero gains `(p^2 - a^2) / (2 j) + p^2 / (2 j)`, so
+//! `p^2 = j v + a^2 / 2`; beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down
+//! to it.
 
 use super::{BRAKE_SLACK, whole};
 use crate::motion::plan::units::AxisLimits;

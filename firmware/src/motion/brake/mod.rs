@@ -8,11 +8,11 @@
 //!   P  n1  n2  n3      stays on the line.
 //! ```
 //!
-//! Sizes are measured by what is allowed: translation and rotation each over its limit of acceleration, the greater counts.
-//! With `w = v + a0 n1 / 2`, to be taken away along its own direction, where jerk may change the size by `j` a tick, the
-//! shortest times for a given `n1` have a peak of `p = j (sqrt(n1^2 / 4 + 2 |w| / j) - n1 / 2)`, or of 1 and a time at it. `n1`
-//! follows from `|P - a0|`; a few rounds find the two together (the change of one by the other is a third at most). Times
-//! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
+//! Sizes are measured by what is allowed: translation and rotation each over its limit of acceleration, the greater
+//! counts. With `w = v + a0 n1 / 2`, to be taken away along its own direction, where jerk may change the size by `j` a
+//! tick, the shortest times for a given `n1` have a peak of `p = j (sqrt(n1^2 / 4 + 2 |w| / j) - n1 / 2)`, or of 1 and
+//! a time at it. `n1` follows from `|P - a0|`; a few rounds find the two together (the change of one by the other is a
+//! third at most). Times are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
 pub(crate) mod axis_brake;
 pub(crate) mod velocity_change;
@@ -227,7 +227,8 @@ fn times(vector: [f32; 3], factors: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|i| vector[i] * factors[i])
 }
 
-/// Jerks of the first and the last segment that bring one axis to rest in `n1 + n2 + n3` ticks; `n1` and `n3` are not zero.
+/// Jerks of the first and the last segment that bring one axis to rest in `n1 + n2 + n3` ticks; `n1` and `n3` are not
+/// zero.
 #[inline(never)]
 pub(super) fn jerks(axis: &AxisState, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
     let (n1, n2, n3) = (n1 as i64, n2 as i64, n3 as i64);
@@ -248,7 +249,8 @@ fn twice_over(value: i64, divisor: i64) -> i64 {
     2 * whole + i64::from(rest >= divisor) - i64::from(rest <= -divisor)
 }
 
-/// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow exactly.
+/// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow
+/// exactly.
 pub(super) fn stepped(change: i64, ticks: i64) -> i64 {
     over(change, ticks * JERK_STEP) * JERK_STEP
 }

@@ -53,8 +53,8 @@ impl VelocityRamp {
         2 * self.rise + self.hold
     }
 
-    /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk rounded down
-    /// leaves.
+    /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk
+    /// rounded down leaves.
     #[inline(never)]
     pub fn pieces(self, change: [i64; 3]) -> [Piece; 3] {
         let steps = (self.rise as i64)
@@ -88,8 +88,8 @@ fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
     }
 }
 
-/// Adds the pieces that bring the acceleration of `state` to exactly zero, within the jerks `most`; the velocities after them (all
-/// in 2^-72 units).
+/// Adds the pieces that bring the acceleration of `state` to exactly zero, within the jerks `most`; the velocities
+/// after them (all in 2^-72 units).
 #[inline(never)]
 pub(crate) fn release_acceleration(
     state: &[AxisState; 3],

@@ -11,7 +11,8 @@ use crate::number::Fixed;
 use crate::number::float::FloatMinMax;
 use kinematics::{Angle, Scalar};
 
-/// What is granted over a limit: the rounding of single precision, and of what a sender has computed to the limit itself.
+/// What is granted over a limit: the rounding of single precision, and of what a sender has computed to the limit
+/// itself.
 const STREAM_SLACK: f32 = 1.0 + 1e-3;
 
 /// The limits, per second, and the workspace, track radii.
@@ -133,7 +134,8 @@ impl<'a> InstantCheck<'a> {
         Ok(())
     }
 
-    /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at most.
+    /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at
+    /// most.
     pub fn is_inside(&self, before: &InstantState, now: &InstantState, seconds: f32) -> bool {
         let segment =
             before.centre_acceleration.fmax(now.centre_acceleration) * seconds * seconds / 8.0;

@@ -1,5 +1,5 @@
-//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, and what the
-//! pivots can make of them at most.
+//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, and what
+//! the pivots can make of them at most.
 
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
@@ -79,9 +79,9 @@ impl IntervalBounds {
         ]
     }
 
-    /// How far rate and acceleration of a pivot can rise between the ends of an interval, from the bounds of both: a pivot's
-    /// third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds how fast
-    /// `1 / c` changes.
+    /// How far rate and acceleration of a pivot can rise between the ends of an interval, from the bounds of both: a
+    /// pivot's third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds
+    /// how fast `1 / c` changes.
     pub fn pivot_rises(&self, [u, w]: [f32; 2], bound: &PivotGain, t: f32) -> [f32; 2] {
         let k = bound.k;
         let jerk = k * (self.j[0] + 2.0 * self.j[1]);

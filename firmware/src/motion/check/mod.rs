@@ -1,10 +1,11 @@
 //! Whether a plan keeps to the workspace and to the limits that couple the axes, at every tick.
 //!
-//! A plan is looked at in intervals. Between the two ends of one, a quantity rises above the greater of its ends by no more
-//! than an eighth of the square of the duration times its second derivative: for position that is the acceleration, for
-//! velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are first bounded for any
-//! orientation; where that is not enough they are computed at both ends, and rise by what the products of velocity,
-//! acceleration and jerk can make of them in between. An interval that fails is taken in shorter ones.
+//! A plan is looked at in intervals. Between the two ends of one, a quantity rises above the greater of its ends by no
+//! more than an eighth of the square of the duration times its second derivative: for position that is the
+//! acceleration, for velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are
+//! first bounded for any orientation; where that is not enough they are computed at both ends, and rise by what the
+//! products of velocity, acceleration and jerk can make of them in between. An interval that fails is taken in shorter
+//! ones.
 //!
 //! | checked | for |
 //! |---|---|

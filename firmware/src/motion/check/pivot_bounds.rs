@@ -1,7 +1,8 @@
-//! What a motion asks of the pivots at worst, at any orientation: for motions without an end, which cannot be checked piece by piece.
+//! What a motion asks of the pivots at worst, at any orientation: for motions without an end, which cannot be checked
+//! piece by piece.
 //!
-//! With the platform's centre `r` from the track's (DESIGN section 2; `k = 1 / sqrt(1 - r^2)`, lengths in track radii, a point
-//! moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
+//! With the platform's centre `r` from the track's (`k = 1 / sqrt(1 - r^2)`, lengths in track radii,
+//! a point moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
 //!
 //! ```text
 //! |phi'|  <= k |C'| + |theta'| (1 + r)
@@ -32,7 +33,8 @@ impl PivotGain {
         }
     }
 
-    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot, likewise.
+    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot,
+    /// likewise.
     pub fn rate(&self, speeds: Speeds) -> f32 {
         self.k * speeds.linear + speeds.angular * (1.0 + self.radius)
     }
@@ -90,8 +92,8 @@ impl PivotBound {
         PivotGain::new(radius).rate(self.platform_speeds(accelerations))
     }
 
-    /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to spare;
-    /// `None` where they can nowhere.
+    /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to
+    /// spare; `None` where they can nowhere.
     pub fn max_radius(&self, speeds: Speeds, most: f32) -> Option<f32> {
         let follows = |radius: f32| {
             self.rate_is_within(radius, speeds)
@@ -131,8 +133,8 @@ mod tests {
     use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
     use std::f64::consts::TAU;
 
-    /// States all over the disk of 0.8, about points up to 0.8 from the platform's centre: what the bounds say, and what the
-    /// worst of the pivots does.
+    /// States all over the disk of 0.8, about points up to 0.8 from the platform's centre: what the bounds say, and
+    /// what the worst of the pivots does.
     #[test]
     fn no_pivot_is_asked_for_more_than_the_bounds_say() {
         let mut random = 1_u64;

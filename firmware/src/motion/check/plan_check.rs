@@ -238,7 +238,8 @@ impl PlanCheck {
         )
     }
 
-    /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to try.
+    /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
+    /// try.
     fn check_interval(
         &self,
         piece: &CheckedPiece,
@@ -352,8 +353,8 @@ impl PlanCheck {
     }
 }
 
-/// The same for a value at the ends of an interval that may rise in between; what is told is what is sure. A rise goes with the
-/// square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
+/// The same for a value at the ends of an interval that may rise in between; what is told is what is sure. A rise goes
+/// with the square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
 fn rise_within(
     value: f32,
     most: f32,

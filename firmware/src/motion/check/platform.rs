@@ -1,8 +1,9 @@
 //! The platform at an instant, in single precision: where its centre is, how it moves, and what it asks of the pivots.
 //!
-//! All along the platform's own axes, where the moved point `p` and the guides stand still: `C = P - p`, `C' = P' - theta' E p`,
-//! `C'' = P'' - theta'' E p + theta'^2 p`, with E the quarter turn. Track radii, radians and seconds. Single precision is off
-//! by less than 1e-7 track radii (10 nm): enough to hold a motion against its limits, not to make one.
+//! All along the platform's own axes, where the moved point `p` and the guides stand still: `C = P - p`,
+//! `C' = P' - theta' E p`, `C'' = P'' - theta'' E p + theta'^2 p`, with E the quarter turn. Track radii, radians and
+//! seconds. Single precision is off by less than 1e-7 track radii (10 nm): enough to hold a motion against its limits,
+//! not to make one.
 
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::number::float::hypot;
@@ -19,8 +20,8 @@ pub(crate) struct Platform {
 }
 
 impl Platform {
-    /// When the moved point, which lies at `centre` in the platform's axes, is at `point` with velocity `v` and acceleration
-    /// `a`, all in the base frame, and theta has this sine and cosine.
+    /// When the moved point, which lies at `centre` in the platform's axes, is at `point` with velocity `v` and
+    /// acceleration `a`, all in the base frame, and theta has this sine and cosine.
     pub fn new(
         point: [f32; 2],
         (sin, cos): (f32, f32),

@@ -111,7 +111,8 @@ impl Workspace {
         }
     }
 
-    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few operations.
+    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few
+    /// operations.
     pub fn stop_is_clear_of_edges(
         &self,
         bound_distances: &[[f32; 2]; 3],

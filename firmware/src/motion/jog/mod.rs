@@ -1,18 +1,18 @@
 //! Jogging: from any state to a constant velocity, held until somebody changes it, or up to the workspace's edge.
 //!
 //! ```text
-//! speed of    ________________________                 The velocity is changed (see `brake`), held , and given up in time:
+//! speed of    ________________________                 The velocity is changed (see `brake`), held, and given up in time:
 //! the point  /                        \                a plan that ends at rest like any other, exactly where it can stop.
 //!          _/                          \______         Theta alone never meets an edge: its plan ends at a thousand million
 //! of theta   ______________________________..          turns, 30 years away at a turn a second.
 //!          _/
 //! ```
 //!
-//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (`check/pivot_bounds`): the faster
-//! the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it is too fast.
-//! Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point beside its centre,
-//! its centre goes in circles: the point then stays where every orientation is possible, or, where it is not, point and theta
-//! stop together before the centre meets the edge.
+//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (`check/pivot_bounds`):
+//! the faster the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it
+//! is too fast. Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point
+//! beside its centre, its centre goes in circles: the point then stays where every orientation is possible, or, where
+//! it is not, point and theta stop together before the centre meets the edge.
 //!
 //! Near an edge there may be no room to reach the velocity and to stop again: from rest a lower one is taken.
 //!

@@ -9,12 +9,12 @@ use crate::motion::plan::units::TickLimits;
 use crate::motion::plan::{Pieces, Plan, PlanStart};
 use crate::motion::refusal::{Refusal, RetargetError};
 
-/// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
-/// says. Zero is a velocity as any other: that axis stops smoothly.
+/// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where
+/// `start` says. Zero is a velocity as any other: that axis stops smoothly.
 ///
 /// # Errors
-/// [`RetargetError::Refused`] when there is no such jog, with the reason; [`RetargetError::NeedsStop`] when there is, but not
-/// without a stop before.
+/// [`RetargetError::Refused`] when there is no such jog, with the reason; [`RetargetError::NeedsStop`] when there is,
+/// but not without a stop before.
 #[inline(never)]
 pub fn plan_jog(
     id: u32,
@@ -54,7 +54,8 @@ fn write(
         let jog = Jog::new(state, &now, wanted, &request, &mut plan.pieces)?;
         match jog.hold(state, &request, from_rest) {
             Ok(hold) => {
-                // From rest the way there is the first part of the way on, which was looked at for the time that it is held.
+                // From rest the way there is the first part of the way on, which was looked at for the time that it is
+                // held.
                 if !from_rest {
                     check(&plan.pieces, state, constraints)?;
                 }

@@ -29,7 +29,8 @@ pub(super) struct JogRequest<'a> {
     acceleration_limits: AccelerationLimits,
 }
 
-/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see [`Limits`](crate::motion::Limits).
+/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see
+/// [`Limits`](crate::motion::Limits).
 fn is_within(value: f64, most: f64) -> bool {
     value.abs().to_bits() <= most.to_bits()
 }

@@ -92,7 +92,8 @@ impl Jog {
         }
         let rest = state_after_pieces(&self.steady, &plan.pieces[begun..], &[0; 3]);
         plan.pieces.retain(|piece| piece.ticks > 0);
-        // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
+        // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes
+        // on.
         plan.nudge = rest.map(|axis| -axis.velocity);
         let ticks = plan.ticks();
         plan.end = rest.map(|axis| axis.rest_position(ticks, -axis.velocity));

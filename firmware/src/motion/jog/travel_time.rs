@@ -1,8 +1,9 @@
 //! How far a steady motion can go: until the platform's centre meets the edge, or the moved point its bounds.
 //!
-//! The square of the centre's distance from the track's is followed: it grows no faster than a parabola of its value, its slope
-//! and the most that its second derivative can be, whose crossing with the edge's square is known. Where the platform does not
-//! turn about a point beside its centre that parabola is the thing itself, and the first step the last.
+//! The square of the centre's distance from the track's is followed: it grows no faster than a parabola of its value,
+//! its slope and the most that its second derivative can be, whose crossing with the edge's square is known. Where the
+//! platform does not turn about a point beside its centre that parabola is the thing itself, and the first step the
+//! last.
 
 use crate::motion::constraints::Bounds;
 use crate::motion::plan::units::{PER_POSITION_UNIT, POSITION_UNITS};
@@ -10,8 +11,8 @@ use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use crate::number::{Fixed, sqrt_f32};
 use kinematics::{Angle, Scalar};
 
-/// A steady motion: the moved point at `point` (track radii) and `theta` (2^-32 turns), its velocity per second and that of
-/// theta in rad per second; and where the point lies in the platform.
+/// A steady motion: the moved point at `point` (track radii) and `theta` (2^-32 turns), its velocity per second and
+/// that of theta in rad per second; and where the point lies in the platform.
 pub(super) struct SteadyMotion {
     pub point: [f32; 2],
     pub theta: i64,

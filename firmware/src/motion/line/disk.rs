@@ -1,10 +1,10 @@
 //! Whether a line stays inside the usable disk on its way.
 //!
-//! The platform centre goes `C = P - R(theta) p`. With p = 0 it goes straight, and nowhere is it further out than at an end. In
-//! general `f = |C|^2 = |P|^2 + |p|^2 - 2 P.R p` is at most `(|P| + |p|)^2`: only the parts of the line with P further out
-//! than the disk's radius less |p| need a look, one at each end. A part with a whole turn leaves the disk, because at some
-//! orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f is below the limit
-//! by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
+//! The platform centre goes `C = P - R(theta) p`. With p = 0 it goes straight, and nowhere is it further out than at an
+//! end. In general `f = |C|^2 = |P|^2 + |p|^2 - 2 P.R p` is at most `(|P| + |p|)^2`: only the parts of the line with P
+//! further out than the disk's radius less |p| need a look, one at each end. A part with a whole turn leaves the disk,
+//! because at some orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f
+//! is below the limit by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
 
 use super::path::Path;
 use crate::motion::check::target::check_target;
@@ -33,7 +33,8 @@ const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
 const LOOKS: usize = 48;
 
-/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
+/// Whether the straight line between two positions can be moved along: the same answer as that of
+/// [`plan_line`](crate::motion::plan_line).
 #[inline(never)]
 pub fn check_line(
     from: &Position,

@@ -1,7 +1,7 @@
 //! From stretches of constant acceleration to a path profile of limited jerk.
 //!
-//! Where the acceleration steps, at a corner of the [`Corners`], it gets a ramp instead, as long as the limit of jerk asks for
-//! and centred on the corner:
+//! Where the acceleration steps, at a corner of the [`Corners`], it gets a ramp instead, as long as the limit of jerk
+//! asks for and centred on the corner:
 //!
 //! ```text
 //! acceleration   ____                      _____
@@ -12,7 +12,8 @@
 //!
 //! Ramps may overlap: they add up. Of two of the same sign that do, each is made as long as their sum asks for.
 //!
-//! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by it.
+//! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by
+//! it.
 
 use super::path_profile::PathProfile;
 use super::ramp::{JerkRamp, JerkRamps};
@@ -24,7 +25,8 @@ use crate::number::float::{FloatMinMax, ceil_i32};
 /// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
 const LONGEST: i32 = 1 << 21;
 
-/// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more). `None` where it would last too long.
+/// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more). `None` where it
+/// would last too long.
 #[inline(never)]
 pub(crate) fn write_path_profile(
     corners: &Corners,

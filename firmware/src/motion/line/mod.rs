@@ -1,10 +1,10 @@
 //! Planning a straight line from rest to rest.
 //!
-//! First the fastest motion under the limits of the line alone, in closed form. If the pivots can follow it, as most short and
-//! slow lines, that is it. Otherwise the demands on the pivots are laid out along the line, the fastest speed that they allow at
-//! every place is found, replaced by a few segments of constant acceleration and limited in jerk. What roundings and corners
-//! still leave over a limit is taken off the whole motion. The profile, slowed down until the pivots follow, competes: the
-//! shorter of the two is taken.
+//! First the fastest motion under the limits of the line alone, in closed form. If the pivots can follow it, as most
+//! short and slow lines, that is it. Otherwise the demands on the pivots are laid out along the line, the fastest speed
+//! that they allow at every place is found, replaced by a few segments of constant acceleration and limited in jerk.
+//! What roundings and corners still leave over a limit is taken off the whole motion. The profile, slowed down until
+//! the pivots follow, competes: the shorter of the two is taken.
 //!
 //! | file | idea |
 //! |---|---|

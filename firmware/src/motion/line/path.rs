@@ -1,8 +1,9 @@
 //! A straight line as the pivots see it.
 //!
-//! The moved point goes `P(s) = P(0) + L s`, the platform turns `theta(s) = theta(0) + T s`, s from 0 to 1. With the guide's
-//! direction `u = (cos theta_i, sin theta_i)`, `n` a quarter turn on from it and `k_i` the distance of guide line i from the
-//! moved point (constant: both are fixed in the platform; 0 when it is the platform centre), `d_i = n.P - k_i` and
+//! The moved point goes `P(s) = P(0) + L s`, the platform turns `theta(s) = theta(0) + T s`, s from 0 to 1. With the
+//! guide's direction `u = (cos theta_i, sin theta_i)`, `n` a quarter turn on from it and `k_i` the distance of guide
+//! line i from the moved point (constant: both are fixed in the platform; 0 when it is the platform centre),
+//! `d_i = n.P - k_i` and
 //!
 //! ```text
 //! d_i' = n.L - T u.P          d_i'' = -2 T u.L - T^2 n.P          c_i = sqrt(1 - d_i^2)
@@ -12,11 +13,11 @@
 //! are derivatives by s. A motion s(t) then asks pivot i for the rate `phi_i' s'` and the acceleration
 //! `phi_i' s'' + phi_i'' s'^2`.
 //!
-//! On a line of many turns every orientation is met about everywhere. The largest of the above over all orientations then
-//! stands for them. With `r = |P|`, K the largest `|k_i|`, and the line's way as seen from the track's centre, `L_r` outwards
-//! and `L_t` around: n goes all round, `n.L - T u.P = n.(L - T E P)` with E the quarter turn, whose part around is
-//! `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a` solves
-//! `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
+//! On a line of many turns every orientation is met about everywhere. The largest of the above over all orientations
+//! then stands for them. With `r = |P|`, K the largest `|k_i|`, and the line's way as seen from the track's centre,
+//! `L_r` outwards and `L_t` around: n goes all round, `n.L - T u.P = n.(L - T E P)` with E the quarter turn, whose part
+//! around is `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a`
+//! solves `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
 
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
@@ -223,8 +224,8 @@ pub(crate) struct Demands<'a> {
     path: &'a Path,
     s: f32,
     step: f32,
-    /// Cosine and sine of theta, and of what it turns from place to place: turned by a product, which is a fourth of what sine
-    /// and cosine cost, and off by some 1e-7 a place.
+    /// Cosine and sine of theta, and of what it turns from place to place: turned by a product, which is a fourth of
+    /// what sine and cosine cost, and off by some 1e-7 a place.
     direction: [f32; 2],
     turn: [f32; 2],
 }

@@ -1,8 +1,9 @@
 //! How a line is travelled: stretches of constant jerk of the path parameter, in whole numbers, and the plan they make.
 //!
-//! Every axis gets the same pieces, times its own factor: the line is straight by construction. The jerks of a path profile are
-//! integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What rounding takes from
-//! the acceleration in one piece is given back in the next, and what is left at the end is spread as the plan's nudge.
+//! Every axis gets the same pieces, times its own factor: the line is straight by construction. The jerks of a path
+//! profile are integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What
+//! rounding takes from the acceleration in one piece is given back in the next, and what is left at the end is spread
+//! as the plan's nudge.
 
 use crate::motion::plan::axis_state::{JERK_STEP, SUB_BITS};
 use crate::motion::plan::{MAX_PIECES, Piece, Plan, Position};
@@ -70,8 +71,8 @@ impl PathProfile {
         Some(())
     }
 
-    /// How far a sixth of a jerk of 1 in each of the segments leads until the end, modulo 2^64: the cube of the time from the segment's
-    /// start to the end, less that from its end.
+    /// How far a sixth of a jerk of 1 in each of the segments leads until the end, modulo 2^64: the cube of the time
+    /// from the segment's start to the end, less that from its end.
     fn moments(&self, duration: u64) -> [u64; MAX_PIECES] {
         let cube = |ticks: u64| ticks.wrapping_mul(ticks).wrapping_mul(ticks);
         let mut moments = [0; MAX_PIECES];

@@ -8,8 +8,8 @@ use heapless::Vec;
 /// Most stretches between places.
 const MOST: usize = 64;
 
-/// What the pivots are not granted of their limits in planning: demands are looked up between places, where they are curved.
-/// A part for everything, and one for the square of what a stretch turns and moves (rad and track radii).
+/// What the pivots are not granted of their limits in planning: demands are looked up between places, where they are
+/// curved. A part for everything, and one for the square of what a stretch turns and moves (rad and track radii).
 const PIVOT_MARGIN: f32 = 0.002;
 const PIVOT_MARGIN_PER_SQUARE: f32 = 0.1;
 
@@ -31,7 +31,8 @@ pub(crate) struct GridPoint {
     most: [f32; 2],
 }
 
-/// The part of the pivots' acceleration up to which the pivots' limits are inactive at a place: between two of them a little more may be asked for.
+/// The part of the pivots' acceleration up to which the pivots' limits are inactive at a place: between two of them a
+/// little more may be asked for.
 const INACTIVE_BELOW: f32 = 0.9;
 
 /// The demands along a line, as shares of the limits.
@@ -104,8 +105,8 @@ impl DemandGrid {
         &self.places
     }
 
-    /// The square of the factor by which a motion would have to take longer for this state of it to keep every limit but that of
-    /// the line's own acceleration; 1 and less when it does. Between places the demand goes straight.
+    /// The square of the factor by which a motion would have to take longer for this state of it to keep every limit
+    /// but that of the line's own acceleration; 1 and less when it does. Between places the demand goes straight.
     pub fn excess(&self, state: &PathState) -> f32 {
         let stretches = self.stretches();
         let at = state.s * stretches as f32;

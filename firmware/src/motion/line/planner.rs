@@ -35,8 +35,8 @@ pub fn plan_line(
     if from == to {
         return Ok(plan);
     }
-    // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so that
-    // it does not matter either where on the mechanism it is.
+    // Planned in the same direction whichever way it is gone: backwards is forwards backwards. From the inside out, so
+    // that it does not matter either where on the mechanism it is.
     let out = |[x, y, _]: Position| {
         i64_to_f32_fast(x) * i64_to_f32_fast(x) + i64_to_f32_fast(y) * i64_to_f32_fast(y)
     };

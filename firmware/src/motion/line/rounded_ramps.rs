@@ -1,7 +1,7 @@
 //! Ramps of the acceleration in whole numbers: the pieces of a path profile.
 //!
-//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
-//! a few units, and two ticks more take those: the motion ends at rest to the bit.
+//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end,
+//! up to a few units, and two ticks more take those: the motion ends at rest to the bit.
 
 use super::path_profile::{JERK_BITS, JerkSegment, PathProfile};
 use super::ramp::{JerkRamp, JerkRamps};
@@ -64,7 +64,8 @@ impl RoundedRamps {
         Some(rounded)
     }
 
-    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
+    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the
+    /// end.
     fn left(&self) -> (i64, i128) {
         self.ramps
             .iter()
@@ -143,7 +144,8 @@ impl Sum {
         segments.push(JerkSegment { ticks, jerk }).ok()
     }
 
-    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the acceleration is.
+    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the
+    /// acceleration is.
     fn close(&mut self, segments: &mut Vec<JerkSegment, MAX_PIECES>) -> Option<()> {
         if self.acceleration == 0 && self.speed == 0 {
             return Some(());

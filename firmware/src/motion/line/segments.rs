@@ -1,9 +1,9 @@
 //! From the fastest speed along a line to a few segments of constant acceleration.
 //!
-//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is one
-//! already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it stays
-//! between z and a share of z: from where the line before ended, the range of slopes that do narrows from place to place,
-//! and the line ends where none is left. A share that leaves too many lines is lowered.
+//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is
+//! one already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it
+//! stays between z and a share of z: from where the line before ended, the range of slopes that do narrows from place
+//! to place, and the line ends where none is left. A share that leaves too many lines is lowered.
 
 use super::topp::SquaredSpeeds;
 use crate::motion::limits::PathLimits;
@@ -68,8 +68,8 @@ pub(crate) fn fit_segments_below(
     Some(())
 }
 
-/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
-/// which the acceleration falls: without them the speed is lower.
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
+/// corners at which the acceleration falls: without them the speed is lower.
 pub(crate) fn remove_close_corners(polygon: &mut Corners, limits: &PathLimits) {
     let mut k = 1;
     while k + 2 < polygon.len() {

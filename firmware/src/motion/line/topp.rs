@@ -1,10 +1,10 @@
 //! The fastest speed along a line under the limits of the line and of the pivots, jerk aside.
 //!
-//! In `z = s'^2` acceleration is a slope, `s'' = dz/ds / 2`, and a pivot's limits are straight: `phi_i'^2 z` at most the
-//! square of its rate, and `|phi_i' s'' + phi_i'' z|` at most its acceleration. Backwards from rest at the end every place
-//! gets the largest z from which the rest of the line can still be kept; forwards from rest at the start z then grows as fast
-//! as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal path parameterization
-//! based on reachability analysis").
+//! In `z = s'^2` acceleration is a slope, `s'' = dz/ds / 2`, and a pivot's limits are straight: `phi_i'^2 z` at most
+//! the square of its rate, and `|phi_i' s'' + phi_i'' z|` at most its acceleration. Backwards from rest at the end
+//! every place gets the largest z from which the rest of the line can still be kept; forwards from rest at the start z
+//! then grows as fast as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal
+//! path parameterization based on reachability analysis").
 
 use super::pivot_demand::{DemandGrid, GridPoint};
 use crate::number::float::FloatMinMax;
@@ -124,8 +124,9 @@ impl Node {
         best
     }
 
-    /// The largest z up to `most` from which the next place's `next` is not exceeded: the last z at which the lowest upper bound is not
-    /// below the highest lower one. Newton's method from above: exact after as many rounds as there are lines on the way.
+    /// The largest z up to `most` from which the next place's `next` is not exceeded: the last z at which the lowest
+    /// upper bound is not below the highest lower one. Newton's method from above: exact after as many rounds as there
+    /// are lines on the way.
     fn largest(&self, most: f32, next: f32, half: f32) -> f32 {
         let onwards = LinearBound {
             offset: next * half,

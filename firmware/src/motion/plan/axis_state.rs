@@ -15,8 +15,8 @@ pub const SUB_BITS: u32 = 40;
 /// Every jerk is a multiple of this, so that the halves and sixths of the cubic are whole numbers.
 pub const JERK_STEP: i64 = 6;
 
-/// Times 3 this is 1, modulo 2^64: a multiple of 3 times it is a third of it, without the library call that a division of
-/// 64 bits is on the chip.
+/// Times 3 this is 1, modulo 2^64: a multiple of 3 times it is a third of it, without the library call that a division
+/// of 64 bits is on the chip.
 const INVERSE_OF_3: i64 = 0xAAAA_AAAA_AAAA_AAAB_u64 as i64;
 
 /// Position, velocity and acceleration of one axis at a tick.
@@ -115,8 +115,8 @@ impl AxisState {
         }
     }
 
-    /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a velocity does not
-    /// count.
+    /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a
+    /// velocity does not count.
     pub(crate) fn rest_position(&self, ticks: u64, nudge: i64) -> i64 {
         let rest = Self {
             position: self.position,

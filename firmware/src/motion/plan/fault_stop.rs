@@ -1,9 +1,10 @@
 //! The controlled stop of a fault: the plan under way is followed slower and slower.
 //!
-//! The plan's own time runs at a rate that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is over. So
-//! the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of any plan, without
-//! planning anything: velocity is the plan's times the rate, acceleration the plan's times its square and the plan's velocity
-//! times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
+//! The plan's own time runs at a rate that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is
+//! over. So the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of
+//! any plan, without planning anything: velocity is the plan's times the rate, acceleration the plan's times its square
+//! and the plan's velocity times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity
+//! to the acceleration.
 
 use super::follower::PlanFollower;
 use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};

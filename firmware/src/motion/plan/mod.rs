@@ -1,4 +1,5 @@
-//! A plan: the pieces of constant jerk that carry the three axes from a known state to rest, and how the tick follows it.
+//! A plan: the pieces of constant jerk that carry the three axes from a known state to rest, and how the tick follows
+//! it.
 //!
 //! | file | idea |
 //! |---|---|

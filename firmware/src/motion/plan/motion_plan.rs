@@ -27,9 +27,9 @@ pub struct Plan {
     pub start: PlanStart,
     /// The pieces, in order.
     pub pieces: Vec<Piece, MAX_PIECES>,
-    /// Added to each position at every tick. It spreads what the rounding of the jerks leaves over the whole plan: far below
-    /// anything that can be seen (2^-34 turns a tick in the most extreme case), and what remains of it at the end is less
-    /// than 2^-32 of a [`Position`]'s unit a tick.
+    /// Added to each position at every tick. It spreads what the rounding of the jerks leaves over the whole plan: far
+    /// below anything that can be seen (2^-34 turns a tick in the most extreme case), and what remains of it at the end
+    /// is less than 2^-32 of a [`Position`]'s unit a tick.
     pub nudge: [i64; 3],
     /// Where it ends, at rest, exactly.
     pub end: Position,

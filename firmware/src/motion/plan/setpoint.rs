@@ -24,9 +24,9 @@ pub struct SetpointScale {
     pub(super) rate_hz: f32,
 }
 
-/// Bits cut from a velocity and from an acceleration to make them 32 bits wide: full range 39 turns per second and 3,050 per
-/// second squared at 20 kHz, resolution 1e-7 rad/s and 9e-6 rad/s^2. An urgent stop brakes as hard as a pivot can, 300 rad/s^2 by
-/// default: some 350 track radii per second squared.
+/// Bits cut from a velocity and from an acceleration to make them 32 bits wide: full range 39 turns per second and
+/// 3,050 per second squared at 20 kHz, resolution 1e-7 rad/s and 9e-6 rad/s^2. An urgent stop brakes as hard as a pivot
+/// can, 300 rad/s^2 by default: some 350 track radii per second squared.
 pub(crate) const VELOCITY_CUT: u32 = 32;
 pub(crate) const ACCELERATION_CUT: u32 = 24;
 

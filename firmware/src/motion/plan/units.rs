@@ -1,5 +1,5 @@
-//! The units of a [`Position`] and of an [`AxisState`](super::axis_state::AxisState) as floats, and limits in those of the
-//! latter and ticks.
+//! The units of a [`Position`] and of an [`AxisState`](super::axis_state::AxisState) as floats, and limits in those of
+//! the latter and ticks.
 
 use super::piece::Position;
 use crate::motion::constraints::Constraints;

@@ -1,4 +1,5 @@
-//! The broken line of an axis' acceleration as a sum of three hats: of the start's acceleration, of the peak, of the brake.
+//! The broken line of an axis' acceleration as a sum of three hats: of the start's acceleration, of the peak, of the
+//! brake.
 //!
 //! ```text
 //!   a0 \   P  /------\                Area f: the speed that a hat of height 1 gains. Moment g about the end: the way.

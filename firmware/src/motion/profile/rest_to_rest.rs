@@ -28,8 +28,8 @@ pub struct RestToRestProfile {
 }
 
 impl RestToRestProfile {
-    /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is not a
-    /// positive number or the move would last longer than 2^52 ticks.
+    /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is
+    /// not a positive number or the move would last longer than 2^52 ticks.
     pub fn new(limits: &PathLimits, hz: f32) -> Option<Self> {
         let PathLimits {
             rate,

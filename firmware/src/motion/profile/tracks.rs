@@ -24,9 +24,9 @@ pub(crate) fn shortest(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Op
     Some(shortest)
 }
 
-/// The pieces that carry three independent axes to rest, each within its own limits (2^-72 units and ticks), as soon as the
-/// slowest of them can: the others take as long, or arrive early where no slower motion leads there. `None` for limits that
-/// are not positive numbers, and states that take more than 2^63 ticks.
+/// The pieces that carry three independent axes to rest, each within its own limits (2^-72 units and ticks), as soon as
+/// the slowest of them can: the others take as long, or arrive early where no slower motion leads there. `None` for
+/// limits that are not positive numbers, and states that take more than 2^63 ticks.
 pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Option<Pieces> {
     let longest = shortest(ways, limits)?
         .into_iter()

@@ -1,13 +1,13 @@
 //! From an axis profile to jerks over whole ticks, exact in integers.
 //!
-//! The profile's durations are rounded up to whole ticks. With these fixed, the acceleration is a broken line through the
-//! start's, a peak `P` and a brake `Q`, and zero at the end; speed and position at the end are linear in `P` and `Q`:
-//! `v + a f0 + P f1 + Q f2 = 0` and `v n + a g0 + P g1 + Q g2 = d`, where `f` are the areas of the hats of the broken line and
-//! `g` their moments about the end ([`Hats`]). Two equations, two unknowns, in floats. Where rounding has put an acceleration,
-//! a jerk or a speed over its limit, the segment concerned is lengthened.
+//! The profile's durations are rounded up to whole ticks. With these fixed, the acceleration is a broken line through
+//! the start's, a peak `P` and a brake `Q`, and zero at the end; speed and position at the end are linear in `P` and
+//! `Q`: `v + a f0 + P f1 + Q f2 = 0` and `v n + a g0 + P g1 + Q g2 = d`, where `f` are the areas of the hats of the
+//! broken line and `g` their moments about the end ([`Hats`]). Two equations, two unknowns, in floats. Where rounding
+//! has put an acceleration, a jerk or a speed over its limit, the segment concerned is lengthened.
 //!
-//! The integers then close what the floats left: the segments are run exactly up to the brake, the brake is the one that
-//! comes to rest from there, and the way that is missing is made up by another `P`.
+//! The integers then close what the floats left: the segments are run exactly up to the brake, the brake is the one
+//! that comes to rest from there, and the way that is missing is made up by another `P`.
 
 use super::any_state::task::{AxisProfile, SEGMENTS, Task};
 use super::hats::Hats;
@@ -31,8 +31,8 @@ const CLOSINGS: usize = 1;
 /// How much of a limit is granted to the roundings of floats.
 const FIT_SLACK: f32 = 1.0 + 5e-7;
 
-/// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None` where
-/// the state allows none.
+/// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None`
+/// where the state allows none.
 pub(crate) fn fit(
     track: &mut Track,
     mut axis: AxisState,
@@ -115,7 +115,8 @@ impl Shape {
         if profile.released_in_part {
             n[2] = 0;
         }
-        // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the way.
+        // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the
+        // way.
         let longer = |n: &[u64; 7], k: usize| ticks_to_f32(n[k]) - t[k];
         n[1] = up(t[1] - (longer(&n, 0) + longer(&n, 2)) / 2.0);
         n[5] = up(t[5] - (longer(&n, 4) + longer(&n, 6)) / 2.0);
@@ -161,8 +162,8 @@ impl Shape {
         run(track, axis, n[6], release)
     }
 
-    /// A start near its peak goes down to it in the time of the peak: that much longer, the whole would only ask for a still
-    /// lower peak. As it does a little even so, by twice the time at once. Whether there was time left to take.
+    /// A start near its peak goes down to it in the time of the peak: that much longer, the whole would only ask for a
+    /// still lower peak. As it does a little even so, by twice the time at once. Whether there was time left to take.
     fn take_from_peak(&mut self, ticks: u64) -> bool {
         let (k, least) = if self.n[1] > 0 { (1, 0) } else { (2, 1) };
         let more = ticks.max(self.n[0]).min(self.n[k].saturating_sub(least));
@@ -171,8 +172,8 @@ impl Shape {
         more > 0
     }
 
-    /// Rounding a long brake up can turn a short peak over: it brakes too, and lengthening it would only add to the way that it
-    /// has to make up for. From it the acceleration then goes on to the brake's, not by way of zero.
+    /// Rounding a long brake up can turn a short peak over: it brakes too, and lengthening it would only add to the way
+    /// that it has to make up for. From it the acceleration then goes on to the brake's, not by way of zero.
     fn go_on_to_the_brake(&mut self) {
         self.released_in_part = true;
         self.n[0] += self.n[2] + self.n[3];
@@ -220,7 +221,8 @@ impl Shape {
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
-                // Where the peak brakes, another tick of it is more way to be made up for, unless it is one less at speed.
+                // Where the peak brakes, another tick of it is more way to be made up for, unless it is one less at
+                // speed.
                 if k == 1 && peak * brake > 0.0 {
                     self.n[3] = self.n[3].saturating_sub(1);
                 }
@@ -381,7 +383,8 @@ mod tests {
         assert!(most < 5.0 && none < 5);
     }
 
-    /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two ticks.
+    /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two
+    /// ticks.
     #[test]
     fn at_the_limit_of_speed_it_takes_a_few_ticks_more() {
         for (v, a, way) in [(1.0, 0.0, 4.25), (0.999_9, 0.0, 40.1), (0.969, 0.06, 6.2)] {

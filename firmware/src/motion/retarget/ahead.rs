@@ -38,8 +38,8 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head, and the rest `ahead`; whether there is
-    /// a head, or else the plan is as it was.
+    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head, and the rest `ahead`;
+    /// whether there is a head, or else the plan is as it was.
     ///
     /// # Errors
     /// What the head's stop breaks, where it can not be helped: what moves would have no way to rest.

@@ -88,8 +88,8 @@ impl Choice {
         self.shortest.into_iter().fold(0.0, FloatMinMax::fmax)
     }
 
-    /// Whether this arrives before a stop and a straight line would. A line is slowed down for the pivots only where they ask
-    /// for it: by half as much as this, as a rule.
+    /// Whether this arrives before a stop and a straight line would. A line is slowed down for the pivots only where
+    /// they ask for it: by half as much as this, as a rule.
     pub fn is_sooner_than_a_stop(
         &self,
         state: &[AxisState; 3],
@@ -174,8 +174,8 @@ fn turned(
     })
 }
 
-/// Where the acceleration now is over the share of one axis, it takes some time to come down to it: so long the other gets what
-/// is left of the whole.
+/// Where the acceleration now is over the share of one axis, it takes some time to come down to it: so long the other
+/// gets what is left of the whole.
 fn give_way(now: [f32; 2], whole: f32, along: &mut AxisLimits<f32>, aside: &mut AxisLimits<f32>) {
     let left = |other: f32| sqrt_f32((whole * whole - other * other).fmax(0.0)).fmax(0.2 * whole);
     let [ahead, across] = now.map(f32::abs);
@@ -189,8 +189,9 @@ fn give_way(now: [f32; 2], whole: f32, along: &mut AxisLimits<f32>, aside: &mut 
     }
 }
 
-/// The heading at which the target is straight ahead after a brake across, and the ticks of that brake. Ticks that serve for all
-/// that is under way have a heading at once; shorter ones are taken while they are long enough for what is across then.
+/// The heading at which the target is straight ahead after a brake across, and the ticks of that brake. Ticks that
+/// serve for all that is under way have a heading at once; shorter ones are taken while they are long enough for what
+/// is across then.
 fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading, [f32; 3]) {
     let [v, a] = [&plane.v, &plane.a].map(|vector| hypot(vector[0], vector[1]));
     let of = |ticks: [f32; 3]| (Heading::after(plane, gains(ticks)), ticks);
@@ -216,8 +217,9 @@ fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading
     best
 }
 
-/// Speed along that keeps the path within a limit of 1. Velocity goes from `(ahead, aside)` straight, `ratio` aside for 1 ahead:
-/// to the axis, when that is met within the limit; else ahead is held where the limit is met, while aside goes on to zero.
+/// Speed along that keeps the path within a limit of 1. Velocity goes from `(ahead, aside)` straight, `ratio` aside for
+/// 1 ahead: to the axis, when that is met within the limit; else ahead is held where the limit is met, while aside goes
+/// on to zero.
 fn top_speed(ahead: f32, aside: f32, ratio: f32) -> f32 {
     if ahead * ratio + aside <= ratio {
         return 1.0;

@@ -1,5 +1,5 @@
-//! A frame for a transition: one axis along the way to go, one across it. What is under way across is braked, once, while
-//! the axis along goes on; the frame is turned such that the target is ahead when that is done.
+//! A frame for a transition: one axis along the way to go, one across it. What is under way across is braked, once,
+//! while the axis along goes on; the frame is turned such that the target is ahead when that is done.
 //!
 //! It turns integers by integers (30 fraction bits), so that turning there and back leaves 1e-9 of them.
 
@@ -119,8 +119,8 @@ impl Heading {
         [axis(0), across, theta]
     }
 
-    /// Turns the jerks back to x and y, which start with the accelerations `from` where `view` has its own. Each takes up what
-    /// the rounding of the one before left of the acceleration.
+    /// Turns the jerks back to x and y, which start with the accelerations `from` where `view` has its own. Each takes
+    /// up what the rounding of the one before left of the acceleration.
     pub fn turn_back(&self, pieces: &mut Pieces, view: [i64; 2], from: [i64; 2]) {
         let turned = self.turned(view);
         let mut rest = [turned[0] - from[0], turned[1] - from[1]];

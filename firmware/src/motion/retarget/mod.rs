@@ -1,8 +1,8 @@
 //! Planning from motion: a new target without coming to rest before.
 //!
-//! Position, velocity and acceleration of a stage in motion point anywhere, so there is no line to plan on: each axis gets
-//! the fastest profile of its own ([`AxisProfile`](super::AxisProfile)), and those of the faster axes are slowed down to the
-//! duration of the slowest.
+//! Position, velocity and acceleration of a stage in motion point anywhere, so there is no line to plan on: each axis
+//! gets the fastest profile of its own ([`AxisProfile`](super::AxisProfile)), and those of the faster axes are slowed
+//! down to the duration of the slowest.
 //!
 //! ```text
 //!   across                     The axes of translation are one along the way to go and one across it (`heading`). What is
@@ -13,9 +13,9 @@
 //!    |          V              a few is tried (`Choice`), and the soonest planned.
 //! ```
 //!
-//! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of it
-//! ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
-//! where a stop and a straight line are sooner, the stage has to stop first.
+//! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of
+//! it ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too
+//! narrow, or where a stop and a straight line are sooner, the stage has to stop first.
 //!
 //! | file | idea |
 //! |---|---|
@@ -59,8 +59,8 @@ pub struct Leave<'a> {
     pub at: u64,
 }
 
-/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
-/// takes, all of it at once.
+/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries
+/// as it takes, all of it at once.
 pub fn plan_retarget(
     id: u32,
     of: &Plan,
@@ -85,8 +85,9 @@ pub fn plan_retarget(
     }
 }
 
-/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
-/// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
+/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then
+/// the rest is left `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a
+/// rule a stop.
 #[inline(never)]
 pub fn try_retarget(
     plan: &mut Plan,

@@ -10,8 +10,8 @@ use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::units::TickLimits;
 use crate::motion::refusal::RetargetError;
 
-/// What has been tried of a transition, so that the next try is as much slower as the last one asked for. The next may leave
-/// the motion at another tick, or leave what has taken its place: as a rule a stop that has just begun.
+/// What has been tried of a transition, so that the next try is as much slower as the last one asked for. The next may
+/// leave the motion at another tick, or leave what has taken its place: as a rule a stop that has just begun.
 #[derive(Clone, Copy, Debug)]
 pub struct Tries {
     slower: Slower,

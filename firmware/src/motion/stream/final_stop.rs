@@ -1,8 +1,8 @@
 //! The stop that a motion carries with it: from any state, whatever the velocity and the acceleration point to.
 //!
-//! The acceleration is released, then the velocity given up, along its own direction: the pieces of a change of velocity (see
-//! `brake/velocity_change`). Every instant that may be the worst is held against the limits; where a pivot is asked for too much, the stop
-//! is softer.
+//! The acceleration is released, then the velocity given up, along its own direction: the pieces of a change of
+//! velocity (see `brake/velocity_change`). Every instant that may be the worst is held against the limits; where a
+//! pivot is asked for too much, the stop is softer.
 
 use crate::motion::brake::velocity_change::{
     AccelerationLimits, VelocityRamp, release_acceleration,

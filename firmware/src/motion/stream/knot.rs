@@ -1,7 +1,8 @@
-//! From a state to a given one in a given number of ticks: three pieces of constant jerk, which there is exactly one way to choose.
+//! From a state to a given one in a given number of ticks: three pieces of constant jerk, which there is exactly one
+//! way to choose.
 //!
-//! With `n` ticks in the first and the last piece, `m` in the middle one and `T` in all, the jerks j1, j2, j3 make up what is
-//! missing when the state is left alone: in acceleration, velocity and position
+//! With `n` ticks in the first and the last piece, `m` in the middle one and `T` in all, the jerks j1, j2, j3 make up
+//! what is missing when the state is left alone: in acceleration, velocity and position
 //!
 //! ```text
 //! A =  j1 n                             + j2 m                           + j3 n
@@ -9,8 +10,8 @@
 //! P =  j1 (n^3/6 + n^2/2 (m + n) + n (m + n)^2/2) + j2 (m^3/6 + m^2/2 n + m n^2/2) + j3 n^3/6
 //! ```
 //!
-//! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece is made
-//! up in the next: nothing accumulates.
+//! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece
+//! is made up in the next: nothing accumulates.
 
 use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
 

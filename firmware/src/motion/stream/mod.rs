@@ -11,16 +11,16 @@
 //!                       [k k k|stop]       that the next plan takes the place of (`final_stop`)
 //! ```
 //!
-//! Every plan ends in a stop of its own. A stream that dries up comes to rest by itself, with nobody's help, within the limits
-//! and the workspace; so does one whose next target asks for too much, which is refused.
+//! Every plan ends in a stop of its own. A stream that dries up comes to rest by itself, with nobody's help, within the
+//! limits and the workspace; so does one whose next target asks for too much, which is refused.
 //!
-//! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held against
-//! the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth. Jerk is the
-//! sender's own business within [`JERK_TOLERANCE`] times its limit: samples that are rounded, or a path with corners in its
-//! acceleration, have no better.
+//! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held
+//! against the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth.
+//! Jerk is the sender's own business within [`JERK_TOLERANCE`] times its limit: samples that are rounded, or a path
+//! with corners in its acceleration, have no better.
 //!
-//! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock differs a little
-//! (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
+//! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock
+//! differs a little (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
 //!
 //! | file | idea |
 //! |---|---|

@@ -5,8 +5,8 @@ use super::spline::WINDOW;
 use super::state::{BEFORE, PART_BITS, SentPlan, Stream};
 use crate::motion::constraints::Constraints;
 
-/// A clock of the sender's own: how much faster the curve is passed for a target too many, as a share; how much at most; and
-/// over how many plans the number of targets is averaged.
+/// A clock of the sender's own: how much faster the curve is passed for a target too many, as a share; how much at
+/// most; and over how many plans the number of targets is averaged.
 const FOLLOWING: f32 = 5e-4;
 
 const MOST_FOLLOWING: f32 = 2e-3;

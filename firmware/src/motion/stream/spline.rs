@@ -1,22 +1,23 @@
-//! The curve through samples: a cubic spline with uniform knots, which has a velocity and an acceleration without steps.
+//! The curve through samples: a cubic spline with uniform knots, which has a velocity and an acceleration without
+//! steps.
 //!
 //! ```text
 //! c_k = s_k - (s_(k+1) - 2 s_k + s_(k-1)) / 6              control points
 //! P(k + f) = a + b f + c f^2 + d f^3 of c_(k-1) .. c_(k+2)   between samples k and k + 1
 //! ```
 //!
-//! A spline of the samples themselves would cut corners, by a sixth of their second difference; the control points lie that much
-//! further out. The curve then follows every cubic exactly, and passes the samples of any smooth path with an error of
-//! the fourth order of the distance between them: `h^4 P'''' (k + f^2 (1 - f)^2) / 24` with a k of a sixth at most. It takes
-//! six samples, so it is three samples behind the newest.
+//! A spline of the samples themselves would cut corners, by a sixth of their second difference; the control points lie
+//! that much further out. The curve then follows every cubic exactly, and passes the samples of any smooth path with an
+//! error of the fourth order of the distance between them: `h^4 P'''' (k + f^2 (1 - f)^2) / 24` with a k of a sixth at
+//! most. It takes six samples, so it is three samples behind the newest.
 
 use crate::motion::plan::Position;
 
 /// Samples that the curve between the third and the fourth is made of.
 pub(super) const WINDOW: usize = 6;
 
-/// Position, velocity and acceleration of one axis on the curve: relative to the third sample, in the samples' units, per
-/// sample and sample squared.
+/// Position, velocity and acceleration of one axis on the curve: relative to the third sample, in the samples' units,
+/// per sample and sample squared.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CurvePoint {
     pub offset: f32,

@@ -13,8 +13,9 @@ const EARLY: f64 = 1e-4;
 impl<F: Float> ProfileStart<F> {
     /// The profile of a lower speed in segment 6 that lasts `duration`.
     ///
-    /// What the time left for segment 6 would cover at speed `top`, less what is left to cover, is negative for a `top` of
-    /// zero and positive at the fastest profile's: bisection and regula falsi between them, and the side that is early.
+    /// What the time left for segment 6 would cover at speed `top`, less what is left to cover, is negative for a `top`
+    /// of zero and positive at the fastest profile's: bisection and regula falsi between them, and the side that is
+    /// early.
     pub fn slower(&self, fastest: &Main<F>, duration: F) -> Option<Main<F>> {
         let miss = |top: F| {
             let (t, d) = self.ramps(top);
