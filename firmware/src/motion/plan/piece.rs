@@ -14,7 +14,7 @@ pub const MAX_PIECES: usize = 27;
 pub struct Piece {
     /// Length in ticks.
     pub ticks: u64,
-    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of [`JERK_STEP`](super::JERK_STEP).
+    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of [`JERK_STEP`](super::axis_state::JERK_STEP).
     pub jerk: [i64; 3],
 }
 
