@@ -10,7 +10,7 @@ use crate::drivers::bridge::Duty;
 use crate::fault::Fault;
 use crate::fault_record::{BlackBox, History};
 use crate::mode::Mode;
-use crate::motion::{Centre, Plan, Position};
+use crate::motion::{Plan, Position, RotationCentre};
 use crate::recorder::{PanelRecorder, RECORD_WORDS, Recorder, TickRecorder};
 use heapless::spsc::{Consumer, Producer, Queue};
 use kinematics::Angle;
@@ -33,7 +33,7 @@ pub enum Command {
     Move(Plan),
     /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or not;
     /// the platform does not move.
-    Centre(Centre),
+    Centre(RotationCentre),
     /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the encoders'
     /// readings mean; such a change takes the reference.
     Configure(Config),
@@ -70,7 +70,7 @@ pub struct Snapshot {
     /// Setpoint of the point that is moved.
     pub setpoint: Position,
     /// That point.
-    pub centre: Centre,
+    pub centre: RotationCentre,
     /// Identity of the plan under way, or of the last one.
     pub plan: u32,
     /// Ticks of it that are done.

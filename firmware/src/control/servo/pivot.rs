@@ -229,7 +229,7 @@ impl AxisServo {
     #[inline]
     fn shape(&mut self, counts: f32) -> Duty {
         let wanted = counts + self.carry;
-        let (whole, rounded) = number::round(wanted);
+        let (whole, rounded) = number::round_ties_even(wanted);
         self.carry = wanted - rounded;
         Duty(whole as i16)
     }

@@ -143,7 +143,7 @@ impl State {
     fn hold_at(&mut self, pose: &Pose<Fixed>) {
         let platform = position(pose);
         self.motion
-            .rest_at(self.motion.centre().of_platform(&platform));
+            .rest_at(self.motion.centre().from_platform(&platform));
         self.settling.start();
         self.start_at(&platform);
         self.rest_watches();
@@ -212,7 +212,7 @@ impl State {
             self.worse = fault;
         }
         if mode == Mode::Stopping {
-            self.motion.begin_slowing();
+            self.motion.begin_fault_stop();
         }
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;

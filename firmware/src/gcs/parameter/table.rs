@@ -8,7 +8,7 @@ use super::{Kind, Parameter, Source, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::LONGEST_MS;
-use crate::motion::Way;
+use crate::motion::TurnDirection;
 use crate::recorder::RECORD_WORDS;
 
 /// What the parameters of a group share.
@@ -99,9 +99,14 @@ const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 /// Most points that a record of one word has room for.
 const ROWS: f64 = RECORD_WORDS as f64;
 /// By their numbers.
-const WAYS: [Way; 4] = [Way::Literal, Way::Shortest, Way::Positive, Way::Negative];
+const WAYS: [TurnDirection; 4] = [
+    TurnDirection::AsGiven,
+    TurnDirection::Shortest,
+    TurnDirection::Positive,
+    TurnDirection::Negative,
+];
 
-fn way_number(way: Way) -> f64 {
+fn way_number(way: TurnDirection) -> f64 {
     let place = WAYS.iter().position(|&other| other == way);
     place.map_or(0.0, |place| place as f64)
 }
@@ -127,7 +132,7 @@ pub static PARAMETERS: &[Parameter] = &[
     Parameter { level: 1, ..LIMIT.float(0x5450_0108, "how much harder an urgent stop brakes", "", [1.0, 4.0], at!(limits.stop_factor)) },
 
     TARGET.int(0x5450_0110, "way of W to a target: 0 literal, 1 shortest, 2 always positive, 3 always negative", [0.0, 3.0],
-        Source::Kept(|p| way_number(p.targets.way), |p, number| p.targets.way = WAYS[number as usize & 3])),
+        Source::Kept(|p| way_number(p.targets.turn_direction), |p, number| p.targets.turn_direction = WAYS[number as usize & 3])),
 
     GEOMETRY.float(0x5450_0200, "radius of the track", "mm", [20.0, 1_000.0], at!(geometry.radius_mm)),
     GEOMETRY.float(0x5450_0201, "start of a guide", "track radii", [0.05, 0.95], at!(geometry.guide_start)),

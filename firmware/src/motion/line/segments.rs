@@ -1,18 +1,18 @@
-//! From the fastest speed along a line to a few stretches of constant acceleration.
+//! From the fastest speed along a line to a few segments of constant acceleration.
 //!
-//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is one
-//! already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it stays
-//! between z and a share of z: from where the line before ended, the range of slopes that do narrows from place to place,
-//! and the line ends where none is left. A share that leaves too many lines is lowered.
+//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is
+//! one already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it
+//! stays between z and a share of z: from where the line before ended, the range of slopes that do narrows from place
+//! to place, and the line ends where none is left. A share that leaves too many lines is lowered.
 
-use super::topp::Squares;
+use super::topp::SquaredSpeeds;
 use crate::motion::limits::PathLimits;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
 /// Most stretches: each corner takes two pieces of a plan.
-pub(crate) const STRETCHES: usize = 12;
+pub(crate) const MAX_SEGMENTS: usize = 12;
 
 /// A corner: where, and the speed there (per second).
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub(crate) struct Corner {
 }
 
 /// Corners of a motion from rest to rest.
-pub(crate) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
+pub(crate) type Corners = Vec<Corner, { MAX_SEGMENTS + 1 }>;
 
 /// The share of z that is given away, the least and the most.
 const LEAST: f32 = 0.01;
@@ -38,14 +38,14 @@ const ALIKE: f32 = 1e-5;
 
 /// Writes the polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to
 /// `acceleration`. `None` where it takes too many stretches.
-pub(crate) fn under(
-    z: &Squares,
+pub(crate) fn fit_segments_below(
+    z: &SquaredSpeeds,
     stretches: usize,
     acceleration: f32,
-    polygon: &mut Polygon,
+    polygon: &mut Corners,
 ) -> Option<()> {
     let z = z.get(..=stretches)?;
-    let laid = |loss: f32, polygon: &mut Polygon| lay(z, acceleration, 1.0 - loss, polygon);
+    let laid = |loss: f32, polygon: &mut Corners| lay(z, acceleration, 1.0 - loss, polygon);
     let (mut before, mut loss) = (0.0, LEAST);
     while let Err(place) = laid(loss, polygon) {
         if loss >= MOST {
@@ -55,12 +55,12 @@ pub(crate) fn under(
         let longer = stretches as f32 / place as f32;
         before = loss;
         loss = (loss * (longer * longer))
-            .larger(STEP * loss + STEP_MORE)
-            .smaller(MOST);
+            .fmax(STEP * loss + STEP_MORE)
+            .fmin(MOST);
     }
     if loss - before >= FINE {
         // Once more, with half of what was added.
-        let mut finer = Polygon::new();
+        let mut finer = Corners::new();
         if laid(0.5 * (before + loss), &mut finer).is_ok() {
             *polygon = finer;
         }
@@ -68,9 +68,9 @@ pub(crate) fn under(
     Some(())
 }
 
-/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
-/// which the acceleration falls: without them the speed is lower.
-pub(crate) fn thin(polygon: &mut Polygon, limits: &PathLimits) {
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
+/// corners at which the acceleration falls: without them the speed is lower.
+pub(crate) fn remove_close_corners(polygon: &mut Corners, limits: &PathLimits) {
     let mut k = 1;
     while k + 2 < polygon.len() {
         let stretch = |k: usize| Stretch::new(&polygon[k], &polygon[k + 1]);
@@ -108,7 +108,7 @@ impl Stretch {
 
 /// One pass, written; an error is the place up to which the stretches suffice.
 #[inline(never)]
-fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Polygon) -> Result<(), usize> {
+fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Corners) -> Result<(), usize> {
     let last = z.len() - 1;
     let spacing = 1.0 / last as f32;
     let steepest = 2.0 * acceleration * spacing;
@@ -120,20 +120,20 @@ fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Polygon) -> Resul
         let (mut low, mut high) = (-steepest, steepest);
         let mut to = from + 1;
         // The first stretch is taken in any case: at its end a line can be as low as it likes.
-        high = high.smaller(z[to] - start);
-        low = low.larger(z[to] * share - start).smaller(high);
+        high = high.fmin(z[to] - start);
+        low = low.fmax(z[to] * share - start).fmin(high);
         while to < last {
             let steps = (to + 1 - from) as f32;
             let over = 1.0 / steps;
-            let highest = high.smaller((z[to + 1] - start) * over);
-            let lowest = low.larger((z[to + 1] * share - start) * over);
+            let highest = high.fmin((z[to + 1] - start) * over);
+            let lowest = low.fmax((z[to + 1] * share - start) * over);
             if lowest > highest + steepest * ALIKE {
                 break;
             }
-            (low, high) = (lowest.smaller(highest), highest);
+            (low, high) = (lowest.fmin(highest), highest);
             to += 1;
         }
-        start = (start + high * (to - from) as f32).larger(0.0);
+        start = (start + high * (to - from) as f32).fmax(0.0);
         from = to;
         let corner = Corner {
             s: from as f32 * spacing,

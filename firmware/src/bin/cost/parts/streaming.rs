@@ -3,7 +3,7 @@
 use super::states::ground;
 use crate::random::Random;
 use core::f64::consts::TAU;
-use firmware::motion::{Axis, Clock, Next, Position, Progress, Stream};
+use firmware::motion::{AxisState, Clock, PlanProgress, Position, Stream, StreamStep};
 
 const UNIT: f64 = 4_294_967_296.0;
 /// Seconds in which a path is brought to its rate.
@@ -16,7 +16,7 @@ const MOST_PLANS: u32 = 40;
 pub struct Streaming {
     stream: Option<Stream>,
     id: u32,
-    pub state: [Axis; 3],
+    pub state: [AxisState; 3],
 }
 
 /// A circle, its centre and radius in track radii, turned by `rate` turns a second, and theta with it.
@@ -76,14 +76,14 @@ impl Streaming {
             let mut trial = stream.clone();
             trial.push(target, ground()).ok()?;
             let next = trial.next(self.id + 1, &self.progress(), ground());
-            if let Next::Send(plan, start) = &next {
+            if let StreamStep::Send(plan, start) = &next {
                 if self.id == plans {
                     self.stream = Some(stream);
                     return Some(target);
                 }
                 self.id += 1;
                 self.state = plan.state_after(start, 1);
-            } else if matches!(next, Next::Over(_)) {
+            } else if matches!(next, StreamStep::Over(_)) {
                 return None;
             }
             stream = trial;
@@ -92,8 +92,8 @@ impl Streaming {
     }
 
     /// The plan sent last has just begun.
-    fn progress(&self) -> Progress {
-        Progress {
+    fn progress(&self) -> PlanProgress {
+        PlanProgress {
             plan: self.id,
             tick: 1,
             moving: self.id > 0,
@@ -101,7 +101,7 @@ impl Streaming {
     }
 
     /// Takes a target, and makes the plan.
-    pub fn take(&mut self, target: Position) -> Option<Next> {
+    pub fn take(&mut self, target: Position) -> Option<StreamStep> {
         let progress = self.progress();
         let stream = self.stream.as_mut()?;
         stream.push(target, ground()).ok()?;
