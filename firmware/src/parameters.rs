@@ -7,7 +7,7 @@ use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
 
 /// Rows that a record of any signals can have: with all tables 16,384 samples.
-pub const RECORD_ROWS: usize = 2048;
+pub const MAX_RECORD_ROWS: usize = 2048;
 
 /// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
 pub const PWM_COUNTS: u16 = 4200;
@@ -26,13 +26,13 @@ pub struct Parameters {
     /// Servo gains.
     pub servo: Gains,
     /// Encoders, pivot by pivot.
-    pub encoders: [EncoderSetup; 3],
+    pub encoders: [EncoderMounting; 3],
     /// When the stage counts as settled.
-    pub window: Window,
+    pub window: SettlingWindow,
     /// Thresholds of the faults.
     pub supervision: Supervision,
     /// The data recorder.
-    pub recorder: Recording,
+    pub recorder: RecorderParameters,
     /// What targets mean.
     pub targets: Targets,
 }
@@ -118,7 +118,7 @@ pub struct Gains {
 
 /// How an encoder is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EncoderSetup {
+pub struct EncoderMounting {
     /// Reading, in counts, at pivot angle 0.
     pub zero_counts: u32,
     /// Whether it counts down when the pivot angle grows.
@@ -127,7 +127,7 @@ pub struct EncoderSetup {
 
 /// When the stage counts as settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct SettlingWindow {
     /// Largest following error of any pivot, in encoder counts.
     pub counts: f64,
     /// For how long.
@@ -154,7 +154,7 @@ pub struct Supervision {
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
     /// Longest time of a bridge at its largest duty.
-    pub at_end_s: f64,
+    pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,
     /// Time in which a motor's winding goes most of the way (all but 1/e) to its final temperature.
@@ -175,7 +175,7 @@ pub struct Supervision {
 
 /// Records of the data recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Recording {
+pub struct RecorderParameters {
     /// Rows of a record.
     pub points: u32,
     /// How many of them are from before the trigger.
@@ -232,20 +232,20 @@ impl Parameters {
             latency_s: 65e-6,
         },
         encoders: [
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 12_345_678,
                 reversed: false,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 50_331_649,
                 reversed: true,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 67_000_000,
                 reversed: false,
             },
         ],
-        window: Window {
+        window: SettlingWindow {
             counts: 2.0,
             dwell_s: 2e-3,
         },
@@ -261,7 +261,7 @@ impl Parameters {
             frozen_rad: 2e-4,
             // Half a volt is 0.7 N m, seven times the friction.
             frozen_v: 0.5,
-            at_end_s: 0.1,
+            max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,
             late_ticks: 10,
@@ -271,8 +271,8 @@ impl Parameters {
             stop_s: 0.06,
             host_silence_ms: 0.0,
         },
-        recorder: Recording {
-            points: RECORD_ROWS as u32,
+        recorder: RecorderParameters {
+            points: MAX_RECORD_ROWS as u32,
             before: 0,
         },
         targets: Targets {

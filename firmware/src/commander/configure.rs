@@ -7,7 +7,7 @@ use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits};
 use crate::parameters::Parameters;
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 impl Stage {
     /// Goes over from the parameters `now` to those `wanted`; the tick is told when what it computes with changes. To be
@@ -21,7 +21,7 @@ impl Stage {
         &mut self,
         now: &Parameters,
         wanted: &Parameters,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let moved = self.view.tool.origin() != [0.0; 2];
         if moved && now.geometry.radius_mm != wanted.geometry.radius_mm {
@@ -32,7 +32,7 @@ impl Stage {
         let soft = soft.ok_or(ErrorCode::SoftLimit)?;
         let config = Config::new(wanted);
         if config != Config::new(now) {
-            self.send(Command::Configure(config), Flight::Configure, link)?;
+            self.send(Command::Configure(config), Flight::Configure, queues)?;
         }
         self.soft = soft;
         self.use_parameters(wanted);

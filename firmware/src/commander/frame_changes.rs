@@ -7,7 +7,7 @@ use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{MAX_CENTRE_OFFSET, RotationCentre};
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 /// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells apart.
 const WHOLE_TURN_DEG: f64 = 1e-7;
@@ -21,7 +21,7 @@ impl Stage {
     pub fn change_frames(
         &mut self,
         action: &FrameAction,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         match *action {
             FrameAction::Define(kind, name, values) => {
@@ -32,9 +32,9 @@ impl Stage {
             FrameAction::Remove(name) => self.frames.remove(name),
             FrameAction::Enable(name) => {
                 self.check_at_rest()?;
-                self.choose(self.frames.with_enabled(name)?, link)
+                self.choose(self.frames.with_enabled(name)?, queues)
             }
-            FrameAction::Pivot(values) => self.set_pivot(values, link),
+            FrameAction::Pivot(values) => self.set_pivot(values, queues),
         }
     }
 
@@ -51,7 +51,7 @@ impl Stage {
     fn set_pivot(
         &mut self,
         values: [Option<f64>; 3],
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_at_rest()?;
         let [r, s, t] = values;
@@ -64,11 +64,11 @@ impl Stage {
         }
         let [old_r, old_s] = self.frames.pivot();
         let wanted = [r.unwrap_or(old_r), s.unwrap_or(old_s)];
-        self.choose(self.frames.with_pivot(wanted)?, link)
+        self.choose(self.frames.with_pivot(wanted)?, queues)
     }
 
     /// Puts other frames in force. Where the tool's origin changes, the tick has to know it: what moves is that point.
-    fn choose(&mut self, choice: Choice, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    fn choose(&mut self, choice: Choice, queues: &mut CommandQueues<'_>) -> Result<(), ErrorCode> {
         if self.is_faulted() {
             return Err(ErrorCode::MotionError);
         }
@@ -85,7 +85,11 @@ impl Stage {
         }
         let centre =
             RotationCentre::new(self.radii(view.tool.origin())).ok_or(ErrorCode::OutOfRange)?;
-        self.send(Command::Centre(centre), Flight::Frames(choice, view), link)
+        self.send(
+            Command::Centre(centre),
+            Flight::Frames(choice, view),
+            queues,
+        )
     }
 
     /// The frames are in force from now on.

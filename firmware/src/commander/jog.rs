@@ -7,11 +7,15 @@ use super::sent_plan::Goal;
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Stage {
     /// `JOG`: axes that are not named keep the velocity that an earlier one gave them; whatever else moves comes to rest.
-    pub fn jog(&mut self, values: &AxisValues, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn jog(
+        &mut self,
+        values: &AxisValues,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
         self.check_ready()?;
         if self.flow.is_some() {
             return Err(ErrorCode::NotAllowed);
@@ -32,7 +36,7 @@ impl Stage {
         }
         let [x, y] = [Axis::X, Axis::Y].map(|axis| wanted[axis.index()]);
         let [x, y] = self.view.work.turned([x, y]);
-        self.want(Goal::Velocity([x, y, wanted[Axis::W.index()]]), link)?;
+        self.want(Goal::Velocity([x, y, wanted[Axis::W.index()]]), queues)?;
         for axis in Axis::ALL {
             if wanted[axis.index()] != 0.0 {
                 self.moving.insert(axis);

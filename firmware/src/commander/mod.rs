@@ -50,7 +50,7 @@ use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{Ahead, Constraints, Limits, Position, Stop, Tries};
 use crate::parameters::{Parameters, Targets};
-use crate::queues::{Command, PanelLink, Snapshot};
+use crate::queues::{Command, CommandQueues, Snapshot};
 
 /// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for planning.
 const LOOK_AHEAD: u64 = 40;
@@ -288,9 +288,9 @@ impl Stage {
         &mut self,
         command: Command,
         flight: Flight,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
-        link.send(command).map_err(|_| ErrorCode::Busy)?;
+        queues.send(command).map_err(|_| ErrorCode::Busy)?;
         self.sent = self.sent.wrapping_add(1);
         self.refused = self.snapshot.as_ref().map_or(0, |s| s.refused);
         self.flight = Some(flight);

@@ -10,7 +10,7 @@ use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::Stop;
-use crate::queues::{Command, PanelLink, Snapshot};
+use crate::queues::{Command, CommandQueues, Snapshot};
 use kinematics::Angle;
 
 /// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
@@ -21,9 +21,9 @@ impl Stage {
     pub fn move_to(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
-        self.aim(self.meant_by(&self.base_target(), values), link)
+        self.aim(self.meant_by(&self.base_target(), values), queues)
     }
 
     /// The target that `MOV` means when `last` is the one before.
@@ -51,20 +51,20 @@ impl Stage {
     pub fn move_by(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let mut target = self.base_target();
         for (coordinate, value) in target.iter_mut().zip(values) {
             *coordinate += value.unwrap_or(0.0);
         }
-        self.aim(target, link)
+        self.aim(target, queues)
     }
 
     /// `MRT`: relative to the last target, along the axes of the tool as it is turned there.
     pub fn move_in_tool(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let (x, y) = (Axis::X.index(), Axis::Y.index());
         let turned = Transform {
@@ -74,17 +74,21 @@ impl Stage {
         let [along, across] = turned.turned([x, y].map(|i| values[i].unwrap_or(0.0)));
         let mut values = *values;
         (values[x], values[y]) = (Some(along), Some(across));
-        self.move_by(&values, link)
+        self.move_by(&values, queues)
     }
 
-    fn aim(&mut self, target: Coordinates, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    fn aim(
+        &mut self,
+        target: Coordinates,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
         self.check_ready()?;
         let from = self.setpoint();
         let to = self.place_of(&target)?;
         if self.targets.streamed {
             return self.stream(target, to);
         }
-        self.want(Goal::Place(to), link)?;
+        self.want(Goal::Place(to), queues)?;
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
                 self.moving.insert(axis);
@@ -114,7 +118,7 @@ impl Stage {
     }
 
     /// `STP`, `#24`, `HLT`.
-    pub fn stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    pub fn stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         if self.mode() != Mode::Moving && !self.motion_is_due() {
             return;
         }
@@ -125,34 +129,34 @@ impl Stage {
         if self.stop_wanted != Some(Stop::Urgent) {
             self.stop_wanted = Some(stop);
         }
-        self.carry_on(link);
+        self.carry_on(queues);
     }
 
     /// `SVO`. Before referencing there is no pose to hold: servo on is accepted, as clients send it first, and comes about
     /// with `FRF`.
-    pub fn set_servo(&mut self, on: bool, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn set_servo(&mut self, on: bool, queues: &mut CommandQueues<'_>) -> Result<(), ErrorCode> {
         let Some(snapshot) = self.present() else {
             return Err(ErrorCode::Busy);
         };
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(ErrorCode::MotionError),
             (true, Mode::Off) if snapshot.referenced => {
-                self.send(Command::Servo(true), Flight::Other, link)
+                self.send(Command::Servo(true), Flight::Other, queues)
             }
             (false, Mode::Holding | Mode::Moving) => {
-                self.send(Command::Servo(false), Flight::Other, link)
+                self.send(Command::Servo(false), Flight::Other, queues)
             }
             _ => Ok(()),
         }
     }
 
     /// `FLC`.
-    pub fn acknowledge(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn acknowledge(&mut self, queues: &mut CommandQueues<'_>) -> Result<(), ErrorCode> {
         if self.mode() == Mode::Stopping {
             return Err(ErrorCode::InMotion);
         }
         if self.is_faulted() {
-            self.send(Command::Acknowledge, Flight::Other, link)?;
+            self.send(Command::Acknowledge, Flight::Other, queues)?;
         }
         Ok(())
     }

@@ -7,24 +7,24 @@ use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{Constraints, RetargetError, Stop, Tries};
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 const DEGREES_A_TURN: f64 = 360.0;
 
 impl Stage {
     /// Takes the next step of what is still wanted, if its time has come.
-    pub fn carry_on(&mut self, link: &mut PanelLink<'_>) {
+    pub fn carry_on(&mut self, queues: &mut CommandQueues<'_>) {
         if self.present().is_none() {
             return;
         }
-        self.carry_flow_on(link);
+        self.carry_flow_on(queues);
         let result = match (self.mode(), self.stop_wanted, self.wanted) {
             (Mode::Moving, Some(stop), _) => {
-                self.send_stop(stop, link);
+                self.send_stop(stop, queues);
                 return;
             }
-            (Mode::Moving, None, Some(goal)) if !self.rest_first => self.leave_for(goal, link),
-            (Mode::Holding, _, Some(goal)) => self.start(goal, link),
+            (Mode::Moving, None, Some(goal)) if !self.rest_first => self.leave_for(goal, queues),
+            (Mode::Holding, _, Some(goal)) => self.start(goal, queues),
             _ => return,
         };
         match result {
@@ -41,13 +41,17 @@ impl Stage {
     }
 
     /// Makes `goal` what is wanted, at once as far as that can be; with an error everything is as it was.
-    pub(super) fn want(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub(super) fn want(
+        &mut self,
+        goal: Goal,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
         let before = (self.wanted, self.rest_first, self.stop_wanted, self.tries);
         (self.wanted, self.rest_first, self.tries) = (Some(goal), false, Tries::NONE);
         let ahead = self.ahead.take();
         let result = match (self.mode(), self.stop_wanted) {
-            (Mode::Holding, _) => self.start(goal, link),
-            (Mode::Moving, None) => self.leave_for(goal, link),
+            (Mode::Holding, _) => self.start(goal, queues),
+            (Mode::Moving, None) => self.leave_for(goal, queues),
             _ => Ok(()),
         };
         if result.is_err() {
@@ -58,7 +62,7 @@ impl Stage {
     }
 
     /// Sends the motion from rest; nothing is sent when there is none to be made.
-    fn start(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    fn start(&mut self, goal: Goal, queues: &mut CommandQueues<'_>) -> Result<(), ErrorCode> {
         let from = self.setpoint();
         let ground = match goal {
             Goal::Place(to) => self.ground_of_line(&from, &to),
@@ -67,7 +71,7 @@ impl Stage {
         let id = self.next_id();
         let course = Course::from_rest(id, from, goal, &ground)?;
         if course.plan.ticks() > 0 {
-            self.send_course(course, link)?;
+            self.send_course(course, queues)?;
         }
         self.wanted = None;
         Ok(())
@@ -75,7 +79,7 @@ impl Stage {
 
     /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while it is to be
     /// tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
-    fn leave_for(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    fn leave_for(&mut self, goal: Goal, queues: &mut CommandQueues<'_>) -> Result<(), ErrorCode> {
         let ground = match goal {
             Goal::Place(_) => self.ground_of_curve(),
             _ => self.ground(),
@@ -96,7 +100,7 @@ impl Stage {
         self.ahead = ahead;
         match left {
             Ok(left) => {
-                self.send_course(left, link)?;
+                self.send_course(left, queues)?;
                 self.wanted = self.wanted.filter(|_| self.ahead.is_some());
             }
             Err(RetargetError::Refused(refusal)) => return Err(code(&refusal)),
@@ -111,7 +115,7 @@ impl Stage {
         Ok(())
     }
 
-    fn send_stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    fn send_stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         let id = self.next_id();
         let ground = self.ground();
         let Some((course, at)) = self.under_way() else {
@@ -120,7 +124,7 @@ impl Stage {
         match course.stopped(id, at, &ground, stop) {
             // A full queue: again at the next snapshot.
             Some(stopped) => {
-                let _ = self.send_course(stopped, link);
+                let _ = self.send_course(stopped, queues);
             }
             // Not by itself, when another target takes over before: that motion is what has to be stopped.
             None if self.next.is_some() => {}
@@ -149,10 +153,10 @@ impl Stage {
     pub(super) fn send_course(
         &mut self,
         course: Course,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let command = Command::Move(course.plan.clone());
-        self.send(command, Flight::Move(course), link)
+        self.send(command, Flight::Move(course), queues)
     }
 
     /// What plans keep to now.

@@ -3,7 +3,7 @@
 use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 /// Ticks that referencing waits for encoders that do not answer yet: they need some good frames in a row.
 const REFERENCE_PATIENCE: u64 = 40;
@@ -18,7 +18,7 @@ pub enum Referencing {
 
 impl Stage {
     /// `FRF` begins: whether there is something to wait for.
-    pub fn begin_reference(&mut self, link: &mut PanelLink<'_>) -> Result<bool, ErrorCode> {
+    pub fn begin_reference(&mut self, queues: &mut CommandQueues<'_>) -> Result<bool, ErrorCode> {
         let Some(snapshot) = self.present() else {
             return Err(ErrorCode::Busy);
         };
@@ -26,7 +26,7 @@ impl Stage {
             return Err(ErrorCode::MotionError);
         }
         if snapshot.referenced {
-            self.set_servo(true, link)?;
+            self.set_servo(true, queues)?;
             return Ok(false);
         }
         if self.is_referencing() {
@@ -37,7 +37,7 @@ impl Stage {
     }
 
     /// `FRF` goes on: encoders are given a moment to answer, then the tick references.
-    pub fn reference(&mut self, link: &mut PanelLink<'_>) -> Referencing {
+    pub fn reference(&mut self, queues: &mut CommandQueues<'_>) -> Referencing {
         let Some(snapshot) = self.present() else {
             return Referencing::Waiting;
         };
@@ -54,7 +54,7 @@ impl Stage {
             self.reference_until = 0;
         } else if snapshot.encoder_faults == [None; 3] {
             // A full queue, or pivots that are no pose yet: again at the next snapshot.
-            let _ = self.send(Command::Reference, Flight::Reference, link);
+            let _ = self.send(Command::Reference, Flight::Reference, queues);
         }
         result
     }

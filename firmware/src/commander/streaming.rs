@@ -9,7 +9,7 @@ use crate::mode::Mode;
 use crate::motion::{
     Clock, PERIOD_RANGE, PlanProgress, Position, PushError, Stream, StreamEnd, StreamStep,
 };
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 /// `SCT` at first.
 pub(super) const CYCLE_MS: f64 = 10.0;
@@ -95,7 +95,7 @@ impl Stage {
     pub(super) fn run_waves(
         &mut self,
         starting: &[bool; 6],
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_ready()?;
         if self.mode() != Mode::Holding || self.motion_is_due() {
@@ -103,7 +103,7 @@ impl Stage {
         }
         let run = Run::new(&self.waves, starting, self.target, self.base.limits.rate_hz);
         let start = self.place_of(&run.start(&self.waves))?;
-        self.want(Goal::Place(start), link)?;
+        self.want(Goal::Place(start), queues)?;
         self.target_is_rest = true;
         self.flow = Some(Flow {
             stream: None,
@@ -115,7 +115,7 @@ impl Stage {
     }
 
     /// Takes the next step of the stream.
-    pub(super) fn carry_flow_on(&mut self, link: &mut PanelLink<'_>) {
+    pub(super) fn carry_flow_on(&mut self, queues: &mut CommandQueues<'_>) {
         let Some(mut flow) = self.flow.take() else {
             return;
         };
@@ -123,7 +123,7 @@ impl Stage {
             Ok(StreamStep::Wait) => self.flow = Some(flow),
             Ok(StreamStep::Send(plan, start)) => {
                 // A queue that is full would be a plan that is lost.
-                match self.send_course(Course::streamed(plan, start), link) {
+                match self.send_course(Course::streamed(plan, start), queues) {
                     Ok(()) => {
                         flow.started = true;
                         self.flow = Some(flow);

@@ -5,7 +5,7 @@ use super::axis::Axis;
 use super::wave::{WaveAction, Waves};
 use crate::gcs::error::ErrorCode;
 use crate::motion::{PERIOD_RANGE, Stop};
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Stage {
     pub const fn waves(&self) -> &Waves {
@@ -16,10 +16,10 @@ impl Stage {
     pub fn change_waves(
         &mut self,
         action: &WaveAction,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         if let WaveAction::Go(modes) = action {
-            return self.switch_generators(modes, link);
+            return self.switch_generators(modes, queues);
         }
         if self.generators_going() != [false; 6] {
             return Err(ErrorCode::GeneratorActive);
@@ -78,7 +78,7 @@ impl Stage {
     fn switch_generators(
         &mut self,
         modes: &[Option<u32>; 6],
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let going = self.generators_going();
         let starting = modes.map(|mode| mode == Some(1));
@@ -89,7 +89,7 @@ impl Stage {
             }
             if stops {
                 // The axes move as one: all of them stop.
-                self.stop(Stop::Smooth, link);
+                self.stop(Stop::Smooth, queues);
             }
             return Ok(());
         }
@@ -101,6 +101,6 @@ impl Stage {
         if named.any(|(axis, starts)| starts && !has_wave(axis)) {
             return Err(ErrorCode::NoWave);
         }
-        self.run_waves(&starting, link)
+        self.run_waves(&starting, queues)
     }
 }

@@ -8,7 +8,7 @@ use super::{LONGEST_MS, Panel};
 use crate::commander::axis::{Axis, AxisValues};
 use crate::commander::soft_limits::SoftLimits;
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Panel {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
@@ -17,54 +17,54 @@ impl Panel {
         &mut self,
         action: Action,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
-                Some(on) => self.stage.set_servo(on, link),
+                Some(on) => self.stage.set_servo(on, queues),
                 None => Ok(()),
             },
             // Whichever axes are named: the encoders give all of them at once.
             Action::Reference(_) => {
-                if self.stage.begin_reference(link)? {
+                if self.stage.begin_reference(queues)? {
                     self.wait(session, Awaited::Reference);
                 }
                 Ok(())
             }
-            Action::Move(values) => self.stage.move_to(&values, link),
+            Action::Move(values) => self.stage.move_to(&values, queues),
             Action::MoveRelative(values) | Action::Step(values) => {
-                self.stage.move_by(&values, link)
+                self.stage.move_by(&values, queues)
             }
             Action::Record(action) => {
-                (self.desk).change(&action, &mut self.parameters, &link.recorder)
+                (self.desk).change(&action, &mut self.parameters, &queues.recorder)
             }
-            Action::MoveInTool(values) => self.stage.move_in_tool(&values, link),
+            Action::MoveInTool(values) => self.stage.move_in_tool(&values, queues),
             Action::CycleTime(ms) => self.stage.set_cycle_time(ms),
-            Action::Jog(values) => self.stage.jog(&values, link),
+            Action::Jog(values) => self.stage.jog(&values, queues),
             Action::AxisVelocity(values) => self.stage.set_axis_velocity(&values),
-            Action::Wave(action) => self.stage.change_waves(&action, link),
-            Action::Frame(action) => self.stage.change_frames(&action, link),
+            Action::Wave(action) => self.stage.change_waves(&action, queues),
+            Action::Frame(action) => self.stage.change_frames(&action, queues),
             Action::SoftLowest(values) => self.stage.set_soft(SoftLimits::set_lowest, &values),
             Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
             Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
-            Action::Set(settings) => self.set(&settings, session, link),
+            Action::Set(settings) => self.set(&settings, session, queues),
             Action::Keep(addresses) => {
                 self.keep(&addresses)?;
                 self.wait(session, Awaited::Kept);
                 Ok(())
             }
-            Action::Recall(addresses) => self.recall(&addresses, link),
+            Action::Recall(addresses) => self.recall(&addresses, queues),
             Action::Level(level, password) => Self::set_level(session, level, password),
             Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
             Action::Stop => {
                 self.events.add(self.stage.tick(), Event::Stop);
-                self.stop_all(Stop::Urgent, link);
+                self.stop_all(Stop::Urgent, queues);
                 Err(ErrorCode::Stopped)
             }
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => {
                 self.events.add(self.stage.tick(), Event::Halt);
-                self.stage.stop(Stop::Smooth, link);
+                self.stage.stop(Stop::Smooth, queues);
                 Err(ErrorCode::Stopped)
             }
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
@@ -73,7 +73,7 @@ impl Panel {
                 Ok(())
             }
             Action::Restart => self.restart(),
-            Action::Acknowledge => self.stage.acknowledge(link),
+            Action::Acknowledge => self.stage.acknowledge(queues),
             Action::Delay(ms) => {
                 if !(0.0..=LONGEST_MS).contains(&ms) {
                     return Err(ErrorCode::OutOfRange);
@@ -92,10 +92,10 @@ impl Panel {
     }
 
     /// Stops the motion, and with it every macro and every wait.
-    pub(super) fn stop_all(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         self.stops = self.stops.wrapping_add(1);
         self.macros.stop();
-        self.stage.stop(stop, link);
+        self.stage.stop(stop, queues);
     }
 
     /// `RBT`: a stage in motion would be let go.

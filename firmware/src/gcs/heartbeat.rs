@@ -11,7 +11,7 @@ use super::events::Event;
 use super::session::Session;
 use super::{LONGEST_MS, Panel};
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 /// Shortest heartbeat that can be asked for: what an operating system keeps with ease.
 pub(super) const SHORTEST_MS: f64 = 10.0;
@@ -75,7 +75,7 @@ impl Panel {
     }
 
     /// Stops when the host has been silent for too long.
-    pub(super) fn watch_heartbeat(&mut self, link: &mut PanelLink<'_>) {
+    pub(super) fn watch_heartbeat(&mut self, queues: &mut CommandQueues<'_>) {
         let Heartbeat {
             heard, is_silent, ..
         } = self.heartbeat;
@@ -86,7 +86,7 @@ impl Panel {
         }
         self.heartbeat.is_silent = true;
         self.events.add(tick, Event::Silent(ms));
-        self.stop_all(Stop::Urgent, link);
+        self.stop_all(Stop::Urgent, queues);
         self.stage.tell_all(ErrorCode::Stopped);
     }
 }

@@ -80,7 +80,7 @@ pub use variables::{NAMED, VARIABLES, VariableRequest};
 use crate::commander::{Referencing, Stage};
 use crate::motion::Limits;
 use crate::parameters::Parameters;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 use embedded_io::Write;
 use events::Events;
 use heartbeat::Heartbeat;
@@ -175,36 +175,36 @@ impl Panel {
     pub fn service<W: Write>(
         &mut self,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         self.listen(session);
-        self.advance(link);
+        self.advance(queues);
         if let Some(snapshot) = self.stage.snapshot() {
             session.monitor.look(snapshot);
         }
         self.tell_bad_news(session);
-        let result = self.handle(session, link, out);
-        self.stage.carry_on(link);
-        self.desk.carry_on(&self.parameters, &mut link.recorder);
+        let result = self.handle(session, queues, out);
+        self.stage.carry_on(queues);
+        self.desk.carry_on(&self.parameters, &mut queues.recorder);
         result
     }
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
-    pub fn advance(&mut self, link: &mut PanelLink<'_>) {
+    pub fn advance(&mut self, queues: &mut CommandQueues<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next call.
-        if let Some(snapshot) = link.snapshot() {
+        if let Some(snapshot) = queues.snapshot() {
             self.events.take(&snapshot);
             self.statistics.take(&snapshot);
             self.stage.take(snapshot);
         }
-        if let Some(black_box) = link.black_box {
-            self.events.keep(black_box);
+        if let Some(retained_memory) = queues.retained_memory {
+            self.events.keep(retained_memory);
         }
         self.take_back_if_refused();
-        self.stage.carry_on(link);
-        self.watch_heartbeat(link);
-        self.run_macro(link);
+        self.stage.carry_on(queues);
+        self.watch_heartbeat(queues);
+        self.run_macro(queues);
     }
 
     /// A fault sets the error of every connection, once.
@@ -228,22 +228,22 @@ impl Panel {
     fn handle<W: Write>(
         &mut self,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         loop {
-            while self.carry_dump(session, link, out)?
-                || self.carry_history(session, link, out)?
-                || self.is_waiting(session, link)
+            while self.carry_dump(session, queues, out)?
+                || self.carry_history(session, queues, out)?
+                || self.is_waiting(session, queues)
             {
                 let Some(byte) = session.take_single() else {
                     return Ok(());
                 };
-                self.obey_byte(byte, session, link, out)?;
+                self.obey_byte(byte, session, queues, out)?;
             }
             match session.next_event() {
                 None => return Ok(()),
-                Some(Event::Byte(byte)) => self.obey_byte(byte, session, link, out)?,
+                Some(Event::Byte(byte)) => self.obey_byte(byte, session, queues, out)?,
                 Some(Event::Thrown(error)) => session.error = error,
                 Some(Event::Line) => match self.understand(session) {
                     Ok(request) if request.needs_present() && self.stage.present().is_none() => {
@@ -251,7 +251,7 @@ impl Panel {
                     }
                     Ok(request) => {
                         session.finish_line();
-                        self.obey(request, session, link, out)?;
+                        self.obey(request, session, queues, out)?;
                     }
                     Err(code) => {
                         session.finish_line();
@@ -284,21 +284,21 @@ impl Panel {
         &mut self,
         byte: u8,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         let Some(request) = find_byte(byte) else {
             session.error = ErrorCode::UnknownCommand;
             return Ok(());
         };
-        self.obey(request, session, link, out)
+        self.obey(request, session, queues, out)
     }
 
     fn obey<W: Write>(
         &mut self,
         request: Request,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         match request {
@@ -319,7 +319,7 @@ impl Panel {
             },
             Request::Macro(request) => self.obey_macro(&request, session, out)?,
             Request::Variables(request) => self.obey_variables(&request, session, out)?,
-            Request::Record(query) => self.tell_record(query, session, link, out)?,
+            Request::Record(query) => self.tell_record(query, session, queues, out)?,
             Request::Frames(query) => {
                 if let Err(code) = self.stage.frames().answer(query, out)? {
                     session.error = code;
@@ -330,7 +330,7 @@ impl Panel {
                 self.stage.waves().answer(query, &going, out)?;
             }
             Request::Act(action) => {
-                if let Err(code) = self.act_announced(action, session, link) {
+                if let Err(code) = self.act_announced(action, session, queues) {
                     session.error = code;
                 }
             }
@@ -343,17 +343,17 @@ impl Panel {
         &mut self,
         action: Action,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         if !action.moves() {
-            return self.act(action, session, link);
+            return self.act(action, session, queues);
         }
         let step = matches!(action, Action::Step(_));
         let (sent, parameters) = (self.stage.sent(), &self.parameters);
-        let recorder = &mut link.recorder;
+        let recorder = &mut queues.recorder;
         let announced = (self.desk).announce(step, sent.wrapping_add(1), parameters, recorder)?;
-        let result = self.act(action, session, link);
-        let recorder = &mut link.recorder;
+        let result = self.act(action, session, queues);
+        let recorder = &mut queues.recorder;
         match result {
             // Already there: nothing had to be sent.
             Ok(()) if self.stage.sent() == sent && !self.stage.motion_is_due() => {
@@ -366,7 +366,7 @@ impl Panel {
     }
 
     /// Whether the lines of the connection have to wait; ends the wait when it is over.
-    fn is_waiting(&mut self, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
+    fn is_waiting(&mut self, session: &mut Session, queues: &mut CommandQueues<'_>) -> bool {
         let Some(wait) = session.wait else {
             return false;
         };
@@ -392,7 +392,7 @@ impl Panel {
                     true
                 }
             },
-            Awaited::Reference => match self.stage.reference(link) {
+            Awaited::Reference => match self.stage.reference(queues) {
                 Referencing::Waiting => false,
                 Referencing::Done => true,
                 Referencing::Failed(code) => {

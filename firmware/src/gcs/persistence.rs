@@ -9,9 +9,9 @@ use super::events::Event;
 use super::parameter::{Addresses, Parameter};
 use super::text::Name;
 use crate::gcs::StoreError;
+use crate::parameters::MAX_RECORD_ROWS;
 use crate::parameters::Parameters;
-use crate::parameters::RECORD_ROWS;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 /// What `WPA` has to be given, so that nothing is overwritten by a slip.
 pub(super) const PASSWORD: &[u8] = b"100";
@@ -79,12 +79,12 @@ impl Panel {
     pub(super) fn recall(
         &mut self,
         addresses: &Addresses,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_keeper()?;
         let wanted = replaced(&self.parameters, &self.keeping.kept, addresses)?;
         self.permit_change(&wanted)?;
-        self.put_in_force(wanted, link)?;
+        self.put_in_force(wanted, queues)?;
         self.events.add(self.stage.tick(), Event::Recalled);
         Ok(())
     }
@@ -157,7 +157,7 @@ impl Panel {
     pub(crate) fn take_kept_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
-        recorder.points = recorder.points.min(RECORD_ROWS as u32);
+        recorder.points = recorder.points.min(MAX_RECORD_ROWS as u32);
         recorder.before = recorder.before.min(recorder.points - 1);
         self.rated = parameters.limits;
         self.stage.use_parameters(&parameters);

@@ -161,7 +161,7 @@ impl Panel {
         if let Some(fault) = snapshot.fault {
             let mut reply = Reply::new(out);
             reply.line(format_args!("{fault}"))?;
-            if let Some(worse) = snapshot.worse {
+            if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
             return reply.end();

@@ -3,7 +3,7 @@
 use super::Panel;
 use super::reply::Reply;
 use crate::control::config::UNITS_PER_RAD;
-use crate::control::loop_counters::Interval;
+use crate::control::loop_counters::LoopCounters;
 use crate::queues::Snapshot;
 use embedded_io::Write;
 
@@ -25,14 +25,14 @@ pub(super) struct Statistics {
 impl Statistics {
     /// Takes the next snapshot.
     pub fn take(&mut self, snapshot: &Snapshot) {
-        let Interval {
+        let LoopCounters {
             ticks,
             cycles,
             cycles_sum,
             cycles_worst,
             late,
             peak_error,
-        } = snapshot.interval;
+        } = snapshot.loop_counters;
         self.ticks += u64::from(ticks);
         self.cycles = cycles;
         self.cycles_sum += u64::from(cycles_sum);

@@ -3,14 +3,14 @@
 
 use core::convert::Infallible;
 use firmware::control::config::Config;
-use firmware::control::loop_counters::Interval;
+use firmware::control::loop_counters::LoopCounters;
 use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
 use firmware::gcs::{Identity, Panel, Session};
 use firmware::mode::Mode;
 use firmware::motion::{PlanFollower, Setpoint, SetpointScale};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
+use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use firmware::recorder::Sample;
 use kinematics::{Angle, Pose, inverse};
 
@@ -38,7 +38,7 @@ impl embedded_io::Write for Written {
 
 /// A tick without encoders and motors: pivots are where the setpoint puts them.
 pub struct FakeTick {
-    link: TickLink<'static>,
+    queues: TickQueues<'static>,
     motion: PlanFollower,
     scale: SetpointScale,
     /// What the next snapshot says; tests set faults here.
@@ -58,7 +58,7 @@ pub struct FakeTick {
 impl FakeTick {
     pub fn run(&mut self) {
         self.now.tick += 1;
-        if let Some(command) = self.link.commands.dequeue() {
+        if let Some(command) = self.queues.commands.dequeue() {
             self.now.commands += 1;
             self.obey(command);
         }
@@ -84,13 +84,13 @@ impl FakeTick {
         self.now.centre = self.motion.centre();
         let platform = self.now.centre.to_platform(&setpoint.position);
         self.now.pivots = pivots(&platform);
-        self.now.interval.ticks += 1;
-        if self.link.recorder.is_wanted() {
-            self.link.recorder.record(&self.sample(setpoint));
+        self.now.loop_counters.ticks += 1;
+        if self.queues.recorder.is_active() {
+            self.queues.recorder.observe(&self.sample(setpoint));
         }
-        if self.link.snapshots.ready() {
-            let _ = self.link.snapshots.enqueue(self.now.clone());
-            self.now.interval = Interval::default();
+        if self.queues.snapshots.ready() {
+            let _ = self.queues.snapshots.enqueue(self.now.clone());
+            self.now.loop_counters = LoopCounters::default();
         }
     }
 
@@ -101,7 +101,7 @@ impl FakeTick {
             mode: self.now.mode,
             fault: self.now.fault.map(|fault| fault.kind),
             setpoint,
-            point: setpoint,
+            reference_point: setpoint,
             pivot_setpoints: self.now.pivots,
             pivot_rates: [0.0; 3],
             pivots: self.now.pivots,
@@ -212,7 +212,7 @@ fn pivots(position: &[i64; 3]) -> [Angle; 3] {
 pub struct Bench {
     panel: Panel,
     sessions: Vec<(Session, Written)>,
-    pub link: PanelLink<'static>,
+    pub queues: CommandQueues<'static>,
     pub tick: FakeTick,
 }
 
@@ -229,13 +229,13 @@ impl Bench {
     /// The same with this panel.
     pub fn with(panel: Panel) -> Self {
         let parameters = Parameters::REFERENCE;
-        let (tick, link) = Box::leak(Box::new(Link::new())).split();
+        let (tick, queues) = Box::leak(Box::new(Queues::new())).split();
         Self {
             panel,
             sessions: vec![(Session::new(), Written::default())],
-            link,
+            queues,
             tick: FakeTick {
-                link: tick,
+                queues: tick,
                 motion: PlanFollower::default(),
                 scale: SetpointScale::new(parameters.limits.rate_hz),
                 now: Snapshot::default(),
@@ -275,7 +275,7 @@ impl Bench {
 
     pub fn service(&mut self, number: usize) {
         let (session, out) = &mut self.sessions[number];
-        match self.panel.service(session, &mut self.link, out) {
+        match self.panel.service(session, &mut self.queues, out) {
             Ok(()) => {}
         }
     }
@@ -283,7 +283,7 @@ impl Bench {
     /// Services the first connection with another output.
     pub fn service_into<W: embedded_io::Write>(&mut self, out: &mut W) -> Result<(), W::Error> {
         self.panel
-            .service(&mut self.sessions[0].0, &mut self.link, out)
+            .service(&mut self.sessions[0].0, &mut self.queues, out)
     }
 
     pub fn session(&mut self, number: usize) -> &mut Session {

@@ -11,7 +11,7 @@ pub use words::CAUSES;
 use super::Panel;
 use super::reply::Reply;
 use crate::fault::Fault;
-use crate::fault_record::{BlackBox, EVENTS};
+use crate::fault_record::{RETAINED_EVENTS, RetainedMemory};
 use crate::mode::Mode;
 use crate::queues::Snapshot;
 use core::fmt;
@@ -53,7 +53,7 @@ pub(super) enum Event {
 
 /// See the module.
 pub(super) struct Events {
-    kept: Deque<(u64, Event), EVENTS>,
+    kept: Deque<(u64, Event), RETAINED_EVENTS>,
     count: u32,
     /// How many of them the black box has; `None` before it was looked at.
     boxed: Option<u32>,
@@ -101,15 +101,15 @@ impl Events {
     }
 
     /// Writes what is new into the black box; the first time, takes what is in it from before.
-    pub fn keep(&mut self, black_box: &BlackBox) {
+    pub fn keep(&mut self, retained_memory: &RetainedMemory) {
         let boxed = match self.boxed {
             Some(boxed) => boxed,
-            None => self.recall(black_box),
+            None => self.recall(retained_memory),
         };
         let first = self.count - self.kept.len() as u32;
         let events = (first.wrapping_add(1)..).zip(&self.kept);
         for (number, (tick, event)) in events.filter(|(number, _)| *number > boxed) {
-            black_box
+            retained_memory
                 .events
                 .write(number, &words::words(number, *tick, event));
         }
@@ -117,18 +117,18 @@ impl Events {
     }
 
     /// Puts events from before the start in front of those since; the number of the last of them.
-    fn recall(&mut self, black_box: &BlackBox) -> u32 {
+    fn recall(&mut self, retained_memory: &RetainedMemory) -> u32 {
         let since = core::mem::take(&mut self.kept);
         let read = |number: u32| {
-            let words = black_box.events.read(number)?;
+            let words = retained_memory.events.read(number)?;
             Some((words[0], words::event(&words)?))
         };
-        let last = (0..EVENTS as u32)
+        let last = (0..RETAINED_EVENTS as u32)
             .filter_map(read)
             .map(|(number, _)| number)
             .max();
         let last = last.unwrap_or(0);
-        let first = last.saturating_sub(EVENTS as u32 - 1).max(1);
+        let first = last.saturating_sub(RETAINED_EVENTS as u32 - 1).max(1);
         self.count = first - 1;
         for number in first..=last {
             match read(number) {
@@ -150,7 +150,7 @@ impl Events {
     pub fn take(&mut self, snapshot: &Snapshot) {
         let now = Seen {
             fault: snapshot.fault,
-            worse: snapshot.worse,
+            worse: snapshot.stop_ended_by,
             referenced: snapshot.referenced,
             on: matches!(snapshot.mode, Mode::Holding | Mode::Moving),
             refused: snapshot.refused,

@@ -1,7 +1,7 @@
 //! Events as words, for the black box: number, tick (two), what, three of its own, and the check.
 
 use super::Event;
-use crate::fault::{ABOUT, Fault};
+use crate::fault::{FAULT_DESCRIPTIONS, Fault};
 
 /// What may start a controller unasked: the watchdog, the program, the supply.
 pub const CAUSES: [&str; 3] = [
@@ -67,7 +67,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
     let event = match code {
         0 => Event::Start(CAUSES.get(usize::from(first)).copied()),
         1 => Event::Fault(Fault {
-            kind: ABOUT.get(usize::from(first))?.kind,
+            kind: FAULT_DESCRIPTIONS.get(usize::from(first))?.kind,
             pivot: (second != NONE).then_some(second),
             tick,
             value: f32::from_bits(a),

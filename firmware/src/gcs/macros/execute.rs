@@ -9,7 +9,7 @@ use crate::gcs::request::Condition;
 use crate::gcs::session::Session;
 use crate::gcs::text::{Name, Text};
 use crate::gcs::variables::{Locals, VariableRequest, text_of};
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Write};
 
@@ -274,7 +274,7 @@ impl Panel {
     }
 
     /// Carries on the macro that runs, as far as its lines for this tick go.
-    pub(in crate::gcs) fn run_macro(&mut self, link: &mut PanelLink<'_>) {
+    pub(in crate::gcs) fn run_macro(&mut self, queues: &mut CommandQueues<'_>) {
         if !self.macros.is_running() {
             return;
         }
@@ -286,7 +286,7 @@ impl Panel {
         let mut session = core::mem::take(&mut self.macros.session);
         self.tell_bad_news(&mut session);
         loop {
-            let Ok(()) = self.handle(&mut session, link, &mut Nowhere);
+            let Ok(()) = self.handle(&mut session, queues, &mut Nowhere);
             if !session.is_idle() || !self.macros.look_at_line(&mut session) {
                 break;
             }

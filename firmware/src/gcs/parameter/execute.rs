@@ -11,7 +11,7 @@ use crate::gcs::events::Event;
 use crate::gcs::session::Session;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 /// What `CCL 1` asks for: against accidents, not against intruders. The same for all controllers of this family.
 pub(in crate::gcs) const PASSWORD: &[u8] = b"ADVANCED";
@@ -22,7 +22,7 @@ impl Panel {
         &mut self,
         settings: &Settings,
         session: &Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let mut wanted = self.parameters.clone();
         for (address, value) in settings.iter().flatten() {
@@ -33,7 +33,7 @@ impl Panel {
         if session.level == 0 && !self.is_within_rating(&wanted) {
             return Err(ErrorCode::OutOfRange);
         }
-        self.put_in_force(wanted, link)?;
+        self.put_in_force(wanted, queues)?;
         for (address, value) in settings.iter().flatten() {
             self.events
                 .add(self.stage.tick(), Event::Set(address.id, *value));
@@ -45,15 +45,15 @@ impl Panel {
     pub(in crate::gcs) fn put_in_force(
         &mut self,
         wanted: Parameters,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
-        let most_rows = self.desk.most_rows(link.recorder.capacity());
+        let most_rows = self.desk.most_rows(queues.recorder.capacity());
         if wanted.recorder.points > most_rows || !wanted.are_sound() {
             return Err(ErrorCode::OutOfRange);
         }
-        self.stage.configure(&self.parameters, &wanted, link)?;
+        self.stage.configure(&self.parameters, &wanted, queues)?;
         if wanted.recorder != self.parameters.recorder {
-            self.desk.arm_again(&link.recorder);
+            self.desk.arm_again(&queues.recorder);
         }
         self.rated = highest(&self.rated, &wanted.limits);
         self.parameters_before = core::mem::replace(&mut self.parameters, wanted);

@@ -9,7 +9,7 @@ use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::LONGEST_MS;
 use crate::motion::TurnDirection;
-use crate::recorder::RECORD_WORDS;
+use crate::recorder::RECORDER_WORDS;
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -97,7 +97,7 @@ macro_rules! flag {
 const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 
 /// Most points that a record of one word has room for.
-const ROWS: f64 = RECORD_WORDS as f64;
+const ROWS: f64 = RECORDER_WORDS as f64;
 /// By their numbers.
 const WAYS: [TurnDirection; 4] = [
     TurnDirection::AsGiven,
@@ -159,7 +159,7 @@ pub static PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
     SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
     SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
-    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.at_end_s)),
+    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.max_saturation_s)),
     SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
     SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
     SUPERVISION.int(0x5450_050B, "late ticks that are allowed, one in 100 ticks forgiven", [0.0, 1_000.0], whole!(u32: supervision.late_ticks)),

@@ -9,7 +9,7 @@ use super::trigger::Trigger;
 use super::{Desk, Record, Wish};
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
-use crate::recorder::{PanelRecorder, Progress, Setup, Watch};
+use crate::recorder::{LevelTrigger, Progress, RecordSetup, RecorderReader};
 
 /// What a command that moves has been announced as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(in crate::gcs) enum Announced {
 
 impl Desk {
     /// Orders what is wanted, as far as there is room in the queue; later calls go on.
-    pub fn carry_on(&mut self, parameters: &Parameters, recorder: &mut PanelRecorder<'_>) {
+    pub fn carry_on(&mut self, parameters: &Parameters, recorder: &mut RecorderReader<'_>) {
         let done = match self.wish {
             Wish::Nothing => return,
             Wish::Stop => {
@@ -39,7 +39,7 @@ impl Desk {
     }
 
     /// A record that waits for its trigger is ordered anew, so that a change counts for it too.
-    pub fn arm_again(&mut self, recorder: &PanelRecorder<'_>) {
+    pub fn arm_again(&mut self, recorder: &RecorderReader<'_>) {
         if self.is_waiting(recorder) {
             let recorded = self.tables.iter().any(|table| table.channel.is_some());
             self.wish = if recorded { Wish::Record } else { Wish::Stop };
@@ -47,7 +47,7 @@ impl Desk {
     }
 
     /// Rows of the record that was ordered last.
-    pub(super) fn progress(&self, recorder: &PanelRecorder<'_>) -> Progress {
+    pub(super) fn progress(&self, recorder: &RecorderReader<'_>) -> Progress {
         let number = self.record.as_ref().map(|record| record.setup.number);
         match (self.wish, number) {
             (Wish::Record, _) | (_, None) => Progress::default(),
@@ -56,7 +56,7 @@ impl Desk {
     }
 
     /// Whether a record waits for its trigger.
-    pub(super) fn is_waiting(&self, recorder: &PanelRecorder<'_>) -> bool {
+    pub(super) fn is_waiting(&self, recorder: &RecorderReader<'_>) -> bool {
         let armed = self.record.is_some() && !self.stopped;
         match self.wish {
             Wish::Record => true,
@@ -75,7 +75,7 @@ impl Desk {
         step: bool,
         commands: u32,
         parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) -> Result<Announced, ErrorCode> {
         if step && self.channels().iter().all(Option::is_none) {
             return Err(ErrorCode::TableOff);
@@ -85,7 +85,7 @@ impl Desk {
         let complete = (self.record.as_ref())
             .is_some_and(|record| self.progress(recorder).rows == record.setup.rows);
         if step || (every && complete) {
-            let setup = Setup {
+            let setup = RecordSetup {
                 commands: Some(commands),
                 ..self.plain(parameters)
             };
@@ -97,19 +97,19 @@ impl Desk {
             };
         }
         let waits = self.is_waiting(recorder) && self.has(Trigger::is_of_moves);
-        if waits && recorder.expect(Some(commands)).is_ok() {
+        if waits && recorder.trigger_at(Some(commands)).is_ok() {
             return Ok(Announced::Trigger);
         }
         Ok(Announced::Nothing)
     }
 
     /// The command has been refused: what it was announced as is taken back.
-    pub fn take_back(&mut self, announced: Announced, recorder: &mut PanelRecorder<'_>) {
+    pub fn take_back(&mut self, announced: Announced, recorder: &mut RecorderReader<'_>) {
         match announced {
             Announced::Nothing => {}
             // There is room: the announcement was the last, and at most the second, order in the queue.
             Announced::Trigger => {
-                let _ = recorder.expect(None);
+                let _ = recorder.trigger_at(None);
             }
             Announced::Record => {
                 let _ = recorder.stop();
@@ -123,13 +123,13 @@ impl Desk {
         &mut self,
         announced: Announced,
         sent: Option<u32>,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) {
         if announced == Announced::Nothing {
             return;
         }
         if sent.is_some() {
-            let _ = recorder.expect(sent);
+            let _ = recorder.trigger_at(sent);
         }
         for table in &mut self.tables {
             if announced == Announced::Trigger && table.trigger == Trigger::NextMove {
@@ -144,11 +144,11 @@ impl Desk {
 
     fn order(
         &mut self,
-        setup: Setup,
+        setup: RecordSetup,
         parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) -> bool {
-        let ordered = recorder.record(&setup).is_ok();
+        let ordered = recorder.start(&setup).is_ok();
         if ordered {
             let record = Record {
                 setup,
@@ -162,20 +162,20 @@ impl Desk {
     }
 
     /// The tables' record, without a trigger.
-    fn plain(&self, parameters: &Parameters) -> Setup {
+    fn plain(&self, parameters: &Parameters) -> RecordSetup {
         let last = self.record.as_ref().map_or(0, |record| record.setup.number);
-        Setup {
+        RecordSetup {
             number: last.wrapping_add(1),
-            words: words(&self.channels()),
+            signals: words(&self.channels()),
             every: self.every,
             rows: parameters.recorder.points,
-            ..Setup::default()
+            ..RecordSetup::default()
         }
     }
 
     /// The tables' record, with their triggers.
-    fn triggered(&self, parameters: &Parameters) -> Setup {
-        let mut setup = Setup {
+    fn triggered(&self, parameters: &Parameters) -> RecordSetup {
+        let mut setup = RecordSetup {
             before: parameters.recorder.before,
             now: self.has(|trigger| trigger == Trigger::Now),
             fault: self.has(|trigger| trigger == Trigger::Fault),
@@ -187,8 +187,8 @@ impl Desk {
                 && let Some(word) = table.channel.and_then(|channel| channel.watched())
             {
                 // As many fit as there are tables.
-                let watch = Watch::new(word, value / scales.factor(word), rising);
-                let _ = setup.watches.push(watch);
+                let watch = LevelTrigger::new(word, value / scales.factor(word), rising);
+                let _ = setup.level_triggers.push(watch);
             }
         }
         setup

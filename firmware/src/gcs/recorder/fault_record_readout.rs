@@ -4,11 +4,11 @@
 
 use super::readout::{LINE, LINES};
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
-use crate::fault_record::{BlackBox, Row, Span};
+use crate::fault_record::{FaultRecord, FaultRecordRow, RetainedMemory};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::session::Session;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 use core::fmt::{self, Write as _};
 use embedded_io::Write;
 use heapless::String;
@@ -40,7 +40,7 @@ const DEG: f64 = 360.0 / 4_294_967_296.0;
 
 /// What is left of an answer.
 pub(in crate::gcs) struct HistoryDump {
-    span: Span,
+    span: FaultRecord,
     /// Lines of the head that are written.
     head: usize,
     cursor: u32,
@@ -48,18 +48,24 @@ pub(in crate::gcs) struct HistoryDump {
 }
 
 impl HistoryDump {
-    pub(super) fn new(black_box: Option<&BlackBox>) -> Result<Self, ErrorCode> {
-        let span = (black_box.and_then(BlackBox::record)).ok_or(ErrorCode::NotRecorded)?;
+    pub(super) fn new(retained_memory: Option<&RetainedMemory>) -> Result<Self, ErrorCode> {
+        let span = (retained_memory.and_then(RetainedMemory::fault_record))
+            .ok_or(ErrorCode::NotRecorded)?;
         Ok(Self {
             span,
             head: 0,
-            cursor: span.begin(),
+            cursor: span.first_row(),
             left: span.rows,
         })
     }
 
     /// The next line, with its end; `None` for a row that is gone.
-    fn line(&mut self, black_box: &BlackBox, period_s: f64, line: &mut String<LINE>) -> bool {
+    fn line(
+        &mut self,
+        retained_memory: &RetainedMemory,
+        period_s: f64,
+        line: &mut String<LINE>,
+    ) -> bool {
         // The longest line fits; a longer one would be cut short.
         if self.head < HEAD + COLUMNS.len() {
             let _ = self.head_line(period_s, line);
@@ -67,8 +73,8 @@ impl HistoryDump {
             self.head += 1;
             return true;
         }
-        let is_there = black_box.record() == Some(self.span);
-        let row = black_box.next(&self.span, &mut self.cursor);
+        let is_there = retained_memory.fault_record() == Some(self.span);
+        let row = retained_memory.next(&self.span, &mut self.cursor);
         let row = row.filter(|_| is_there);
         let _ = row_line(row.as_ref(), line);
         self.left = self.left.saturating_sub(1);
@@ -91,7 +97,7 @@ impl HistoryDump {
     }
 }
 
-fn row_line(row: Option<&Row>, line: &mut String<LINE>) -> fmt::Result {
+fn row_line(row: Option<&FaultRecordRow>, line: &mut String<LINE>) -> fmt::Result {
     let Some(row) = row else {
         for _ in 1..COLUMNS.len() {
             line.write_str("NaN ")?;
@@ -120,10 +126,11 @@ impl Panel {
     pub(in crate::gcs) fn carry_history<W: Write>(
         &self,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut W,
     ) -> Result<bool, W::Error> {
-        let (Some(dump), Some(black_box)) = (&mut session.history, link.black_box) else {
+        let (Some(dump), Some(retained_memory)) = (&mut session.history, queues.retained_memory)
+        else {
             return Ok(false);
         };
         for _ in 0..LINES {
@@ -131,7 +138,11 @@ impl Panel {
                 return Ok(true);
             }
             let mut line = String::new();
-            if !dump.line(black_box, 1.0 / self.parameters.limits.rate_hz, &mut line) {
+            if !dump.line(
+                retained_memory,
+                1.0 / self.parameters.limits.rate_hz,
+                &mut line,
+            ) {
                 session.error = ErrorCode::NotRecorded;
             }
             out.write_all(line.as_bytes())?;

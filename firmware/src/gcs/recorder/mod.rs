@@ -34,13 +34,13 @@ pub use trigger::Trigger;
 
 use super::error::ErrorCode;
 use crate::parameters::Parameters;
-use crate::recorder::{MOST_BETWEEN, PanelRecorder, Setup, TABLES};
+use crate::recorder::{MAX_ROW_PERIOD_TICKS, RECORDER_TABLES, RecordSetup, RecorderReader};
 use options::Scales;
 
 /// Tables that a line names, counted from 0, in its order; none stands for all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TableList {
-    tables: [u8; TABLES],
+    tables: [u8; RECORDER_TABLES],
     count: u8,
 }
 
@@ -69,9 +69,9 @@ pub enum RecordQuery {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecordAction {
     /// `DRC`: tables, counted from 0, and what they record; `None` switches one off.
-    Channels([Option<(u8, Option<Channel>)>; TABLES]),
+    Channels([Option<(u8, Option<Channel>)>; RECORDER_TABLES]),
     /// `DRT`: tables, counted from 0, and what triggers them.
-    Triggers([Option<(u8, Trigger)>; TABLES]),
+    Triggers([Option<(u8, Trigger)>; RECORDER_TABLES]),
     /// `RTR`: ticks from row to row.
     Rate(f64),
 }
@@ -92,7 +92,7 @@ impl TableList {
 
     /// Those named, or all.
     fn iter(&self) -> impl Iterator<Item = usize> {
-        let all = if self.is_empty() { TABLES } else { 0 };
+        let all = if self.is_empty() { RECORDER_TABLES } else { 0 };
         let named = self.tables.into_iter().take(self.count.into());
         named.map(usize::from).chain(0..all)
     }
@@ -108,8 +108,8 @@ struct Table {
 /// A record that was ordered: what it is made of, and how it is to be read.
 #[derive(Clone, Debug)]
 struct Record {
-    setup: Setup,
-    channels: [Option<Channel>; TABLES],
+    setup: RecordSetup,
+    channels: [Option<Channel>; RECORDER_TABLES],
     scales: Scales,
 }
 
@@ -124,7 +124,7 @@ enum Wish {
 
 /// What the panel keeps of the recorder.
 pub(super) struct Desk {
-    tables: [Table; TABLES],
+    tables: [Table; RECORDER_TABLES],
     every: u32,
     /// The record that was ordered last, and the one before, in case that is taken back.
     record: Option<Record>,
@@ -161,7 +161,7 @@ impl Desk {
         &mut self,
         action: &RecordAction,
         parameters: &mut Parameters,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             RecordAction::Channels(changes) => {
@@ -175,7 +175,8 @@ impl Desk {
             }
             RecordAction::Triggers(changes) => self.set_triggers(changes, recorder)?,
             RecordAction::Rate(ticks) => {
-                if !(1.0..=f64::from(MOST_BETWEEN)).contains(ticks) || libm::trunc(*ticks) != *ticks
+                if !(1.0..=f64::from(MAX_ROW_PERIOD_TICKS)).contains(ticks)
+                    || libm::trunc(*ticks) != *ticks
                 {
                     return Err(ErrorCode::OutOfRange);
                 }
@@ -186,7 +187,7 @@ impl Desk {
         Ok(())
     }
 
-    fn channels(&self) -> [Option<Channel>; TABLES] {
+    fn channels(&self) -> [Option<Channel>; RECORDER_TABLES] {
         self.tables.map(|table| table.channel)
     }
 
@@ -201,8 +202,8 @@ impl Desk {
 
     fn set_triggers(
         &mut self,
-        changes: &[Option<(u8, Trigger)>; TABLES],
-        recorder: &PanelRecorder<'_>,
+        changes: &[Option<(u8, Trigger)>; RECORDER_TABLES],
+        recorder: &RecorderReader<'_>,
     ) -> Result<(), ErrorCode> {
         let mut tables = self.tables;
         for &(table, trigger) in changes.iter().flatten() {

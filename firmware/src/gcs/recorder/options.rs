@@ -7,7 +7,7 @@ use crate::commander::coordinates::measured;
 use crate::commander::frames::View;
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::parameters::Parameters;
-use crate::recorder::{Kind, TABLES, WIDEST, Word};
+use crate::recorder::{MAX_ROW_WORDS, RECORDER_TABLES, RawSignal, SignalFormat};
 use core::fmt;
 use heapless::Vec;
 use kinematics::{Angle, Geometry};
@@ -39,7 +39,7 @@ enum Signal {
     /// A frozen axis.
     Zero,
     /// A word.
-    Word(Word),
+    Word(RawSignal),
     /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
     Real(u8),
     /// Measured pose minus its setpoint.
@@ -66,35 +66,35 @@ pub(super) const OFF: u16 = 0;
 pub(super) const OPTIONS: &[RecordOption] = &[
     option(1, "commanded position", " of axis or pivot, mm or deg", |source| match source {
         Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotSetpoint(i))),
+        Source::Pivot(i) => Some(Signal::Word(RawSignal::PivotSetpoint(i))),
         Source::Controller => None,
     }),
     option(2, "real position", " of axis or pivot, mm or deg", |source| match source {
         Source::Axis(axis) => Some(of_axis(axis, Signal::Real)),
-        Source::Pivot(i) => Some(Signal::Word(Word::Pivot(i))),
+        Source::Pivot(i) => Some(Signal::Word(RawSignal::Pivot(i))),
         Source::Controller => None,
     }),
     option(3, "position error", " of axis or pivot, real minus commanded, mm or deg", |source| match source {
         Source::Axis(axis) => Some(of_axis(axis, Signal::Error)),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotError(i))),
+        Source::Pivot(i) => Some(Signal::Word(RawSignal::PivotError(i))),
         Source::Controller => None,
     }),
     option(8, "time since the trigger", ", s", |source| of_controller(source, Signal::Time)),
     option(70, "commanded velocity", " of axis or pivot, mm/s or deg/s", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Velocity(i)))),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotRate(i))),
+        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Velocity(i)))),
+        Source::Pivot(i) => Some(Signal::Word(RawSignal::PivotRate(i))),
         Source::Controller => None,
     }),
     option(71, "commanded acceleration", " of axis, mm/s^2 or deg/s^2", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Acceleration(i)))),
+        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Acceleration(i)))),
         _ => None,
     }),
-    option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, Word::Duty)),
-    option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, Word::Current)),
-    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(Word::Supply))),
-    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(Word::Mode))),
-    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(Word::Fault))),
-    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(Word::Cost))),
+    option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, RawSignal::Duty)),
+    option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, RawSignal::Current)),
+    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(RawSignal::Supply))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
+    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(RawSignal::Fault))),
+    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(RawSignal::Cost))),
 ];
 
 const fn option(
@@ -115,7 +115,7 @@ fn of_axis(axis: Axis, signal: fn(u8) -> Signal) -> Signal {
     axis.component().map_or(Signal::Zero, |i| signal(i as u8))
 }
 
-fn of_pivot(source: Source, word: fn(u8) -> Word) -> Option<Signal> {
+fn of_pivot(source: Source, word: fn(u8) -> RawSignal) -> Option<Signal> {
     match source {
         Source::Pivot(i) => Some(Signal::Word(word(i))),
         _ => None,
@@ -127,26 +127,26 @@ fn of_controller(source: Source, signal: Signal) -> Option<Signal> {
 }
 
 /// What the tables record before they are told.
-pub(super) const DEFAULT: [Channel; TABLES] = [
-    commanded(Axis::X, Word::Centre(0)),
+pub(super) const DEFAULT: [Channel; RECORDER_TABLES] = [
+    commanded(Axis::X, RawSignal::Centre(0)),
     real(Axis::X, 0),
-    commanded(Axis::Y, Word::Centre(1)),
+    commanded(Axis::Y, RawSignal::Centre(1)),
     real(Axis::Y, 1),
-    commanded(Axis::W, Word::Theta),
+    commanded(Axis::W, RawSignal::Theta),
     real(Axis::W, 2),
     Channel {
         option: 73,
         source: Source::Pivot(0),
-        signal: Signal::Word(Word::Duty(0)),
+        signal: Signal::Word(RawSignal::Duty(0)),
     },
     Channel {
         option: 202,
         source: Source::Controller,
-        signal: Signal::Word(Word::Mode),
+        signal: Signal::Word(RawSignal::Mode),
     },
 ];
 
-const fn commanded(axis: Axis, word: Word) -> Channel {
+const fn commanded(axis: Axis, word: RawSignal) -> Channel {
     Channel {
         option: 1,
         source: Source::Axis(axis),
@@ -162,7 +162,11 @@ const fn real(axis: Axis, component: u8) -> Channel {
     }
 }
 
-const PIVOTS: [Word; 3] = [Word::Pivot(0), Word::Pivot(1), Word::Pivot(2)];
+const PIVOTS: [RawSignal; 3] = [
+    RawSignal::Pivot(0),
+    RawSignal::Pivot(1),
+    RawSignal::Pivot(2),
+];
 
 impl Source {
     /// The source of a name, in either case.
@@ -197,14 +201,14 @@ impl Channel {
     }
 
     /// The word whose crossing of a value can trigger; none where the value is worked out after the tick.
-    pub(super) fn watched(self) -> Option<Word> {
+    pub(super) fn watched(self) -> Option<RawSignal> {
         match self.signal {
             Signal::Word(word) => Some(word),
             _ => None,
         }
     }
 
-    fn words(self) -> impl Iterator<Item = Word> {
+    fn words(self) -> impl Iterator<Item = RawSignal> {
         let (own, pivots) = match self.signal {
             Signal::Zero | Signal::Time => (None, false),
             Signal::Word(word) => (Some(word), false),
@@ -236,7 +240,7 @@ impl Channel {
     pub(super) const fn is_whole(self) -> bool {
         matches!(
             self.signal,
-            Signal::Word(Word::Mode | Word::Fault | Word::Cost)
+            Signal::Word(RawSignal::Mode | RawSignal::Fault | RawSignal::Cost)
         )
     }
 }
@@ -259,15 +263,17 @@ impl fmt::Display for Channel {
 }
 
 /// The setpoint of a component of the pose.
-const fn setpoint(component: u8) -> Word {
+const fn setpoint(component: u8) -> RawSignal {
     match component {
-        2 => Word::Theta,
-        i => Word::Centre(i),
+        2 => RawSignal::Theta,
+        i => RawSignal::Centre(i),
     }
 }
 
 /// The words of a row from which all channels can be worked out, each once.
-pub(super) fn words(channels: &[Option<Channel>; TABLES]) -> Vec<Word, WIDEST> {
+pub(super) fn words(
+    channels: &[Option<Channel>; RECORDER_TABLES],
+) -> Vec<RawSignal, MAX_ROW_WORDS> {
     let mut words = Vec::new();
     for word in channels
         .iter()
@@ -309,26 +315,28 @@ impl Scales {
     }
 
     /// What a word's number is multiplied by.
-    pub fn factor(&self, word: Word) -> f64 {
+    pub fn factor(&self, word: RawSignal) -> f64 {
         let radius_mm = self.geometry.radius_mm;
-        match (word.kind(), word) {
-            (Kind::Length, _) => LENGTH * radius_mm,
-            (Kind::Angle, _) => ANGLE_DEG,
-            (Kind::AngleError, _) => ERROR_DEG,
-            (Kind::Float, Word::Velocity(0 | 1) | Word::Acceleration(0 | 1)) => radius_mm,
-            (Kind::Float, _) => 180.0 / core::f64::consts::PI,
-            (_, Word::Duty(_)) => 1.0 / self.pwm_counts,
-            (_, Word::Current(_)) => CURRENT_A_PER_COUNT,
-            (_, Word::Supply) => SUPPLY_V_PER_COUNT,
-            (Kind::Count, _) => 1.0,
+        match (word.format(), word) {
+            (SignalFormat::Length, _) => LENGTH * radius_mm,
+            (SignalFormat::Angle, _) => ANGLE_DEG,
+            (SignalFormat::AngleError, _) => ERROR_DEG,
+            (SignalFormat::Float, RawSignal::Velocity(0 | 1) | RawSignal::Acceleration(0 | 1)) => {
+                radius_mm
+            }
+            (SignalFormat::Float, _) => 180.0 / core::f64::consts::PI,
+            (_, RawSignal::Duty(_)) => 1.0 / self.pwm_counts,
+            (_, RawSignal::Current(_)) => CURRENT_A_PER_COUNT,
+            (_, RawSignal::Supply) => SUPPLY_V_PER_COUNT,
+            (SignalFormat::Count, _) => 1.0,
         }
     }
 }
 
 /// A row of a record, as it was read.
 pub(super) struct Row<'a> {
-    pub words: &'a [Word],
-    pub values: [i64; WIDEST],
+    pub words: &'a [RawSignal],
+    pub values: [i64; MAX_ROW_WORDS],
     pub scales: &'a Scales,
     /// The row, counted from that of the trigger.
     pub row: i64,
@@ -350,15 +358,15 @@ impl Row<'_> {
         }
     }
 
-    fn integer(&self, word: Word) -> i64 {
+    fn integer(&self, word: RawSignal) -> i64 {
         let place = self.words.iter().position(|own| *own == word);
         place.map_or(0, |place| self.values[place])
     }
 
-    fn word(&self, word: Word) -> f64 {
+    fn word(&self, word: RawSignal) -> f64 {
         let integer = self.integer(word);
-        let number = match word.kind() {
-            Kind::Float => f64::from(f32::from_bits(integer as u32)),
+        let number = match word.format() {
+            SignalFormat::Float => f64::from(f32::from_bits(integer as u32)),
             _ => integer as f64,
         };
         number * self.scales.factor(word)

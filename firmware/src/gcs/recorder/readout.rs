@@ -11,8 +11,8 @@ use super::{Desk, HistoryDump, Record, RecordQuery, TableList, replies};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::session::Session;
-use crate::queues::PanelLink;
-use crate::recorder::{Cursor, PanelRecorder, TABLES};
+use crate::queues::CommandQueues;
+use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
 use embedded_io::Write;
 use heapless::String;
@@ -26,7 +26,7 @@ pub(super) const LINES: usize = 8;
 pub(in crate::gcs) struct Dump {
     /// The record.
     number: u32,
-    columns: [Option<Channel>; TABLES],
+    columns: [Option<Channel>; RECORDER_TABLES],
     /// Lines of the head that are written.
     head: usize,
     cursor: Cursor,
@@ -42,7 +42,7 @@ impl Panel {
         &mut self,
         query: RecordQuery,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         let desk = &self.desk;
@@ -50,9 +50,9 @@ impl Panel {
             RecordQuery::Channels(tables) => desk.tell_channels(&tables, out),
             RecordQuery::Triggers(tables) => desk.tell_triggers(&tables, out),
             RecordQuery::Rate => desk.tell_rate(out),
-            RecordQuery::Lengths(tables) => desk.tell_lengths(&tables, &link.recorder, out),
+            RecordQuery::Lengths(tables) => desk.tell_lengths(&tables, &queues.recorder, out),
             RecordQuery::History => {
-                match HistoryDump::new(link.black_box) {
+                match HistoryDump::new(queues.retained_memory) {
                     Ok(dump) => session.history = Some(dump),
                     Err(code) => session.error = code,
                 }
@@ -61,7 +61,7 @@ impl Panel {
             RecordQuery::Help => replies::tell_help(self.parameters.recorder.points, out),
             RecordQuery::Count => replies::tell_count(out),
             RecordQuery::Data(span, tables) => {
-                match desk.dump(span, &tables, &link.recorder) {
+                match desk.dump(span, &tables, &queues.recorder) {
                     Ok(dump) => session.dump = Some(dump),
                     Err(code) => session.error = code,
                 }
@@ -74,7 +74,7 @@ impl Panel {
     pub(in crate::gcs) fn carry_dump<W: Write>(
         &self,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut W,
     ) -> Result<bool, W::Error> {
         let Some(dump) = &mut session.dump else {
@@ -89,7 +89,7 @@ impl Panel {
             if record.is_none() {
                 session.error = ErrorCode::NotRecorded;
             }
-            let line = dump.line(record, &link.recorder);
+            let line = dump.line(record, &queues.recorder);
             out.write_all(line.as_bytes())?;
             session.room = session.room.map(|room| room - line.len());
             if dump.left == 0 {
@@ -106,7 +106,7 @@ impl Desk {
         &self,
         span: Option<[u32; 2]>,
         tables: &TableList,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
     ) -> Result<Dump, ErrorCode> {
         let progress = self.progress(recorder);
         let [first, rows] = span.unwrap_or([1, progress.rows]);
@@ -116,7 +116,7 @@ impl Desk {
         let (true, true, Some(record)) = (rows > 0, enough, &self.record) else {
             return Err(ErrorCode::NotRecorded);
         };
-        let mut columns = [None; TABLES];
+        let mut columns = [None; RECORDER_TABLES];
         let recorded = tables.iter().map(|table| record.channels[table]);
         if tables.is_empty() {
             for (column, channel) in columns.iter_mut().zip(recorded.flatten()) {
@@ -141,7 +141,7 @@ impl Desk {
 
 impl Dump {
     /// The next line, with its end.
-    fn line(&mut self, record: Option<&Record>, recorder: &PanelRecorder<'_>) -> String<LINE> {
+    fn line(&mut self, record: Option<&Record>, recorder: &RecorderReader<'_>) -> String<LINE> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
         if self.head < HEAD + self.columns() {
@@ -181,11 +181,11 @@ impl Dump {
     fn row_line(
         &mut self,
         record: Option<&Record>,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
         line: &mut String<LINE>,
     ) -> fmt::Result {
         let mut row = record.map(|record| Row {
-            words: &record.setup.words,
+            words: &record.setup.signals,
             values: recorder.next(&record.setup, &mut self.cursor),
             scales: &record.scales,
             row: self.row,

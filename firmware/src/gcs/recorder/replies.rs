@@ -4,7 +4,7 @@ use super::options::{OFF, OPTIONS, Source};
 use super::trigger::TRIGGERS;
 use super::{Desk, TableList};
 use crate::gcs::reply::{Reply, one_line};
-use crate::recorder::{PanelRecorder, TABLES};
+use crate::recorder::{RECORDER_TABLES, RecorderReader};
 use embedded_io::Write;
 
 impl Desk {
@@ -43,7 +43,7 @@ impl Desk {
     pub(super) fn tell_lengths<W: Write>(
         &self,
         tables: &TableList,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         let rows = self.progress(recorder).rows;
@@ -64,7 +64,7 @@ impl Desk {
 
 /// `TNR?`
 pub(super) fn tell_count<W: Write>(out: &mut W) -> Result<(), W::Error> {
-    one_line(out, format_args!("{TABLES}"))
+    one_line(out, format_args!("{RECORDER_TABLES}"))
 }
 
 /// `HDR?`: in the sections by which clients find their way in it.
@@ -84,7 +84,7 @@ pub(super) fn tell_help<W: Write>(points: u32, out: &mut W) -> Result<(), W::Err
     reply.line(format_args!("0x16000201=points of a record"))?;
     reply.line(format_args!("0x54500900=points before the trigger"))?;
     reply.line(format_args!("#Additional information"))?;
-    reply.line(format_args!("{TABLES} record tables"))?;
+    reply.line(format_args!("{RECORDER_TABLES} record tables"))?;
     reply.line(format_args!("{points} datapoints per table"))?;
     reply.line(format_args!(
         "sources: X Y Z U V W axes of the platform in the base frame; 1 2 3 pivots; 0 controller"

@@ -1,13 +1,13 @@
 //! Planning: what the command side computes for a new target or a stop.
 
-use super::states::{Moving, ground, position, way};
-use super::streaming::Streaming;
 use crate::bench::Bench;
-use crate::random::Random;
-use crate::table::Came;
+use crate::table::CallResult;
 use firmware::motion::{
     AxisState, Plan, PlanStart, RetargetError, Stop, StreamStep, plan_jog, plan_line,
 };
+use firmware_cost::random::Random;
+use firmware_cost::states::{Moving, ground, position, way};
+use firmware_cost::streaming::Streaming;
 
 /// Tick of a head at which the next slice takes over.
 const TAKEN_OVER: u64 = 40;
@@ -120,8 +120,8 @@ pub fn run_stream(bench: &mut Bench) {
     }
 }
 
-fn of_plan(plan: Option<&Plan>) -> Came {
-    Came {
+fn of_plan(plan: Option<&Plan>) -> CallResult {
+    CallResult {
         refused: plan.is_none(),
         ticks: plan.map_or(0, Plan::ticks),
     }

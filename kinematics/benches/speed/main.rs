@@ -1,15 +1,12 @@
 //! What the kinematics cost on this machine, beside the same with nalgebra as it comes: `cargo bench -p kinematics`.
 //!
 //! On a desktop nalgebra takes sine and arcsine from the C library, which rounds as it likes and may be quicker; this crate takes
-//! them from the crate `libm`, the same everywhere. With that crate nalgebra stands beside in `cargo cost`, on the chip.
+//! them from the crate `libm`, the same everywhere.
 //!
 //! Alone: each call waits for the result of the one before. In a batch: 1,024 in a row, as a map or a path check has them. The
 //! two are timed in turn, and the fastest of many rounds counts, since what disturbs a timing only ever adds to it.
 
-// What stands beside is what `cargo cost` counts on the chip.
-#[path = "../../firmware/src/bin/cost/parts/plain/direct.rs"]
 mod plain_direct;
-#[path = "../../firmware/src/bin/cost/parts/plain/inverse.rs"]
 mod plain_inverse;
 
 use std::array::from_fn;

@@ -20,14 +20,11 @@
 #![no_std]
 #![no_main]
 
-extern crate alloc;
-
 mod bench;
 mod failure;
 mod meter;
 mod order;
 mod parts;
-mod random;
 mod table;
 
 use bench::Bench;
@@ -49,7 +46,6 @@ fn main() -> ! {
         parts::following::run(&mut bench);
         parts::kinematics::run(&mut bench);
         parts::control::run(&mut bench);
-        parts::plain::run(&mut bench);
     }
     COST.end();
     loop {

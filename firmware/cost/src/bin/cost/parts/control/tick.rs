@@ -1,20 +1,20 @@
 //! The tick as a whole: referenced, then led from target to target, every pivot where it should be but for a little. Now and
 //! then a frame is missing.
 
-use super::super::states::{ground, position};
 use super::SUPPLY_COUNTS;
 use super::frames::frames;
 use crate::bench::Bench;
-use crate::random::Random;
-use crate::table::Came;
+use crate::table::CallResult;
 use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::mode::Mode;
 use firmware::motion::{AxisState, Constraints, Plan, RotationCentre, plan_line, plan_retarget};
 use firmware::number::Fixed;
-use firmware::queues::{Command, Link, PanelLink, TickLink};
-use firmware::recorder::{Record, RunningHash, Sample, Setup, Word};
+use firmware::queues::{Command, CommandQueues, Queues, TickQueues};
+use firmware::recorder::{RawSignal, RecordSetup, RunningHash, Sample, TickObserver};
+use firmware_cost::random::Random;
+use firmware_cost::states::{ground, position};
 use kinematics::{Angle, Pose, inverse};
 
 /// Of the pivots while nothing moves them.
@@ -34,21 +34,21 @@ const AHEAD: u64 = 5;
 /// A point to turn about, off the platform's own.
 const OFF_CENTRE: [f64; 2] = [0.3, -0.2];
 /// What is recorded at every tick.
-const RECORDED: [Word; 8] = [
-    Word::Centre(0),
-    Word::Centre(1),
-    Word::Theta,
-    Word::Pivot(0),
-    Word::Pivot(1),
-    Word::Pivot(2),
-    Word::PivotError(0),
-    Word::PivotError(1),
+const RECORDED: [RawSignal; 8] = [
+    RawSignal::Centre(0),
+    RawSignal::Centre(1),
+    RawSignal::Theta,
+    RawSignal::Pivot(0),
+    RawSignal::Pivot(1),
+    RawSignal::Pivot(2),
+    RawSignal::PivotError(0),
+    RawSignal::PivotError(1),
 ];
 
 /// Counts the tick: about the platform's centre, about another point, and while signals are recorded.
 pub fn run(bench: &mut Bench, config: &Config) {
     // Once, and far too large for the stack.
-    let Some(link) = cortex_m::singleton!(: Link = Link::new()) else {
+    let Some(queues) = cortex_m::singleton!(: Queues = Queues::new()) else {
         return;
     };
     let other = RotationCentre::new(OFF_CENTRE).unwrap_or_default();
@@ -57,7 +57,7 @@ pub fn run(bench: &mut Bench, config: &Config) {
         ("tick as a whole, centre of rotation", other, false),
         ("tick as a whole, recording 8 signals", other, true),
     ] {
-        led(bench, config, link, name, centre, records);
+        led(bench, config, queues, name, centre, records);
     }
 }
 
@@ -65,18 +65,18 @@ pub fn run(bench: &mut Bench, config: &Config) {
 fn led(
     bench: &mut Bench,
     config: &Config,
-    link: &mut Link,
+    queues: &mut Queues,
     name: &'static str,
     centre: RotationCentre,
     records: bool,
 ) {
-    let (tick_link, mut panel) = link.split();
+    let (tick_queues, mut panel) = queues.split();
     // What the last loop has left.
     let _ = panel.snapshot();
     let mut control = Control {
         config: config.clone(),
         state: State::new(),
-        link: tick_link,
+        queues: tick_queues,
         recorder: Recorder::default(),
         panel,
         plan: Plan::default(),
@@ -98,14 +98,14 @@ fn led(
             let Control {
                 config,
                 state,
-                link,
+                queues,
                 recorder,
                 ..
             } = control;
-            tick(config, state, inputs, link, recorder)
+            tick(config, state, inputs, queues, recorder)
         },
         // Off, or at fault: a tick that drives no motor.
-        |_, outputs| Came {
+        |_, outputs| CallResult {
             refused: !outputs.awake,
             ticks: 0,
         },
@@ -116,9 +116,9 @@ fn led(
 struct Control<'a> {
     config: Config,
     state: State,
-    link: TickLink<'a>,
+    queues: TickQueues<'a>,
     recorder: Recorder,
-    panel: PanelLink<'a>,
+    panel: CommandQueues<'a>,
     /// The plan under way, or on its way to the tick, and where it starts.
     plan: Plan,
     start: [AxisState; 3],
@@ -135,10 +135,10 @@ struct Recorder {
     last: Option<Sample>,
 }
 
-impl Record for Recorder {
+impl TickObserver for Recorder {
     #[inline]
-    fn record(&mut self, sample: &Sample) {
-        self.hash.record(sample);
+    fn observe(&mut self, sample: &Sample) {
+        self.hash.observe(sample);
         self.last = Some(sample.clone());
     }
 }
@@ -176,16 +176,16 @@ impl Control<'_> {
     /// Begins another record.
     fn record(&mut self) {
         if self.records {
-            let setup = Setup {
+            let setup = RecordSetup {
                 number: self.plan.id,
-                words: RECORDED.into_iter().collect(),
+                signals: RECORDED.into_iter().collect(),
                 every: 1,
                 rows: (self.panel.recorder.capacity() / RECORDED.len()) as u32,
                 now: true,
-                ..Setup::default()
+                ..RecordSetup::default()
             };
             // The tick takes an order as soon as it comes.
-            let _ = self.panel.recorder.record(&setup);
+            let _ = self.panel.recorder.start(&setup);
         }
     }
 
@@ -194,7 +194,7 @@ impl Control<'_> {
         let Some(snapshot) = self.panel.snapshot() else {
             return;
         };
-        let from = sample.point.position;
+        let from = sample.reference_point.position;
         let to = self.centre.from_platform(&position(random));
         let id = self.plan.id + 1;
         let planned = match sample.mode {

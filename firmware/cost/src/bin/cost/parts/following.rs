@@ -1,10 +1,10 @@
 //! Following a plan: the motion generator's share of a tick.
 
-use super::states::{Moving, ground};
-use crate::bench::{Bench, plain};
-use crate::random::Random;
-use crate::table::Came;
+use crate::bench::{Bench, no_result};
+use crate::table::CallResult;
 use firmware::motion::{PlanFollower, SetpointScale};
+use firmware_cost::random::Random;
+use firmware_cost::states::{Moving, ground};
 
 /// Counts taking a plan, and a tick of it.
 #[inline(never)]
@@ -20,7 +20,7 @@ pub fn run(bench: &mut Bench) {
             plan
         },
         |motion, plan| motion.accept(plan),
-        |_, taken| Came {
+        |_, taken| CallResult {
             refused: taken.is_err(),
             ticks: 0,
         },
@@ -39,7 +39,7 @@ pub fn run(bench: &mut Bench) {
             motion.advance();
             motion.setpoint(&scale)
         },
-        plain,
+        no_result,
     );
 }
 

@@ -1,10 +1,10 @@
 //! The mechanism in the tick's numbers.
 
-use super::states::{moved, pose};
-use crate::bench::{Bench, plain};
-use crate::random::Random;
-use crate::table::Came;
+use crate::bench::{Bench, no_result};
+use crate::table::CallResult;
 use firmware::number::Fixed;
+use firmware_cost::random::Random;
+use firmware_cost::states::{moved, pose};
 use kinematics::{
     Acceleration, Angle, Inverse, PivotMotion, Pose, Twist, direct, in_platform_axes, inverse,
     pivot_motion_in_platform_axes,
@@ -39,7 +39,7 @@ pub fn run(bench: &mut Bench) {
         Bench::SHORT,
         |random| Angle::from_units(random.next() as i64),
         |&angle| <Fixed as kinematics::Scalar>::sin_cos(angle),
-        plain,
+        no_result,
     );
 }
 
@@ -64,6 +64,6 @@ fn pivots(random: &mut Random) -> [Angle; 3] {
     }
 }
 
-fn refused(refused: bool) -> Came {
-    Came { refused, ticks: 0 }
+fn refused(refused: bool) -> CallResult {
+    CallResult { refused, ticks: 0 }
 }

@@ -1,4 +1,4 @@
-//! What planning and following cost on this machine, beside rsruckig: `cargo bench -p firmware --bench planning`.
+//! What planning and following cost on this machine, beside rsruckig: `cargo bench -p firmware-cost`.
 //!
 //! Both are given the same random states, those of `cargo cost`, which counts instructions on the chip. They are asked in turn,
 //! some states at a time, again and again, and for each state the fastest counts: what disturbs a timing only ever adds to it.
@@ -10,30 +10,18 @@
 //!
 //! Where a target needs a stop first, ours is the plan of the stop; none where the plan under way is that stop already.
 
-#[path = "../src/bin/cost/parts/asked.rs"]
-mod asked;
-#[path = "../src/bin/cost/random.rs"]
-mod random;
-#[path = "../tests/motion_bench/setting.rs"]
-mod setting;
-#[allow(dead_code, reason = "the chip's bench has more parts")]
-#[path = "../src/bin/cost/parts/states.rs"]
-mod states;
-#[path = "../src/bin/cost/parts/streaming.rs"]
-mod streaming;
+mod reference;
 
-use std::hint::black_box;
-use std::time::Instant;
-
-use asked::asked;
 use firmware::motion::{
     AxisState, Plan, PlanFollower, Position, SetpointScale, StreamStep, plan_line, plan_retarget,
 };
-use random::Random;
+use firmware_cost::random::Random;
+use firmware_cost::states::{Moving, ground, position, way};
+use firmware_cost::streaming::Streaming;
+use reference::asked;
 use rsruckig::prelude::*;
-use setting::setting;
-use states::{Moving, ground, position, way};
-use streaming::Streaming;
+use std::hint::black_box;
+use std::time::Instant;
 
 /// States after which it is the other's turn.
 const BLOCK: usize = 25;
@@ -215,4 +203,10 @@ fn setpoint(trajectory: &Trajectory<3>, time_s: f64) -> [DataArrayOrVec<f64, 3>;
 /// All slices of a new target; whether there is a way to it without a stop before.
 fn retargeted(now: &Moving, to: Position) -> bool {
     plan_retarget(3, &now.plan, &now.start, now.at, to, ground()).is_ok()
+}
+
+/// A number from the environment.
+fn setting(name: &str, otherwise: u64) -> u64 {
+    let set = std::env::var(name).ok().and_then(|text| text.parse().ok());
+    set.unwrap_or(otherwise)
 }

@@ -1,7 +1,7 @@
 //! Streams under way, just before the target that makes the next plan.
 
-use super::states::ground;
 use crate::random::Random;
+use crate::states::ground;
 use core::f64::consts::TAU;
 use firmware::motion::{AxisState, Clock, PlanProgress, Position, Stream, StreamStep};
 
@@ -16,6 +16,7 @@ const MOST_PLANS: u32 = 40;
 pub struct Streaming {
     stream: Option<Stream>,
     id: u32,
+    /// The axes at the start of the plan that the tick has begun.
     pub state: [AxisState; 3],
 }
 

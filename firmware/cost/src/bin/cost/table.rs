@@ -47,7 +47,7 @@ const FAILED: u32 = 2;
 
 /// What one call left behind.
 #[derive(Clone, Copy, Default)]
-pub struct Came {
+pub struct CallResult {
     /// Whether the answer was a refusal.
     pub refused: bool,
     /// Ticks of the plan, where it is one.
@@ -71,7 +71,7 @@ impl Row {
     }
 
     /// Adds one call.
-    pub fn add(&self, counts: u32, came: Came) {
+    pub fn add(&self, counts: u32, came: CallResult) {
         let call = self.calls.load(Relaxed);
         let ticks = u32::try_from(came.ticks).unwrap_or(u32::MAX);
         if counts > self.worst.load(Relaxed) {

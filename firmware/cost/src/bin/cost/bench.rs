@@ -2,8 +2,8 @@
 
 use crate::meter::Meter;
 use crate::order::Order;
-use crate::random::Random;
-use crate::table::{COST, Came};
+use crate::table::{COST, CallResult};
+use firmware_cost::random::Random;
 
 /// The run.
 pub struct Bench {
@@ -21,14 +21,14 @@ impl Bench {
     pub const SHORT: u32 = 10;
 
     /// Counts the part `name`, `times` calls for every state asked for: `prepare` makes the arguments of a call, uncounted;
-    /// `call` is counted; `look` says what came of it, uncounted.
+    /// `call` is counted; `describe` says what came of it, uncounted.
     pub fn part<A, R>(
         &self,
         name: &'static str,
         times: u32,
         mut prepare: impl FnMut(&mut Random) -> A,
         mut call: impl FnMut(&A) -> R,
-        look: impl Fn(&A, &R) -> Came,
+        describe: impl Fn(&A, &R) -> CallResult,
     ) {
         self.part_with(
             name,
@@ -36,7 +36,7 @@ impl Bench {
             &mut (),
             |(), random| prepare(random),
             |(), arguments| call(arguments),
-            look,
+            describe,
         );
     }
 
@@ -48,7 +48,7 @@ impl Bench {
         memory: &mut M,
         mut prepare: impl FnMut(&mut M, &mut Random) -> A,
         mut call: impl FnMut(&mut M, &A) -> R,
-        look: impl Fn(&A, &R) -> Came,
+        describe: impl Fn(&A, &R) -> CallResult,
     ) {
         if !self.order.asks_for(name) {
             return;
@@ -57,12 +57,12 @@ impl Bench {
         for k in 0..self.order.states.saturating_mul(times) {
             let arguments = prepare(memory, &mut Random::new(self.order.seed, k));
             let (counts, result) = self.meter.count(memory, &arguments, &mut call);
-            row.add(counts, look(&arguments, &result));
+            row.add(counts, describe(&arguments, &result));
         }
     }
 }
 
 /// Nothing to tell of what came of a call.
-pub fn plain<A, R>(_: &A, _: &R) -> Came {
-    Came::default()
+pub fn no_result<A, R>(_: &A, _: &R) -> CallResult {
+    CallResult::default()
 }

@@ -3,14 +3,14 @@
 mod frames;
 mod tick;
 
-use crate::bench::{Bench, plain};
-use crate::random::Random;
+use crate::bench::{Bench, no_result};
 use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
-use firmware::control::servo::{AxisServo, PivotSetpoint};
+use firmware::control::servo::{PivotServo, PivotSetpoint};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
 use firmware::parameters::Parameters;
+use firmware_cost::random::Random;
 use frames::frames;
 use kinematics::Angle;
 
@@ -37,21 +37,21 @@ fn decoding(bench: &mut Bench, config: &Config) {
         |(_, rings), random| rings.turned(random),
         |(encoders, _), frames| {
             for (i, encoder) in encoders.iter_mut().enumerate() {
-                encoder.take(&config.encoders[i], &frames[i]);
+                encoder.update(&config.encoders[i], &frames[i]);
             }
             encoders.each_ref().map(Encoder::angle)
         },
-        plain,
+        no_result,
     );
 }
 
 /// The rings under the encoders, which turn at 2 rad/s (over 2.5 an encoder does not become ready), a few counts more or less from tick to tick.
 #[derive(Default)]
-pub struct Rings([Angle; 3]);
+struct Rings([Angle; 3]);
 
 impl Rings {
     /// The frames a tick later; one in 64 times one of them is missing.
-    pub fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
+    fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
         const STEP: f64 = 2.0 / core::f64::consts::TAU / 20_000.0 * 4_294_967_296.0;
         for pivot in &mut self.0 {
             *pivot += Angle::from_units((STEP + random.within(-250.0, 250.0)) as i64);
@@ -68,7 +68,7 @@ fn servo(bench: &mut Bench, config: &Config) {
     bench.part_with(
         "servo, three",
         Bench::SHORT,
-        &mut [AxisServo::default(); 3],
+        &mut [PivotServo::default(); 3],
         |_, random| [0; 3].map(|_| pivot(random)),
         |servo, pivots| {
             let counts_per_volt = config.servo.counts_per_volt(f32::from(SUPPLY_COUNTS));
@@ -81,7 +81,7 @@ fn servo(bench: &mut Bench, config: &Config) {
             }
             duty
         },
-        plain,
+        no_result,
     );
 }
 

@@ -10,13 +10,13 @@ const MISSED_CYCLES: u32 = clocks::CORE_HZ / 20_000 * 3 / 2;
 
 /// See the module.
 #[derive(Default)]
-pub struct Stopwatch {
+pub struct TickTiming {
     /// When the last tick began.
     began: Option<u32>,
     cycles: u32,
 }
 
-impl Stopwatch {
+impl TickTiming {
     /// Starts the counter.
     pub fn new(dcb: &mut DCB, dwt: &mut DWT) -> Self {
         dcb.enable_trace();

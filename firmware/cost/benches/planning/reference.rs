@@ -1,7 +1,7 @@
 //! What rsruckig is asked for: the same as the planners, under the limits of the axes by themselves.
 
-use super::states::ground;
 use firmware::motion::{AxisState, Position};
+use firmware_cost::states::ground;
 use rsruckig::prelude::*;
 
 /// A state, a target to rest at, and the limits, in track radii, turns and seconds.

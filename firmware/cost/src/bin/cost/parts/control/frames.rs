@@ -2,7 +2,7 @@
 //! second one that could differ.
 
 use firmware::drivers::biss::{POSITION_BITS, RawFrame, decode};
-use firmware::parameters::{EncoderSetup, Parameters};
+use firmware::parameters::{EncoderMounting, Parameters};
 use kinematics::Angle;
 
 /// Start and zero bit, position, flags, checksum.
@@ -17,7 +17,7 @@ pub fn frames(pivots: &[Angle; 3]) -> [RawFrame; 3] {
     [0, 1, 2].map(|i| frame(pivots[i], &setups[i]))
 }
 
-fn frame(pivot: Angle, setup: &EncoderSetup) -> RawFrame {
+fn frame(pivot: Angle, setup: &EncoderMounting) -> RawFrame {
     let turned = pivot.fraction() >> (32 - POSITION_BITS);
     let turned = if setup.reversed {
         turned.wrapping_neg()
