@@ -19,7 +19,7 @@ use kinematics::{Angle, Scalar};
 
 /// Where a line is furthest out of the disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Exit {
+pub(super) struct Exit {
     /// Distance from the track's centre, track radii.
     pub radius: f32,
     /// Share of the way.
@@ -56,7 +56,7 @@ pub fn check_line(
 }
 
 /// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(crate) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
+pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
     let usable = constraints.usable_radius as f32;
     // A line of no length has no bend to walk along.
     if constraints.rotation_centre == [0.0; 2] || from == to {

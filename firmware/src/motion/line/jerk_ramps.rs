@@ -28,7 +28,7 @@ const LONGEST: i32 = 1 << 21;
 /// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more). `None` where it
 /// would last too long.
 #[inline(never)]
-pub(crate) fn write_path_profile(
+pub(super) fn write_path_profile(
     corners: &Corners,
     slower: f32,
     limits: &PathLimits,

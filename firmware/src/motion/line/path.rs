@@ -31,7 +31,7 @@ const FOLLOWED: u64 = 3 << 32;
 
 /// A line; see the module. Lengths in track radii, angles in rad.
 #[derive(Clone, Debug)]
-pub(crate) struct Path {
+pub(super) struct Path {
     /// P(0).
     pub from: [f32; 2],
     /// L.
@@ -52,7 +52,7 @@ pub(crate) struct Path {
 
 /// What a place on the line asks of the pivots: the derivatives of each by s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Demand {
+pub(super) struct Demand {
     /// phi_i'.
     pub first: [f32; 3],
     /// phi_i''.
@@ -220,7 +220,7 @@ fn direction(theta: i64) -> [f32; 2] {
 }
 
 /// Demands along a line; see [`Path::demands`].
-pub(crate) struct Demands<'a> {
+pub(super) struct Demands<'a> {
     path: &'a Path,
     s: f32,
     step: f32,

@@ -14,11 +14,11 @@ use crate::number::wide_integer::quotient;
 use heapless::Vec;
 
 /// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
-pub(crate) const JERK_BITS: u32 = 30;
+pub(super) const JERK_BITS: u32 = 30;
 
 /// A stretch of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct JerkSegment {
+pub(super) struct JerkSegment {
     /// Length.
     pub ticks: u64,
     /// Jerk of the path parameter, in units of its own.
@@ -27,7 +27,7 @@ pub(crate) struct JerkSegment {
 
 /// See the module.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PathProfile {
+pub(super) struct PathProfile {
     /// The stretches, from rest to rest.
     pub segments: Vec<JerkSegment, MAX_PIECES>,
     /// Six times the way that the jerks make: positive.
@@ -132,7 +132,7 @@ impl PathProfile {
 
 impl RestToRestProfile {
     /// Writes it as a path profile: its jerks are 1 and -1.
-    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
+    pub(super) fn write(&self, path_profile: &mut PathProfile) {
         path_profile.segments.clear();
         for (ticks, jerk) in self.segments() {
             if ticks > 0 {

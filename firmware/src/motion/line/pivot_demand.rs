@@ -18,7 +18,7 @@ const FEW: f32 = 10.0;
 
 /// What a place asks of a motion: each of these, times what the motion does there, is at most 1.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GridPoint {
+pub(super) struct GridPoint {
     /// Times s'': the pivots' shares of their acceleration.
     pub first: [f32; 3],
     /// Times s'^2.
@@ -37,7 +37,7 @@ const INACTIVE_BELOW: f32 = 0.9;
 
 /// The demands along a line, as shares of the limits.
 #[derive(Clone, Debug)]
-pub(crate) struct DemandGrid {
+pub(super) struct DemandGrid {
     places: Vec<GridPoint, { MOST + 1 }>,
     /// Limits on s, per second.
     pub limits: PathLimits,
@@ -45,7 +45,7 @@ pub(crate) struct DemandGrid {
 
 /// Speed, acceleration and place of a motion along a line, per second.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PathState {
+pub(super) struct PathState {
     pub s: f32,
     pub rate: f32,
     pub acceleration: f32,

@@ -12,17 +12,17 @@ use crate::number::sqrt_f32;
 use heapless::Vec;
 
 /// Most stretches: each corner takes two pieces of a plan.
-pub(crate) const MAX_SEGMENTS: usize = 12;
+pub(super) const MAX_SEGMENTS: usize = 12;
 
 /// A corner: where, and the speed there (per second).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
+pub(super) struct Corner {
     pub s: f32,
     pub rate: f32,
 }
 
 /// Corners of a motion from rest to rest.
-pub(crate) type Corners = Vec<Corner, { MAX_SEGMENTS + 1 }>;
+pub(super) type Corners = Vec<Corner, { MAX_SEGMENTS + 1 }>;
 
 /// The share of z that is given away, the least and the most.
 const LEAST: f32 = 0.01;
@@ -38,7 +38,7 @@ const ALIKE: f32 = 1e-5;
 
 /// Writes the polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to
 /// `acceleration`. `None` where it takes too many stretches.
-pub(crate) fn fit_segments_below(
+pub(super) fn fit_segments_below(
     z: &SquaredSpeeds,
     stretches: usize,
     acceleration: f32,
@@ -70,7 +70,7 @@ pub(crate) fn fit_segments_below(
 
 /// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
 /// corners at which the acceleration falls: without them the speed is lower.
-pub(crate) fn remove_close_corners(polygon: &mut Corners, limits: &PathLimits) {
+pub(super) fn remove_close_corners(polygon: &mut Corners, limits: &PathLimits) {
     let mut k = 1;
     while k + 2 < polygon.len() {
         let stretch = |k: usize| Stretch::new(&polygon[k], &polygon[k + 1]);
