@@ -1,4 +1,4 @@
-//! From stretches of constant acceleration to a path profile of limited jerk.
+//! From segments of constant acceleration to a path profile of limited jerk.
 //!
 //! Where the acceleration steps, at a corner of the [`Corners`], it gets a ramp instead, as long as the limit of jerk
 //! asks for and centred on the corner:
@@ -12,7 +12,7 @@
 //!
 //! Ramps may overlap: they add up. Of two of the same sign that do, each is made as long as their sum asks for.
 //!
-//! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by
+//! All times are whole ticks, lengths of segments rounded up, those of ramps to even numbers: nothing gets faster by
 //! it.
 
 use super::path_profile::PathProfile;

@@ -117,9 +117,9 @@ impl Path {
         [0, 1].map(|i| self.from[i] + self.displacement[i] * s)
     }
 
-    /// The demands at places evenly spaced, from s = 0 on, with so many stretches in all.
-    pub fn demands(&self, stretches: usize) -> Demands<'_> {
-        let step = 1.0 / stretches as f32;
+    /// The demands at places evenly spaced, from s = 0 on, with so many intervals in all.
+    pub fn demands(&self, intervals: usize) -> Demands<'_> {
+        let step = 1.0 / intervals as f32;
         // A direction is worth nothing on a line that is of many turns, and not looked at.
         let turn = (i64_to_f32_fast(self.turn_units) * step) as i32;
         Demands {

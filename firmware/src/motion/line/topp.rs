@@ -10,7 +10,7 @@ use super::pivot_demand::{DemandGrid, GridPoint};
 use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
-/// Most stretches and one.
+/// Most intervals and one.
 pub(super) const GRID_POINTS: usize = 65;
 
 /// z at every place.
@@ -34,9 +34,9 @@ const STILL: f32 = 1e-15;
 
 /// Writes the fastest; see the module.
 pub(super) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
-    let n = grid.stretches();
+    let n = grid.intervals();
     let half = 0.5 * n as f32;
-    // A slope of z over a stretch is this many times an acceleration.
+    // A slope of z over an interval is this many times an acceleration.
     let double = 2.0 / n as f32;
     // Of the places at which the pivots' limits are active, the last first.
     let mut nodes: Vec<Node, GRID_POINTS> = Vec::new();
