@@ -5,7 +5,7 @@ use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 
 /// Speed of the moved point, track radii per second, and rate of rotation, rad per second; or their derivatives.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Speeds {
+pub(super) struct Speeds {
     pub linear: f32,
     pub angular: f32,
 }
@@ -29,7 +29,7 @@ impl Speeds {
 }
 
 /// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
-pub(crate) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
+pub(super) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
     let unit = PER_AXIS_UNIT * hz;
     let [x, y, theta] = rates.map(|rate| i64_to_f32_fast(rate) * unit);
     [x, y, theta * core::f32::consts::TAU]

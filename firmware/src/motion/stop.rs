@@ -87,7 +87,7 @@ pub(super) fn write_stop(
         tick: at,
     };
     plan.nudge = of.nudge;
-    let (most, asked) = hardest(&state, &limits, constraints);
+    let (most, asked) = hardest_brake(&state, &limits, constraints);
     let mut hardness = match stop {
         Stop::Smooth => [most.fmin(1.0), 1.0],
         Stop::Urgent => [most, factor * factor],
@@ -98,13 +98,13 @@ pub(super) fn write_stop(
         let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
         let ticks = brake.ticks();
         if apart {
-            lay(
+            write_pieces(
                 &state,
                 apart_ticks(&state, &limits, hardness),
                 &mut plan.pieces,
             );
         } else {
-            lay(&state, [ticks; 3], &mut plan.pieces);
+            write_pieces(&state, [ticks; 3], &mut plan.pieces);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
@@ -152,7 +152,7 @@ fn apart_ticks(state: &[AxisState; 3], limits: &TickLimits, hardness: [f32; 2]) 
 }
 
 /// Writes the pieces that brake the axes in so many ticks.
-fn lay(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
+fn write_pieces(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
     let mut tracks: [Track; 3] = Default::default();
     for (track, (axis, ticks)) in tracks.iter_mut().zip(state.iter().zip(ticks)) {
         brake(track, axis, ticks);
@@ -162,7 +162,11 @@ fn lay(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
 /// comes of the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
-fn hardest(state: &[AxisState; 3], limits: &TickLimits, constraints: &Constraints) -> (f32, f32) {
+fn hardest_brake(
+    state: &[AxisState; 3],
+    limits: &TickLimits,
+    constraints: &Constraints,
+) -> (f32, f32) {
     let hz = constraints.limits.rate_hz as f32;
     let centre = constraints.rotation_centre.map(|value| value as f32);
     let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * 0.98;

@@ -14,7 +14,7 @@ pub trait Float: Real + Default {
     fn root(self) -> Self;
 
     /// Cube root of a number that is not negative, right to some percent at least: a first guess.
-    fn rough_cbrt(self) -> Self;
+    fn cbrt_estimate(self) -> Self;
 
     /// Size.
     fn abs(self) -> Self {
@@ -47,7 +47,7 @@ impl Float for f32 {
 
     /// A third of the exponent, and so of the logarithm (off by 3.5 %), and one step of Newton's method.
     #[inline]
-    fn rough_cbrt(self) -> Self {
+    fn cbrt_estimate(self) -> Self {
         let guess = Self::from_bits(self.to_bits() / 3 + 0x2A51_37A0);
         (2.0 * guess + self / (guess * guess)) / 3.0
     }
@@ -60,7 +60,7 @@ impl Float for f64 {
         libm::sqrt(self)
     }
 
-    fn rough_cbrt(self) -> Self {
+    fn cbrt_estimate(self) -> Self {
         libm::cbrt(self)
     }
 }

@@ -14,8 +14,8 @@
 //! a time at it. `n1` follows from `|P - a0|`; a few rounds find the two together (the change of one by the other is a
 //! third at most). Times are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
-pub(crate) mod axis_brake;
-pub(crate) mod velocity_change;
+pub(super) mod axis_brake;
+pub(super) mod velocity_change;
 
 use super::plan::axis_state::{AxisState, JERK_STEP};
 use super::plan::cubic_segment::MotionState;

@@ -3,7 +3,7 @@
 use super::violation::Violation;
 
 /// Intervals that may be looked at, failed ones included, before the next failure counts.
-pub(super) const MOST_LOOKS: usize = 60;
+pub(super) const MAX_INTERVALS: usize = 60;
 
 /// Intervals in the first slice.
 const SLICE: usize = 16;
@@ -23,7 +23,7 @@ pub(crate) struct CheckBudget {
 impl CheckBudget {
     /// At all of it, at once.
     pub const WHOLE: Self = Self {
-        left: MOST_LOOKS,
+        left: MAX_INTERVALS,
         slice: usize::MAX,
         checked_ticks: 0,
     };

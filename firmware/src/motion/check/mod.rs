@@ -26,15 +26,15 @@
 //! | `target` | whether a target can be moved to |
 //! | `instant` | one instant against every limit: for streams |
 
-pub(crate) mod budget;
+pub(super) mod budget;
 pub(crate) mod instant;
 pub(crate) mod interval;
-pub(crate) mod pivot_bounds;
-pub(crate) mod plan_check;
+pub(super) mod pivot_bounds;
+pub(super) mod plan_check;
 pub(crate) mod platform;
 pub(crate) mod target;
-pub(crate) mod violation;
-pub(crate) mod workspace;
+pub(super) mod violation;
+pub(super) mod workspace;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! One plan of one piece for each thing that can be broken, and its twin that keeps it.
 
-use super::budget::MOST_LOOKS;
+use super::budget::MAX_INTERVALS;
 use super::*;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
@@ -224,8 +224,8 @@ fn without_looks_left_it_fails() {
             };
             looked(&plan_check, &part, &now, budget).is_ok()
         };
-        assert!(with(MOST_LOOKS) || !with(1));
-        undecided += usize::from(with(MOST_LOOKS) && !with(1));
+        assert!(with(MAX_INTERVALS) || !with(1));
+        undecided += usize::from(with(MAX_INTERVALS) && !with(1));
     }
     assert!(undecided > 2, "{undecided}");
 }

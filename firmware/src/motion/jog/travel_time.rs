@@ -52,7 +52,7 @@ impl SteadyMotion {
             };
         }
         let speed = hypot(self.velocity[0], self.velocity[1]) + self.turning.abs() * arm;
-        let bend = speed * speed + radius * self.turning * self.turning * arm;
+        let second_derivative = speed * speed + radius * self.turning * self.turning * arm;
         let mut seconds = 0.0;
         for _ in 0..MOST_STEPS {
             let point = self.point_after(seconds);
@@ -63,7 +63,7 @@ impl SteadyMotion {
                     theta_too: false,
                 };
             }
-            let step = self.step(seconds, radius, bend);
+            let step = self.step(seconds, radius, second_derivative);
             seconds += step;
             if step < LEAST_STEP {
                 break;
@@ -103,7 +103,7 @@ impl SteadyMotion {
     }
 
     /// A step in which the platform's centre is certain to stay inside.
-    fn step(&self, seconds: f32, radius: f32, bend: f32) -> f32 {
+    fn step(&self, seconds: f32, radius: f32, second_derivative: f32) -> f32 {
         let point = self.point_after(seconds);
         let [x, y] = self.platform(seconds);
         let arm = [point[0] - x, point[1] - y];
@@ -114,7 +114,7 @@ impl SteadyMotion {
         crossing(
             x * x + y * y - radius * radius,
             x * rate[0] + y * rate[1],
-            bend,
+            second_derivative,
         )
     }
 
@@ -135,12 +135,13 @@ impl SteadyMotion {
     }
 }
 
-/// When `value + 2 slope t + bend t^2` becomes positive; at once where it is and grows, never when nothing bends it.
-fn crossing(value: f32, slope: f32, bend: f32) -> f32 {
-    if bend <= 0.0 {
+/// When `value + 2 slope t + second_derivative t^2` becomes positive; at once where it is and grows, never when nothing
+/// bends it.
+fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
+    if second_derivative <= 0.0 {
         return f32::INFINITY;
     }
-    let root = slope * slope - bend * value;
+    let root = slope * slope - second_derivative * value;
     if root < 0.0 {
         return 0.0;
     }
@@ -149,7 +150,7 @@ fn crossing(value: f32, slope: f32, bend: f32) -> f32 {
     let time = if slope > 0.0 {
         -value / (slope + root)
     } else {
-        (root - slope) / bend
+        (root - slope) / second_derivative
     };
     time.fmax(0.0)
 }

@@ -19,7 +19,7 @@ use kinematics::{Angle, Scalar};
 
 /// Where a line is furthest out of the disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Exit {
+pub(super) struct Exit {
     /// Distance from the track's centre, track radii.
     pub radius: f32,
     /// Share of the way.
@@ -31,7 +31,7 @@ const LINE_RIM: f32 = 1e-6;
 /// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
 const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
-const LOOKS: usize = 48;
+const SAMPLES: usize = 48;
 
 /// Whether the straight line between two positions can be moved along: the same answer as that of
 /// [`plan_line`](crate::motion::plan_line).
@@ -56,7 +56,7 @@ pub fn check_line(
 }
 
 /// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(crate) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
+pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
     let usable = constraints.usable_radius as f32;
     // A line of no length has no bend to walk along.
     if constraints.rotation_centre == [0.0; 2] || from == to {
@@ -102,7 +102,7 @@ struct Walk {
     centre: [f32; 2],
     arm: f32,
     /// B.
-    bend: f32,
+    second_derivative: f32,
     backwards: bool,
 }
 
@@ -126,7 +126,7 @@ impl Walk {
             turn: path.turn * sign,
             centre,
             arm,
-            bend: 2.0 * path.length * path.length
+            second_derivative: 2.0 * path.length * path.length
                 + 2.0 * arm * turn * (2.0 * path.length + turn * furthest),
             backwards,
         }
@@ -159,8 +159,8 @@ impl Walk {
             radius: 0.0,
             fraction: 0.0,
         };
-        for k in 0..=LOOKS {
-            let s = part * k as f32 / LOOKS as f32;
+        for k in 0..=SAMPLES {
+            let s = part * k as f32 / SAMPLES as f32;
             let radius = sqrt_f32(self.square(s).0);
             if radius > worst.radius {
                 let fraction = if self.backwards { 1.0 - s } else { s };
@@ -181,11 +181,11 @@ impl Walk {
             if s >= part {
                 return false;
             }
-            let root = sqrt_f32(slope * slope + 2.0 * self.bend * room);
+            let root = sqrt_f32(slope * slope + 2.0 * self.second_derivative * room);
             let step = if slope > 0.0 {
                 2.0 * room / (root + slope)
             } else {
-                (root - slope) / self.bend
+                (root - slope) / self.second_derivative
             };
             s = (s + step.fmax(LEAST_STEP)).fmin(part);
         }

@@ -1,4 +1,4 @@
-//! From stretches of constant acceleration to a path profile of limited jerk.
+//! From segments of constant acceleration to a path profile of limited jerk.
 //!
 //! Where the acceleration steps, at a corner of the [`Corners`], it gets a ramp instead, as long as the limit of jerk
 //! asks for and centred on the corner:
@@ -12,7 +12,7 @@
 //!
 //! Ramps may overlap: they add up. Of two of the same sign that do, each is made as long as their sum asks for.
 //!
-//! All times are whole ticks, lengths of stretches rounded up, those of ramps to even numbers: nothing gets faster by
+//! All times are whole ticks, lengths of segments rounded up, those of ramps to even numbers: nothing gets faster by
 //! it.
 
 use super::path_profile::PathProfile;
@@ -28,7 +28,7 @@ const LONGEST: i32 = 1 << 21;
 /// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more). `None` where it
 /// would last too long.
 #[inline(never)]
-pub(crate) fn write_path_profile(
+pub(super) fn write_path_profile(
     corners: &Corners,
     slower: f32,
     limits: &PathLimits,

@@ -19,14 +19,14 @@
 //! | `path_profile` | segments of constant jerk of the path parameter, and the plan that they make |
 
 pub(crate) mod disk;
-pub(crate) mod jerk_ramps;
+pub(super) mod jerk_ramps;
 pub(crate) mod path;
-pub(crate) mod path_profile;
-pub(crate) mod pivot_demand;
-pub(crate) mod planner;
+pub(super) mod path_profile;
+pub(super) mod pivot_demand;
+pub(super) mod planner;
 pub(crate) mod ramp;
-pub(crate) mod rounded_ramps;
+pub(super) mod rounded_ramps;
 pub(crate) mod segments;
-pub(crate) mod topp;
+pub(super) mod topp;
 
 pub use planner::plan_line;

@@ -31,7 +31,7 @@ const FOLLOWED: u64 = 3 << 32;
 
 /// A line; see the module. Lengths in track radii, angles in rad.
 #[derive(Clone, Debug)]
-pub(crate) struct Path {
+pub(super) struct Path {
     /// P(0).
     pub from: [f32; 2],
     /// L.
@@ -52,7 +52,7 @@ pub(crate) struct Path {
 
 /// What a place on the line asks of the pivots: the derivatives of each by s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Demand {
+pub(super) struct Demand {
     /// phi_i'.
     pub first: [f32; 3],
     /// phi_i''.
@@ -117,9 +117,9 @@ impl Path {
         [0, 1].map(|i| self.from[i] + self.displacement[i] * s)
     }
 
-    /// The demands at places evenly spaced, from s = 0 on, with so many stretches in all.
-    pub fn demands(&self, stretches: usize) -> Demands<'_> {
-        let step = 1.0 / stretches as f32;
+    /// The demands at places evenly spaced, from s = 0 on, with so many intervals in all.
+    pub fn demands(&self, intervals: usize) -> Demands<'_> {
+        let step = 1.0 / intervals as f32;
         // A direction is worth nothing on a line that is of many turns, and not looked at.
         let turn = (i64_to_f32_fast(self.turn_units) * step) as i32;
         Demands {
@@ -220,7 +220,7 @@ fn direction(theta: i64) -> [f32; 2] {
 }
 
 /// Demands along a line; see [`Path::demands`].
-pub(crate) struct Demands<'a> {
+pub(super) struct Demands<'a> {
     path: &'a Path,
     s: f32,
     step: f32,

@@ -1,4 +1,4 @@
-//! How a line is travelled: stretches of constant jerk of the path parameter, in whole numbers, and the plan they make.
+//! How a line is travelled: segments of constant jerk of the path parameter, in whole numbers, and the plan they make.
 //!
 //! Every axis gets the same pieces, times its own factor: the line is straight by construction. The jerks of a path
 //! profile are integers `q`; an axis' jerk is `6 D q / 2^bits`, rounded, with D such that the whole is the way. What
@@ -14,11 +14,11 @@ use crate::number::wide_integer::quotient;
 use heapless::Vec;
 
 /// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
-pub(crate) const JERK_BITS: u32 = 30;
+pub(super) const JERK_BITS: u32 = 30;
 
-/// A stretch of constant jerk.
+/// A segment of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct JerkSegment {
+pub(super) struct JerkSegment {
     /// Length.
     pub ticks: u64,
     /// Jerk of the path parameter, in units of its own.
@@ -27,8 +27,8 @@ pub(crate) struct JerkSegment {
 
 /// See the module.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PathProfile {
-    /// The stretches, from rest to rest.
+pub(super) struct PathProfile {
+    /// The segments, from rest to rest.
     pub segments: Vec<JerkSegment, MAX_PIECES>,
     /// Six times the way that the jerks make: positive.
     pub six_times_distance: i128,
@@ -132,7 +132,7 @@ impl PathProfile {
 
 impl RestToRestProfile {
     /// Writes it as a path profile: its jerks are 1 and -1.
-    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
+    pub(super) fn write(&self, path_profile: &mut PathProfile) {
         path_profile.segments.clear();
         for (ticks, jerk) in self.segments() {
             if ticks > 0 {

@@ -5,11 +5,11 @@ use crate::motion::limits::PathLimits;
 use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
-/// Most stretches between places.
+/// Most intervals between places.
 const MOST: usize = 64;
 
 /// What the pivots are not granted of their limits in planning: demands are looked up between places, where they are
-/// curved. A part for everything, and one for the square of what a stretch turns and moves (rad and track radii).
+/// curved. A part for everything, and one for the square of what an interval turns and moves (rad and track radii).
 const PIVOT_MARGIN: f32 = 0.002;
 const PIVOT_MARGIN_PER_SQUARE: f32 = 0.1;
 
@@ -18,7 +18,7 @@ const FEW: f32 = 10.0;
 
 /// What a place asks of a motion: each of these, times what the motion does there, is at most 1.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GridPoint {
+pub(super) struct GridPoint {
     /// Times s'': the pivots' shares of their acceleration.
     pub first: [f32; 3],
     /// Times s'^2.
@@ -37,7 +37,7 @@ const INACTIVE_BELOW: f32 = 0.9;
 
 /// The demands along a line, as shares of the limits.
 #[derive(Clone, Debug)]
-pub(crate) struct DemandGrid {
+pub(super) struct DemandGrid {
     places: Vec<GridPoint, { MOST + 1 }>,
     /// Limits on s, per second.
     pub limits: PathLimits,
@@ -45,7 +45,7 @@ pub(crate) struct DemandGrid {
 
 /// Speed, acceleration and place of a motion along a line, per second.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PathState {
+pub(super) struct PathState {
     pub s: f32,
     pub rate: f32,
     pub acceleration: f32,
@@ -63,12 +63,12 @@ impl DemandGrid {
     /// Lays out the places of a line.
     pub fn fill(&mut self, path: &Path, pivot_rate: f32, pivot_acceleration: f32) {
         let square = path.turn * path.turn + path.length * path.length;
-        let stretches = if path.spans_many_turns() || square < FEW {
+        let intervals = if path.spans_many_turns() || square < FEW {
             MOST / 2
         } else {
             MOST
         };
-        let spacing = 1.0 / stretches as f32;
+        let spacing = 1.0 / intervals as f32;
         let kept = if path.spans_many_turns() {
             PIVOT_MARGIN
         } else {
@@ -78,8 +78,8 @@ impl DemandGrid {
         let over_rate = 1.0 / (pivot_rate * granted);
         let over_acceleration = 1.0 / (pivot_acceleration * granted);
         let least = 1.0 / self.limits.rate;
-        let mut demands = path.demands(stretches);
-        for _ in 0..=stretches {
+        let mut demands = path.demands(intervals);
+        for _ in 0..=intervals {
             let demand = demands.next();
             let (first, second) = (largest(&demand.first), largest(&demand.second));
             let rate = (first * over_rate).fmax(least);
@@ -95,8 +95,8 @@ impl DemandGrid {
         }
     }
 
-    /// Number of stretches.
-    pub fn stretches(&self) -> usize {
+    /// Number of intervals.
+    pub fn intervals(&self) -> usize {
         self.places.len() - 1
     }
 
@@ -108,9 +108,9 @@ impl DemandGrid {
     /// The square of the factor by which a motion would have to take longer for this state of it to keep every limit
     /// but that of the line's own acceleration; 1 and less when it does. Between places the demand goes straight.
     pub fn excess(&self, state: &PathState) -> f32 {
-        let stretches = self.stretches();
-        let at = state.s * stretches as f32;
-        let before = (at as usize).min(stretches - 1);
+        let intervals = self.intervals();
+        let at = state.s * intervals as f32;
+        let before = (at as usize).min(intervals - 1);
         let Some([a, b]) = self.places.get(before..before + 2) else {
             return 0.0;
         };
@@ -229,7 +229,7 @@ mod tests {
             for (k, place) in grid.points().iter().enumerate() {
                 for (rate, acceleration) in [(0.0, 12.0), (0.5, 0.01), (0.4, -19.0), (2.2, 8.0)] {
                     let state = PathState {
-                        s: k as f32 / grid.stretches() as f32,
+                        s: k as f32 / grid.intervals() as f32,
                         rate,
                         acceleration,
                     };

@@ -64,8 +64,8 @@ struct LinePlanner<'a> {
     hz: f32,
 }
 
-/// Looks at a motion in a stretch of it, besides those at the places it passes.
-const LOOKS: u32 = 1;
+/// Instants of a segment at which a motion is checked, besides those at the places it passes.
+const SAMPLES: u32 = 1;
 
 /// Room that a motion gets for roundings when it is slowed down.
 const ROUNDING_MARGIN: f32 = 1.001_5;
@@ -109,7 +109,7 @@ impl<'a> LinePlanner<'a> {
         let mut z = [0.0; GRID_POINTS];
         velocity_limit_squared(grid, &mut z);
         let mut corners = Corners::new();
-        fit_segments_below(&z, grid.stretches(), self.limits.acceleration, &mut corners)?;
+        fit_segments_below(&z, grid.intervals(), self.limits.acceleration, &mut corners)?;
         remove_close_corners(&mut corners, &self.limits);
         write_path_profile(
             &corners,
@@ -148,7 +148,7 @@ impl<'a> LinePlanner<'a> {
 
     /// The largest excess of a motion over its limits (see [`DemandGrid::excess`]), jerk included.
     fn excess(&self, path_profile: &PathProfile, grid: &DemandGrid) -> f32 {
-        let places = grid.stretches() as f32;
+        let places = grid.intervals() as f32;
         let unit = path_profile.unit() * self.hz * self.hz * self.hz;
         let mut now = PathState::default();
         let mut worst = 0.0_f32;
@@ -158,13 +158,13 @@ impl<'a> LinePlanner<'a> {
             let push = segment.jerk as f32 * unit;
             jerk = jerk.fmax(push.abs());
             let way = now.after(seconds, push).s - now.s;
-            let steps = LOOKS + (way.abs() * places) as u32;
+            let steps = SAMPLES + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);
                 worst = worst.fmax(grid.excess(&now));
             }
-            // Largest at an end of a stretch.
+            // Largest at an end of a segment.
             acceleration = acceleration.fmax(now.acceleration.abs());
         }
         let worst = worst.fmax(acceleration / self.limits.acceleration);

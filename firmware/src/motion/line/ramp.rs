@@ -5,7 +5,7 @@ use heapless::Vec;
 
 /// A ramp of the acceleration.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct JerkRamp {
+pub(super) struct JerkRamp {
     /// Where its middle is, ticks.
     pub middle: i32,
     /// How long it is, ticks: even.
@@ -15,4 +15,4 @@ pub(crate) struct JerkRamp {
 }
 
 /// Ramps that make a motion.
-pub(crate) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;
+pub(super) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;

@@ -12,7 +12,7 @@ use crate::number::wide_integer::{mul_i64_u32, mul_i128_u32};
 use heapless::Vec;
 
 /// The ramps in integers.
-pub(crate) struct RoundedRamps {
+pub(super) struct RoundedRamps {
     ramps: Vec<RoundedRamp, { MAX_SEGMENTS + 1 }>,
     start: i32,
     end: i32,

@@ -10,11 +10,11 @@ use super::pivot_demand::{DemandGrid, GridPoint};
 use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
-/// Most stretches and one.
-pub(crate) const GRID_POINTS: usize = 65;
+/// Most intervals and one.
+pub(super) const GRID_POINTS: usize = 65;
 
 /// z at every place.
-pub(crate) type SquaredSpeeds = [f32; GRID_POINTS];
+pub(super) type SquaredSpeeds = [f32; GRID_POINTS];
 
 /// A line that bounds s'' over z: `offset + slope z`.
 #[derive(Clone, Copy)]
@@ -33,10 +33,10 @@ impl LinearBound {
 const STILL: f32 = 1e-15;
 
 /// Writes the fastest; see the module.
-pub(crate) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
-    let n = grid.stretches();
+pub(super) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
+    let n = grid.intervals();
     let half = 0.5 * n as f32;
-    // A slope of z over a stretch is this many times an acceleration.
+    // A slope of z over an interval is this many times an acceleration.
     let double = 2.0 / n as f32;
     // Of the places at which the pivots' limits are active, the last first.
     let mut nodes: Vec<Node, GRID_POINTS> = Vec::new();

@@ -16,7 +16,7 @@ pub(crate) struct MotionState {
     pub a: [f32; 3],
 }
 
-/// A stretch of constant jerk.
+/// A piece of constant jerk from its start on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CubicSegment {
     /// x and y of its start.

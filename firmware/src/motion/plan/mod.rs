@@ -13,15 +13,15 @@
 //! | `time_scaling`, `fault_stop` | a fault's stop: the plan's time runs slower and slower |
 //! | `follower` | following a plan, and taking the next |
 
-pub(crate) mod axis_state;
-pub(crate) mod cubic_segment;
+pub(super) mod axis_state;
+pub(super) mod cubic_segment;
 pub(crate) mod fault_stop;
-pub(crate) mod follower;
-pub(crate) mod motion_plan;
+pub(super) mod follower;
+pub(super) mod motion_plan;
 pub(crate) mod piece;
 pub(crate) mod rotation_centre;
 pub(crate) mod setpoint;
-pub(crate) mod time_scaling;
+pub(super) mod time_scaling;
 pub(crate) mod units;
 
 pub(crate) use motion_plan::nudge_to;

@@ -1,4 +1,4 @@
-//! Positions of the moved point, and stretches of constant jerk of all axes.
+//! Positions of the moved point, and pieces of constant jerk of all axes.
 
 use super::axis_state::AxisState;
 use heapless::Vec;
@@ -9,12 +9,13 @@ pub type Position = [i64; 3];
 /// Pieces a plan can hold: the nine segments of three axes' profiles, no two of which begin together.
 pub const MAX_PIECES: usize = 27;
 
-/// A stretch of constant jerk.
+/// So many ticks of constant jerk, of all axes together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Piece {
     /// Length in ticks.
     pub ticks: u64,
-    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of [`JERK_STEP`](super::axis_state::JERK_STEP).
+    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of
+    /// [`JERK_STEP`](super::axis_state::JERK_STEP).
     pub jerk: [i64; 3],
 }
 

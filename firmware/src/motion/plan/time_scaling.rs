@@ -10,7 +10,7 @@ pub struct FaultStop {
 
 /// Where in its stop a motion is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct TimeScaling {
+pub(super) struct TimeScaling {
     /// Part of the stop that is over.
     pub(super) progress: f32,
     /// Part of the plan's tick that has begun.

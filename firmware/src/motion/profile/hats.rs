@@ -14,7 +14,7 @@ use super::shape::{Shape, Solution};
 use crate::number::float::ticks_to_f32;
 
 /// Areas, and what the way gains by the heights when the brake always ends at rest.
-pub(crate) struct Hats {
+pub(super) struct Hats {
     area: [f32; 3],
     /// By the start's velocity and acceleration.
     by_start: [f32; 2],

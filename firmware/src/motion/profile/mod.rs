@@ -7,9 +7,9 @@
 //! | `shape`, `hats`, `whole_ticks` | such a motion in whole ticks, exact in integers |
 //! | `tracks` | three axes that arrive together, as one list of pieces |
 
-pub(crate) mod any_state;
-pub(crate) mod hats;
-pub(crate) mod rest_to_rest;
+pub(super) mod any_state;
+pub(super) mod hats;
+pub(super) mod rest_to_rest;
 pub(crate) mod shape;
-pub(crate) mod tracks;
-pub(crate) mod whole_ticks;
+pub(super) mod tracks;
+pub(super) mod whole_ticks;

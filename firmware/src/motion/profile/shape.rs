@@ -7,7 +7,7 @@ pub(crate) struct Shape {
 }
 
 /// Peak, brake, and the speed between.
-pub(crate) struct Solution {
+pub(super) struct Solution {
     pub peak: f32,
     pub brake: f32,
     pub top: f32,

@@ -28,7 +28,7 @@ const STILL_WAY: i128 = 1 << 41;
 const STILL_RATE: u64 = 1 << 28;
 const POINT: u32 = 30;
 /// 2^-64.
-pub(crate) const SMALLER: f32 = 5.421_011e-20;
+pub(super) const SMALLER: f32 = 5.421_011e-20;
 /// Bits of a way that a turn does without: 2^-52 track radii.
 const WAY_CUT: u32 = 20;
 

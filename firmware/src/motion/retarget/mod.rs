@@ -43,9 +43,9 @@ use tries::Tries;
 
 pub(crate) mod ahead;
 pub(crate) mod choice;
-pub(crate) mod expected_demand;
-pub(crate) mod heading;
-pub(crate) mod slower;
+pub(super) mod expected_demand;
+pub(super) mod heading;
+pub(super) mod slower;
 pub(crate) mod tries;
 
 /// What is left for another target.

@@ -16,7 +16,7 @@ use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Release, what it leaves, and the ramp.
-pub(crate) type StopPieces = Vec<Piece, 5>;
+pub(super) type StopPieces = Vec<Piece, 5>;
 
 /// How often a softer stop is tried.
 const ATTEMPTS: usize = 3;
@@ -24,7 +24,7 @@ const ATTEMPTS: usize = 3;
 const LONG: u64 = 256;
 
 /// The pieces, and the state after them: at rest, but for what rounding leaves.
-pub(crate) fn final_stop(
+pub(super) fn final_stop(
     state: &[AxisState; 3],
     now: &InstantState,
     instant_check: &InstantCheck<'_>,

@@ -160,7 +160,7 @@ impl<F: Float> Touching<F> {
         // Exact from rest.
         let most = self.most;
         let from_rest = if beyond <= F::from_f64(2.0) * most.square() * most {
-            beyond.half().rough_cbrt().square()
+            beyond.half().cbrt_estimate().square()
         } else {
             let root = (most.square() + F::from_f64(4.0) * beyond / most).root();
             most.half() * (root - most)
