@@ -3,7 +3,7 @@
 //! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
 //! unless a line says otherwise.
 
-use crate::motion::{Limits, Way};
+use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
 
 /// Rows that a record of any signals can have: with all tables 16,384 samples.
@@ -41,7 +41,7 @@ pub struct Parameters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Targets {
     /// Which way round to an orientation.
-    pub turn_direction: Way,
+    pub turn_direction: TurnDirection,
     /// Whether `MOV` gives the targets of a stream, one after the other, instead of places to move to.
     pub streamed: bool,
 }
@@ -278,7 +278,7 @@ impl Parameters {
             before: 0,
         },
         targets: Targets {
-            turn_direction: Way::Literal,
+            turn_direction: TurnDirection::AsGiven,
             streamed: false,
         },
     };

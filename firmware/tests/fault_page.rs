@@ -40,7 +40,7 @@ const BETWEEN: &str = "
 An encoder that was lost is ready for `FRF` with four good frames in a row, where its pivot is slower than 2.5 rad/s; until then `FRF`
 answers 45. A stage that coasts faster than that could not be held.
 
-How far one or two lost encoders let the platform be off its path: see \"Measured\" in the README.
+How far one or two lost encoders let the platform be off its path: see [MEASURED.md](../hal-sim/MEASURED.md).
 
 ## Kinds
 

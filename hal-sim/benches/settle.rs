@@ -4,7 +4,7 @@
 //! friction with presliding and stiction among them. Times are counted from the tick that takes the command: to the profile's end,
 //! to where every pivot comes to stay within the window of +-2 encoder LSB, and to where the controller says so, a dwell later.
 
-use firmware::motion::{Ground, Position, plan_line};
+use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use hal_sim::host::Host;
@@ -159,7 +159,7 @@ fn moves(mismatch_percent: f64) -> Rest {
         ..RunOptions::default()
     };
     let parameters: Parameters = controller_parameters(&options);
-    let ground = Ground::new(parameters.limits, parameters.geometry);
+    let ground = Constraints::new(parameters.limits, parameters.geometry);
     let mut queues = Queues::new();
     let (tick_queues, commands) = queues.split();
     let mut bench = Bench {

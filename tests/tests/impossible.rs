@@ -2,7 +2,7 @@
 
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
-use firmware::motion::{Ground, Plan, plan_line};
+use firmware::motion::{Constraints, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
 use firmware::queues::{Command, Queues, Snapshot};
 use hal_sim::devices::StageParameters;
@@ -55,14 +55,14 @@ fn line(parameters: &Parameters, at: &Snapshot, way_mm: f64) -> Plan {
         at.plan + 1,
         [0; 3],
         half,
-        &Ground::new(parameters.limits, parameters.geometry),
+        &Constraints::new(parameters.limits, parameters.geometry),
     )
     .expect("inside the disk");
     for piece in &mut plan.pieces {
         piece.jerk = piece.jerk.map(|jerk| 2 * jerk);
     }
     plan.nudge = plan.nudge.map(|nudge| 2 * nudge);
-    plan.start = firmware::motion::Start::Rest(from);
+    plan.start = firmware::motion::PlanStart::Rest(from);
     plan.end = [from[0] + 2 * half[0], from[1], from[2]];
     plan
 }

@@ -3,7 +3,9 @@
 use firmware::control::config::Config;
 use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
 use firmware::mode::Mode;
-use firmware::motion::{Axis, Centre, Ground, Plan, Start, Stop, plan_line, plan_stop};
+use firmware::motion::{
+    AxisState, Constraints, Plan, PlanStart, RotationCentre, Stop, plan_line, plan_stop,
+};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use hal_sim::devices::{EncoderFault, StageParameters};
@@ -53,7 +55,7 @@ impl Run {
     /// A line of 60 mm from where it stands.
     fn line(&self) -> Plan {
         let parameters = Parameters::REFERENCE;
-        let ground = Ground::new(parameters.limits, parameters.geometry);
+        let ground = Constraints::new(parameters.limits, parameters.geometry);
         let from = self.now.setpoint;
         let to = [from[0] + (6 << 32) / 10, from[1], from[2]];
         plan_line(self.now.plan + 1, from, to, &ground).expect("inside the disk")
@@ -93,11 +95,11 @@ impl Run {
             return self.line();
         };
         let parameters = Parameters::REFERENCE;
-        let ground = Ground::new(parameters.limits, parameters.geometry);
-        let Start::Rest(from) = plan.start else {
+        let ground = Constraints::new(parameters.limits, parameters.geometry);
+        let PlanStart::Rest(from) = plan.start else {
             panic!("a line starts at rest")
         };
-        let axes = from.map(Axis::at_rest);
+        let axes = from.map(AxisState::at_rest);
         let at = self.now.plan_tick + 20;
         plan_stop(plan.id + 1, plan, &axes, at, &ground, Stop::Urgent).expect("there is a stop")
     }
@@ -110,7 +112,7 @@ impl Run {
             Event::ServoOff => self.command(Command::Servo(false)),
             Event::Move => self.command(Command::Move(self.next_plan())),
             Event::Centre => {
-                let centre = Centre::new([0.2, 0.1]).expect("near enough");
+                let centre = RotationCentre::new([0.2, 0.1]).expect("near enough");
                 self.command(Command::Centre(centre));
             }
             Event::Constants => {

@@ -3,17 +3,17 @@
 use crate::random::Random;
 use core::hint::black_box;
 use firmware::motion::{
-    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Start, Stop, Tries, plan_line,
-    plan_stop, plan_transition, try_transition,
+    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, RetargetError, Stop, Tries,
+    plan_line, plan_retarget, plan_stop, try_retarget,
 };
 use firmware::number::Fixed;
 use firmware::parameters::Parameters;
 use kinematics::{Acceleration, Angle, Geometry, Pose, Twist};
 
-static GROUND: Ground = Ground::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
+static GROUND: Constraints = Constraints::new(Parameters::REFERENCE.limits, Geometry::REFERENCE);
 
 /// What plans keep to: settings, as far as the compiler knows. With constants it would make other code of the planners.
-pub fn ground() -> &'static Ground {
+pub fn ground() -> &'static Constraints {
     black_box(&GROUND)
 }
 
@@ -100,7 +100,7 @@ pub struct Moving {
     /// The plan.
     pub plan: Plan,
     /// The axes at its start.
-    pub start: [Axis; 3],
+    pub start: [AxisState; 3],
     /// Tick at which it is left.
     pub at: u64,
 }
@@ -113,7 +113,7 @@ impl Moving {
             return line;
         }
         let to = position(random);
-        match plan_transition(2, &line.plan, &line.start, line.at, to, ground()) {
+        match plan_retarget(2, &line.plan, &line.start, line.at, to, ground()) {
             Ok(plan) => Self {
                 start: line.state(),
                 at: random.up_to(plan.ticks() - 1),
@@ -127,10 +127,10 @@ impl Moving {
     pub fn retargeted(&self, to: Position) -> Option<Plan> {
         let (mut tries, mut ahead) = (Tries::NONE, None);
         let (mut next, leave) = (Plan::default(), self.leave());
-        match try_transition(&mut next, 3, leave, to, ground(), &mut tries, &mut ahead) {
+        match try_retarget(&mut next, 3, leave, to, ground(), &mut tries, &mut ahead) {
             Ok(()) => Some(next),
-            Err(NoTransition::NeedsStop | NoTransition::TooFast) => self.stopped(Stop::Smooth),
-            Err(NoTransition::Refused(_)) => None,
+            Err(RetargetError::NeedsStop | RetargetError::TooFast) => self.stopped(Stop::Smooth),
+            Err(RetargetError::Refused(_)) => None,
         }
     }
 
@@ -140,7 +140,7 @@ impl Moving {
             let (now, to) = (Self::new(random), position(random));
             let (mut tries, mut ahead) = (Tries::NONE, None);
             let (mut head, leave) = (Plan::default(), now.leave());
-            let _ = try_transition(&mut head, 3, leave, to, ground(), &mut tries, &mut ahead);
+            let _ = try_retarget(&mut head, 3, leave, to, ground(), &mut tries, &mut ahead);
             if let Some(ahead) = ahead {
                 return (ahead, tries);
             }
@@ -161,14 +161,14 @@ impl Moving {
     }
 
     /// The axes where it is left.
-    pub fn state(&self) -> [Axis; 3] {
+    pub fn state(&self) -> [AxisState; 3] {
         self.plan.state_after(&self.start, self.at)
     }
 
     /// The plan as if it began at rest, and where: following it takes the same.
     pub fn begun_at_rest(self) -> (Plan, Position) {
         let from = self.start.map(|axis| axis.rounded());
-        let start = Start::Rest(from);
+        let start = PlanStart::Rest(from);
         (Plan { start, ..self.plan }, from)
     }
 
@@ -178,7 +178,7 @@ impl Moving {
             match plan_line(1, from, to, ground()) {
                 Ok(plan) if plan.ticks() > 1 => {
                     return Self {
-                        start: from.map(Axis::at_rest),
+                        start: from.map(AxisState::at_rest),
                         at: random.up_to(plan.ticks() - 1),
                         plan,
                     };

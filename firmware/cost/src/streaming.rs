@@ -3,7 +3,7 @@
 use crate::random::Random;
 use crate::states::ground;
 use core::f64::consts::TAU;
-use firmware::motion::{Axis, Clock, Next, Position, Progress, Stream};
+use firmware::motion::{AxisState, Clock, PlanProgress, Position, Stream, StreamStep};
 
 const UNIT: f64 = 4_294_967_296.0;
 /// Seconds in which a path is brought to its rate.
@@ -17,7 +17,7 @@ pub struct Streaming {
     stream: Option<Stream>,
     id: u32,
     /// The axes at the start of the plan that the tick has begun.
-    pub state: [Axis; 3],
+    pub state: [AxisState; 3],
 }
 
 /// A circle, its centre and radius in track radii, turned by `rate` turns a second, and theta with it.
@@ -77,14 +77,14 @@ impl Streaming {
             let mut trial = stream.clone();
             trial.push(target, ground()).ok()?;
             let next = trial.next(self.id + 1, &self.progress(), ground());
-            if let Next::Send(plan, start) = &next {
+            if let StreamStep::Send(plan, start) = &next {
                 if self.id == plans {
                     self.stream = Some(stream);
                     return Some(target);
                 }
                 self.id += 1;
                 self.state = plan.state_after(start, 1);
-            } else if matches!(next, Next::Over(_)) {
+            } else if matches!(next, StreamStep::Over(_)) {
                 return None;
             }
             stream = trial;
@@ -93,8 +93,8 @@ impl Streaming {
     }
 
     /// The plan sent last has just begun.
-    fn progress(&self) -> Progress {
-        Progress {
+    fn progress(&self) -> PlanProgress {
+        PlanProgress {
             plan: self.id,
             tick: 1,
             moving: self.id > 0,
@@ -102,7 +102,7 @@ impl Streaming {
     }
 
     /// Takes a target, and makes the plan.
-    pub fn take(&mut self, target: Position) -> Option<Next> {
+    pub fn take(&mut self, target: Position) -> Option<StreamStep> {
         let progress = self.progress();
         let stream = self.stream.as_mut()?;
         stream.push(target, ground()).ok()?;

@@ -4,7 +4,7 @@ use super::Stage;
 use super::axis::{Axis, AxisValues};
 use super::moves::SLOWEST_MM_S;
 use crate::gcs::error::ErrorCode;
-use crate::motion::{Ground, Limits, Position};
+use crate::motion::{Constraints, Limits, Position};
 
 impl Stage {
     /// `VEL`: of each axis of the work frame, mm/s and deg/s; frozen axes have none but 0.
@@ -30,7 +30,7 @@ impl Stage {
     }
 
     /// What a line between two positions keeps to: no axis of the work frame is faster than `VEL` allows.
-    pub(super) fn ground_of_line(&self, from: &Position, to: &Position) -> Ground {
+    pub(super) fn ground_of_line(&self, from: &Position, to: &Position) -> Constraints {
         let [x, y] = [0, 1].map(|i| to[i].wrapping_sub(from[i]) as f64);
         let length = libm::hypot(x, y);
         let way = self.view.work.inverse().turned([x, y]);
@@ -39,11 +39,11 @@ impl Stage {
     }
 
     /// What a way of any shape keeps to: it may turn into any direction.
-    pub(super) fn ground_of_curve(&self) -> Ground {
+    pub(super) fn ground_of_curve(&self) -> Constraints {
         self.ground_with_shares([1.0; 2])
     }
 
-    fn ground_with_shares(&self, shares: [f64; 2]) -> Ground {
+    fn ground_with_shares(&self, shares: [f64; 2]) -> Constraints {
         let mut ground = self.ground();
         let Limits {
             speed_mm_s,

@@ -5,7 +5,7 @@ use super::{Flight, Stage};
 use crate::control::config::Config;
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::motion::{Ground, Limits};
+use crate::motion::{Constraints, Limits};
 use crate::parameters::Parameters;
 use crate::queues::{Command, CommandQueues};
 
@@ -41,7 +41,7 @@ impl Stage {
 
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
-        self.base = Ground::new(self.base.limits, parameters.geometry);
+        self.base = Constraints::new(self.base.limits, parameters.geometry);
         self.targets = parameters.targets;
         self.set_limits(parameters.limits);
     }

@@ -3,7 +3,7 @@
 use super::axis::{Axis, AxisValues};
 use super::frames::{Transform, View};
 use crate::gcs::error::ErrorCode;
-use crate::motion::{Ground, Position, check_target};
+use crate::motion::{Constraints, Position, check_target};
 use kinematics::{Angle, Geometry, direct};
 
 /// Coordinates in the order of [`Axis::ALL`], mm and deg.
@@ -66,7 +66,7 @@ pub(crate) fn position(
     target: &Coordinates,
     last: &Coordinates,
     view: &View,
-    ground: &Ground,
+    ground: &Constraints,
 ) -> Result<Position, ErrorCode> {
     let frozen = |axis: Axis| axis.component().is_none() && target[axis.index()] != 0.0;
     let point = view.point_of(target);

@@ -6,7 +6,7 @@ use super::frames::{Choice, FrameAction, FrameName, Frames, Kind, Transform, Vie
 use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::motion::{Centre, FURTHEST};
+use crate::motion::{MAX_CENTRE_OFFSET, RotationCentre};
 use crate::queues::{Command, CommandQueues};
 
 /// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells apart.
@@ -72,7 +72,7 @@ impl Stage {
         if self.is_faulted() {
             return Err(ErrorCode::MotionError);
         }
-        let most_arm_mm = FURTHEST * self.base.geometry.radius_mm;
+        let most_arm_mm = MAX_CENTRE_OFFSET * self.base.geometry.radius_mm;
         let view = self.frames.view(&choice, most_arm_mm)?;
         let target = self.seen_from(&view);
         let referenced = self.snapshot().is_some_and(|snapshot| snapshot.referenced);
@@ -83,7 +83,8 @@ impl Stage {
             self.take_frames(choice, view);
             return Ok(());
         }
-        let centre = Centre::new(self.radii(view.tool.origin())).ok_or(ErrorCode::OutOfRange)?;
+        let centre =
+            RotationCentre::new(self.radii(view.tool.origin())).ok_or(ErrorCode::OutOfRange)?;
         self.send(
             Command::Centre(centre),
             Flight::Frames(choice, view),

@@ -48,7 +48,7 @@ use crate::commander::soft_limits::SoftLimits;
 use crate::commander::wave::Waves;
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::motion::{Ahead, Ground, Limits, Position, Stop, Tries};
+use crate::motion::{Ahead, Constraints, Limits, Position, Stop, Tries};
 use crate::parameters::{Parameters, Targets};
 use crate::queues::{Command, CommandQueues, Snapshot};
 
@@ -60,7 +60,7 @@ const LOOK_AHEAD_MOST: u64 = 20_000;
 /// See the module.
 pub(crate) struct Stage {
     /// What plans keep to, without frames and soft limits: its disk takes long to compute.
-    base: Ground,
+    base: Constraints,
     /// Limits of the parameters: those of full system velocity.
     full: Limits,
     soft: SoftLimits,
@@ -123,7 +123,7 @@ enum Flight {
 impl Stage {
     pub fn new(parameters: &Parameters) -> Self {
         Self {
-            base: Ground::new(parameters.limits, parameters.geometry),
+            base: Constraints::new(parameters.limits, parameters.geometry),
             full: parameters.limits,
             soft: SoftLimits::new(),
             waves: Waves::new(),

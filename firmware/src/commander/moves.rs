@@ -43,7 +43,7 @@ impl Stage {
         let (Some(from), Some(to)) = (units(last[w]), units(target[w])) else {
             return;
         };
-        let turns = (self.targets.turn_direction.target(from, to) - to) >> 32;
+        let turns = (self.targets.turn_direction.resolve(from, to) - to) >> 32;
         target[w] += turns as f64 * 360.0;
     }
 

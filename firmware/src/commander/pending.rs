@@ -6,7 +6,7 @@ use super::sent_plan::{Course, Goal, code};
 use super::{Flight, Stage};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::motion::{Ground, NoTransition, Stop, Tries};
+use crate::motion::{Constraints, RetargetError, Stop, Tries};
 use crate::queues::{Command, CommandQueues};
 
 const DEGREES_A_TURN: f64 = 360.0;
@@ -103,9 +103,9 @@ impl Stage {
                 self.send_course(left, queues)?;
                 self.wanted = self.wanted.filter(|_| self.ahead.is_some());
             }
-            Err(NoTransition::Refused(refusal)) => return Err(code(&refusal)),
+            Err(RetargetError::Refused(refusal)) => return Err(code(&refusal)),
             Err(no) => {
-                self.rest_first = no == NoTransition::NeedsStop;
+                self.rest_first = no == RetargetError::NeedsStop;
                 if !stops {
                     self.stop_wanted = Some(Stop::Smooth);
                 }
@@ -160,10 +160,10 @@ impl Stage {
     }
 
     /// What plans keep to now.
-    pub(super) fn ground(&self) -> Ground {
+    pub(super) fn ground(&self) -> Constraints {
         let radius_mm = self.base.geometry.radius_mm;
         let mut ground = self.base;
-        ground.centre = self.radii(self.view.tool.origin());
+        ground.rotation_centre = self.radii(self.view.tool.origin());
         let [x, y] = self.view.zero;
         for (bounds, (axis, zero, per_unit)) in (ground.bounds.iter_mut()).zip([
             (Axis::X, x, radius_mm),

@@ -2,8 +2,8 @@
 
 use crate::gcs::error::ErrorCode;
 use crate::motion::{
-    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Refusal, Start, Stop, Tries,
-    plan_jog, plan_line, plan_stop, try_transition,
+    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, Refusal, RetargetError, Stop,
+    Tries, plan_jog, plan_line, plan_stop, try_retarget,
 };
 
 /// What a motion is for.
@@ -27,7 +27,7 @@ pub(crate) struct Course {
     /// Of a stop, how it brakes.
     pub stop: Option<Stop>,
     /// The three axes at its first tick.
-    start: [Axis; 3],
+    start: [AxisState; 3],
 }
 
 impl Course {
@@ -36,19 +36,23 @@ impl Course {
         id: u32,
         from: Position,
         goal: Goal,
-        ground: &Ground,
+        ground: &Constraints,
     ) -> Result<Self, ErrorCode> {
-        let start = from.map(Axis::at_rest);
+        let start = from.map(AxisState::at_rest);
         let plan = match goal {
             // It makes its plans itself.
             Goal::Stream => Err(ErrorCode::Busy),
             Goal::Place(to) => plan_line(id, from, to, ground).map_err(|refusal| code(&refusal)),
             Goal::Velocity(velocity) => {
-                plan_jog(id, Start::Rest(from), &start, &velocity, ground).map_err(|no| match no {
-                    NoTransition::Refused(refusal) => code(&refusal),
-                    // At rest there is nothing to stop.
-                    NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
-                })
+                plan_jog(id, PlanStart::Rest(from), &start, &velocity, ground).map_err(
+                    |no| match no {
+                        RetargetError::Refused(refusal) => code(&refusal),
+                        // At rest there is nothing to stop.
+                        RetargetError::NeedsStop | RetargetError::TooFast => {
+                            ErrorCode::PositionLimit
+                        }
+                    },
+                )
             }
         };
         Ok(Self {
@@ -60,7 +64,7 @@ impl Course {
     }
 
     /// A plan of a stream, from these axes.
-    pub const fn streamed(plan: Plan, start: [Axis; 3]) -> Self {
+    pub const fn streamed(plan: Plan, start: [AxisState; 3]) -> Self {
         Self {
             plan,
             goal: Goal::Stream,
@@ -76,10 +80,10 @@ impl Course {
         goal: Goal,
         id: u32,
         at: u64,
-        ground: &Ground,
+        ground: &Constraints,
         tries: &mut Tries,
         ahead: &mut Option<Ahead>,
-    ) -> Result<Self, NoTransition> {
+    ) -> Result<Self, RetargetError> {
         let mut next = Self {
             plan: Plan::default(),
             goal,
@@ -88,16 +92,16 @@ impl Course {
         };
         match goal {
             // It makes its plans itself.
-            Goal::Stream => Err(NoTransition::NeedsStop),
+            Goal::Stream => Err(RetargetError::NeedsStop),
             Goal::Place(to) => {
                 let (of, from) = (&self.plan, &self.start);
                 let leave = Leave { of, from, at };
-                try_transition(&mut next.plan, id, leave, to, ground, tries, ahead)
+                try_retarget(&mut next.plan, id, leave, to, ground, tries, ahead)
             }
             // A plan that has ended by then leaves nothing to leave.
-            Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
+            Goal::Velocity(_) if at >= self.plan.ticks() => Err(RetargetError::NeedsStop),
             Goal::Velocity(velocity) => {
-                let splice = Start::Splice {
+                let splice = PlanStart::Splice {
                     plan: self.plan.id,
                     tick: at,
                 };
@@ -113,9 +117,9 @@ impl Course {
         ahead: &Ahead,
         id: u32,
         at: u64,
-        ground: &Ground,
+        ground: &Constraints,
         tries: &mut Tries,
-    ) -> Result<Self, NoTransition> {
+    ) -> Result<Self, RetargetError> {
         Ok(Self {
             plan: ahead.go_on(id, at, ground, tries)?,
             start: self.plan.state_after(&self.start, at),
@@ -125,11 +129,11 @@ impl Course {
 
     /// Whether it takes over from another one in motion.
     pub fn is_splice(&self) -> bool {
-        matches!(self.plan.start, Start::Splice { .. })
+        matches!(self.plan.start, PlanStart::Splice { .. })
     }
 
     /// The stop that leaves this course at its tick `at`; `None` when it comes to rest by itself as soon.
-    pub fn stopped(&self, id: u32, at: u64, ground: &Ground, stop: Stop) -> Option<Self> {
+    pub fn stopped(&self, id: u32, at: u64, ground: &Constraints, stop: Stop) -> Option<Self> {
         Some(Self {
             plan: plan_stop(id, &self.plan, &self.start, at, ground, stop)?,
             start: self.plan.state_after(&self.start, at),
@@ -144,7 +148,7 @@ pub(crate) const fn code(refusal: &Refusal) -> ErrorCode {
     match refusal {
         Refusal::Velocity
         | Refusal::PivotRate { .. }
-        | Refusal::Limits
+        | Refusal::InvalidLimits
         | Refusal::Acceleration
         | Refusal::Jerk
         | Refusal::Pivots => ErrorCode::VelocityLimit,

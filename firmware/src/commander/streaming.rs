@@ -6,7 +6,9 @@ use super::sent_plan::{Course, Goal, code};
 use super::wave::Run;
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
-use crate::motion::{Clock, End, Next, NotTaken, PERIODS, Position, Progress, Stream};
+use crate::motion::{
+    Clock, PERIOD_RANGE, PlanProgress, Position, PushError, Stream, StreamEnd, StreamStep,
+};
 use crate::queues::CommandQueues;
 
 /// `SCT` at first.
@@ -33,7 +35,7 @@ impl Stage {
         if self.flow.is_some() {
             return Err(ErrorCode::InMotion);
         }
-        if !PERIODS.contains(&self.period(ms)) {
+        if !PERIOD_RANGE.contains(&self.period(ms)) {
             return Err(ErrorCode::OutOfRange);
         }
         self.cycle_ms = ms;
@@ -78,9 +80,9 @@ impl Stage {
         {
             match stream.push(to, &ground) {
                 Ok(()) => {}
-                Err(NotTaken::Full) => return Err(ErrorCode::StreamFull),
-                Err(NotTaken::Over) => return Err(ErrorCode::Busy),
-                Err(NotTaken::Refused(refusal)) => return Err(code(&refusal)),
+                Err(PushError::Full) => return Err(ErrorCode::StreamFull),
+                Err(PushError::Over) => return Err(ErrorCode::Busy),
+                Err(PushError::Refused(refusal)) => return Err(code(&refusal)),
             }
             flow.last = (to, now);
         }
@@ -118,8 +120,8 @@ impl Stage {
             return;
         };
         match self.next_of(&mut flow) {
-            Ok(Next::Wait) => self.flow = Some(flow),
-            Ok(Next::Send(plan, start)) => {
+            Ok(StreamStep::Wait) => self.flow = Some(flow),
+            Ok(StreamStep::Send(plan, start)) => {
                 // A queue that is full would be a plan that is lost.
                 match self.send_course(Course::streamed(plan, start), queues) {
                     Ok(()) => {
@@ -129,7 +131,7 @@ impl Stage {
                     Err(_) => self.lose_flow(),
                 }
             }
-            Ok(Next::Over(end)) => self.end_flow(&flow, end),
+            Ok(StreamStep::Over(end)) => self.end_flow(&flow, end),
             Err(code) => {
                 self.target_is_rest = true;
                 self.tell(code);
@@ -138,13 +140,13 @@ impl Stage {
     }
 
     /// Brings targets where generators make them, and asks the stream what is to be done.
-    fn next_of(&mut self, flow: &mut Flow) -> Result<Next, ErrorCode> {
+    fn next_of(&mut self, flow: &mut Flow) -> Result<StreamStep, ErrorCode> {
         let ground = self.ground();
         let (now, period) = (self.tick(), self.period(self.cycle_ms));
         if flow.stream.is_none() {
             let there = self.mode() == Mode::Holding && self.wanted.is_none();
             if !there {
-                return Ok(Next::Wait);
+                return Ok(StreamStep::Wait);
             }
             let period = f64::from(self.waves.ticks);
             flow.stream = Stream::new(self.setpoint(), period, Clock::Own);
@@ -154,13 +156,13 @@ impl Stage {
             return Err(ErrorCode::OutOfRange);
         };
         if let Some(run) = run {
-            while stream.room() > SPARE {
+            while stream.free_places() > SPARE {
                 let Some(target) = run.next(&self.waves) else {
                     stream.finish();
                     break;
                 };
                 let place = self.place_of(&target)?;
-                if let Err(NotTaken::Refused(refusal)) = stream.push(place, &ground) {
+                if let Err(PushError::Refused(refusal)) = stream.push(place, &ground) {
                     return Err(code(&refusal));
                 }
                 flow.last.0 = place;
@@ -170,9 +172,9 @@ impl Stage {
             stream.finish();
         }
         let Some(snapshot) = &self.snapshot else {
-            return Ok(Next::Wait);
+            return Ok(StreamStep::Wait);
         };
-        let progress = Progress {
+        let progress = PlanProgress {
             plan: snapshot.plan,
             tick: snapshot.plan_tick,
             moving: snapshot.mode == Mode::Moving,
@@ -181,7 +183,7 @@ impl Stage {
     }
 
     /// A stream is over. What dries up at rest, at its last target, has come to a good end.
-    fn end_flow(&mut self, flow: &Flow, end: End) {
+    fn end_flow(&mut self, flow: &Flow, end: StreamEnd) {
         let rest = match self.under_way() {
             Some((course, _)) if self.mode() == Mode::Moving => course.plan.end,
             _ => self.setpoint(),
@@ -192,10 +194,10 @@ impl Stage {
             self.target_is_rest = true;
         }
         match end {
-            End::Done => {}
-            End::Dry if there && flow.run.is_none() => {}
-            End::Dry => self.tell(ErrorCode::StreamDry),
-            End::Refused(refusal) => self.tell(code(&refusal)),
+            StreamEnd::Done => {}
+            StreamEnd::Starved if there && flow.run.is_none() => {}
+            StreamEnd::Starved => self.tell(ErrorCode::StreamDry),
+            StreamEnd::Refused(refusal) => self.tell(code(&refusal)),
         }
     }
 
@@ -210,7 +212,7 @@ impl Stage {
 
 /// Ticks without a target after which none is waited for any more.
 fn patience(stream: &Stream, period: f64) -> u64 {
-    stream.start_at() as u64 * period as u64
+    stream.targets_to_start() as u64 * period as u64
 }
 
 /// Room that is left in a stream that generators fill: they make targets as these are used, not long before.

@@ -4,7 +4,7 @@ use super::Stage;
 use super::axis::Axis;
 use super::wave::{WaveAction, Waves};
 use crate::gcs::error::ErrorCode;
-use crate::motion::{PERIODS, Stop};
+use crate::motion::{PERIOD_RANGE, Stop};
 use crate::queues::CommandQueues;
 
 impl Stage {
@@ -65,7 +65,7 @@ impl Stage {
                 Ok(())
             }
             WaveAction::Rate(ticks) => {
-                if !PERIODS.contains(&f64::from(*ticks)) {
+                if !PERIOD_RANGE.contains(&f64::from(*ticks)) {
                     return Err(ErrorCode::OutOfRange);
                 }
                 self.waves.ticks = *ticks;

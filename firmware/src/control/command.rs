@@ -1,7 +1,7 @@
 //! What the command side asks of the tick.
 
 use super::config::Config;
-use crate::motion::{Centre, Plan};
+use crate::motion::{Plan, RotationCentre};
 
 /// What the command side asks of the tick.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub enum Command {
     Move(Plan),
     /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or
     /// not; the platform does not move.
-    Centre(Centre),
+    Centre(RotationCentre),
     /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the
     /// encoders' readings mean; such a change takes the reference.
     Configure(Config),

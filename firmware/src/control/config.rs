@@ -4,7 +4,7 @@ use crate::control::encoder::EncoderConfig;
 use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
-use crate::motion::{Scale, Slowdown};
+use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
 /// The tick's constants.
@@ -13,13 +13,13 @@ pub struct Config {
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderConfig; 3],
     /// Setpoint integers to rates.
-    pub scale: Scale,
+    pub scale: SetpointScale,
     /// Servo.
     pub servo: ServoConfig,
     /// Supervision.
     pub limits: SupervisionConfig,
     /// The controlled stop of a fault.
-    pub slowdown: Slowdown,
+    pub fault_stop: FaultStop,
 }
 
 /// Thresholds in the tick's units.
@@ -75,7 +75,7 @@ impl Config {
             encoders: parameters
                 .encoders
                 .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),
-            scale: Scale::new(rate_hz),
+            scale: SetpointScale::new(rate_hz),
             servo: ServoConfig::new(parameters),
             limits: SupervisionConfig {
                 following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,
@@ -105,7 +105,7 @@ impl Config {
                     as u16,
                 rate_hz: rate_hz as f32,
             },
-            slowdown: Slowdown::new(supervision.stop_s, rate_hz),
+            fault_stop: FaultStop::new(supervision.stop_s, rate_hz),
         }
     }
 }

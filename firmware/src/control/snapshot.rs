@@ -4,7 +4,7 @@ use super::loop_counters::LoopCounters;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
 use crate::mode::Mode;
-use crate::motion::{Centre, Position};
+use crate::motion::{Position, RotationCentre};
 use kinematics::Angle;
 
 /// Slots of the snapshot queue: one snapshot waiting.
@@ -36,7 +36,7 @@ pub struct Snapshot {
     /// Setpoint of the point that is moved.
     pub setpoint: Position,
     /// That point.
-    pub centre: Centre,
+    pub centre: RotationCentre,
     /// Identity of the plan under way, or of the last one.
     pub plan: u32,
     /// Ticks of it that are done.

@@ -9,7 +9,7 @@ use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
 use crate::mode::Mode;
-use crate::motion::Motion;
+use crate::motion::PlanFollower;
 
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ pub struct State {
     pub(super) lost_pivot: Option<usize>,
     pub(super) referenced: bool,
     pub(super) encoders: [Encoder; 3],
-    pub(super) motion: Motion,
+    pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
     pub(super) settling: Settling,
     pub(super) supply: f32,

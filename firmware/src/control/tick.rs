@@ -59,7 +59,7 @@ pub fn tick(
     state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);
-    let setpoint = state.motion.centre().platform(&point);
+    let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
         state.drive(config, &setpoint, &mut pivots)
     } else {
@@ -127,8 +127,8 @@ fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -
 fn advance(config: &Config, state: &mut State) -> Setpoint {
     let motion = &mut state.motion;
     if state.mode == Mode::Stopping {
-        motion.advance_slower(&config.slowdown);
-        return motion.slowed_setpoint(&config.scale);
+        motion.advance_fault_stop(&config.fault_stop);
+        return motion.fault_stop_setpoint(&config.scale);
     }
     // With the servo off there is nothing under way.
     if matches!(state.mode, Mode::Holding | Mode::Moving) {
@@ -167,9 +167,9 @@ impl State {
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, wanted)?;
-        (self.settling).update(&config.limits, worst, self.motion.moving());
+        (self.settling).update(&config.limits, worst, self.motion.is_moving());
         self.loop_counters.observe_error(worst);
-        if self.mode != Mode::Holding && !self.motion.moving() {
+        if self.mode != Mode::Holding && !self.motion.is_moving() {
             self.finish_motion();
         }
         let (duty, sum) = self.step_servos(config, &errors, wanted);

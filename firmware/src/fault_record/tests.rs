@@ -2,12 +2,12 @@ use super::checked_words::CheckedEntries;
 use super::memory::LAYOUT_MAGIC;
 use super::*;
 use crate::mode::Mode;
-use crate::motion::Motion;
+use crate::motion::PlanFollower;
 use crate::recorder::{Sample, TickObserver};
 use core::sync::atomic::Ordering;
 
 fn sample(tick: u64, mode: Mode) -> Sample {
-    let setpoint = Motion::default().setpoint(&crate::motion::Scale::new(20_000.0));
+    let setpoint = PlanFollower::default().setpoint(&crate::motion::SetpointScale::new(20_000.0));
     Sample {
         tick,
         mode,

@@ -8,7 +8,7 @@ use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
 use firmware::gcs::{Identity, Panel, Session};
 use firmware::mode::Mode;
-use firmware::motion::{Motion, Scale, Setpoint};
+use firmware::motion::{PlanFollower, Setpoint, SetpointScale};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use firmware::recorder::Sample;
@@ -39,8 +39,8 @@ impl embedded_io::Write for Written {
 /// A tick without encoders and motors: pivots are where the setpoint puts them.
 pub struct FakeTick {
     queues: TickQueues<'static>,
-    motion: Motion,
-    scale: Scale,
+    motion: PlanFollower,
+    scale: SetpointScale,
     /// What the next snapshot says; tests set faults here.
     pub now: Snapshot,
     at_rest: u64,
@@ -66,7 +66,7 @@ impl FakeTick {
         let setpoint = self.motion.setpoint(&self.scale);
         let on = matches!(self.now.mode, Mode::Holding | Mode::Moving);
         if on {
-            self.now.mode = if self.motion.moving() {
+            self.now.mode = if self.motion.is_moving() {
                 Mode::Moving
             } else {
                 Mode::Holding
@@ -177,7 +177,7 @@ impl FakeTick {
         let units = |mm: f64| (mm / 100.0 * 4_294_967_296.0).round() as i64;
         let theta = Angle::from_degrees(theta_deg).unwrap().units();
         let platform = [units(x_mm), units(y_mm), theta];
-        let point = self.motion.centre().of_platform(&platform);
+        let point = self.motion.centre().from_platform(&platform);
         self.motion.rest_at(point);
     }
 
@@ -236,8 +236,8 @@ impl Bench {
             queues,
             tick: FakeTick {
                 queues: tick,
-                motion: Motion::default(),
-                scale: Scale::new(parameters.limits.rate_hz),
+                motion: PlanFollower::default(),
+                scale: SetpointScale::new(parameters.limits.rate_hz),
                 now: Snapshot::default(),
                 at_rest: 0,
                 log: Vec::new(),

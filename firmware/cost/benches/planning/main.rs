@@ -12,15 +12,16 @@
 
 mod reference;
 
-use std::hint::black_box;
-use std::time::Instant;
-
-use firmware::motion::{Axis, Motion, Next, Plan, Position, Scale, plan_line, plan_transition};
+use firmware::motion::{
+    AxisState, Plan, PlanFollower, Position, SetpointScale, StreamStep, plan_line, plan_retarget,
+};
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
 use firmware_cost::streaming::Streaming;
 use reference::asked;
 use rsruckig::prelude::*;
+use std::hint::black_box;
+use std::time::Instant;
 
 /// States after which it is the other's turn.
 const BLOCK: usize = 25;
@@ -50,7 +51,7 @@ fn main() {
         1,
         |random| {
             let (from, to) = way(random);
-            (from, to, asked(&from.map(Axis::at_rest), &to))
+            (from, to, asked(&from.map(AxisState::at_rest), &to))
         },
         |(from, to, _)| plan_line(3, *from, *to, ground()).is_ok(),
         |(.., input)| asks(input),
@@ -80,10 +81,10 @@ fn main() {
             input.target_velocity = input.current_velocity.clone();
             (streaming, to, input)
         },
-        |(streaming, to, _)| matches!(streaming.take(*to), Some(Next::Send(..))),
+        |(streaming, to, _)| matches!(streaming.take(*to), Some(StreamStep::Send(..))),
         |(.., input)| asks(input),
     );
-    let scale = Scale::new(ground().limits.rate_hz);
+    let scale = SetpointScale::new(ground().limits.rate_hz);
     run.compare(
         "next setpoint in the tick",
         TICKS,
@@ -93,7 +94,7 @@ fn main() {
                 motion.advance();
                 black_box(motion.setpoint(&scale));
             }
-            motion.moving()
+            motion.is_moving()
         },
         |(_, trajectory)| {
             for tick in 1..=TICKS {
@@ -170,14 +171,14 @@ impl Times {
 }
 
 /// A plan that the tick has taken, and rsruckig's from the same state to the same end.
-fn under_way(random: &mut Random) -> (Motion, Trajectory<3>) {
+fn under_way(random: &mut Random) -> (PlanFollower, Trajectory<3>) {
     loop {
         let now = Moving::new(random);
         let input = asked(&now.start, &now.plan.end);
         let mut trajectory = Trajectory::new(None);
         let planned = Reference::new(None, PERIOD_S).calculate(&input, &mut trajectory);
         let (plan, from): (Plan, _) = now.begun_at_rest();
-        let mut motion = Motion::default();
+        let mut motion = PlanFollower::default();
         motion.rest_at(from);
         if plan.ticks() > u64::from(TICKS) && planned.is_ok() && motion.accept(plan).is_ok() {
             return (motion, trajectory);
@@ -202,7 +203,7 @@ fn setpoint(trajectory: &Trajectory<3>, time_s: f64) -> [DataArrayOrVec<f64, 3>;
 
 /// All slices of a new target; whether there is a way to it without a stop before.
 fn retargeted(now: &Moving, to: Position) -> bool {
-    plan_transition(3, &now.plan, &now.start, now.at, to, ground()).is_ok()
+    plan_retarget(3, &now.plan, &now.start, now.at, to, ground()).is_ok()
 }
 
 /// A number from the environment.

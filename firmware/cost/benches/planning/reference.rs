@@ -1,11 +1,11 @@
 //! What rsruckig is asked for: the same as the planners, under the limits of the axes by themselves.
 
-use firmware::motion::{Axis, Position};
+use firmware::motion::{AxisState, Position};
 use firmware_cost::states::ground;
 use rsruckig::prelude::*;
 
 /// A state, a target to rest at, and the limits, in track radii, turns and seconds.
-pub fn asked(state: &[Axis; 3], to: &Position) -> InputParameter<3> {
+pub fn asked(state: &[AxisState; 3], to: &Position) -> InputParameter<3> {
     let limits = ground().limits;
     let mm = ground().geometry.radius_mm;
     let each = |translation: f64, rotation_deg: f64| {
@@ -29,7 +29,7 @@ pub fn asked(state: &[Axis; 3], to: &Position) -> InputParameter<3> {
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 const SMALL: f64 = 1.0 / 4_722_366_482_869_645_213_696.0;
 
-fn stack(state: &[Axis; 3], value: impl Fn(&Axis) -> f64) -> DataArrayOrVec<f64, 3> {
+fn stack(state: &[AxisState; 3], value: impl Fn(&AxisState) -> f64) -> DataArrayOrVec<f64, 3> {
     DataArrayOrVec::Stack(state.each_ref().map(value))
 }
 

@@ -246,7 +246,7 @@ impl PivotServo {
     #[inline]
     fn quantise(&mut self, counts: f32) -> Duty {
         let wanted = counts + self.rounding_residue;
-        let (whole, rounded) = number::round(wanted);
+        let (whole, rounded) = number::round_ties_even(wanted);
         self.rounding_residue = wanted - rounded;
         Duty(whole as i16)
     }

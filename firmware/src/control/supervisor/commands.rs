@@ -109,7 +109,7 @@ impl State {
     fn hold_at(&mut self, pose: &Pose<Fixed>) {
         let platform = position(pose);
         self.motion
-            .rest_at(self.motion.centre().of_platform(&platform));
+            .rest_at(self.motion.centre().from_platform(&platform));
         self.settling.start();
         self.set_radius_limit_from(&platform);
         self.reset_watches();

@@ -59,7 +59,7 @@ impl State {
             self.stop_ended_by = fault;
         }
         if mode == Mode::Stopping {
-            self.motion.begin_slowing();
+            self.motion.begin_fault_stop();
         }
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;

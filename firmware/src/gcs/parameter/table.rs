@@ -8,7 +8,7 @@ use super::{Kind, Parameter, Source, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::LONGEST_MS;
-use crate::motion::Way;
+use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
 
 /// What the parameters of a group share.
@@ -99,9 +99,14 @@ const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 /// Most points that a record of one word has room for.
 const ROWS: f64 = RECORDER_WORDS as f64;
 /// By their numbers.
-const WAYS: [Way; 4] = [Way::Literal, Way::Shortest, Way::Positive, Way::Negative];
+const WAYS: [TurnDirection; 4] = [
+    TurnDirection::AsGiven,
+    TurnDirection::Shortest,
+    TurnDirection::Positive,
+    TurnDirection::Negative,
+];
 
-fn way_number(way: Way) -> f64 {
+fn way_number(way: TurnDirection) -> f64 {
     let place = WAYS.iter().position(|&other| other == way);
     place.map_or(0.0, |place| place as f64)
 }

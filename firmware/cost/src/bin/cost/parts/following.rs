@@ -2,14 +2,14 @@
 
 use crate::bench::{Bench, no_result};
 use crate::table::CallResult;
-use firmware::motion::{Motion, Scale};
+use firmware::motion::{PlanFollower, SetpointScale};
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground};
 
 /// Counts taking a plan, and a tick of it.
 #[inline(never)]
 pub fn run(bench: &mut Bench) {
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     bench.part_with(
         "tick: a plan is taken",
         1,
@@ -25,13 +25,13 @@ pub fn run(bench: &mut Bench) {
             ticks: 0,
         },
     );
-    let scale = Scale::new(ground().limits.rate_hz);
+    let scale = SetpointScale::new(ground().limits.rate_hz);
     bench.part_with(
         "tick: next setpoint",
         Bench::SHORT,
         &mut motion,
         |motion, random| {
-            if !motion.moving() {
+            if !motion.is_moving() {
                 begin_one_of_short_pieces(motion, random);
             }
         },
@@ -44,7 +44,7 @@ pub fn run(bench: &mut Bench) {
 }
 
 /// Pieces of two ticks or fewer, so that many change.
-fn begin_one_of_short_pieces(motion: &mut Motion, random: &mut Random) {
+fn begin_one_of_short_pieces(motion: &mut PlanFollower, random: &mut Random) {
     let (mut plan, from) = Moving::new(random).begun_at_rest();
     for piece in &mut plan.pieces {
         piece.ticks = piece.ticks.min(2);

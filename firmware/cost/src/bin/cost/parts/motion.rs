@@ -2,7 +2,9 @@
 
 use crate::bench::Bench;
 use crate::table::CallResult;
-use firmware::motion::{Axis, Next, NoTransition, Plan, Start, Stop, plan_jog, plan_line};
+use firmware::motion::{
+    AxisState, Plan, PlanStart, RetargetError, Stop, StreamStep, plan_jog, plan_line,
+};
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
 use firmware_cost::streaming::Streaming;
@@ -39,8 +41,8 @@ pub fn run(bench: &mut Bench) {
         1,
         |random| (position(random), velocity(random)),
         |(from, velocity)| {
-            let state = from.map(Axis::at_rest);
-            plan_jog(3, Start::Rest(*from), &state, velocity, ground())
+            let state = from.map(AxisState::at_rest);
+            plan_jog(3, PlanStart::Rest(*from), &state, velocity, ground())
         },
         |_, plan| of_plan(plan.as_ref().ok()),
     );
@@ -68,14 +70,14 @@ pub fn run(bench: &mut Bench) {
 /// On at another velocity, or to a stop where that is no way.
 fn jog(now: &Moving, velocity: &[f64; 3]) -> Option<Plan> {
     let state = now.state();
-    let start = Start::Splice {
+    let start = PlanStart::Splice {
         plan: now.plan.id,
         tick: now.at,
     };
     match plan_jog(3, start, &state, velocity, ground()) {
         Ok(plan) => Some(plan),
-        Err(NoTransition::NeedsStop | NoTransition::TooFast) => now.stopped(Stop::Smooth),
-        Err(NoTransition::Refused(_)) => None,
+        Err(RetargetError::NeedsStop | RetargetError::TooFast) => now.stopped(Stop::Smooth),
+        Err(RetargetError::Refused(_)) => None,
     }
 }
 
@@ -111,7 +113,7 @@ pub fn run_stream(bench: &mut Bench) {
             |streaming, random| streaming.prepare(random, periods),
             |streaming, target| streaming.take(*target),
             |_, next| match next {
-                Some(Next::Send(plan, _)) => of_plan(Some(plan)),
+                Some(StreamStep::Send(plan, _)) => of_plan(Some(plan)),
                 _ => of_plan(None),
             },
         );

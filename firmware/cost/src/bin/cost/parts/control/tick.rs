@@ -9,7 +9,7 @@ use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::mode::Mode;
-use firmware::motion::{Axis, Centre, Ground, Plan, plan_line, plan_transition};
+use firmware::motion::{AxisState, Constraints, Plan, RotationCentre, plan_line, plan_retarget};
 use firmware::number::Fixed;
 use firmware::queues::{Command, CommandQueues, Queues, TickQueues};
 use firmware::recorder::{RawSignal, RecordSetup, RunningHash, Sample, TickObserver};
@@ -51,9 +51,9 @@ pub fn run(bench: &mut Bench, config: &Config) {
     let Some(queues) = cortex_m::singleton!(: Queues = Queues::new()) else {
         return;
     };
-    let other = Centre::new(OFF_CENTRE).unwrap_or_default();
+    let other = RotationCentre::new(OFF_CENTRE).unwrap_or_default();
     for (name, centre, records) in [
-        ("tick as a whole", Centre::PLATFORM, false),
+        ("tick as a whole", RotationCentre::PLATFORM, false),
         ("tick as a whole, centre of rotation", other, false),
         ("tick as a whole, recording 8 signals", other, true),
     ] {
@@ -67,7 +67,7 @@ fn led(
     config: &Config,
     queues: &mut Queues,
     name: &'static str,
-    centre: Centre,
+    centre: RotationCentre,
     records: bool,
 ) {
     let (tick_queues, mut panel) = queues.split();
@@ -80,11 +80,11 @@ fn led(
         recorder: Recorder::default(),
         panel,
         plan: Plan::default(),
-        start: [Axis::default(); 3],
+        start: [AxisState::default(); 3],
         centre,
         records,
-        ground: Ground {
-            centre: centre.point(),
+        ground: Constraints {
+            rotation_centre: centre.point(),
             ..*ground()
         },
         ticks: 0,
@@ -121,10 +121,10 @@ struct Control<'a> {
     panel: CommandQueues<'a>,
     /// The plan under way, or on its way to the tick, and where it starts.
     plan: Plan,
-    start: [Axis; 3],
-    centre: Centre,
+    start: [AxisState; 3],
+    centre: RotationCentre,
     records: bool,
-    ground: Ground,
+    ground: Constraints,
     ticks: u64,
 }
 
@@ -195,17 +195,17 @@ impl Control<'_> {
             return;
         };
         let from = sample.reference_point.position;
-        let to = self.centre.of_platform(&position(random));
+        let to = self.centre.from_platform(&position(random));
         let id = self.plan.id + 1;
         let planned = match sample.mode {
             Mode::Holding => {
                 self.record();
-                let start = from.map(Axis::at_rest);
+                let start = from.map(AxisState::at_rest);
                 plan_line(id, from, to, &self.ground).ok().zip(Some(start))
             }
             Mode::Moving if snapshot.plan == self.plan.id && random.once_in(RETARGETS) => {
                 let (plan, at) = (&self.plan, snapshot.plan_tick + AHEAD);
-                let next = plan_transition(id, plan, &self.start, at, to, &self.ground);
+                let next = plan_retarget(id, plan, &self.start, at, to, &self.ground);
                 next.ok()
                     .map(|next| (next, plan.state_after(&self.start, at)))
             }

@@ -1,23 +1,24 @@
-//! A quotient of numbers of 128 bits, without the library's division, which goes bit by bit: some 3,000 instructions on the chip.
+//! Products and quotients of numbers of up to 128 bits.
 //!
-//! A float's guess has 22 of its bits; what they leave is divided in turn.
+//! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A
+//! float's guess has 22 of its bits; what they leave is divided in turn.
 
-use crate::motion::plan::axis_state::times;
-use crate::number::float::{rough, rough_long};
+use super::float::{i64_to_f32_fast, i128_to_f32_fast};
 
 /// Guesses that 64 bits take.
 const ROUNDS: usize = 4;
-/// Exponent field of a float of 2^23, whose mantissa is the number; and the mantissa's bits, the first of which is not kept.
+/// Exponent field of a float of 2^23, whose mantissa is the number; and the mantissa's bits, the first of which is not
+/// kept.
 const WHOLE: i32 = 150;
 const MANTISSA: u32 = (1 << 23) - 1;
 
 /// `numerator` / `divisor` (positive), off by less than 2, and what it leaves. `None` if it has more than 62 bits.
 pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
     const MOST: f32 = (1_u64 << 62) as f32;
-    let over = 1.0 / rough_longest(divisor);
+    let over = 1.0 / any_i128_to_f32_fast(divisor);
     let (mut quotient, mut rest) = (0_i64, numerator);
     for _ in 0..ROUNDS {
-        let guess = rough_longest(rest) * over;
+        let guess = any_i128_to_f32_fast(rest) * over;
         // Nor is a NaN below it.
         if !(guess.abs() < MOST) {
             return None;
@@ -26,7 +27,7 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
         if part == 0 {
             break;
         }
-        let taken = times(divisor, part) << shift;
+        let taken = mul_i128_u32(divisor, part) << shift;
         let part = i64::from(part) << shift;
         if guess < 0.0 {
             rest += taken;
@@ -39,13 +40,32 @@ pub(crate) fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
     Some((quotient, rest))
 }
 
+/// The product.
+#[inline]
+pub(crate) fn mul_i64_u32(value: i64, factor: u32) -> i128 {
+    let low = u64::from(value as u32) * u64::from(factor);
+    let high = (value >> 32) * i64::from(factor) + (low >> 32) as i64;
+    (i128::from(high) << 32) | i128::from(low as u32)
+}
+
+/// The product modulo 2^128.
+#[inline]
+pub(crate) fn mul_i128_u32(value: i128, factor: u32) -> i128 {
+    let factor = u64::from(factor);
+    let (low, high) = (value as u64, (value >> 64) as u64);
+    let first = u64::from(low as u32) * factor;
+    let second = (low >> 32) * factor + (first >> 32);
+    let third = high.wrapping_mul(factor).wrapping_add(second >> 32);
+    (i128::from(third as i64) << 64) | i128::from(second << 32 | first & 0xFFFF_FFFF)
+}
+
 /// Any number as a float, to 22 bits.
-fn rough_longest(value: i128) -> f32 {
+fn any_i128_to_f32_fast(value: i128) -> f32 {
     const UPPER: f32 = 18_446_744_073_709_551_616.0;
     if (value >> 103) == (value >> 127) {
-        rough_long(value)
+        i128_to_f32_fast(value)
     } else {
-        rough((value >> 64) as i64) * UPPER
+        i64_to_f32_fast((value >> 64) as i64) * UPPER
     }
 }
 
@@ -62,7 +82,7 @@ fn split(value: f32) -> (u32, u32) {
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::line::quotient::*;
+    use crate::number::wide_integer::*;
 
     /// Numbers of all lengths, with bits all over.
     fn numbers(most: u32) -> impl Iterator<Item = i128> {

@@ -1,7 +1,7 @@
-//! Random grounds to plan on, and what can be commanded there.
+//! Random constraints to plan within, and what can be commanded there.
 
-use super::{GROUND, LIMITS, UNIT, at_rest};
-use firmware::motion::{Axis, Centre, Ground, Position};
+use super::{CONSTRAINTS, LIMITS, UNIT, at_rest};
+use firmware::motion::{AxisState, Constraints, Position, RotationCentre};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -30,8 +30,9 @@ pub fn velocities() -> impl Strategy<Value = Velocity> {
         })
 }
 
-/// Grounds with and without a centre of rotation beside the platform's, with and without bounds, with strong and weak drives.
-pub fn grounds() -> impl Strategy<Value = Ground> {
+/// Constraints with and without a centre of rotation beside the platform's, with and without bounds, with strong and
+/// weak drives.
+pub fn any_constraints() -> impl Strategy<Value = Constraints> {
     (
         0.0..0.8_f64,
         -PI..PI,
@@ -41,25 +42,25 @@ pub fn grounds() -> impl Strategy<Value = Ground> {
         0.0..=1.0_f64,
     )
         .prop_map(|(r, d, beside, bound, bounded, strength)| {
-            let mut ground = GROUND;
-            ground.limits.pivot_acceleration_rad_s2 *= 0.2 + 0.8 * strength;
-            ground.limits.pivot_rate_rad_s *= 0.4 + 0.6 * strength;
+            let mut constraints = CONSTRAINTS;
+            constraints.limits.pivot_acceleration_rad_s2 *= 0.2 + 0.8 * strength;
+            constraints.limits.pivot_rate_rad_s *= 0.4 + 0.6 * strength;
             if beside {
-                let centre = Centre::new([r * d.cos(), r * d.sin()]).expect("near");
-                ground.centre = centre.point();
+                let centre = RotationCentre::new([r * d.cos(), r * d.sin()]).expect("near");
+                constraints.rotation_centre = centre.point();
             }
             if bounded {
                 let units = (bound * UNIT) as i64;
-                ground.bounds = [[-units, units], [-units / 2, units], [-units, 3 * units]];
+                constraints.bounds = [[-units, units], [-units / 2, units], [-units, 3 * units]];
             }
-            ground
+            constraints
         })
 }
 
 /// Where the moved point is when the platform is at `platform`, as far as the bounds allow it.
-pub fn rest(platform: Position, ground: &Ground) -> Option<[Axis; 3]> {
-    let centre = Centre::new(ground.centre).expect("near");
-    let point = centre.of_platform(&platform);
-    let inside = (point.iter().zip(&ground.bounds)).all(|(at, b)| (b[0]..=b[1]).contains(at));
+pub fn rest(platform: Position, constraints: &Constraints) -> Option<[AxisState; 3]> {
+    let centre = RotationCentre::new(constraints.rotation_centre).expect("near");
+    let point = centre.from_platform(&platform);
+    let inside = (point.iter().zip(&constraints.bounds)).all(|(at, b)| (b[0]..=b[1]).contains(at));
     inside.then(|| at_rest(point))
 }

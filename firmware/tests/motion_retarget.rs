@@ -3,15 +3,21 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Ground, Motion, NoTransition, Plan, Position, Stop, plan_stop, plan_transition,
+    AxisState, Constraints, Plan, PlanFollower, Position, RetargetError, Stop, plan_retarget,
+    plan_stop,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::*;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 
-fn retarget(of: &Plan, from: &[Axis; 3], at: u64, to: Position) -> Result<Plan, NoTransition> {
-    plan_transition(of.id + 1, of, from, at, to, &GROUND)
+fn retarget(
+    of: &Plan,
+    from: &[AxisState; 3],
+    at: u64,
+    to: Position,
+) -> Result<Plan, RetargetError> {
+    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS)
 }
 
 /// A line and further targets, each with the part of the motion before after which it comes.
@@ -23,9 +29,9 @@ fn tours() -> impl Strategy<Value = ((Position, Position), Vec<(Position, f64)>)
 }
 
 /// Everything a plan that is followed from `start` has to keep, tick by tick.
-fn keeps_the_law(plan: &Plan, start: [Axis; 3]) -> Result<(), TestCaseError> {
+fn keeps_the_law(plan: &Plan, start: [AxisState; 3]) -> Result<(), TestCaseError> {
     let mut worst = Worst::default();
-    let end = worst.walk(plan, &start, &GROUND);
+    let end = worst.walk(plan, &start, &CONSTRAINTS);
     prop_assert!(
         worst.is_kept_but_for_a_thousandth(),
         "{worst:?} {start:?} {plan:?}"
@@ -50,7 +56,7 @@ proptest! {
                     prop_assert_eq!(next.end, to);
                     plan = next;
                 }
-                Err(NoTransition::NeedsStop) => {}
+                Err(RetargetError::NeedsStop) => {}
                 Err(refused) => prop_assert!(false, "{:?}", refused),
             }
         }
@@ -76,17 +82,17 @@ proptest! {
     }
 }
 
-/// The setpoint of a tour in the very code of the tick: no position, velocity or acceleration is ever off what the integers
-/// of one plan after the other give.
+/// The setpoint of a tour in the very code of the tick: no position, velocity or acceleration is ever off what the
+/// integers of one plan after the other give.
 #[test]
 fn the_tick_follows_a_tour_without_a_step() {
     let from = at(-50.0, 10.0, 0.2);
     let mut plan = line(from, at(60.0, 20.0, 1.0));
     let mut start = at_rest(from);
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     motion.rest_at(from);
     motion.accept(&plan).unwrap();
-    let scale = firmware::motion::Scale::new(LIMITS.rate_hz);
+    let scale = firmware::motion::SetpointScale::new(LIMITS.rate_hz);
     let mut random = 1_u64;
     for round in 0..40 {
         random = random
@@ -98,7 +104,14 @@ fn the_tick_follows_a_tour_without_a_step() {
         let leave = 1 + (part * 0.8 * plan.ticks() as f64) as u64;
         let next = match retarget(&plan, &start, leave, to) {
             Ok(next) => next,
-            Err(_) => match plan_stop(plan.id + 1, &plan, &start, leave, &GROUND, Stop::Smooth) {
+            Err(_) => match plan_stop(
+                plan.id + 1,
+                &plan,
+                &start,
+                leave,
+                &CONSTRAINTS,
+                Stop::Smooth,
+            ) {
                 Some(stop) => stop,
                 None => continue,
             },
@@ -124,12 +137,12 @@ fn the_tick_follows_a_tour_without_a_step() {
     for _ in 0..plan.ticks() {
         motion.advance();
     }
-    assert!(!motion.moving());
+    assert!(!motion.is_moving());
     assert_eq!(motion.position(), plan.end);
 }
 
-/// How good transitions are: where one is planned it is faster than stopping first, but for what an estimate of the line is
-/// off. Most of those that are not planned would not be.
+/// How good transitions are: where one is planned it is faster than stopping first, but for what an estimate of the
+/// line is off. Most of those that are not planned would not be.
 #[test]
 fn a_transition_is_the_rule_and_saves_time() {
     for (turns, most_refused) in [(2.0, 200), (0.02, 230)] {
@@ -164,7 +177,7 @@ fn durations_with_a_stop_for_one(turns: f64) -> (Vec<f64>, usize) {
             refused += 1;
             continue;
         };
-        let (rest, ticks) = match plan_stop(8, &plan, &start, leave, &GROUND, Stop::Smooth) {
+        let (rest, ticks) = match plan_stop(8, &plan, &start, leave, &CONSTRAINTS, Stop::Smooth) {
             Some(stop) => (stop.end, stop.ticks()),
             None => (plan.end, plan.ticks() - leave),
         };
@@ -182,7 +195,7 @@ fn a_target_outside_is_refused_with_the_reason() {
     assert!(
         matches!(
             result,
-            Err(NoTransition::Refused(
+            Err(RetargetError::Refused(
                 firmware::motion::Refusal::OutsideDisk { .. }
             ))
         ),
@@ -197,7 +210,7 @@ fn near_the_rim_and_the_bounds_it_needs_a_stop() {
     let plan = line(from, at(80.0, 0.0, 0.0));
     let late = plan.ticks() - 1_000;
     let result = retarget(&plan, &at_rest(from), late, at(70.0, 30.0, 0.0));
-    assert_eq!(result, Err(NoTransition::NeedsStop));
+    assert_eq!(result, Err(RetargetError::NeedsStop));
     let x = |mm: f64| (mm / GEOMETRY.radius_mm * UNIT) as i64;
     let plan_within = |highest: f64| {
         let bounds = [
@@ -207,15 +220,18 @@ fn near_the_rim_and_the_bounds_it_needs_a_stop() {
         ];
         let middle = plan.ticks() / 2;
         let back = at(-20.0, 30.0, 0.0);
-        plan_transition(
+        plan_retarget(
             8,
             &plan,
             &at_rest(from),
             middle,
             back,
-            &Ground { bounds, ..GROUND },
+            &Constraints {
+                bounds,
+                ..CONSTRAINTS
+            },
         )
     };
     assert!(plan_within(30.0).is_ok());
-    assert_eq!(plan_within(6.0), Err(NoTransition::NeedsStop));
+    assert_eq!(plan_within(6.0), Err(RetargetError::NeedsStop));
 }

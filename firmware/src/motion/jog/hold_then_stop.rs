@@ -1,9 +1,9 @@
 //! The end of a jog, of the point or of theta: a velocity held, and given up in three pieces.
 
-use super::super::plan::Piece;
+use crate::motion::plan::Piece;
 
 /// What is left of it from some tick on.
-pub(super) struct End {
+pub(super) struct HoldThenStop {
     /// Ticks of the part under way.
     left: u64,
     /// The part under way: 0 while the velocity is held, then each of the brake's; more at rest.
@@ -12,7 +12,7 @@ pub(super) struct End {
 
 const AT_REST: usize = 4;
 
-impl End {
+impl HoldThenStop {
     /// Of a velocity that is held for so many ticks, or of none.
     pub fn new(moves: bool, hold: u64) -> Self {
         Self {
@@ -22,7 +22,7 @@ impl End {
     }
 
     /// Ticks to the next change of this or of another; `None` when both are at rest.
-    pub fn soonest(&self, other: &Self) -> Option<u64> {
+    pub fn next_change(&self, other: &Self) -> Option<u64> {
         let left = |end: &Self| (end.part < AT_REST).then_some(end.left);
         match (left(self), left(other)) {
             (Some(one), Some(two)) => Some(one.min(two)),
@@ -36,7 +36,7 @@ impl End {
     }
 
     /// Lets time pass, to the next change at most.
-    pub fn go_on(&mut self, ticks: u64, brakes: &[Piece; 3]) {
+    pub fn advance(&mut self, ticks: u64, brakes: &[Piece; 3]) {
         if self.part < AT_REST {
             self.left -= ticks;
             if self.left == 0 {
