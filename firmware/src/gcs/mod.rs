@@ -41,6 +41,7 @@ mod execute;
 mod heartbeat;
 mod macros;
 mod monitor;
+mod output;
 mod parameter;
 mod parse;
 mod persistence;
@@ -85,6 +86,7 @@ use embedded_io::Write;
 use events::Events;
 use heartbeat::Heartbeat;
 use macros::{Macros, Recorded};
+use output::{Connected, Output, WriteFailed};
 use persistence::Keeping;
 use recorder::Desk;
 use replies::tell_reach;
@@ -184,10 +186,14 @@ impl Panel {
             session.monitor.look(snapshot);
         }
         self.tell_bad_news(session);
-        let result = self.handle(session, link, out);
+        let mut out = Connected::new(out);
+        let result = self.handle(session, link, &mut out);
         self.stage.carry_on(link);
         self.desk.carry_on(&self.parameters, &mut link.recorder);
-        result
+        match (result, out.error) {
+            (Err(WriteFailed), Some(error)) => Err(error),
+            _ => Ok(()),
+        }
     }
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
@@ -225,12 +231,12 @@ impl Panel {
         }
     }
 
-    fn handle<W: Write>(
+    fn handle(
         &mut self,
         session: &mut Session,
         link: &mut PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         loop {
             while self.carry_dump(session, link, out)?
                 || self.carry_history(session, link, out)?
@@ -280,13 +286,13 @@ impl Panel {
         request.map_err(|error| error.code)
     }
 
-    fn obey_byte<W: Write>(
+    fn obey_byte(
         &mut self,
         byte: u8,
         session: &mut Session,
         link: &mut PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let Some(request) = find_byte(byte) else {
             session.error = ErrorCode::UnknownCommand;
             return Ok(());
@@ -294,13 +300,13 @@ impl Panel {
         self.obey(request, session, link, out)
     }
 
-    fn obey<W: Write>(
+    fn obey(
         &mut self,
         request: Request,
         session: &mut Session,
         link: &mut PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         match request {
             Request::Nothing => {}
             Request::Ask(query) => self.answer(query, session, out)?,

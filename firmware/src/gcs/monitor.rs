@@ -5,13 +5,13 @@
 //! connection asked last, among the ticks that the panel has seen (on the host all of them).
 
 use super::Panel;
+use super::output::{Output, WriteFailed};
 use super::reply::Reply;
 use super::session::Session;
 use crate::commander::axis::Axis;
 use crate::control::config::UNITS_PER_RAD;
 use crate::mode::Mode;
 use crate::queues::Snapshot;
-use embedded_io::Write;
 
 /// Urad in a unit of a pivot's following error.
 const URAD_PER_UNIT: f32 = (1e6 / UNITS_PER_RAD) as f32;
@@ -65,11 +65,11 @@ impl Monitor {
 
 impl Panel {
     /// Answers `MON?`.
-    pub(super) fn monitor<W: Write>(
+    pub(super) fn monitor(
         &self,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let snapshot = self.stage.snapshot().cloned().unwrap_or_default();
         let mut reply = Reply::new(out);
         reply.line(format_args!("TICK={}", snapshot.tick))?;

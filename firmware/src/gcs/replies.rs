@@ -1,6 +1,7 @@
 //! Answering queries.
 
 use super::Panel;
+use super::output::{Output, WriteFailed};
 use super::parameter::{Address, Addresses, PARAMETERS, Parameter};
 use super::reply::{Reply, one_line};
 use super::request::{Property, Quantity, Query};
@@ -8,7 +9,6 @@ use super::session::Session;
 use super::table::COMMANDS;
 use crate::commander::axis::{Axis, AxisSet, AxisValues};
 use crate::commander::coordinates::Coordinates;
-use embedded_io::Write;
 
 /// What `CST?` answers.
 const STAGE_TYPE: &str = "XYT-1";
@@ -18,12 +18,12 @@ const STATUS_REFERENCED: u32 = 1 << 16;
 
 impl Panel {
     /// Answers a query about the controller as a whole.
-    pub(super) fn answer<W: Write>(
+    pub(super) fn answer(
         &mut self,
         query: Query,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         match query {
             Query::Identity => one_line(
                 out,
@@ -67,12 +67,12 @@ impl Panel {
     }
 
     /// Answers a query about axes, a line each.
-    pub(super) fn read<W: Write>(
+    pub(super) fn read(
         &self,
         quantity: Quantity,
         axes: AxisSet,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         if quantity == Quantity::Position {
             // The direct kinematics once for all axes.
@@ -92,12 +92,12 @@ impl Panel {
     }
 
     /// Answers a query about axes in words.
-    pub(super) fn tell<W: Write>(
+    pub(super) fn tell(
         &self,
         property: Property,
         axes: AxisSet,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for axis in axes.iter() {
             let text = match property {
@@ -110,11 +110,11 @@ impl Panel {
     }
 
     /// Answers `SPA?`.
-    pub(super) fn tell_parameters<W: Write>(
+    pub(super) fn tell_parameters(
         &self,
         addresses: &Addresses,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for &Address { item, id } in addresses.iter().flatten() {
             if let Some(parameter) = Parameter::find(id) {
@@ -134,11 +134,11 @@ impl Panel {
     }
 
     /// Answers `VMO?`.
-    pub(super) fn tell_reachable<W: Write>(
+    pub(super) fn tell_reachable(
         &self,
         values: &AxisValues,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         one_line(
             out,
             format_args!("{}", u8::from(self.stage.is_reachable(values))),
@@ -154,7 +154,7 @@ impl Panel {
     }
 
     /// The latched fault; without one the encoders that cannot be used, which will be the next question.
-    fn fault<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+    fn fault(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let Some(snapshot) = self.stage.snapshot() else {
             return one_line(out, format_args!("0 no fault"));
         };
@@ -183,11 +183,11 @@ impl Panel {
 }
 
 /// Answers `TRA?`: where the axes that were named come to.
-pub(super) fn tell_reach<W: Write>(
+pub(super) fn tell_reach(
     values: &AxisValues,
     end: &Coordinates,
-    out: &mut W,
-) -> Result<(), W::Error> {
+    out: &mut Output<'_>,
+) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     for axis in Axis::ALL {
         if values[axis.index()].is_some() {
@@ -197,7 +197,7 @@ pub(super) fn tell_reach<W: Write>(
     reply.end()
 }
 
-fn parameter_help<W: Write>(out: &mut W) -> Result<(), W::Error> {
+fn parameter_help(out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     reply.line(format_args!("The following parameters are there:"))?;
     for parameter in PARAMETERS {
@@ -207,7 +207,7 @@ fn parameter_help<W: Write>(out: &mut W) -> Result<(), W::Error> {
     reply.end()
 }
 
-fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {
+fn help(out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     reply.line(format_args!("The following commands are available:"))?;
     for entry in COMMANDS {
@@ -217,7 +217,7 @@ fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {
     reply.end()
 }
 
-fn axes<W: Write>(out: &mut W) -> Result<(), W::Error> {
+fn axes(out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     for axis in Axis::ALL {
         reply.line(format_args!("{}", axis.letter()))?;

@@ -1,16 +1,17 @@
 //! Replies, streamed: every line but the last ends in space LF, the last in LF alone.
 
+use super::output::{Output, WriteFailed};
 use core::fmt;
-use embedded_io::{Write, WriteFmtError};
+use embedded_io::WriteFmtError;
 
 /// A reply under way, of one line or several.
-pub(super) struct Reply<'w, W> {
-    out: &'w mut W,
+pub(super) struct Reply<'w> {
+    out: &'w mut Output<'w>,
     started: bool,
 }
 
-impl<'w, W: Write> Reply<'w, W> {
-    pub const fn new(out: &'w mut W) -> Self {
+impl<'w> Reply<'w> {
+    pub const fn new(out: &'w mut Output<'_>) -> Self {
         Self {
             out,
             started: false,
@@ -18,7 +19,7 @@ impl<'w, W: Write> Reply<'w, W> {
     }
 
     /// One more line.
-    pub fn line(&mut self, text: fmt::Arguments<'_>) -> Result<(), W::Error> {
+    pub fn line(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
         if self.started {
             self.out.write_all(b" \n")?;
         }
@@ -27,7 +28,7 @@ impl<'w, W: Write> Reply<'w, W> {
     }
 
     /// More of the last line.
-    pub fn more(&mut self, text: fmt::Arguments<'_>) -> Result<(), W::Error> {
+    pub fn more(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
         match self.out.write_fmt(text) {
             Err(WriteFmtError::Other(error)) => Err(error),
             // Nothing that is formatted here fails by itself.
@@ -36,13 +37,13 @@ impl<'w, W: Write> Reply<'w, W> {
     }
 
     /// The end of the last line.
-    pub fn end(self) -> Result<(), W::Error> {
+    pub fn end(self) -> Result<(), WriteFailed> {
         self.out.write_all(b"\n")
     }
 }
 
 /// A reply of one line.
-pub(super) fn one_line<W: Write>(out: &mut W, text: fmt::Arguments<'_>) -> Result<(), W::Error> {
+pub(super) fn one_line(out: &mut Output<'_>, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     reply.line(text)?;
     reply.end()

@@ -1,11 +1,11 @@
 //! Statistics of the loop, gathered from every snapshot: `LST?` tells them, `LST` starts them again.
 
 use super::Panel;
+use super::output::{Output, WriteFailed};
 use super::reply::Reply;
 use crate::control::config::UNITS_PER_RAD;
 use crate::control::loop_counters::Interval;
 use crate::queues::Snapshot;
-use embedded_io::Write;
 
 /// Since the start or since `LST`; the peak of the following error since it was told.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,7 +60,7 @@ impl Panel {
     }
 
     /// Answers `LST?`.
-    pub(super) fn tell_statistics<W: Write>(&mut self, out: &mut W) -> Result<(), W::Error> {
+    pub(super) fn tell_statistics(&mut self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let s = self.statistics;
         let mean = match s.ticks {
             0 => 0.0,

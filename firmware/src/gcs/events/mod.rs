@@ -9,13 +9,13 @@ mod words;
 pub use words::CAUSES;
 
 use super::Panel;
+use super::output::{Output, WriteFailed};
 use super::reply::Reply;
 use crate::fault::Fault;
 use crate::fault_record::{BlackBox, EVENTS};
 use crate::mode::Mode;
 use crate::queues::Snapshot;
 use core::fmt;
-use embedded_io::Write;
 use heapless::Deque;
 
 /// Something that happened.
@@ -216,7 +216,7 @@ impl fmt::Display for Event {
 
 impl Panel {
     /// Answers `EVT?`: number, tick and what has happened.
-    pub(super) fn tell_events<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+    pub(super) fn tell_events(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         let gone = self.events.count - self.events.kept.len() as u32;
         for (number, (tick, event)) in (gone + 1..).zip(&self.events.kept) {

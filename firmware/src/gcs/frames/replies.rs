@@ -5,19 +5,19 @@ use crate::commander::frames::{
     Enabled, Frame, FrameName, FrameQuery, Frames, Kind, ListItem, Transform,
 };
 use crate::gcs::error::ErrorCode;
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply::{Reply, one_line};
-use embedded_io::Write;
 
 /// Names of the centre of rotation's coordinates.
 const PIVOT_AXES: [char; 3] = ['R', 'S', 'T'];
 
 impl Frames {
     /// Answers a query; with an error number instead, and then nothing is written, when it asks for what is not there.
-    pub fn answer<W: Write>(
+    pub(in crate::gcs) fn answer(
         &self,
         query: FrameQuery,
-        out: &mut W,
-    ) -> Result<Result<(), ErrorCode>, W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<Result<(), ErrorCode>, WriteFailed> {
         let good = match query {
             FrameQuery::Enabled(name) | FrameQuery::Chains(name) | FrameQuery::List(name, _) => {
                 name.is_none_or(|name| self.knows(name))
@@ -74,7 +74,7 @@ impl Frames {
             .filter(move |other| name.is_none_or(|name| name == *other))
     }
 
-    fn tell_enabled<W: Write>(&self, name: FrameName, out: &mut W) -> Result<(), W::Error> {
+    fn tell_enabled(&self, name: FrameName, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let kind = if self.is_enabled(name) {
             self.kind(name).word()
         } else {
@@ -83,7 +83,7 @@ impl Frames {
         one_line(out, format_args!("{name}={kind}"))
     }
 
-    fn tell_all_enabled<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+    fn tell_all_enabled(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for name in self.names().filter(|&name| self.is_enabled(name)) {
             reply.line(format_args!("{name}={}", self.kind(name).word()))?;
@@ -91,7 +91,7 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_types<W: Write>(&self, wanted: Option<Kind>, out: &mut W) -> Result<(), W::Error> {
+    fn tell_types(&self, wanted: Option<Kind>, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for kind in Kind::ALL {
             let mut names = self.names();
@@ -106,7 +106,11 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_chains<W: Write>(&self, name: Option<FrameName>, out: &mut W) -> Result<(), W::Error> {
+    fn tell_chains(
+        &self,
+        name: Option<FrameName>,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for name in self.wanted(name) {
             reply.line(format_args!("{name}="))?;
@@ -118,12 +122,12 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_list<W: Write>(
+    fn tell_list(
         &self,
         name: Option<FrameName>,
         item: Option<ListItem>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let zero = Frame {
             name: FrameName::ZERO,
             kind: Kind::Directed,
@@ -156,12 +160,12 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_totals<W: Write>(
+    fn tell_totals(
         &self,
         start: Option<FrameName>,
         end: Option<FrameName>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for name in self.wanted(start) {
             let total = self
@@ -176,7 +180,7 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_pivot<W: Write>(&self, named: [bool; 3], out: &mut W) -> Result<(), W::Error> {
+    fn tell_pivot(&self, named: [bool; 3], out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let [r, s] = self.pivot();
         let all = named == [false; 3];
         let mut reply = Reply::new(out);

@@ -4,14 +4,13 @@ use super::state::lines;
 use super::{Failure, LINES, MacroRequest, Macros};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
+use crate::gcs::output::{Discard, Output, WriteFailed};
 use crate::gcs::reply::Reply;
 use crate::gcs::request::Condition;
 use crate::gcs::session::Session;
 use crate::gcs::text::{Name, Text};
 use crate::gcs::variables::{Locals, VariableRequest, text_of};
 use crate::queues::PanelLink;
-use core::convert::Infallible;
-use embedded_io::{ErrorType, Write};
 
 impl Macros {
     /// Whether a macro runs.
@@ -94,12 +93,12 @@ impl Macros {
 
 impl Panel {
     /// Carries out what is about macros; queries are answered.
-    pub(in crate::gcs) fn obey_macro<W: Write>(
+    pub(in crate::gcs) fn obey_macro(
         &mut self,
         request: &MacroRequest,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let result = match request {
             MacroRequest::Begin(name) => self.macros.begin(*name, self.stage.tick(), session),
             MacroRequest::End => self.macros.end(session),
@@ -123,7 +122,7 @@ impl Panel {
         Ok(())
     }
 
-    fn tell_macros<W: Write>(&self, request: &MacroRequest, out: &mut W) -> Result<(), W::Error> {
+    fn tell_macros(&self, request: &MacroRequest, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let macros = &self.macros;
         let mut reply = Reply::new(out);
         match request {
@@ -221,12 +220,12 @@ impl Panel {
     }
 
     /// Carries out what is about variables.
-    pub(in crate::gcs) fn obey_variables<W: Write>(
+    pub(in crate::gcs) fn obey_variables(
         &mut self,
         request: &VariableRequest,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let result = match request {
             VariableRequest::Set(name, value) => self.set_variable(name, *value, session),
             VariableRequest::Add(name, a, b) => {
@@ -258,11 +257,11 @@ impl Panel {
         self.variables.set(name, value, locals)
     }
 
-    fn tell_variables<W: Write>(
+    fn tell_variables(
         &self,
         names: &[Option<Name>],
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         let all = names.iter().all(Option::is_none);
         for (name, value) in self.variables.iter() {
@@ -286,7 +285,8 @@ impl Panel {
         let mut session = core::mem::take(&mut self.macros.session);
         self.tell_bad_news(&mut session);
         loop {
-            let Ok(()) = self.handle(&mut session, link, &mut Nowhere);
+            // Nothing that is thrown away fails.
+            let _ = self.handle(&mut session, link, &mut Discard);
             if !session.is_idle() || !self.macros.look_at_line(&mut session) {
                 break;
             }
@@ -307,7 +307,7 @@ impl Panel {
     }
 }
 
-fn tell_lines<W: Write>(text: &[u8], out: &mut W) -> Result<(), W::Error> {
+fn tell_lines(text: &[u8], out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     for line in lines(text) {
         // Only what could be printed was recorded.
@@ -315,21 +315,4 @@ fn tell_lines<W: Write>(text: &[u8], out: &mut W) -> Result<(), W::Error> {
         reply.line(format_args!("{line}"))?;
     }
     reply.end()
-}
-
-/// Where the answers of a macro's queries go.
-struct Nowhere;
-
-impl ErrorType for Nowhere {
-    type Error = Infallible;
-}
-
-impl Write for Nowhere {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
 }

@@ -7,10 +7,10 @@ use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::fault_record::{BlackBox, Row, Span};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::session::Session;
 use crate::queues::PanelLink;
 use core::fmt::{self, Write as _};
-use embedded_io::Write;
 use heapless::String;
 
 const COLUMNS: [&str; 17] = [
@@ -117,12 +117,12 @@ fn row_line(row: Option<&Row>, line: &mut String<LINE>) -> fmt::Result {
 
 impl Panel {
     /// Writes some more of the fault record that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn carry_history<W: Write>(
+    pub(in crate::gcs) fn carry_history(
         &self,
         session: &mut Session,
         link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<bool, W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<bool, WriteFailed> {
         let (Some(dump), Some(black_box)) = (&mut session.history, link.black_box) else {
             return Ok(false);
         };

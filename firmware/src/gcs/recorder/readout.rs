@@ -10,11 +10,11 @@ use super::options::{Channel, Row};
 use super::{Desk, HistoryDump, Record, RecordQuery, TableList, replies};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::session::Session;
 use crate::queues::PanelLink;
 use crate::recorder::{Cursor, PanelRecorder, TABLES};
 use core::fmt::{self, Write as _};
-use embedded_io::Write;
 use heapless::String;
 
 /// Longest line: eight numbers.
@@ -38,13 +38,13 @@ pub(in crate::gcs) struct Dump {
 
 impl Panel {
     /// Answers a question about the recorder, or begins to.
-    pub(in crate::gcs) fn tell_record<W: Write>(
+    pub(in crate::gcs) fn tell_record(
         &mut self,
         query: RecordQuery,
         session: &mut Session,
         link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let desk = &self.desk;
         match query {
             RecordQuery::Channels(tables) => desk.tell_channels(&tables, out),
@@ -71,12 +71,12 @@ impl Panel {
     }
 
     /// Writes some more of the answer that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn carry_dump<W: Write>(
+    pub(in crate::gcs) fn carry_dump(
         &self,
         session: &mut Session,
         link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<bool, W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<bool, WriteFailed> {
         let Some(dump) = &mut session.dump else {
             return Ok(false);
         };

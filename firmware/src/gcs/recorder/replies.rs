@@ -3,17 +3,17 @@
 use super::options::{OFF, OPTIONS, Source};
 use super::trigger::TRIGGERS;
 use super::{Desk, TableList};
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply::{Reply, one_line};
 use crate::recorder::{PanelRecorder, TABLES};
-use embedded_io::Write;
 
 impl Desk {
     /// `DRC?`
-    pub(super) fn tell_channels<W: Write>(
+    pub(super) fn tell_channels(
         &self,
         tables: &TableList,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for table in tables.iter() {
             let (source, option) = match self.tables[table].channel {
@@ -26,11 +26,11 @@ impl Desk {
     }
 
     /// `DRT?`
-    pub(super) fn tell_triggers<W: Write>(
+    pub(super) fn tell_triggers(
         &self,
         tables: &TableList,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let mut reply = Reply::new(out);
         for table in tables.iter() {
             let trigger = self.tables[table].trigger;
@@ -40,12 +40,12 @@ impl Desk {
     }
 
     /// `DRL?`: nothing for a table that is not in the record.
-    pub(super) fn tell_lengths<W: Write>(
+    pub(super) fn tell_lengths(
         &self,
         tables: &TableList,
         recorder: &PanelRecorder<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let rows = self.progress(recorder).rows;
         let mut reply = Reply::new(out);
         for table in tables.iter() {
@@ -57,18 +57,18 @@ impl Desk {
     }
 
     /// `RTR?`
-    pub(super) fn tell_rate<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+    pub(super) fn tell_rate(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         one_line(out, format_args!("{}", self.every))
     }
 }
 
 /// `TNR?`
-pub(super) fn tell_count<W: Write>(out: &mut W) -> Result<(), W::Error> {
+pub(super) fn tell_count(out: &mut Output<'_>) -> Result<(), WriteFailed> {
     one_line(out, format_args!("{TABLES}"))
 }
 
 /// `HDR?`: in the sections by which clients find their way in it.
-pub(super) fn tell_help<W: Write>(points: u32, out: &mut W) -> Result<(), W::Error> {
+pub(super) fn tell_help(points: u32, out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     reply.line(format_args!("#RecordOptions"))?;
     reply.line(format_args!("{OFF}=nothing is recorded"))?;

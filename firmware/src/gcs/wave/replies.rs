@@ -1,17 +1,17 @@
 //! What queries about tables and generators answer.
 
 use crate::commander::wave::{WaveQuery, Waves};
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply::{Reply, one_line};
-use embedded_io::Write;
 
 impl Waves {
     /// Answers a query; `going` says which generators run.
-    pub fn answer<W: Write>(
+    pub(in crate::gcs) fn answer(
         &self,
         query: WaveQuery,
         going: &[bool; 6],
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         match query {
             WaveQuery::Generators => one_line(out, format_args!("{}", self.generators.len())),
             WaveQuery::Mask => {
@@ -49,11 +49,11 @@ fn wanted(named: &[bool]) -> impl Iterator<Item = (usize, &bool)> {
 }
 
 /// A line of each generator.
-fn each<W: Write>(
+fn each(
     named: &[bool; 6],
-    out: &mut W,
+    out: &mut Output<'_>,
     value: impl Fn(usize) -> u32,
-) -> Result<(), W::Error> {
+) -> Result<(), WriteFailed> {
     let mut reply = Reply::new(out);
     for (generator, _) in wanted(named) {
         reply.line(format_args!("{}={}", generator + 1, value(generator)))?;
