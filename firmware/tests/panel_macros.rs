@@ -3,7 +3,9 @@
 mod panel_bench;
 
 use firmware::fault::FaultKind;
-use firmware::gcs::{DEPTH, LINES, MACRO_BYTES, MACROS, NAME_BYTES, TEXT_BYTES, VARIABLES};
+use firmware::gcs::{
+    LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MAX_VARIABLES, NAME_BYTES, TEXT_BYTES,
+};
 use panel_bench::Bench;
 
 /// Referenced, with these macros.
@@ -233,7 +235,7 @@ fn variables_are_set_added_to_and_forgotten() {
     );
     assert_eq!(bench.error_after("VAR D\nVAR C\nVAR B"), "0");
     assert_eq!(bench.say("VAR?\n"), "A=1.25\n");
-    for number in 1..VARIABLES {
+    for number in 1..MAX_VARIABLES {
         assert_eq!(bench.error_after(&format!("VAR N{number} {number}")), "0");
     }
     assert_eq!(bench.error_after("VAR MORE 1"), "601");
@@ -303,7 +305,7 @@ fn a_macro_that_starts_itself_comes_to_an_end() {
     finish(&mut bench);
     assert_eq!(
         bench.say("VAR? N\nMAC ERR?\n"),
-        format!("N={DEPTH}\nself 2=1000 <MAC START self>\n")
+        format!("N={MAX_CALL_DEPTH}\nself 2=1000 <MAC START self>\n")
     );
 }
 
@@ -444,7 +446,7 @@ fn an_endless_loop_holds_up_nobody() {
     let other = bench.connect();
     for (start, lines) in [
         ("MAC START jump", 2),
-        ("MAC NSTART count 4294967295", LINES),
+        ("MAC NSTART count 4294967295", LINES_PER_TICK),
     ] {
         assert_eq!(bench.error_after(&format!("VAR N 0\n{start}")), "0");
         bench.say("VAR N 0\n");
@@ -479,12 +481,12 @@ fn memory_is_bounded() {
     assert_eq!(bench.error_after(&line[..line.len() - 1]), "601");
     assert_eq!(bench.error_after("MAC END"), "601");
     assert_eq!(bench.say("MAC?\nMAC FREE?\n"), format!("\n{MACRO_BYTES}\n"));
-    for number in 0..MACROS {
+    for number in 0..MAX_MACROS {
         record(&mut bench, &format!("m{number}"), "MOV X 1");
     }
     assert_eq!(bench.error_after("MAC BEG more\nMOV X 1\nMAC END"), "601");
     record(&mut bench, "m3", "MOV X 2");
-    let used = MACROS * "MOV X 1\n".len();
+    let used = MAX_MACROS * "MOV X 1\n".len();
     assert_eq!(
         bench.say("MAC FREE?\n"),
         format!("{}\n", MACRO_BYTES - used)

@@ -281,7 +281,7 @@ proptest! {
             let [lowest, highest] = parameter.range;
             let value = lowest + (highest - lowest) * place;
             let value = if parameter.kind == Kind::Int { value.round() } else { value };
-            prop_assert_eq!(parameter.put(value, &mut parameters), Ok(()));
+            prop_assert_eq!(parameter.set(value, &mut parameters), Ok(()));
             prop_assert!(parameter.number(&parameters).is_some_and(f64::is_finite));
         }
         let config = format!("{:?}", Config::new(&parameters));

@@ -1,12 +1,12 @@
-//! What is commanded: checked as a whole, then sent or kept as a wish. All but [`Stage::stop`] and [`Stage::set_velocity`]
-//! are to be called only when [`Stage::present`] is known.
+//! What is commanded: checked as a whole, then sent or kept as a wish. All but [`Commander::stop`] and [`Commander::set_velocity`]
+//! are to be called only when [`Commander::current_snapshot`] is known.
 
 use super::axis::{Axis, AxisValues};
 use super::coordinates::{Coordinates, Travel, replaced, travel};
 use super::frames::Transform;
 use super::sent_plan::Goal;
 use super::soft_limits::SoftLimits;
-use super::{Flight, Stage};
+use super::{Commander, InFlight};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::Stop;
@@ -14,29 +14,29 @@ use crate::queues::{Command, PanelLink, Snapshot};
 use kinematics::Angle;
 
 /// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
-pub(super) const SLOWEST_MM_S: f64 = 1e-3;
+pub(super) const MIN_SPEED_MM_S: f64 = 1e-3;
 
-impl Stage {
+impl Commander {
     /// `MOV`: everything is checked before anything changes.
     pub fn move_to(
         &mut self,
         values: &AxisValues,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        self.aim(self.meant_by(&self.base_target(), values), link)
+        self.move_to_target(self.resolve_target(&self.base_target(), values), link)
     }
 
     /// The target that `MOV` means when `last` is the one before.
-    pub(super) fn meant_by(&self, last: &Coordinates, values: &AxisValues) -> Coordinates {
+    pub(super) fn resolve_target(&self, last: &Coordinates, values: &AxisValues) -> Coordinates {
         let mut target = replaced(last, values);
         if values[Axis::W.index()].is_some() {
-            self.turn_as_meant(last, &mut target);
+            self.apply_turn_direction(last, &mut target);
         }
         target
     }
 
     /// Changes W of a target by whole turns, as the parameter asks for: it may be the orientation only that is meant.
-    fn turn_as_meant(&self, last: &Coordinates, target: &mut Coordinates) {
+    fn apply_turn_direction(&self, last: &Coordinates, target: &mut Coordinates) {
         let w = Axis::W.index();
         let units = |deg: f64| Angle::from_degrees(deg).map(Angle::units);
         // What is no angle is refused later.
@@ -57,7 +57,7 @@ impl Stage {
         for (coordinate, value) in target.iter_mut().zip(values) {
             *coordinate += value.unwrap_or(0.0);
         }
-        self.aim(target, link)
+        self.move_to_target(target, link)
     }
 
     /// `MRT`: relative to the last target, along the axes of the tool as it is turned there.
@@ -77,22 +77,26 @@ impl Stage {
         self.move_by(&values, link)
     }
 
-    fn aim(&mut self, target: Coordinates, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    fn move_to_target(
+        &mut self,
+        target: Coordinates,
+        link: &mut PanelLink<'_>,
+    ) -> Result<(), ErrorCode> {
         self.check_ready()?;
         let from = self.setpoint();
-        let to = self.place_of(&target)?;
+        let to = self.position_of(&target)?;
         if self.targets.streamed {
             return self.stream(target, to);
         }
-        self.want(Goal::Place(to), link)?;
+        self.request_goal(Goal::Position(to), link)?;
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
-                self.moving.insert(axis);
+                self.moving_axes.insert(axis);
             }
         }
         self.target = target;
         self.target_is_rest = false;
-        self.jog = [0.0; 6];
+        self.jog_velocities = [0.0; 6];
         Ok(())
     }
 
@@ -101,12 +105,12 @@ impl Stage {
         if self.is_faulted() {
             return Err(ErrorCode::MotionError);
         }
-        if self.generators_going() != [false; 6] {
+        if self.running_generators() != [false; 6] {
             return Err(ErrorCode::GeneratorActive);
         }
         let held = matches!(self.mode(), Mode::Holding | Mode::Moving);
         let ready = |snapshot: &Snapshot| snapshot.referenced && held;
-        if self.present().is_some_and(ready) {
+        if self.current_snapshot().is_some_and(ready) {
             Ok(())
         } else {
             Err(ErrorCode::NotReady)
@@ -115,67 +119,67 @@ impl Stage {
 
     /// `STP`, `#24`, `HLT`.
     pub fn stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
-        if self.mode() != Mode::Moving && !self.motion_is_due() {
+        if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }
-        self.wanted = None;
-        self.flow = None;
-        self.jog = [0.0; 6];
+        self.pending_goal = None;
+        self.streaming = None;
+        self.jog_velocities = [0.0; 6];
         self.target_is_rest = true;
-        if self.stop_wanted != Some(Stop::Urgent) {
-            self.stop_wanted = Some(stop);
+        if self.pending_stop != Some(Stop::Urgent) {
+            self.pending_stop = Some(stop);
         }
-        self.carry_on(link);
+        self.advance_pending(link);
     }
 
     /// `SVO`. Before referencing there is no pose to hold: servo on is accepted, as clients send it first, and comes about
     /// with `FRF`.
     pub fn set_servo(&mut self, on: bool, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        let Some(snapshot) = self.present() else {
+        let Some(snapshot) = self.current_snapshot() else {
             return Err(ErrorCode::Busy);
         };
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(ErrorCode::MotionError),
             (true, Mode::Off) if snapshot.referenced => {
-                self.send(Command::Servo(true), Flight::Other, link)
+                self.send(Command::Servo(true), InFlight::Other, link)
             }
             (false, Mode::Holding | Mode::Moving) => {
-                self.send(Command::Servo(false), Flight::Other, link)
+                self.send(Command::Servo(false), InFlight::Other, link)
             }
             _ => Ok(()),
         }
     }
 
     /// `FLC`.
-    pub fn acknowledge(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn acknowledge_fault(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
         if self.mode() == Mode::Stopping {
             return Err(ErrorCode::InMotion);
         }
         if self.is_faulted() {
-            self.send(Command::Acknowledge, Flight::Other, link)?;
+            self.send(Command::Acknowledge, InFlight::Other, link)?;
         }
         Ok(())
     }
 
     /// Changes the soft limits; only by ones that leave the target inside.
-    pub fn set_soft(
+    pub fn set_soft_limits(
         &mut self,
         change: fn(&mut SoftLimits, &AxisValues, &Coordinates, &Travel) -> Result<(), ErrorCode>,
         values: &AxisValues,
     ) -> Result<(), ErrorCode> {
-        let limited = self.view.limited(&self.target);
-        let travel = travel(&self.view, &self.base.geometry);
-        change(&mut self.soft, values, &limited, &travel)
+        let limited = self.active_frames.travel_coordinates(&self.target);
+        let travel = travel(&self.active_frames, &self.base_constraints.geometry);
+        change(&mut self.soft_limits, values, &limited, &travel)
     }
 
     /// `VLS`: speed of the platform centre; rotation goes down with it in proportion, so that a slow move is slow in W too.
     pub fn set_velocity(&mut self, mm_s: f64) -> Result<(), ErrorCode> {
-        if !(SLOWEST_MM_S..=self.full.speed_mm_s).contains(&mm_s) {
+        if !(MIN_SPEED_MM_S..=self.full_limits.speed_mm_s).contains(&mm_s) {
             return Err(ErrorCode::VelocityLimit);
         }
-        self.base.limits.speed_mm_s = mm_s;
-        self.base.limits.turn_speed_deg_s =
-            self.full.turn_speed_deg_s * (mm_s / self.full.speed_mm_s);
+        self.base_constraints.limits.speed_mm_s = mm_s;
+        self.base_constraints.limits.turn_speed_deg_s =
+            self.full_limits.turn_speed_deg_s * (mm_s / self.full_limits.speed_mm_s);
         Ok(())
     }
 }

@@ -1,12 +1,12 @@
 //! Referencing: absolute encoders are given a moment to answer, then the tick takes theta and the turns from them.
 
-use super::{Flight, Stage};
+use super::{Commander, InFlight};
 use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::queues::{Command, PanelLink};
 
 /// Ticks that referencing waits for encoders that do not answer yet: they need some good frames in a row.
-const REFERENCE_PATIENCE: u64 = 40;
+const REFERENCING_TIMEOUT_TICKS: u64 = 40;
 
 /// How far referencing has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,10 +16,10 @@ pub enum Referencing {
     Failed(ErrorCode),
 }
 
-impl Stage {
+impl Commander {
     /// `FRF` begins: whether there is something to wait for.
-    pub fn begin_reference(&mut self, link: &mut PanelLink<'_>) -> Result<bool, ErrorCode> {
-        let Some(snapshot) = self.present() else {
+    pub fn begin_referencing(&mut self, link: &mut PanelLink<'_>) -> Result<bool, ErrorCode> {
+        let Some(snapshot) = self.current_snapshot() else {
             return Err(ErrorCode::Busy);
         };
         if self.is_faulted() {
@@ -32,29 +32,29 @@ impl Stage {
         if self.is_referencing() {
             return Err(ErrorCode::Busy);
         }
-        self.reference_until = self.tick() + REFERENCE_PATIENCE;
+        self.referencing_deadline = self.tick() + REFERENCING_TIMEOUT_TICKS;
         Ok(true)
     }
 
     /// `FRF` goes on: encoders are given a moment to answer, then the tick references.
-    pub fn reference(&mut self, link: &mut PanelLink<'_>) -> Referencing {
-        let Some(snapshot) = self.present() else {
+    pub fn poll_referencing(&mut self, link: &mut PanelLink<'_>) -> Referencing {
+        let Some(snapshot) = self.current_snapshot() else {
             return Referencing::Waiting;
         };
         let result = if matches!(snapshot.mode, Mode::Fault | Mode::Stopping) {
             Referencing::Failed(ErrorCode::MotionError)
         } else if snapshot.referenced {
             Referencing::Done
-        } else if snapshot.tick >= self.reference_until {
+        } else if snapshot.tick >= self.referencing_deadline {
             Referencing::Failed(ErrorCode::ReferencingFailed)
         } else {
             Referencing::Waiting
         };
         if result != Referencing::Waiting {
-            self.reference_until = 0;
+            self.referencing_deadline = 0;
         } else if snapshot.encoder_faults == [None; 3] {
             // A full queue, or pivots that are no pose yet: again at the next snapshot.
-            let _ = self.send(Command::Reference, Flight::Reference, link);
+            let _ = self.send(Command::Reference, InFlight::Reference, link);
         }
         result
     }

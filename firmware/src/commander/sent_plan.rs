@@ -10,7 +10,7 @@ use crate::motion::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Goal {
     /// Rest at a position.
-    Place(Position),
+    Position(Position),
     /// A velocity, kept as long as it can be: of x and y in the base frame (mm/s) and of theta (deg/s).
     Velocity([f64; 3]),
     /// What a stream's targets say.
@@ -19,7 +19,7 @@ pub(crate) enum Goal {
 
 /// A plan that was sent to the tick.
 #[derive(Clone, Debug)]
-pub(crate) struct Course {
+pub(crate) struct SentPlan {
     /// The plan.
     pub plan: Plan,
     /// What it is for; of a stop, what the motion before it was for.
@@ -30,24 +30,28 @@ pub(crate) struct Course {
     start: [Axis; 3],
 }
 
-impl Course {
+impl SentPlan {
     /// From rest at `from`.
     pub fn from_rest(
         id: u32,
         from: Position,
         goal: Goal,
-        ground: &Ground,
+        constraints: &Ground,
     ) -> Result<Self, ErrorCode> {
         let start = from.map(Axis::at_rest);
         let plan = match goal {
             // It makes its plans itself.
             Goal::Stream => Err(ErrorCode::Busy),
-            Goal::Place(to) => plan_line(id, from, to, ground).map_err(|refusal| code(&refusal)),
+            Goal::Position(to) => {
+                plan_line(id, from, to, constraints).map_err(|refusal| code(&refusal))
+            }
             Goal::Velocity(velocity) => {
-                plan_jog(id, Start::Rest(from), &start, &velocity, ground).map_err(|no| match no {
-                    NoTransition::Refused(refusal) => code(&refusal),
-                    // At rest there is nothing to stop.
-                    NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
+                plan_jog(id, Start::Rest(from), &start, &velocity, constraints).map_err(|no| {
+                    match no {
+                        NoTransition::Refused(refusal) => code(&refusal),
+                        // At rest there is nothing to stop.
+                        NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
+                    }
                 })
             }
         };
@@ -69,14 +73,14 @@ impl Course {
         }
     }
 
-    /// The way to another goal that leaves this course at its tick `at`, by the next of `tries`; what of it is not planned yet is
+    /// The way to another goal that leaves this sent_plan at its tick `at`, by the next of `tries`; what of it is not planned yet is
     /// left `ahead`.
-    pub fn left_for(
+    pub fn retargeted(
         &self,
         goal: Goal,
         id: u32,
         at: u64,
-        ground: &Ground,
+        constraints: &Ground,
         tries: &mut Tries,
         ahead: &mut Option<Ahead>,
     ) -> Result<Self, NoTransition> {
@@ -89,10 +93,10 @@ impl Course {
         match goal {
             // It makes its plans itself.
             Goal::Stream => Err(NoTransition::NeedsStop),
-            Goal::Place(to) => {
+            Goal::Position(to) => {
                 let (of, from) = (&self.plan, &self.start);
                 let leave = Leave { of, from, at };
-                try_transition(&mut next.plan, id, leave, to, ground, tries, ahead)
+                try_transition(&mut next.plan, id, leave, to, constraints, tries, ahead)
             }
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
@@ -101,37 +105,38 @@ impl Course {
                     plan: self.plan.id,
                     tick: at,
                 };
-                plan_jog(id, splice, &next.start, &velocity, ground).map(|plan| next.plan = plan)
+                plan_jog(id, splice, &next.start, &velocity, constraints)
+                    .map(|plan| next.plan = plan)
             }
         }?;
         Ok(next)
     }
 
-    /// What lies `ahead` of this course, which is its head, from tick `at` on.
-    pub fn gone_on(
+    /// What lies `ahead` of this sent_plan, which is its head, from tick `at` on.
+    pub fn continued(
         &self,
         ahead: &Ahead,
         id: u32,
         at: u64,
-        ground: &Ground,
+        constraints: &Ground,
         tries: &mut Tries,
     ) -> Result<Self, NoTransition> {
         Ok(Self {
-            plan: ahead.go_on(id, at, ground, tries)?,
+            plan: ahead.go_on(id, at, constraints, tries)?,
             start: self.plan.state_after(&self.start, at),
             ..*self
         })
     }
 
     /// Whether it takes over from another one in motion.
-    pub fn is_splice(&self) -> bool {
+    pub fn takes_over(&self) -> bool {
         matches!(self.plan.start, Start::Splice { .. })
     }
 
-    /// The stop that leaves this course at its tick `at`; `None` when it comes to rest by itself as soon.
-    pub fn stopped(&self, id: u32, at: u64, ground: &Ground, stop: Stop) -> Option<Self> {
+    /// The stop that leaves this sent_plan at its tick `at`; `None` when it comes to rest by itself as soon.
+    pub fn with_stop(&self, id: u32, at: u64, constraints: &Ground, stop: Stop) -> Option<Self> {
         Some(Self {
-            plan: plan_stop(id, &self.plan, &self.start, at, ground, stop)?,
+            plan: plan_stop(id, &self.plan, &self.start, at, constraints, stop)?,
             start: self.plan.state_after(&self.start, at),
             stop: Some(stop),
             goal: self.goal,

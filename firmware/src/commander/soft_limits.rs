@@ -1,6 +1,6 @@
 //! Soft limits of the axes: travel as the user narrows it.
 //!
-//! They hold for the commanded point as [`View::limited`](super::frames::View::limited) counts it: in the base frame's axes,
+//! They hold for the commanded point as ActiveFrames::travel_coordinates(super::frames::ActiveFrames::travel_coordinates) counts it: in the base frame's axes,
 //! whatever work frame is enabled. One that has not been set is where the travel ends.
 
 use super::axis::{Axis, AxisValues};
@@ -26,18 +26,18 @@ impl SoftLimits {
     }
 
     /// The same with another travel, which narrows them. `None` when it leaves nothing between them.
-    pub fn fitted(&self, travel: &Travel) -> Option<Self> {
-        let mut fitted = *self;
+    pub fn narrowed_to(&self, travel: &Travel) -> Option<Self> {
+        let mut narrowed_to = *self;
         for (i, [least, most]) in travel.iter().enumerate() {
             let outside = self.lowest[i].is_some_and(|lowest| lowest > *most)
                 || self.highest[i].is_some_and(|highest| highest < *least);
             if outside {
                 return None;
             }
-            fitted.lowest[i] = self.lowest[i].map(|lowest| lowest.max(*least));
-            fitted.highest[i] = self.highest[i].map(|highest| highest.min(*most));
+            narrowed_to.lowest[i] = self.lowest[i].map(|lowest| lowest.max(*least));
+            narrowed_to.highest[i] = self.highest[i].map(|highest| highest.min(*most));
         }
-        Some(fitted)
+        Some(narrowed_to)
     }
 
     /// Lowest and highest target of an axis.
@@ -50,7 +50,7 @@ impl SoftLimits {
     }
 
     /// What has been set for an axis and counts.
-    pub const fn set_range(&self, axis: Axis) -> [Option<f64>; 2] {
+    pub const fn active_range(&self, axis: Axis) -> [Option<f64>; 2] {
         let i = axis.index();
         if self.active[i] {
             [self.lowest[i], self.highest[i]]
@@ -60,9 +60,9 @@ impl SoftLimits {
     }
 
     /// Whether every axis of `limited` is inside.
-    pub fn allow(&self, limited: &Coordinates) -> bool {
+    pub fn contain(&self, limited: &Coordinates) -> bool {
         Axis::ALL.into_iter().all(|axis| {
-            let [lowest, highest] = self.set_range(axis);
+            let [lowest, highest] = self.active_range(axis);
             let value = limited[axis.index()];
             lowest.is_none_or(|lowest| lowest <= value)
                 && highest.is_none_or(|highest| value <= highest)
@@ -124,7 +124,7 @@ impl SoftLimits {
             let [lowest, highest] = wanted.range(axis, travel);
             least <= lowest && lowest <= highest && highest <= most
         });
-        if !good || !wanted.allow(limited) {
+        if !good || !wanted.contain(limited) {
             return Err(ErrorCode::SoftLimit);
         }
         *self = wanted;

@@ -1,31 +1,31 @@
 //! Waveforms: what changes tables and generators.
 
-use super::Stage;
+use super::Commander;
 use super::axis::Axis;
-use super::wave::{WaveAction, Waves};
+use super::wave::{WaveChange, Waveforms};
 use crate::gcs::error::ErrorCode;
 use crate::motion::{PERIODS, Stop};
 use crate::queues::PanelLink;
 
-impl Stage {
-    pub const fn waves(&self) -> &Waves {
+impl Commander {
+    pub const fn waves(&self) -> &Waveforms {
         &self.waves
     }
 
     /// `WAV`, `WCL`, `WSL`, `WGC`, `WTR`, `WGO`: what a generator reads does not change while it runs.
     pub fn change_waves(
         &mut self,
-        action: &WaveAction,
+        action: &WaveChange,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        if let WaveAction::Go(modes) = action {
+        if let WaveChange::Go(modes) = action {
             return self.switch_generators(modes, link);
         }
-        if self.generators_going() != [false; 6] {
+        if self.running_generators() != [false; 6] {
             return Err(ErrorCode::GeneratorActive);
         }
         match action {
-            WaveAction::Define {
+            WaveChange::Define {
                 table,
                 join,
                 length,
@@ -33,20 +33,20 @@ impl Stage {
             } => self
                 .waves
                 .define(usize::from(*table), *join, *length, *shape),
-            WaveAction::Points {
+            WaveChange::Points {
                 table,
                 join,
                 points,
             } => self
                 .waves
                 .define_points(usize::from(*table), *join, points.values()),
-            WaveAction::Clear(wanted) => {
+            WaveChange::Clear(wanted) => {
                 for (table, _) in wanted.iter().enumerate().filter(|(_, wanted)| **wanted) {
                     self.waves.clear(table);
                 }
                 Ok(())
             }
-            WaveAction::Select(tables) => {
+            WaveChange::Select(tables) => {
                 let frozen = |axis: Axis| {
                     axis.component().is_none() && tables[axis.index()].is_some_and(|t| t > 0)
                 };
@@ -58,20 +58,20 @@ impl Stage {
                 }
                 Ok(())
             }
-            WaveAction::Cycles(cycles) => {
+            WaveChange::Cycles(cycles) => {
                 for (generator, cycles) in self.waves.generators.iter_mut().zip(cycles) {
                     generator.cycles = cycles.unwrap_or(generator.cycles);
                 }
                 Ok(())
             }
-            WaveAction::Rate(ticks) => {
+            WaveChange::Rate(ticks) => {
                 if !PERIODS.contains(&f64::from(*ticks)) {
                     return Err(ErrorCode::OutOfRange);
                 }
                 self.waves.ticks = *ticks;
                 Ok(())
             }
-            WaveAction::Go(_) => Ok(()),
+            WaveChange::Go(_) => Ok(()),
         }
     }
 
@@ -80,10 +80,11 @@ impl Stage {
         modes: &[Option<u32>; 6],
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        let going = self.generators_going();
+        let running = self.running_generators();
         let starting = modes.map(|mode| mode == Some(1));
-        if going != [false; 6] {
-            let stops = (modes.iter().zip(going)).any(|(mode, going)| going && *mode == Some(0));
+        if running != [false; 6] {
+            let stops =
+                (modes.iter().zip(running)).any(|(mode, running)| running && *mode == Some(0));
             if starting != [false; 6] {
                 return Err(ErrorCode::GeneratorActive);
             }
@@ -101,6 +102,6 @@ impl Stage {
         if named.any(|(axis, starts)| starts && !has_wave(axis)) {
             return Err(ErrorCode::NoWave);
         }
-        self.run_waves(&starting, link)
+        self.start_generators(&starting, link)
     }
 }

@@ -22,7 +22,7 @@ pub enum ErrorCode {
     /// The velocity is out of its limits.
     VelocityLimit = 8,
     /// The centre of rotation can not be set: W is not a multiple of 360 deg, or a tool frame gives the centre.
-    PivotNotSettable = 9,
+    CentreNotSettable = 9,
     /// Stopped by command.
     Stopped = 10,
     /// No such axis.

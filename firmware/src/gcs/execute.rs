@@ -4,7 +4,7 @@ use super::error::ErrorCode;
 use super::events::Event;
 use super::request::Action;
 use super::session::{Awaited, Session, Wait};
-use super::{LONGEST_MS, Panel};
+use super::{MAX_DELAY_MS, Panel};
 use crate::commander::axis::{Axis, AxisValues};
 use crate::commander::soft_limits::SoftLimits;
 use crate::motion::Stop;
@@ -13,7 +13,7 @@ use crate::queues::PanelLink;
 impl Panel {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
     /// [`ErrorCode::Stopped`].
-    pub(super) fn act(
+    pub(super) fn perform(
         &mut self,
         action: Action,
         session: &mut Session,
@@ -21,50 +21,56 @@ impl Panel {
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
-                Some(on) => self.stage.set_servo(on, link),
+                Some(on) => self.commander.set_servo(on, link),
                 None => Ok(()),
             },
             // Whichever axes are named: the encoders give all of them at once.
             Action::Reference(_) => {
-                if self.stage.begin_reference(link)? {
+                if self.commander.begin_referencing(link)? {
                     self.wait(session, Awaited::Reference);
                 }
                 Ok(())
             }
-            Action::Move(values) => self.stage.move_to(&values, link),
+            Action::Move(values) => self.commander.move_to(&values, link),
             Action::MoveRelative(values) | Action::Step(values) => {
-                self.stage.move_by(&values, link)
+                self.commander.move_by(&values, link)
             }
             Action::Record(action) => {
-                (self.desk).change(&action, &mut self.parameters, &link.recorder)
+                (self.recorder_state).change(&action, &mut self.parameters, &link.recorder)
             }
-            Action::MoveInTool(values) => self.stage.move_in_tool(&values, link),
-            Action::CycleTime(ms) => self.stage.set_cycle_time(ms),
-            Action::Jog(values) => self.stage.jog(&values, link),
-            Action::AxisVelocity(values) => self.stage.set_axis_velocity(&values),
-            Action::Wave(action) => self.stage.change_waves(&action, link),
-            Action::Frame(action) => self.stage.change_frames(&action, link),
-            Action::SoftLowest(values) => self.stage.set_soft(SoftLimits::set_lowest, &values),
-            Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
-            Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
+            Action::MoveInTool(values) => self.commander.move_in_tool(&values, link),
+            Action::CycleTime(ms) => self.commander.set_cycle_time(ms),
+            Action::Jog(values) => self.commander.jog(&values, link),
+            Action::AxisVelocity(values) => self.commander.set_axis_velocity(&values),
+            Action::Wave(action) => self.commander.change_waves(&action, link),
+            Action::Frame(action) => self.commander.change_frames(&action, link),
+            Action::SoftLowest(values) => self
+                .commander
+                .set_soft_limits(SoftLimits::set_lowest, &values),
+            Action::SoftHighest(values) => self
+                .commander
+                .set_soft_limits(SoftLimits::set_highest, &values),
+            Action::SoftActive(values) => self
+                .commander
+                .set_soft_limits(SoftLimits::activate, &values),
             Action::Set(settings) => self.set(&settings, session, link),
-            Action::Keep(addresses) => {
-                self.keep(&addresses)?;
-                self.wait(session, Awaited::Kept);
+            Action::Store(addresses) => {
+                self.store_parameters(&addresses)?;
+                self.wait(session, Awaited::Stored);
                 Ok(())
             }
             Action::Recall(addresses) => self.recall(&addresses, link),
             Action::Level(level, password) => Self::set_level(session, level, password),
-            Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
+            Action::Velocity(mm_s) => self.commander.set_velocity(mm_s),
             Action::Stop => {
-                self.events.add(self.stage.tick(), Event::Stop);
+                self.events.add(self.commander.tick(), Event::Stop);
                 self.stop_all(Stop::Urgent, link);
                 Err(ErrorCode::Stopped)
             }
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => {
-                self.events.add(self.stage.tick(), Event::Halt);
-                self.stage.stop(Stop::Smooth, link);
+                self.events.add(self.commander.tick(), Event::Halt);
+                self.commander.stop(Stop::Smooth, link);
                 Err(ErrorCode::Stopped)
             }
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
@@ -73,12 +79,12 @@ impl Panel {
                 Ok(())
             }
             Action::Restart => self.restart(),
-            Action::Acknowledge => self.stage.acknowledge(link),
+            Action::Acknowledge => self.commander.acknowledge_fault(link),
             Action::Delay(ms) => {
-                if !(0.0..=LONGEST_MS).contains(&ms) {
+                if !(0.0..=MAX_DELAY_MS).contains(&ms) {
                     return Err(ErrorCode::OutOfRange);
                 }
-                let until = self.stage.tick() + self.stage.ticks(ms);
+                let until = self.commander.tick() + self.commander.ticks(ms);
                 self.wait(session, Awaited::Tick(until));
                 Ok(())
             }
@@ -95,12 +101,12 @@ impl Panel {
     pub(super) fn stop_all(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
         self.stops = self.stops.wrapping_add(1);
         self.macros.stop();
-        self.stage.stop(stop, link);
+        self.commander.stop(stop, link);
     }
 
     /// `RBT`: a stage in motion would be let go.
     fn restart(&mut self) -> Result<(), ErrorCode> {
-        if self.stage.is_under_way() {
+        if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
         }
         self.wants_restart = true;

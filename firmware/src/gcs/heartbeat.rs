@@ -9,7 +9,7 @@
 use super::error::ErrorCode;
 use super::events::Event;
 use super::session::Session;
-use super::{LONGEST_MS, Panel};
+use super::{MAX_DELAY_MS, Panel};
 use crate::motion::Stop;
 use crate::queues::PanelLink;
 
@@ -19,13 +19,13 @@ pub(super) const SHORTEST_MS: f64 = 10.0;
 /// See the module.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Heartbeat {
-    heard: u64,
+    last_heard_tick: u64,
     /// It has been silent for too long, and not heard since.
     is_silent: bool,
     /// Connections have promised to be heard, and they alone count.
     is_promised: bool,
     /// Times it was switched off: promises from before that are void.
-    round: u32,
+    generation: u32,
 }
 
 impl Panel {
@@ -35,41 +35,43 @@ impl Panel {
         ms: f64,
         session: &mut Session,
     ) -> Result<(), ErrorCode> {
-        if ms != 0.0 && !(SHORTEST_MS..=LONGEST_MS).contains(&ms) {
+        if ms != 0.0 && !(SHORTEST_MS..=MAX_DELAY_MS).contains(&ms) {
             return Err(ErrorCode::OutOfRange);
         }
-        for parameters in [&mut self.parameters, &mut self.parameters_before] {
+        for parameters in [&mut self.parameters, &mut self.previous_parameters] {
             parameters.supervision.host_silence_ms = ms;
         }
         let Heartbeat {
             mut is_promised,
-            mut round,
+            mut generation,
             ..
         } = self.heartbeat;
         if ms == 0.0 {
             is_promised = false;
-            round = round.wrapping_add(1);
+            generation = generation.wrapping_add(1);
         } else if !session.is_macro {
             is_promised = true;
-            session.promise = Some(round);
+            session.promised_generation = Some(generation);
         }
         self.heartbeat = Heartbeat {
-            heard: self.stage.tick(),
+            last_heard_tick: self.commander.tick(),
             is_silent: false,
             is_promised,
-            round,
+            generation,
         };
         Ok(())
     }
 
     /// Notes whether a connection has been heard.
-    pub(super) fn listen(&mut self, session: &mut Session) {
+    pub(super) fn note_activity(&mut self, session: &mut Session) {
         let Heartbeat {
-            is_promised, round, ..
+            is_promised,
+            generation,
+            ..
         } = self.heartbeat;
-        let counts = !is_promised || session.promise == Some(round);
-        if core::mem::take(&mut session.heard) && counts {
-            self.heartbeat.heard = self.stage.tick();
+        let counts = !is_promised || session.promised_generation == Some(generation);
+        if core::mem::take(&mut session.received_bytes) && counts {
+            self.heartbeat.last_heard_tick = self.commander.tick();
             self.heartbeat.is_silent = false;
         }
     }
@@ -77,16 +79,18 @@ impl Panel {
     /// Stops when the host has been silent for too long.
     pub(super) fn watch_heartbeat(&mut self, link: &mut PanelLink<'_>) {
         let Heartbeat {
-            heard, is_silent, ..
+            last_heard_tick,
+            is_silent,
+            ..
         } = self.heartbeat;
         let ms = self.parameters.supervision.host_silence_ms;
-        let tick = self.stage.tick();
-        if ms == 0.0 || is_silent || tick <= heard + self.stage.ticks(ms) {
+        let tick = self.commander.tick();
+        if ms == 0.0 || is_silent || tick <= last_heard_tick + self.commander.ticks(ms) {
             return;
         }
         self.heartbeat.is_silent = true;
-        self.events.add(tick, Event::Silent(ms));
+        self.events.add(tick, Event::HostSilent(ms));
         self.stop_all(Stop::Urgent, link);
-        self.stage.tell_all(ErrorCode::Stopped);
+        self.commander.report_error(ErrorCode::Stopped);
     }
 }

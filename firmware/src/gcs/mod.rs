@@ -5,8 +5,8 @@
 //! the replies:
 //!
 //! ```text
-//! bytes -> Session::receive -> line or single byte -> parse -> Request -> Stage -> Command -> tick
-//!                                                        \-> reply <- Stage <- Snapshot <----/
+//! bytes -> Session::receive -> line or single byte -> parse -> Request -> Commander -> Command -> tick
+//!                                                        \-> reply <- Commander <- Snapshot <----/
 //! ```
 //!
 //! | file | idea |
@@ -61,42 +61,42 @@ pub use events::CAUSES;
 
 pub use crate::commander::axis::{Axis, AxisSet, AxisValues};
 pub use error::ErrorCode;
-pub use macros::{DEPTH, LINES, MACRO_BYTES, MACROS, MacroRequest};
+pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};
 pub use parameter::{
-    ADDRESSES, Address, Addresses, Item, Kind, PARAMETERS, Parameter, Settings, When,
+    Address, Addresses, Item, Kind, MAX_ADDRESSES, PARAMETERS, Parameter, Settings, When,
 };
 
 pub use crate::commander::frames::{
-    FrameAction, FrameName, FrameQuery, Kind as FrameKind, ListItem, NAME_BYTES as FRAME_NAME_BYTES,
+    FRAME_NAME_BYTES, FrameChange, FrameKind, FrameName, FrameQuery, ListItem,
 };
-pub use crate::commander::wave::{Curve, Join, Shape, WaveAction, WavePoints, WaveQuery};
+pub use crate::commander::wave::{Curve, Join, Shape, WaveChange, WavePoints, WaveQuery};
 pub use parse::{ParseError, parse};
-pub use recorder::{Channel, RecordAction, RecordQuery, Source, TableList, Trigger};
+pub use recorder::{Channel, RecordAction, RecordQuery, SignalSource, TableList, Trigger};
 pub use request::{Action, Condition, Operand, Operator, Property, Quantity, Query, Request};
 pub use session::{LINE_BYTES, Session};
 pub use store_error::StoreError;
-pub use text::{NAME_BYTES, Name, Short, TEXT_BYTES, Text};
-pub use variables::{NAMED, VARIABLES, VariableRequest};
+pub use text::{FixedText, NAME_BYTES, Name, TEXT_BYTES, Text};
+pub use variables::{MAX_NAMED_VARIABLES, MAX_VARIABLES, VariableRequest};
 
-use crate::commander::{Referencing, Stage};
+use crate::commander::{Commander, Referencing};
 use crate::motion::Limits;
 use crate::parameters::Parameters;
 use crate::queues::PanelLink;
 use embedded_io::Write;
-use events::Events;
+use events::EventLog;
 use heartbeat::Heartbeat;
 use macros::{Macros, Recorded};
 use output::{Connected, Output, WriteFailed};
-use persistence::Keeping;
-use recorder::Desk;
-use replies::tell_reach;
-use session::{Awaited, Event};
+use persistence::Persistence;
+use recorder::RecorderState;
+use replies::reply_furthest_target;
+use session::{Awaited, InputItem};
 use statistics::Statistics;
 use table::find_byte;
 use variables::Variables;
 
 /// Longest time that a line can ask for: a day.
-const LONGEST_MS: f64 = 86_400_000.0;
+const MAX_DELAY_MS: f64 = 86_400_000.0;
 
 /// Who answers `*IDN?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,22 +112,22 @@ pub struct Panel {
     identity: Identity,
     parameters: Parameters,
     /// Those before they were set last, in case the tick refuses.
-    parameters_before: Parameters,
+    previous_parameters: Parameters,
     /// Limits of motion that the stage was set up for, and those that level 1 has set over them.
-    rated: Limits,
-    stage: Stage,
+    rated_limits: Limits,
+    commander: Commander,
     /// Why the controller started, if that is worth telling.
-    start: Option<&'static str>,
+    start_cause: Option<&'static str>,
     /// Times everything was stopped.
     stops: u32,
-    desk: Desk,
-    events: Events,
+    recorder_state: RecorderState,
+    events: EventLog,
     statistics: Statistics,
     heartbeat: Heartbeat,
     wants_restart: bool,
     macros: Macros,
     variables: Variables,
-    keeping: Keeping,
+    persistence: Persistence,
 }
 
 impl Panel {
@@ -136,32 +136,32 @@ impl Panel {
         Self {
             identity,
             parameters: parameters.clone(),
-            parameters_before: parameters.clone(),
-            rated: parameters.limits,
-            stage: Stage::new(parameters),
+            previous_parameters: parameters.clone(),
+            rated_limits: parameters.limits,
+            commander: Commander::new(parameters),
             stops: 0,
-            desk: Desk::new(),
-            events: Events::new(),
+            recorder_state: RecorderState::new(),
+            events: EventLog::new(),
             statistics: Statistics::default(),
             heartbeat: Heartbeat::default(),
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),
-            keeping: Keeping::new(parameters),
-            start: None,
+            persistence: Persistence::new(parameters),
+            start_cause: None,
         }
     }
 
     /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`. The black
     /// box knows the [`CAUSES`] alone.
     pub fn note_start(&mut self, cause: &'static str) {
-        self.start = Some(cause);
+        self.start_cause = Some(cause);
         self.events.note_start(cause);
     }
 
     /// The tick of the latest snapshot taken; 0 before the first.
     pub fn tick(&self) -> u64 {
-        self.stage.tick()
+        self.commander.tick()
     }
 
     /// Whether `RBT` has been given: the board is to start the controller again.
@@ -180,16 +180,17 @@ impl Panel {
         link: &mut PanelLink<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
-        self.listen(session);
+        self.note_activity(session);
         self.advance(link);
-        if let Some(snapshot) = self.stage.snapshot() {
-            session.monitor.look(snapshot);
+        if let Some(snapshot) = self.commander.snapshot() {
+            session.monitor.update(snapshot);
         }
-        self.tell_bad_news(session);
+        self.report_errors(session);
         let mut out = Connected::new(out);
         let result = self.handle(session, link, &mut out);
-        self.stage.carry_on(link);
-        self.desk.carry_on(&self.parameters, &mut link.recorder);
+        self.commander.advance_pending(link);
+        self.recorder_state
+            .send_pending_order(&self.parameters, &mut link.recorder);
         match (result, out.error) {
             (Err(WriteFailed), Some(error)) => Err(error),
             _ => Ok(()),
@@ -200,30 +201,33 @@ impl Panel {
     pub fn advance(&mut self, link: &mut PanelLink<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next call.
         if let Some(snapshot) = link.snapshot() {
-            self.events.take(&snapshot);
-            self.statistics.take(&snapshot);
-            self.stage.take(snapshot);
+            self.events.update(&snapshot);
+            self.statistics.update(&snapshot);
+            self.commander.update(snapshot);
         }
         if let Some(black_box) = link.black_box {
-            self.events.keep(black_box);
+            self.events.retain(black_box);
         }
-        self.take_back_if_refused();
-        self.stage.carry_on(link);
+        self.revert_if_refused();
+        self.commander.advance_pending(link);
         self.watch_heartbeat(link);
         self.run_macro(link);
     }
 
     /// A fault sets the error of every connection, once.
-    fn tell_bad_news(&self, session: &mut Session) {
-        let (count, code) = self.stage.news();
+    fn report_errors(&self, session: &mut Session) {
+        let (count, code) = self.commander.last_error();
         if session
-            .news
+            .errors_reported
             .replace(count)
             .is_some_and(|told| told != count)
         {
             session.error = code;
         }
-        let fault = self.stage.snapshot().and_then(|snapshot| snapshot.fault);
+        let fault = self
+            .commander
+            .snapshot()
+            .and_then(|snapshot| snapshot.fault);
         if let Some(fault) = fault
             && session.fault_tick.replace(fault.tick) != Some(fault.tick)
         {
@@ -238,26 +242,29 @@ impl Panel {
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         loop {
-            while self.carry_dump(session, link, out)?
-                || self.carry_history(session, link, out)?
+            while self.write_readout(session, link, out)?
+                || self.write_fault_record_readout(session, link, out)?
                 || self.is_waiting(session, link)
             {
                 let Some(byte) = session.take_single() else {
                     return Ok(());
                 };
-                self.obey_byte(byte, session, link, out)?;
+                self.execute_byte(byte, session, link, out)?;
             }
-            match session.next_event() {
+            match session.next_item() {
                 None => return Ok(()),
-                Some(Event::Byte(byte)) => self.obey_byte(byte, session, link, out)?,
-                Some(Event::Thrown(error)) => session.error = error,
-                Some(Event::Line) => match self.understand(session) {
-                    Ok(request) if request.needs_present() && self.stage.present().is_none() => {
+                Some(InputItem::Byte(byte)) => self.execute_byte(byte, session, link, out)?,
+                Some(InputItem::Discarded(error)) => session.error = error,
+                Some(InputItem::Line) => match self.parse_line(session) {
+                    Ok(request)
+                        if request.needs_current_snapshot()
+                            && self.commander.current_snapshot().is_none() =>
+                    {
                         return Ok(());
                     }
                     Ok(request) => {
                         session.finish_line();
-                        self.obey(request, session, link, out)?;
+                        self.execute(request, session, link, out)?;
                     }
                     Err(code) => {
                         session.finish_line();
@@ -269,11 +276,11 @@ impl Panel {
     }
 
     /// What the line of a connection asks for; nothing when it has become part of a macro.
-    fn understand(&mut self, session: &Session) -> Result<Request, ErrorCode> {
+    fn parse_line(&mut self, session: &Session) -> Result<Request, ErrorCode> {
         let line = session.line();
         if let Some(number) = session.recording {
-            let tick = self.stage.tick();
-            if let Recorded::Kept = self.macros.record(number, line, tick)? {
+            let tick = self.commander.tick();
+            if let Recorded::AddedToMacro = self.macros.record_line(number, line, tick)? {
                 return Ok(Request::Nothing);
             }
         }
@@ -286,7 +293,7 @@ impl Panel {
         request.map_err(|error| error.code)
     }
 
-    fn obey_byte(
+    fn execute_byte(
         &mut self,
         byte: u8,
         session: &mut Session,
@@ -297,10 +304,10 @@ impl Panel {
             session.error = ErrorCode::UnknownCommand;
             return Ok(());
         };
-        self.obey(request, session, link, out)
+        self.execute(request, session, link, out)
     }
 
-    fn obey(
+    fn execute(
         &mut self,
         request: Request,
         session: &mut Session,
@@ -309,34 +316,34 @@ impl Panel {
     ) -> Result<(), WriteFailed> {
         match request {
             Request::Nothing => {}
-            Request::Ask(query) => self.answer(query, session, out)?,
-            Request::Read(quantity, axes) => {
+            Request::Query(query) => self.reply_query(query, session, out)?,
+            Request::Quantity(quantity, axes) => {
                 if quantity == Quantity::Position {
-                    session.told = self.stage.pivots();
+                    session.reported_pivots = self.commander.pivots();
                 }
-                self.read(quantity, axes, out)?;
+                self.reply_quantity(quantity, axes, out)?;
             }
-            Request::Tell(property, axes) => self.tell(property, axes, out)?,
-            Request::Parameters(addresses) => self.tell_parameters(&addresses, out)?,
-            Request::Reachable(values) => self.tell_reachable(&values, out)?,
-            Request::Reach(values) => match self.stage.reach(&values) {
-                Some(end) => tell_reach(&values, &end, out)?,
+            Request::Property(property, axes) => self.reply_property(property, axes, out)?,
+            Request::Parameters(addresses) => self.reply_parameters(&addresses, out)?,
+            Request::Reachable(values) => self.reply_reachable(&values, out)?,
+            Request::FurthestTarget(values) => match self.commander.furthest_target(&values) {
+                Some(end) => reply_furthest_target(&values, &end, out)?,
                 None => session.error = ErrorCode::OutOfRange,
             },
-            Request::Macro(request) => self.obey_macro(&request, session, out)?,
-            Request::Variables(request) => self.obey_variables(&request, session, out)?,
-            Request::Record(query) => self.tell_record(query, session, link, out)?,
+            Request::Macro(request) => self.execute_macro(&request, session, out)?,
+            Request::Variables(request) => self.execute_variables(&request, session, out)?,
+            Request::Record(query) => self.reply_record(query, session, link, out)?,
             Request::Frames(query) => {
-                if let Err(code) = self.stage.frames().answer(query, out)? {
+                if let Err(code) = self.commander.frames().reply(query, out)? {
                     session.error = code;
                 }
             }
-            Request::Waves(query) => {
-                let going = self.stage.generators_going();
-                self.stage.waves().answer(query, &going, out)?;
+            Request::Waveforms(query) => {
+                let running = self.commander.running_generators();
+                self.commander.waves().reply(query, &running, out)?;
             }
             Request::Act(action) => {
-                if let Err(code) = self.act_announced(action, session, link) {
+                if let Err(code) = self.perform_announced(action, session, link) {
                     session.error = code;
                 }
             }
@@ -345,28 +352,32 @@ impl Panel {
     }
 
     /// Carries out an action; one that moves is announced to the recorder, for which it may be the trigger.
-    fn act_announced(
+    fn perform_announced(
         &mut self,
         action: Action,
         session: &mut Session,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        if !action.moves() {
-            return self.act(action, session, link);
+        if !action.starts_motion() {
+            return self.perform(action, session, link);
         }
         let step = matches!(action, Action::Step(_));
-        let (sent, parameters) = (self.stage.sent(), &self.parameters);
+        let (sent, parameters) = (self.commander.commands_sent(), &self.parameters);
         let recorder = &mut link.recorder;
-        let announced = (self.desk).announce(step, sent.wrapping_add(1), parameters, recorder)?;
-        let result = self.act(action, session, link);
+        let announced =
+            (self.recorder_state).announce(step, sent.wrapping_add(1), parameters, recorder)?;
+        let result = self.perform(action, session, link);
         let recorder = &mut link.recorder;
         match result {
             // Already there: nothing had to be sent.
-            Ok(()) if self.stage.sent() == sent && !self.stage.motion_is_due() => {
-                self.desk.confirm(announced, Some(sent), recorder);
+            Ok(())
+                if self.commander.commands_sent() == sent
+                    && !self.commander.is_motion_pending() =>
+            {
+                self.recorder_state.confirm(announced, Some(sent), recorder);
             }
-            Ok(()) => self.desk.confirm(announced, None, recorder),
-            Err(_) => self.desk.take_back(announced, recorder),
+            Ok(()) => self.recorder_state.confirm(announced, None, recorder),
+            Err(_) => self.recorder_state.revoke(announced, recorder),
         }
         result
     }
@@ -382,23 +393,24 @@ impl Panel {
             return false;
         }
         let over = match wait.what {
-            Awaited::Tick(tick) => self.stage.tick() >= tick,
+            Awaited::Tick(tick) => self.commander.tick() >= tick,
             // A fault ends it too: the condition may never come about, and the error has been set.
             Awaited::Condition(condition) => {
-                let holds = self.holds(&condition, session);
+                let holds = self.is_met(&condition, session);
                 if let Err(code) = holds {
                     session.error = code;
                 }
-                self.stage.present().is_some() && (self.stage.is_faulted() || holds.unwrap_or(true))
+                self.commander.current_snapshot().is_some()
+                    && (self.commander.is_faulted() || holds.unwrap_or(true))
             }
-            Awaited::Kept => match self.keeping.result() {
+            Awaited::Stored => match self.persistence.result() {
                 None => false,
                 Some(result) => {
                     session.error = result.err().unwrap_or(session.error);
                     true
                 }
             },
-            Awaited::Reference => match self.stage.reference(link) {
+            Awaited::Reference => match self.commander.poll_referencing(link) {
                 Referencing::Waiting => false,
                 Referencing::Done => true,
                 Referencing::Failed(code) => {
@@ -413,9 +425,9 @@ impl Panel {
         !over
     }
 
-    fn holds(&self, condition: &Condition, session: &Session) -> Result<bool, ErrorCode> {
+    fn is_met(&self, condition: &Condition, session: &Session) -> Result<bool, ErrorCode> {
         let left = match &condition.left {
-            Operand::Axis(quantity, axis) => self.stage.value(*quantity, *axis),
+            Operand::Axis(quantity, axis) => self.commander.value(*quantity, *axis),
             Operand::Variable(name) => {
                 let locals = self.macros.locals(session);
                 self.variables.number(name, locals)?

@@ -6,7 +6,7 @@
 
 use super::Panel;
 use super::output::{Output, WriteFailed};
-use super::reply::Reply;
+use super::reply::ReplyWriter;
 use super::session::Session;
 use crate::commander::axis::Axis;
 use crate::control::config::UNITS_PER_RAD;
@@ -42,20 +42,20 @@ pub(super) struct Monitor {
     /// The tick looked at last.
     tick: u64,
     /// The next tick begins new ranges.
-    told: bool,
+    starts_anew: bool,
     errors: [Range; 3],
     duties: [Range; 3],
 }
 
 impl Monitor {
     /// Takes what is known at a tick; the same one again changes nothing.
-    pub fn look(&mut self, snapshot: &Snapshot) {
+    pub fn update(&mut self, snapshot: &Snapshot) {
         if snapshot.tick == self.tick {
             return;
         }
-        let first = self.told || self.tick == 0;
+        let first = self.starts_anew || self.tick == 0;
         self.tick = snapshot.tick;
-        self.told = false;
+        self.starts_anew = false;
         for i in 0..3 {
             self.errors[i].widen(snapshot.pivot_errors[i], first);
             self.duties[i].widen(snapshot.duty[i].0.into(), first);
@@ -65,16 +65,16 @@ impl Monitor {
 
 impl Panel {
     /// Answers `MON?`.
-    pub(super) fn monitor(
+    pub(super) fn reply_monitor(
         &self,
         session: &mut Session,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
-        let snapshot = self.stage.snapshot().cloned().unwrap_or_default();
-        let mut reply = Reply::new(out);
+        let snapshot = self.commander.snapshot().cloned().unwrap_or_default();
+        let mut reply = ReplyWriter::new(out);
         reply.line(format_args!("TICK={}", snapshot.tick))?;
-        reply.line(format_args!("MODE={}", word(snapshot.mode)))?;
-        let pose = self.stage.platform();
+        reply.line(format_args!("MODE={}", mode_text(snapshot.mode)))?;
+        let pose = self.commander.platform_pose();
         for axis in [Axis::X, Axis::Y, Axis::W] {
             reply.line(format_args!("{}={:.6}", axis.letter(), pose[axis.index()]))?;
         }
@@ -91,12 +91,12 @@ impl Panel {
             let [low, high] = [range.lowest, range.highest].map(|v| v as f32 / counts);
             reply.line(format_args!("DUTY{number}={low:.5} {high:.5}"))?;
         }
-        session.monitor.told = true;
+        session.monitor.starts_anew = true;
         reply.end()
     }
 }
 
-const fn word(mode: Mode) -> &'static str {
+const fn mode_text(mode: Mode) -> &'static str {
     match mode {
         Mode::Off => "off",
         Mode::Holding => "holding",

@@ -2,8 +2,8 @@
 
 use super::error::ErrorCode;
 use super::macros;
-use super::parameter::{Address, Addresses, Item, PASSWORD, Parameter, Settings};
-use super::persistence::PASSWORD as PASSWORD_TO_KEEP;
+use super::parameter::{Address, Addresses, Item, LEVEL_PASSWORD, Parameter, Settings};
+use super::persistence::STORE_PASSWORD;
 use super::request::{Action, Condition, Operand, Operator, Query, Request};
 use super::scan::{Scanner, Word};
 use super::table::{Entry, Syntax, find, has_keywords};
@@ -58,9 +58,9 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
             request
         }
         Syntax::Own(parse) => parse(&mut scanner)?,
-        Syntax::Read(quantity) => Request::Read(quantity, axes(&mut scanner)?),
-        Syntax::Tell(property) => Request::Tell(property, axes(&mut scanner)?),
-        Syntax::AskValues(request) => request(values(&mut scanner)?),
+        Syntax::Quantity(quantity) => Request::Quantity(quantity, axes(&mut scanner)?),
+        Syntax::Property(property) => Request::Property(property, axes(&mut scanner)?),
+        Syntax::QueryValues(request) => request(values(&mut scanner)?),
         Syntax::Parameters => Request::Parameters(addresses(&mut scanner)?),
         Syntax::Settings(action) => Request::Act(action(settings(&mut scanner)?)),
         Syntax::Macro(syntax) => Request::Macro(macros::macro_request(syntax, &mut scanner)?),
@@ -87,18 +87,18 @@ fn two_words(name: &Word<'_>, keyword: Word<'_>) -> Result<&'static Entry, Parse
         return Ok(entry);
     }
     if !has_keywords(name.text) {
-        return Err(name.unfit(ErrorCode::UnknownCommand, "a command of those HLP? lists"));
+        return Err(name.error(ErrorCode::UnknownCommand, "a command of those HLP? lists"));
     }
     let code = if keyword.text.is_empty() {
         ErrorCode::ParameterCount
     } else {
         ErrorCode::MacroParameter
     };
-    Err(keyword.unfit(code, "a keyword, as HLP? lists them"))
+    Err(keyword.error(code, "a keyword, as HLP? lists them"))
 }
 
 impl Word<'_> {
-    pub(super) const fn unfit(&self, code: ErrorCode, expected: &'static str) -> ParseError {
+    pub(super) const fn error(&self, code: ErrorCode, expected: &'static str) -> ParseError {
         ParseError {
             code,
             column: self.column,
@@ -112,17 +112,17 @@ fn end(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
     if extra.text.is_empty() {
         return Ok(());
     }
-    Err(extra.unfit(ErrorCode::ParameterCount, "the end of the line"))
+    Err(extra.error(ErrorCode::ParameterCount, "the end of the line"))
 }
 
 /// `SCT`: T and ms.
 pub(super) fn cycle_time(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
     let word = scanner.next();
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, "T"));
+        return Err(word.error(ErrorCode::ParameterCount, "T"));
     }
     if !word.text.eq_ignore_ascii_case(b"T") {
-        return Err(word.unfit(ErrorCode::OutOfRange, "T"));
+        return Err(word.error(ErrorCode::OutOfRange, "T"));
     }
     Ok(Request::Act(Action::CycleTime(number(scanner.next())?)))
 }
@@ -132,10 +132,10 @@ pub(super) fn cycle_time_query(scanner: &mut Scanner<'_>) -> Result<Request, Par
     if !scanner.is_at_end() {
         let word = scanner.next();
         if !word.text.eq_ignore_ascii_case(b"T") {
-            return Err(word.unfit(ErrorCode::OutOfRange, "T"));
+            return Err(word.error(ErrorCode::OutOfRange, "T"));
         }
     }
-    Ok(Request::Ask(Query::CycleTime))
+    Ok(Request::Query(Query::CycleTime))
 }
 
 fn all(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
@@ -143,7 +143,7 @@ fn all(scanner: &mut Scanner<'_>) -> Result<(), ParseError> {
     if word.text.is_empty() || word.text.eq_ignore_ascii_case(b"ALL") {
         return Ok(());
     }
-    Err(word.unfit(ErrorCode::ParameterCount, "ALL or the end of the line"))
+    Err(word.error(ErrorCode::ParameterCount, "ALL or the end of the line"))
 }
 
 /// The axes named up to the end of the line; all when none is.
@@ -171,12 +171,12 @@ pub(super) fn values(scanner: &mut Scanner<'_>) -> Result<AxisValues, ParseError
 /// One axis, which `named` must not hold yet.
 pub(super) fn axis(word: Word<'_>, named: &mut AxisSet) -> Result<Axis, ParseError> {
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, "an axis"));
+        return Err(word.error(ErrorCode::ParameterCount, "an axis"));
     }
     let axis = Axis::named(word.text)
-        .ok_or_else(|| word.unfit(ErrorCode::InvalidAxis, "an axis: X, Y, Z, U, V or W"))?;
+        .ok_or_else(|| word.error(ErrorCode::InvalidAxis, "an axis: X, Y, Z, U, V or W"))?;
     if !named.insert(axis) {
-        return Err(word.unfit(ErrorCode::AxisTwice, "an axis that has not been named yet"));
+        return Err(word.error(ErrorCode::AxisTwice, "an axis that has not been named yet"));
     }
     Ok(axis)
 }
@@ -197,12 +197,12 @@ fn addresses(scanner: &mut Scanner<'_>) -> Result<Addresses, ParseError> {
 pub(super) fn keep(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
     let password = scanner.word();
     if password.text.is_empty() {
-        return Err(password.unfit(ErrorCode::ParameterCount, "a password"));
+        return Err(password.error(ErrorCode::ParameterCount, "a password"));
     }
-    if password.text != PASSWORD_TO_KEEP {
-        return Err(password.unfit(ErrorCode::Password, "the password"));
+    if password.text != STORE_PASSWORD {
+        return Err(password.error(ErrorCode::Password, "the password"));
     }
-    Ok(Request::Act(Action::Keep(addresses(scanner)?)))
+    Ok(Request::Act(Action::Store(addresses(scanner)?)))
 }
 
 /// Pairs of item and parameter; none stands for all.
@@ -216,7 +216,7 @@ fn settings(scanner: &mut Scanner<'_>) -> Result<Settings, ParseError> {
     for place in &mut settings {
         let (address, id) = address(scanner)?;
         if Parameter::find(address.id).is_some_and(Parameter::is_read_only) {
-            return Err(id.unfit(ErrorCode::ReadOnly, "a parameter that can be set"));
+            return Err(id.error(ErrorCode::ReadOnly, "a parameter that can be set"));
         }
         *place = Some((address, number(scanner.next())?));
         if scanner.is_at_end() {
@@ -230,27 +230,27 @@ fn settings(scanner: &mut Scanner<'_>) -> Result<Settings, ParseError> {
 fn address<'a>(scanner: &mut Scanner<'a>) -> Result<(Address, Word<'a>), ParseError> {
     let word = scanner.word();
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, "an item: 1 or an axis"));
+        return Err(word.error(ErrorCode::ParameterCount, "an item: 1 or an axis"));
     }
     let item = match word.text {
         b"1" => Some(Item::System),
         name => Axis::named(name).map(Item::Axis),
     };
-    let item = item.ok_or_else(|| word.unfit(ErrorCode::InvalidAxis, "an item: 1 or an axis"))?;
+    let item = item.ok_or_else(|| word.error(ErrorCode::InvalidAxis, "an item: 1 or an axis"))?;
     let id = scanner.word();
     if id.text.is_empty() {
-        return Err(id.unfit(ErrorCode::ParameterCount, "a parameter's number"));
+        return Err(id.error(ErrorCode::ParameterCount, "a parameter's number"));
     }
     let number = parameter_id(id.text)
-        .ok_or_else(|| id.unfit(ErrorCode::InvalidNumber, "a parameter's number"))?;
+        .ok_or_else(|| id.error(ErrorCode::InvalidNumber, "a parameter's number"))?;
     let parameter = Parameter::find(number).ok_or_else(|| {
-        id.unfit(
+        id.error(
             ErrorCode::UnknownParameter,
             "a parameter of those HPA? lists",
         )
     })?;
     if !parameter.belongs_to(item) {
-        return Err(word.unfit(ErrorCode::InvalidAxis, "an axis"));
+        return Err(word.error(ErrorCode::InvalidAxis, "an axis"));
     }
     Ok((Address { item, id: number }, id))
 }
@@ -261,7 +261,7 @@ fn level(scanner: &mut Scanner<'_>) -> Result<Action, ParseError> {
     let password = scanner.word();
     Ok(Action::Level(
         level,
-        password.text.eq_ignore_ascii_case(PASSWORD),
+        password.text.eq_ignore_ascii_case(LEVEL_PASSWORD),
     ))
 }
 
@@ -276,7 +276,7 @@ fn parameter_id(text: &[u8]) -> Option<u32> {
 
 pub(super) fn number(word: Word<'_>) -> Result<f64, ParseError> {
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, "a number"));
+        return Err(word.error(ErrorCode::ParameterCount, "a number"));
     }
     // `parse` knows "inf" and "nan" too, and makes an infinity of what is too large: neither is a position.
     core::str::from_utf8(word.text)
@@ -285,19 +285,19 @@ pub(super) fn number(word: Word<'_>) -> Result<f64, ParseError> {
         .filter(|value| value.is_finite())
         // Adding 0 turns -0 into 0.
         .map(|value| value + 0.0)
-        .ok_or_else(|| word.unfit(ErrorCode::InvalidNumber, "a number"))
+        .ok_or_else(|| word.error(ErrorCode::InvalidNumber, "a number"))
 }
 
 fn condition(scanner: &mut Scanner<'_>) -> Result<Condition, ParseError> {
     let left = operand(scanner)?;
     let operator = scanner.next();
     if operator.text.is_empty() {
-        return Err(operator.unfit(ErrorCode::ParameterCount, "an operator"));
+        return Err(operator.error(ErrorCode::ParameterCount, "an operator"));
     }
     Ok(Condition {
         left,
         operator: Operator::named(operator.text)
-            .ok_or_else(|| operator.unfit(ErrorCode::Syntax, "an operator: = != < <= > >="))?,
+            .ok_or_else(|| operator.error(ErrorCode::Syntax, "an operator: = != < <= > >="))?,
         value: number(scanner.next())?,
     })
 }
@@ -305,15 +305,15 @@ fn condition(scanner: &mut Scanner<'_>) -> Result<Condition, ParseError> {
 fn operand(scanner: &mut Scanner<'_>) -> Result<Operand, ParseError> {
     let word = scanner.next();
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, "a query"));
+        return Err(word.error(ErrorCode::ParameterCount, "a query"));
     }
     match find(word.text, b"").map(|entry| &entry.syntax) {
-        Some(Syntax::Read(quantity)) => {
+        Some(Syntax::Quantity(quantity)) => {
             let axis = axis(scanner.next(), &mut AxisSet::default())?;
             Ok(Operand::Axis(*quantity, axis))
         }
         Some(Syntax::Variables) => Ok(Operand::Variable(macros::variable(scanner)?)),
-        _ => Err(word.unfit(
+        _ => Err(word.error(
             ErrorCode::OutOfRange,
             "a query of an axis or a variable, such as ONT?",
         )),

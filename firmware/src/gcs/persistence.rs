@@ -14,43 +14,43 @@ use crate::parameters::RECORD_ROWS;
 use crate::queues::PanelLink;
 
 /// What `WPA` has to be given, so that nothing is overwritten by a slip.
-pub(super) const PASSWORD: &[u8] = b"100";
+pub(super) const STORE_PASSWORD: &[u8] = b"100";
 
 /// What is kept, and what is to be.
-pub(super) struct Keeping {
+pub(super) struct Persistence {
     /// The parameters that the controller has when nothing is kept.
-    own: Parameters,
+    defaults: Parameters,
     /// Those that are kept, or about to be.
-    kept: Parameters,
+    stored: Parameters,
     /// Somebody keeps settings.
-    has_keeper: bool,
+    has_store: bool,
     /// What was kept could not be used: `WPA` alone may overwrite it.
-    is_spoilt: bool,
+    stored_is_invalid: bool,
     /// `WPA` waits for its end, and what to go back to if it fails.
     before: Option<Parameters>,
     /// Macros have changed since they were kept.
-    macros: bool,
+    macros_changed: bool,
     /// What came of the last `WPA`.
     result: Result<(), ErrorCode>,
 }
 
-impl Keeping {
+impl Persistence {
     /// Nothing is kept.
     pub fn new(own: &Parameters) -> Self {
         Self {
-            own: own.clone(),
-            kept: own.clone(),
-            has_keeper: false,
-            is_spoilt: false,
+            defaults: own.clone(),
+            stored: own.clone(),
+            has_store: false,
+            stored_is_invalid: false,
             before: None,
-            macros: false,
+            macros_changed: false,
             result: Ok(()),
         }
     }
 
     /// The macros have changed.
-    pub const fn note_macros(&mut self) {
-        self.macros = true;
+    pub const fn mark_macros_changed(&mut self) {
+        self.macros_changed = true;
     }
 
     /// What came of `WPA`; nothing as long as it is under way.
@@ -64,14 +64,14 @@ impl Keeping {
 
 impl Panel {
     /// `WPA`: those named, or all parameters, as they are now, and the macros.
-    pub(super) fn keep(&mut self, addresses: &Addresses) -> Result<(), ErrorCode> {
-        self.check_keeper()?;
-        if self.keeping.before.is_some() {
+    pub(super) fn store_parameters(&mut self, addresses: &Addresses) -> Result<(), ErrorCode> {
+        self.check_store()?;
+        if self.persistence.before.is_some() {
             return Err(ErrorCode::Busy);
         }
-        let wanted = replaced(&self.keeping.kept, &self.parameters, addresses)?;
-        let before = core::mem::replace(&mut self.keeping.kept, wanted);
-        self.keeping.before = Some(before);
+        let wanted = replaced(&self.persistence.stored, &self.parameters, addresses)?;
+        let before = core::mem::replace(&mut self.persistence.stored, wanted);
+        self.persistence.before = Some(before);
         Ok(())
     }
 
@@ -81,19 +81,19 @@ impl Panel {
         addresses: &Addresses,
         link: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        self.check_keeper()?;
-        let wanted = replaced(&self.parameters, &self.keeping.kept, addresses)?;
-        self.permit_change(&wanted)?;
-        self.put_in_force(wanted, link)?;
-        self.events.add(self.stage.tick(), Event::Recalled);
+        self.check_store()?;
+        let wanted = replaced(&self.parameters, &self.persistence.stored, addresses)?;
+        self.check_change_allowed(&wanted)?;
+        self.apply_parameters(wanted, link)?;
+        self.events.add(self.commander.tick(), Event::Recalled);
         Ok(())
     }
 
-    fn check_keeper(&self) -> Result<(), ErrorCode> {
-        if !self.keeping.has_keeper {
+    fn check_store(&self) -> Result<(), ErrorCode> {
+        if !self.persistence.has_store {
             return Err(ErrorCode::NotForStage);
         }
-        if self.stage.is_under_way() {
+        if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
         }
         Ok(())
@@ -101,36 +101,38 @@ impl Panel {
 
     /// Somebody keeps settings from now on; `usable` says whether what was kept could be used.
     pub(crate) const fn keeps_settings(&mut self, usable: bool) {
-        self.keeping.has_keeper = true;
-        self.keeping.is_spoilt = !usable;
+        self.persistence.has_store = true;
+        self.persistence.stored_is_invalid = !usable;
     }
 
     /// Whether something waits to be kept, and can be.
     pub(crate) fn wants_to_be_kept(&self) -> bool {
-        let keeping = &self.keeping;
-        let macros = keeping.macros && !keeping.is_spoilt;
-        keeping.has_keeper && (keeping.before.is_some() || macros) && !self.stage.is_under_way()
+        let persistence = &self.persistence;
+        let macros = persistence.macros_changed && !persistence.stored_is_invalid;
+        persistence.has_store
+            && (persistence.before.is_some() || macros)
+            && !self.commander.is_motion_commanded()
     }
 
     /// What came of it.
     pub(crate) fn was_kept(&mut self, result: Result<(), StoreError>) {
-        let keeping = &mut self.keeping;
-        let asked_for = keeping.before.take();
-        keeping.macros = false;
-        keeping.result = match result {
+        let persistence = &mut self.persistence;
+        let asked_for = persistence.before.take();
+        persistence.macros_changed = false;
+        persistence.result = match result {
             Ok(()) => Ok(()),
             Err(StoreError::TooLong) => Err(ErrorCode::NoMemory),
             Err(StoreError::Flash) => Err(ErrorCode::FlashFailed),
         };
-        let code = keeping.result.err();
+        let code = persistence.result.err();
         match (code, asked_for) {
-            (None, _) => keeping.is_spoilt = false,
-            (Some(_), Some(before)) => keeping.kept = before,
+            (None, _) => persistence.stored_is_invalid = false,
+            (Some(_), Some(before)) => persistence.stored = before,
             // Who recorded the macro does not wait for it.
-            (Some(code), None) => self.stage.tell_all(code),
+            (Some(code), None) => self.commander.report_error(code),
         }
-        let event = code.map_or(Event::Kept, |code| Event::NotKept(code.number()));
-        self.events.add(self.stage.tick(), event);
+        let event = code.map_or(Event::Stored, |code| Event::StoreFailed(code.number()));
+        self.events.add(self.commander.tick(), event);
     }
 
     /// The parameters in force.
@@ -140,12 +142,12 @@ impl Panel {
 
     /// The parameters that are kept, or about to be.
     pub const fn parameters_to_keep(&self) -> &Parameters {
-        &self.keeping.kept
+        &self.persistence.stored
     }
 
     /// The parameters that the controller has when nothing is kept.
     pub const fn own_parameters(&self) -> &Parameters {
-        &self.keeping.own
+        &self.persistence.defaults
     }
 
     /// All macros, with their lines, each ended by LF.
@@ -154,20 +156,20 @@ impl Panel {
     }
 
     /// Starts with these parameters; `unknown` ones were kept besides.
-    pub(crate) fn take_kept_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
+    pub(crate) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
         recorder.points = recorder.points.min(RECORD_ROWS as u32);
         recorder.before = recorder.before.min(recorder.points - 1);
-        self.rated = parameters.limits;
-        self.stage.use_parameters(&parameters);
+        self.rated_limits = parameters.limits;
+        self.commander.use_parameters(&parameters);
         // Not refused: it is their own.
-        let _ = self.stage.set_velocity(parameters.limits.speed_mm_s);
+        let _ = self.commander.set_velocity(parameters.limits.speed_mm_s);
         self.parameters.clone_from(&parameters);
-        self.parameters_before.clone_from(&parameters);
-        self.keeping.kept = parameters;
+        self.previous_parameters.clone_from(&parameters);
+        self.persistence.stored = parameters;
         if unknown > 0 {
-            self.events.add(0, Event::Unknown(unknown));
+            self.events.add(0, Event::UnknownParameters(unknown));
         }
     }
 
@@ -200,7 +202,7 @@ fn replaced(
     for address in addresses.iter().flatten() {
         let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
         let value = parameter.number(others).ok_or(ErrorCode::ReadOnly)?;
-        parameter.put(value, &mut replaced)?;
+        parameter.set(value, &mut replaced)?;
     }
     if replaced.are_sound() {
         Ok(replaced)

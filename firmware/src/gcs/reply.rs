@@ -5,12 +5,12 @@ use core::fmt;
 use embedded_io::WriteFmtError;
 
 /// A reply under way, of one line or several.
-pub(super) struct Reply<'w> {
+pub(super) struct ReplyWriter<'w> {
     out: &'w mut Output<'w>,
     started: bool,
 }
 
-impl<'w> Reply<'w> {
+impl<'w> ReplyWriter<'w> {
     pub const fn new(out: &'w mut Output<'_>) -> Self {
         Self {
             out,
@@ -24,11 +24,11 @@ impl<'w> Reply<'w> {
             self.out.write_all(b" \n")?;
         }
         self.started = true;
-        self.more(text)
+        self.continue_line(text)
     }
 
     /// More of the last line.
-    pub fn more(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
+    pub fn continue_line(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
         match self.out.write_fmt(text) {
             Err(WriteFmtError::Other(error)) => Err(error),
             // Nothing that is formatted here fails by itself.
@@ -44,7 +44,7 @@ impl<'w> Reply<'w> {
 
 /// A reply of one line.
 pub(super) fn one_line(out: &mut Output<'_>, text: fmt::Arguments<'_>) -> Result<(), WriteFailed> {
-    let mut reply = Reply::new(out);
+    let mut reply = ReplyWriter::new(out);
     reply.line(text)?;
     reply.end()
 }

@@ -24,7 +24,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// What [`word`](Self::word) comes to next.
-    pub fn word_ahead(&self) -> Word<'a> {
+    pub fn peek_word(&self) -> Word<'a> {
         let Self { line, at } = *self;
         Self { line, at }.word()
     }

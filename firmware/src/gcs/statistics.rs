@@ -2,7 +2,7 @@
 
 use super::Panel;
 use super::output::{Output, WriteFailed};
-use super::reply::Reply;
+use super::reply::ReplyWriter;
 use crate::control::config::UNITS_PER_RAD;
 use crate::control::loop_counters::Interval;
 use crate::queues::Snapshot;
@@ -24,7 +24,7 @@ pub(super) struct Statistics {
 
 impl Statistics {
     /// Takes the next snapshot.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    pub fn update(&mut self, snapshot: &Snapshot) {
         let Interval {
             ticks,
             cycles,
@@ -60,14 +60,14 @@ impl Panel {
     }
 
     /// Answers `LST?`.
-    pub(super) fn tell_statistics(&mut self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    pub(super) fn reply_statistics(&mut self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let s = self.statistics;
         let mean = match s.ticks {
             0 => 0.0,
             ticks => s.cycles_sum as f64 / ticks as f64,
         };
         let peak_rad = f64::from(core::mem::take(&mut self.statistics.peak_error)) / UNITS_PER_RAD;
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         reply.line(format_args!("TICKS={}", s.ticks))?;
         reply.line(format_args!("CYCLES_LAST={}", s.cycles))?;
         reply.line(format_args!("CYCLES_MEAN={mean:.1}"))?;

@@ -8,7 +8,7 @@ use super::request::{Action, Condition, Property, Quantity, Query, Request};
 use super::scan::Scanner;
 use crate::commander::axis::{AxisSet, AxisValues};
 use crate::commander::frames;
-use crate::commander::frames::Kind;
+use crate::commander::frames::FrameKind;
 use crate::commander::wave;
 use crate::commander::wave::WaveQuery;
 
@@ -33,15 +33,15 @@ pub(super) enum Syntax {
     /// As this function understands it.
     Own(fn(&mut Scanner<'_>) -> Result<Request, ParseError>),
     /// Axes; none stands for all.
-    Read(Quantity),
+    Quantity(Quantity),
     /// Axes; none stands for all.
     Axes(fn(AxisSet) -> Action),
     /// Axes; none stands for all.
-    Tell(Property),
+    Property(Property),
     /// Pairs of axis and number.
     Values(fn(AxisValues) -> Action),
     /// Pairs of axis and number.
-    AskValues(fn(AxisValues) -> Request),
+    QueryValues(fn(AxisValues) -> Request),
     /// Pairs of item and parameter; none stands for all.
     Parameters,
     /// Triples of item, parameter and number.
@@ -69,11 +69,11 @@ const fn entry(name: &'static str, syntax: Syntax, help: &'static str) -> Entry 
 }
 
 const fn ask(name: &'static str, query: Query, help: &'static str) -> Entry {
-    entry(name, Syntax::Plain(Request::Ask(query)), help)
+    entry(name, Syntax::Plain(Request::Query(query)), help)
 }
 
 const fn read(name: &'static str, quantity: Quantity, help: &'static str) -> Entry {
-    entry(name, Syntax::Read(quantity), help)
+    entry(name, Syntax::Quantity(quantity), help)
 }
 
 const fn own(
@@ -93,18 +93,18 @@ pub(super) static COMMANDS: &[Entry] = &[
     byte(
         "#3",
         3,
-        Request::Read(Quantity::Position, AxisSet::ALL),
+        Request::Quantity(Quantity::Position, AxisSet::ALL),
         "get real position",
     ),
-    byte("#4", 4, Request::Ask(Query::Status), "get status"),
-    byte("#5", 5, Request::Ask(Query::Moving), "get motion status"),
+    byte("#4", 4, Request::Query(Query::Status), "get status"),
+    byte("#5", 5, Request::Query(Query::Moving), "get motion status"),
     byte(
         "#6",
         6,
-        Request::Ask(Query::Changed),
+        Request::Query(Query::Changed),
         "get axes whose position has changed since it was asked for",
     ),
-    byte("#7", 7, Request::Ask(Query::Ready), "is controller ready"),
+    byte("#7", 7, Request::Query(Query::Ready), "is controller ready"),
     byte(
         "#8",
         8,
@@ -114,7 +114,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     byte(
         "#9",
         9,
-        Request::Waves(WaveQuery::Mask),
+        Request::Waveforms(WaveQuery::Mask),
         "get wave generator status",
     ),
     byte("#24", 24, Request::Act(Action::Stop), "stop all axes"),
@@ -132,7 +132,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     ask("CCL?", Query::Level, "get command level"),
     entry(
         "CST?",
-        Syntax::Tell(Property::Stage),
+        Syntax::Property(Property::Stage),
         "[{<axis>}] get stage type",
     ),
     ask("CSV?", Query::Syntax, "get syntax version"),
@@ -249,7 +249,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("KRM", frames::remove, "<name> remove frame"),
     own(
         "KSD",
-        |scanner| frames::define(Kind::Directed, scanner),
+        |scanner| frames::define(FrameKind::Directed, scanner),
         "<name> {<axis> <value>} define directed frame",
     ),
     own(
@@ -259,12 +259,12 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "KST",
-        |scanner| frames::define(Kind::Tool, scanner),
+        |scanner| frames::define(FrameKind::Tool, scanner),
         "<name> {<axis> <value>} define tool frame",
     ),
     own(
         "KSW",
-        |scanner| frames::define(Kind::Work, scanner),
+        |scanner| frames::define(FrameKind::Work, scanner),
         "<name> {<axis> <value>} define work frame",
     ),
     read(
@@ -382,7 +382,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     read("POS?", Quantity::Position, "[{<axis>}] get real position"),
     entry(
         "PUN?",
-        Syntax::Tell(Property::Unit),
+        Syntax::Property(Property::Unit),
         "[{<axis>}] get unit of position",
     ),
     entry(
@@ -404,7 +404,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("RTR?", recorder::rate, "get ticks a point"),
     entry(
         "SAI?",
-        Syntax::All(Request::Ask(Query::Axes)),
+        Syntax::All(Request::Query(Query::Axes)),
         "[ALL] get axis identifiers",
     ),
     own(
@@ -429,10 +429,14 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "SPI",
-        frames::pivot,
+        frames::rotation_centre,
         "{<R|S|T> <position>} set centre of rotation",
     ),
-    own("SPI?", frames::pivots, "[{<R|S|T>}] get centre of rotation"),
+    own(
+        "SPI?",
+        frames::rotation_centre_query,
+        "[{<R|S|T>}] get centre of rotation",
+    ),
     entry(
         "SSL",
         Syntax::Values(Action::SoftActive),
@@ -465,7 +469,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("TNR?", recorder::count, "get number of record tables"),
     entry(
         "TRA?",
-        Syntax::AskValues(Request::Reach),
+        Syntax::QueryValues(Request::FurthestTarget),
         "{<axis> <direction>} get the furthest target in this direction",
     ),
     read(
@@ -499,7 +503,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     ask("VLS?", Query::Velocity, "get system velocity"),
     entry(
         "VMO?",
-        Syntax::AskValues(Request::Reachable),
+        Syntax::QueryValues(Request::Reachable),
         "{<axis> <position>} get whether a target can be moved to",
     ),
     entry(
@@ -535,7 +539,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "WGO?",
-        |scanner| wave::generators(WaveQuery::Going, scanner),
+        |scanner| wave::generators(WaveQuery::Running, scanner),
         "[{<generator>}] get whether wave generators run",
     ),
     own(

@@ -6,14 +6,14 @@
 
 use super::error::ErrorCode;
 use super::session::LINE_BYTES;
-use super::text::{Name, Text, is_of_name};
+use super::text::{Name, Text, is_name_byte};
 use core::fmt::Write;
 use heapless::Vec;
 
 /// Variables that can be kept, besides the local ones.
-pub const VARIABLES: usize = 32;
+pub const MAX_VARIABLES: usize = 32;
 /// Variables that a line can ask for.
-pub const NAMED: usize = 8;
+pub const MAX_NAMED_VARIABLES: usize = 8;
 
 /// Variables 0 to 9 of a running macro.
 pub(super) type Locals = [Option<Text>; 10];
@@ -26,26 +26,26 @@ pub enum VariableRequest {
     /// `ADD`: set one to a sum.
     Add(Name, f64, f64),
     /// `VAR?`: tell those named, or all.
-    Tell([Option<Name>; NAMED]),
+    Query([Option<Name>; MAX_NAMED_VARIABLES]),
 }
 
 /// The controller's variables.
 #[derive(Default)]
 pub(super) struct Variables {
-    kept: Vec<(Name, Text), VARIABLES>,
+    entries: Vec<(Name, Text), MAX_VARIABLES>,
 }
 
 impl Variables {
     /// All of them, in the order in which they were first set.
     pub fn iter(&self) -> impl Iterator<Item = &(Name, Text)> {
-        self.kept.iter()
+        self.entries.iter()
     }
 
     /// The value of a variable; local ones are there only inside a macro.
     pub fn get<'a>(&'a self, name: &Name, locals: Option<&'a Locals>) -> Option<&'a Text> {
         match name.digit() {
             Some(digit) => locals?.get(digit)?.as_ref(),
-            None => (self.kept.iter().find(|(kept, _)| kept == name)).map(|(_, value)| value),
+            None => (self.entries.iter().find(|(kept, _)| kept == name)).map(|(_, value)| value),
         }
     }
 
@@ -70,15 +70,15 @@ impl Variables {
             *local.ok_or(ErrorCode::UnknownVariable)? = value;
             return Ok(());
         }
-        let place = self.kept.iter().position(|(kept, _)| kept == name);
+        let place = self.entries.iter().position(|(kept, _)| kept == name);
         match (place, value) {
-            (Some(place), Some(value)) => self.kept[place].1 = value,
+            (Some(place), Some(value)) => self.entries[place].1 = value,
             (Some(place), None) => {
-                self.kept.remove(place);
+                self.entries.remove(place);
             }
             (None, Some(value)) => {
                 let pair = (*name, value);
-                self.kept.push(pair).map_err(|_| ErrorCode::NoMemory)?;
+                self.entries.push(pair).map_err(|_| ErrorCode::NoMemory)?;
             }
             (None, None) => return Err(ErrorCode::UnknownVariable),
         }
@@ -95,10 +95,10 @@ impl Variables {
         let mut rest = line;
         while let Some(at) = rest.iter().position(|&byte| byte == b'$') {
             append(&mut expanded, &rest[..at])?;
-            let (name, behind) = reference(&rest[at + 1..])?;
+            let (name, rest_of_line) = reference(&rest[at + 1..])?;
             let value = self.get(&name, locals).ok_or(ErrorCode::UnknownVariable)?;
             append(&mut expanded, value.as_bytes())?;
-            rest = behind;
+            rest = rest_of_line;
         }
         append(&mut expanded, rest)?;
         Ok(expanded)
@@ -110,25 +110,25 @@ fn append(line: &mut Vec<u8, LINE_BYTES>, bytes: &[u8]) -> Result<(), ErrorCode>
         .map_err(|_| ErrorCode::LineTooLong)
 }
 
-/// The name behind a `$`, and what follows it.
+/// The name rest_of_line a `$`, and what follows it.
 fn reference(text: &[u8]) -> Result<(Name, &[u8]), ErrorCode> {
-    let (name, behind) = match text.strip_prefix(b"{") {
+    let (name, rest_of_line) = match text.strip_prefix(b"{") {
         Some(inside) => {
             let end = inside.iter().position(|&byte| byte == b'}');
             let end = end.ok_or(ErrorCode::InvalidIdentifier)?;
             (&inside[..end], &inside[end + 1..])
         }
         None => {
-            let end = text.iter().position(|&byte| !is_of_name(byte));
+            let end = text.iter().position(|&byte| !is_name_byte(byte));
             text.split_at(end.unwrap_or(text.len()))
         }
     };
     let name = Name::named(name).ok_or(ErrorCode::InvalidIdentifier)?;
-    Ok((name, behind))
+    Ok((name, rest_of_line))
 }
 
 /// A number as the value of a variable: in full where that fits, which it does for all but the largest and the smallest.
-pub(super) fn text_of(number: f64) -> Result<Text, ErrorCode> {
+pub(super) fn number_text(number: f64) -> Result<Text, ErrorCode> {
     if !number.is_finite() {
         return Err(ErrorCode::OutOfRange);
     }

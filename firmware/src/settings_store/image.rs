@@ -11,7 +11,7 @@
 //! Numbers begin with their lowest byte.
 
 use super::envelope::{Reader, Sink};
-use crate::gcs::{MACRO_BYTES, MACROS, NAME_BYTES, Name, PARAMETERS, Panel, Parameter};
+use crate::gcs::{MACRO_BYTES, MAX_MACROS, NAME_BYTES, Name, PARAMETERS, Panel, Parameter};
 use crate::parameters::Parameters;
 use core::convert::Infallible;
 use embedded_storage::nor_flash::NorFlash;
@@ -23,7 +23,7 @@ const PIECE: usize = 64;
 
 /// Bytes of the longest image.
 pub(super) const MOST_BYTES: usize =
-    5 + PARAMETERS.len() * 12 + MACROS * (3 + NAME_BYTES) + MACRO_BYTES;
+    5 + PARAMETERS.len() * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES;
 
 /// Why an image that is whole cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +97,7 @@ pub(super) fn read<F: NorFlash>(
         panel.forget_macros();
         return Err(Unusable::Damaged);
     }
-    panel.take_kept_parameters(parameters, unknown);
+    panel.restore_parameters(parameters, unknown);
     Ok(())
 }
 
@@ -113,7 +113,7 @@ fn read_parameters<F: NorFlash>(
         let id = u32::from_le_bytes(reader.take()?);
         let value = f64::from_le_bytes(reader.take()?);
         match Parameter::find(id) {
-            Some(parameter) => parameter.put(value, &mut parameters).ok()?,
+            Some(parameter) => parameter.set(value, &mut parameters).ok()?,
             None => unknown += 1,
         }
     }

@@ -1,14 +1,14 @@
 //! Which frames are in force, and what they make of a target.
 
-use super::{FrameName, Frames, Kind, Transform, View};
+use super::{ActiveFrames, FrameKind, FrameName, FrameTree, Transform};
 use crate::gcs::error::ErrorCode;
 
 /// Furthest that a work frame may lie from the base frame's origin, mm: far beyond any laboratory, near enough for f64.
-const FURTHEST_WORK_MM: f64 = 1e5;
+const MAX_WORK_FRAME_MM: f64 = 1e5;
 
 /// Which frames are in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Enabled {
+pub enum EnabledFrames {
     /// The base frame.
     Zero,
     /// A directed frame, or one that was made where the platform was.
@@ -17,107 +17,114 @@ pub enum Enabled {
     Pair {
         /// `None`: the base frame.
         work: Option<FrameName>,
-        /// `None`: the platform's own.
+        /// `None`: the platform's in_parent.
         tool: Option<FrameName>,
     },
 }
 
 /// The frames that are in force, and the centre of rotation: what `KEN` and `SPI` change.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
+pub struct FrameSelection {
     /// Which frames.
-    pub enabled: Enabled,
+    pub enabled: EnabledFrames,
     /// The point that `SPI` sets, mm.
-    pub pivot: [f64; 2],
+    pub rotation_centre: [f64; 2],
 }
 
-impl Frames {
+impl FrameTree {
     /// What would be in force once `name` is enabled.
-    pub fn with_enabled(&self, name: FrameName) -> Result<Choice, ErrorCode> {
-        let (work, tool) = match self.choice.enabled {
-            Enabled::Pair { work, tool } => (work, tool),
+    pub fn with_enabled(&self, name: FrameName) -> Result<FrameSelection, ErrorCode> {
+        let (work, tool) = match self.selection.enabled {
+            EnabledFrames::Pair { work, tool } => (work, tool),
             _ => (None, None),
         };
         let enabled = if name == FrameName::ZERO {
-            Enabled::Zero
+            EnabledFrames::Zero
         } else {
             match self.find(name).ok_or(ErrorCode::OutOfRange)?.kind {
-                Kind::Directed | Kind::Here => Enabled::Alone(name),
-                Kind::Work => Enabled::Pair {
+                FrameKind::Directed | FrameKind::Here => EnabledFrames::Alone(name),
+                FrameKind::Work => EnabledFrames::Pair {
                     work: Some(name),
                     tool,
                 },
-                Kind::Tool => Enabled::Pair {
+                FrameKind::Tool => EnabledFrames::Pair {
                     work,
                     tool: Some(name),
                 },
             }
         };
-        Ok(Choice {
+        Ok(FrameSelection {
             enabled,
-            ..self.choice
+            ..self.selection
         })
     }
 
     /// What would be in force with another centre of rotation.
-    pub fn with_pivot(&self, pivot: [f64; 2]) -> Result<Choice, ErrorCode> {
-        if matches!(self.choice.enabled, Enabled::Pair { .. }) {
-            return Err(ErrorCode::PivotNotSettable);
+    pub fn with_rotation_centre(
+        &self,
+        rotation_centre: [f64; 2],
+    ) -> Result<FrameSelection, ErrorCode> {
+        if matches!(self.selection.enabled, EnabledFrames::Pair { .. }) {
+            return Err(ErrorCode::CentreNotSettable);
         }
-        Ok(Choice {
-            pivot,
-            ..self.choice
+        Ok(FrameSelection {
+            rotation_centre,
+            ..self.selection
         })
     }
 
     /// The centre of rotation that `SPI` has set, as far as it counts.
-    pub fn pivot(&self) -> [f64; 2] {
-        match self.choice.enabled {
-            Enabled::Pair { .. } => [0.0; 2],
-            _ => self.choice.pivot,
+    pub fn rotation_centre(&self) -> [f64; 2] {
+        match self.selection.enabled {
+            EnabledFrames::Pair { .. } => [0.0; 2],
+            _ => self.selection.rotation_centre,
         }
     }
 
     /// How targets are poses with these frames; [`ErrorCode::OutOfRange`] for a tool that is more than `most_arm_mm` from
     /// the platform centre, or a work frame out of any laboratory.
-    pub fn view(&self, choice: &Choice, most_arm_mm: f64) -> Result<View, ErrorCode> {
-        let pivot = Transform::to(choice.pivot);
-        let view = match choice.enabled {
-            Enabled::Zero => View {
-                work: pivot,
-                tool: pivot,
-                zero: pivot.origin(),
+    pub fn active_frames(
+        &self,
+        selection: &FrameSelection,
+        most_arm_mm: f64,
+    ) -> Result<ActiveFrames, ErrorCode> {
+        let rotation_centre = Transform::to(selection.rotation_centre);
+        let active_frames = match selection.enabled {
+            EnabledFrames::Zero => ActiveFrames {
+                work: rotation_centre,
+                tool: rotation_centre,
+                zero: rotation_centre.origin(),
             },
-            Enabled::Alone(name) => {
-                let work = self.total(name).then(&pivot);
+            EnabledFrames::Alone(name) => {
+                let work = self.in_base(name).then(&rotation_centre);
                 match self.find(name).map(|frame| frame.kind) {
-                    Some(Kind::Here) => View {
+                    Some(FrameKind::Here) => ActiveFrames {
                         work,
-                        tool: pivot,
-                        zero: pivot.origin(),
+                        tool: rotation_centre,
+                        zero: rotation_centre.origin(),
                     },
-                    _ => View {
+                    _ => ActiveFrames {
                         work,
                         tool: work,
                         zero: work.origin(),
                     },
                 }
             }
-            Enabled::Pair { work, tool } => {
-                let total = |name: Option<FrameName>| {
-                    name.map_or(Transform::IDENTITY, |name| self.total(name))
+            EnabledFrames::Pair { work, tool } => {
+                let in_base = |name: Option<FrameName>| {
+                    name.map_or(Transform::IDENTITY, |name| self.in_base(name))
                 };
-                View {
-                    work: total(work),
-                    tool: total(tool),
+                ActiveFrames {
+                    work: in_base(work),
+                    tool: in_base(tool),
                     zero: [0.0; 2],
                 }
             }
         };
-        let [x, y] = view.work.origin();
-        if view.arm_mm() > most_arm_mm || libm::hypot(x, y) > FURTHEST_WORK_MM {
+        let [x, y] = active_frames.work.origin();
+        if active_frames.arm_mm() > most_arm_mm || libm::hypot(x, y) > MAX_WORK_FRAME_MM {
             return Err(ErrorCode::OutOfRange);
         }
-        Ok(view)
+        Ok(active_frames)
     }
 }

@@ -1,4 +1,4 @@
-//! Coordinate systems of the user's own: work and tool frames, chains of them, and the centre of rotation.
+//! Coordinate systems of the user's in_parent: work and tool frames, chains of them, and the centre of rotation.
 //!
 //! The semantics are those of a hexapod controller's coordinate systems, in the plane (x, y and w; z, u and v are 0):
 //!
@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | `KSW` | a work frame, in the base frame | the tool in the work frame |
 //! | `KST` | a tool frame, in the platform | the tool in the work frame |
-//! | `KSD` | both: a directed frame, in the base frame and, at the zero pose, in the platform | the frame in its own place at zero |
+//! | `KSD` | both: a directed frame, in the base frame and, at the zero pose, in the platform | the frame in its in_parent place at zero |
 //! | `KSF` | a work frame where the platform is now: x, y and w become 0 | the platform in that frame |
 //!
 //! One `KSD`, one `KSF` or a pair of `KSW` and `KST` is enabled at a time; enabling one of the former disables the pair and
@@ -33,19 +33,20 @@ mod store;
 mod transform;
 mod view;
 
-pub use crate::gcs::frames::parse::{FrameAction, FrameQuery, ListItem};
+pub use crate::gcs::frames::parse::{FrameChange, FrameQuery, ListItem};
 pub(crate) use crate::gcs::frames::parse::{
-    chains, define, enable, enabled, here, link, list, pivot, pivots, remove, totals, types,
+    chains, define, enable, enabled, here, link, list, remove, rotation_centre,
+    rotation_centre_query, totals, types,
 };
-pub use in_force::{Choice, Enabled};
-pub use name::{FrameName, NAME_BYTES};
-pub use store::Frames;
+pub use in_force::{EnabledFrames, FrameSelection};
+pub use name::{FRAME_NAME_BYTES, FrameName};
+pub use store::FrameTree;
 pub use transform::Transform;
-pub use view::View;
+pub use view::ActiveFrames;
 
 /// What a frame is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FrameKind {
     /// `KSD`
     Directed,
     /// `KSF`
@@ -56,7 +57,7 @@ pub enum Kind {
     Work,
 }
 
-impl Kind {
+impl FrameKind {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Directed, Self::Here, Self::Tool, Self::Work];
 
@@ -81,9 +82,9 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) name: FrameName,
-    pub(crate) kind: Kind,
+    pub(crate) kind: FrameKind,
     /// In its parent.
-    pub(crate) own: Transform,
+    pub(crate) in_parent: Transform,
     /// `None`: `ZERO`.
     pub(crate) parent: Option<FrameName>,
 }

@@ -1,27 +1,27 @@
 //! The frames there are: made, linked, forgotten.
 
-use super::{Choice, Enabled, Frame, FrameName, Kind, Transform};
+use super::{EnabledFrames, Frame, FrameKind, FrameName, FrameSelection, Transform};
 use crate::gcs::error::ErrorCode;
 use heapless::Vec;
 
-/// Frames that can be there at a time, besides `ZERO`.
+/// FrameTree that can be there at a time, besides `ZERO`.
 pub const FRAMES: usize = 16;
 
 /// All frames there are.
-pub struct Frames {
+pub struct FrameTree {
     pub(crate) defined: Vec<Frame, FRAMES>,
     /// What is in force.
-    pub choice: Choice,
+    pub selection: FrameSelection,
 }
 
-impl Frames {
+impl FrameTree {
     /// Only `ZERO`.
     pub const fn new() -> Self {
         Self {
             defined: Vec::new(),
-            choice: Choice {
-                enabled: Enabled::Zero,
-                pivot: [0.0; 2],
+            selection: FrameSelection {
+                enabled: EnabledFrames::Zero,
+                rotation_centre: [0.0; 2],
             },
         }
     }
@@ -31,12 +31,17 @@ impl Frames {
     }
 
     /// Makes a frame in `ZERO`, or changes one that is not in use.
-    pub fn define(&mut self, name: FrameName, kind: Kind, own: Transform) -> Result<(), ErrorCode> {
-        self.check_free(name)?;
+    pub fn define(
+        &mut self,
+        name: FrameName,
+        kind: FrameKind,
+        in_parent: Transform,
+    ) -> Result<(), ErrorCode> {
+        self.check_not_in_use(name)?;
         let frame = Frame {
             name,
             kind,
-            own,
+            in_parent,
             parent: None,
         };
         let other_kind = self.find(name).is_some_and(|old| old.kind != kind);
@@ -55,7 +60,7 @@ impl Frames {
 
     /// Forgets a frame.
     pub fn remove(&mut self, name: FrameName) -> Result<(), ErrorCode> {
-        self.check_free(name)?;
+        self.check_not_in_use(name)?;
         let place = self.defined.iter().position(|frame| frame.name == name);
         let place = place.ok_or(ErrorCode::OutOfRange)?;
         if self.has_children(name) {
@@ -67,13 +72,13 @@ impl Frames {
 
     /// Makes `child` a frame in `parent`; in `ZERO` when that is the parent.
     pub fn link(&mut self, child: FrameName, parent: FrameName) -> Result<(), ErrorCode> {
-        self.check_free(child)?;
+        self.check_not_in_use(child)?;
         let kind = self.find(child).ok_or(ErrorCode::OutOfRange)?.kind;
         let mut wanted = None;
         if parent != FrameName::ZERO {
             let above = self.find(parent).ok_or(ErrorCode::OutOfRange)?;
-            // Its own ancestor, or itself.
-            if self.chain(parent).any(|frame| frame.name == child) {
+            // Its in_parent ancestor, or itself.
+            if self.ancestry(parent).any(|frame| frame.name == child) {
                 return Err(ErrorCode::OutOfRange);
             }
             if !kind.can_be_child_of(above.kind) {
@@ -88,29 +93,31 @@ impl Frames {
     }
 
     /// A frame and its ancestors, itself first.
-    pub(crate) fn chain(&self, name: FrameName) -> impl Iterator<Item = &Frame> {
+    pub(crate) fn ancestry(&self, name: FrameName) -> impl Iterator<Item = &Frame> {
         let mut next = self.find(name);
         core::iter::from_fn(move || {
             let frame = next?;
             next = frame.parent.and_then(|parent| self.find(parent));
             Some(frame)
         })
-        // No chain is longer: there are no cycles.
+        // No ancestry is longer: there are no cycles.
         .take(FRAMES)
     }
 
     /// Where a frame lies in `ZERO`.
-    pub(crate) fn total(&self, name: FrameName) -> Transform {
-        self.chain(name)
-            .fold(Transform::IDENTITY, |inner, frame| frame.own.then(&inner))
+    pub(crate) fn in_base(&self, name: FrameName) -> Transform {
+        self.ancestry(name)
+            .fold(Transform::IDENTITY, |inner, frame| {
+                frame.in_parent.then(&inner)
+            })
     }
 
     /// The names that are in force, a work frame before a tool frame.
     pub(crate) fn enabled(&self) -> impl Iterator<Item = FrameName> + use<> {
-        let names = match self.choice.enabled {
-            Enabled::Zero => [None; 2],
-            Enabled::Alone(name) => [Some(name), None],
-            Enabled::Pair { work, tool } => [work, tool],
+        let names = match self.selection.enabled {
+            EnabledFrames::Zero => [None; 2],
+            EnabledFrames::Alone(name) => [Some(name), None],
+            EnabledFrames::Pair { work, tool } => [work, tool],
         };
         names.into_iter().flatten()
     }
@@ -121,8 +128,8 @@ impl Frames {
     }
 
     /// `ZERO` and what is in use stay as they are.
-    fn check_free(&self, name: FrameName) -> Result<(), ErrorCode> {
-        let in_use = |enabled| self.chain(enabled).any(|frame| frame.name == name);
+    fn check_not_in_use(&self, name: FrameName) -> Result<(), ErrorCode> {
+        let in_use = |enabled| self.ancestry(enabled).any(|frame| frame.name == name);
         if name == FrameName::ZERO || self.enabled().any(in_use) {
             return Err(ErrorCode::NotForStage);
         }

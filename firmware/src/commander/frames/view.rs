@@ -17,7 +17,7 @@ use crate::commander::coordinates::Coordinates;
 
 /// The frames in force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct ActiveFrames {
     /// The work frame in the base frame.
     pub work: Transform,
     /// The tool frame in the platform.
@@ -27,7 +27,7 @@ pub struct View {
     pub zero: [f64; 2],
 }
 
-impl View {
+impl ActiveFrames {
     /// No frame: the platform centre in the base frame.
     pub const BASE: Self = Self {
         work: Transform::IDENTITY,
@@ -69,7 +69,7 @@ impl View {
     }
 
     /// A target as travel and soft limits count it: the commanded point in the base frame's axes, from [`zero`](Self::zero).
-    pub fn limited(&self, target: &Coordinates) -> Coordinates {
+    pub fn travel_coordinates(&self, target: &Coordinates) -> Coordinates {
         let point = self.point_of(target);
         let mut limited = *target;
         limited[Axis::X.index()] = point.x_mm - self.zero[0];

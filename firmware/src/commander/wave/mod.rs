@@ -22,11 +22,11 @@
 mod run;
 mod shape;
 
-pub use crate::gcs::wave::parse::{WaveAction, WavePoints, WaveQuery};
+pub use crate::gcs::wave::parse::{WaveChange, WavePoints, WaveQuery};
 pub(crate) use crate::gcs::wave::parse::{
     clear, count, cycles, define, generators, go, lengths, rate, select,
 };
-pub use run::Run;
+pub use run::GeneratorRun;
 pub use shape::{Curve, Shape};
 
 use super::axis::Axis;
@@ -40,7 +40,7 @@ pub const SEGMENTS: usize = 8;
 /// Points, given one by one, of all tables together.
 pub const POINTS: usize = 1024;
 /// Longest table, points: at the fastest rate of points more than a day.
-pub(crate) const LONGEST: u32 = 1 << 28;
+pub(crate) const MAX_TABLE_POINTS: u32 = 1 << 28;
 
 /// Where a segment stands in its table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ pub struct Generator {
 }
 
 /// All tables and generators.
-pub struct Waves {
+pub struct Waveforms {
     tables: [Vec<Segment, SEGMENTS>; TABLES],
     points: Vec<f64, POINTS>,
     /// By [`Axis::index`].
@@ -81,9 +81,9 @@ pub struct Waves {
 }
 
 /// Ticks of a point at first: 1 ms.
-const TICKS: u32 = 20;
+const DEFAULT_POINT_TICKS: u32 = 20;
 
-impl Waves {
+impl Waveforms {
     /// Empty tables.
     pub const fn new() -> Self {
         Self {
@@ -93,7 +93,7 @@ impl Waves {
                 table: 0,
                 cycles: 0,
             }; 6],
-            ticks: TICKS,
+            ticks: DEFAULT_POINT_TICKS,
         }
     }
 
@@ -120,7 +120,7 @@ impl Waves {
         length: u32,
         shape: Shape,
     ) -> Result<(), ErrorCode> {
-        if length == 0 || !shape.is_good() {
+        if length == 0 || !shape.is_valid() {
             return Err(ErrorCode::OutOfRange);
         }
         self.join(table, join, length, shape)
@@ -174,7 +174,7 @@ impl Waves {
             Join::Anew | Join::Add => 0,
             Join::Append => self.length(table),
         };
-        if length > LONGEST - first {
+        if length > MAX_TABLE_POINTS - first {
             return Err(ErrorCode::OutOfRange);
         }
         if join == Join::Anew {

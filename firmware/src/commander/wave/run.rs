@@ -12,7 +12,7 @@
 //!      run-up                  run-out
 //! ```
 
-use super::Waves;
+use super::Waveforms;
 use crate::commander::axis::Axis;
 use crate::commander::coordinates::Coordinates;
 
@@ -21,7 +21,7 @@ const RUN_UP_S: f64 = 0.1;
 
 /// What is known of a run when it starts, and how far it has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run {
+pub struct GeneratorRun {
     /// The target of the axes that do not take part.
     base: Coordinates,
     /// Of each axis: its table, and its points in all; without end when there is no number of them.
@@ -34,9 +34,9 @@ pub struct Run {
     sample: u64,
 }
 
-impl Run {
+impl GeneratorRun {
     /// A run of the generators of `starting`, all of which have tables.
-    pub fn new(waves: &Waves, starting: &[bool; 6], base: Coordinates, rate_hz: f64) -> Self {
+    pub fn new(waves: &Waveforms, starting: &[bool; 6], base: Coordinates, rate_hz: f64) -> Self {
         let axes = core::array::from_fn(|i| {
             let table = usize::from(waves.generators[i].table).checked_sub(1)?;
             let points = u64::from(waves.length(table));
@@ -61,34 +61,34 @@ impl Run {
     }
 
     /// Which generators it is of.
-    pub fn going(&self) -> [bool; 6] {
+    pub fn running(&self) -> [bool; 6] {
         self.axes.map(|axis| axis.is_some())
     }
 
     /// The next sample; `None` behind the last.
-    pub fn next(&mut self, waves: &Waves) -> Option<Coordinates> {
+    pub fn next(&mut self, waves: &Waveforms) -> Option<Coordinates> {
         let place = self.place(self.sample)?;
         self.sample += 1;
         Some(self.target(waves, place))
     }
 
     /// Where the run begins.
-    pub fn start(&self, waves: &Waves) -> Coordinates {
+    pub fn start(&self, waves: &Waveforms) -> Coordinates {
         self.target(waves, (0, 0.0))
     }
 
     /// The place in the tables at a sample: a point, and the part of the way to the next.
     fn place(&self, sample: u64) -> Option<(u64, f64)> {
         let Some(last) = self.last else {
-            return Some(self.risen(sample));
+            return Some(self.run_up_place(sample));
         };
         // Both ends cost half of the samples that they take.
         let all = last + self.ramp;
         let left = all.checked_sub(sample)?;
         if left >= self.ramp {
-            return Some(self.risen(sample));
+            return Some(self.run_up_place(sample));
         }
-        let (whole, part) = self.risen(left);
+        let (whole, part) = self.run_up_place(left);
         Some(if part == 0.0 {
             (last - whole, 0.0)
         } else {
@@ -97,7 +97,7 @@ impl Run {
     }
 
     /// The place so many samples after the start, without an end.
-    fn risen(&self, sample: u64) -> (u64, f64) {
+    fn run_up_place(&self, sample: u64) -> (u64, f64) {
         if sample >= self.ramp {
             return (sample - self.ramp / 2, 0.0);
         }
@@ -107,7 +107,7 @@ impl Run {
         (whole as u64, place - whole)
     }
 
-    fn target(&self, waves: &Waves, (point, part): (u64, f64)) -> Coordinates {
+    fn target(&self, waves: &Waveforms, (point, part): (u64, f64)) -> Coordinates {
         let mut target = self.base;
         for axis in Axis::ALL {
             let i = axis.index();
@@ -118,7 +118,7 @@ impl Run {
             target[i] = if part == 0.0 {
                 at(point)
             } else {
-                between(
+                interpolate(
                     [
                         at(point.saturating_sub(1)),
                         at(point),
@@ -134,14 +134,14 @@ impl Run {
 }
 
 /// A part of the way from the second of four points to the third: a cubic whose slopes are those of the neighbours' chords.
-fn between([a, b, c, d]: [f64; 4], part: f64) -> f64 {
+fn interpolate([a, b, c, d]: [f64; 4], part: f64) -> f64 {
     let (slope_b, slope_c) = ((c - a) / 2.0, (d - b) / 2.0);
     let bend = 3.0 * (c - b) - 2.0 * slope_b - slope_c;
     let twist = slope_b + slope_c - 2.0 * (c - b);
     b + part * (slope_b + part * (bend + part * twist))
 }
 
-impl Waves {
+impl Waveforms {
     /// The value at a point of a table that is run through again and again, for so many points in all.
     fn cycled(&self, table: usize, points: Option<u64>, point: u64) -> f64 {
         let length = u64::from(self.length(table)).max(1);

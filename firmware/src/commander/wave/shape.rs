@@ -62,7 +62,7 @@ pub struct Curve {
 
 impl Shape {
     /// Whether the curve is one: its parts fit into its length.
-    pub fn is_good(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         match *self {
             Self::Line {
                 curve,
@@ -90,7 +90,7 @@ impl Shape {
                 speed_points,
             } => {
                 let way = point.saturating_sub(curve.start);
-                curve.raised(rounded_line(way, curve.length - 1, speed_points))
+                curve.scaled(rounded_line(way, curve.length - 1, speed_points))
             }
             Self::Ramp {
                 curve,
@@ -116,7 +116,7 @@ impl Curve {
     }
 
     /// `part` of the height.
-    fn raised(&self, part: f64) -> f64 {
+    fn scaled(&self, part: f64) -> f64 {
         self.offset + self.amplitude * part
     }
 
@@ -126,7 +126,7 @@ impl Curve {
             Some(way) => way.min(self.length),
             None => point + self.length - self.start,
         };
-        self.raised(if way < centre {
+        self.scaled(if way < centre {
             rise(way, centre)
         } else {
             rise(self.length - way, self.length - centre)

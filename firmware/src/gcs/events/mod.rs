@@ -10,7 +10,7 @@ pub use words::CAUSES;
 
 use super::Panel;
 use super::output::{Output, WriteFailed};
-use super::reply::Reply;
+use super::reply::ReplyWriter;
 use crate::fault::Fault;
 use crate::fault_record::{BlackBox, EVENTS};
 use crate::mode::Mode;
@@ -30,7 +30,7 @@ pub(super) enum Event {
     ServoOn,
     ServoOff,
     /// A parameter was set.
-    Set(u32, f64),
+    ParameterSet(u32, f64),
     /// `STP` or `#24`.
     Stop,
     /// `HLT`
@@ -38,31 +38,31 @@ pub(super) enum Event {
     /// The tick has refused commands: how many.
     Refused(u32),
     /// No host was heard for so many milliseconds.
-    Silent(f64),
+    HostSilent(f64),
     /// The encoder of a pivot, counted from 0, has begun to warn, or has stopped.
     Warning(u8, bool),
     /// Settings were written to flash.
-    Kept,
+    Stored,
     /// They could not be: the error's number.
-    NotKept(u16),
+    StoreFailed(u16),
     /// `RPA`
     Recalled,
     /// So many parameters are kept that this firmware does not know.
-    Unknown(u16),
+    UnknownParameters(u16),
 }
 
 /// See the module.
-pub(super) struct Events {
-    kept: Deque<(u64, Event), EVENTS>,
+pub(super) struct EventLog {
+    entries: Deque<(u64, Event), EVENTS>,
     count: u32,
     /// How many of them the black box has; `None` before it was looked at.
-    boxed: Option<u32>,
-    last: Seen,
+    retained: Option<u32>,
+    last: Observed,
 }
 
 /// What of the latest snapshot can be an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Seen {
+struct Observed {
     fault: Option<Fault>,
     worse: Option<Fault>,
     referenced: bool,
@@ -71,14 +71,14 @@ struct Seen {
     warnings: [bool; 3],
 }
 
-impl Events {
+impl EventLog {
     /// The controller has started.
     pub fn new() -> Self {
         let mut events = Self {
-            kept: Deque::new(),
+            entries: Deque::new(),
             count: 0,
-            boxed: None,
-            last: Seen::default(),
+            retained: None,
+            last: Observed::default(),
         };
         events.add(0, Event::Start(None));
         events
@@ -86,39 +86,39 @@ impl Events {
 
     /// Tells by what it started.
     pub fn note_start(&mut self, cause: &'static str) {
-        if let Some((_, Event::Start(by))) = self.kept.front_mut() {
+        if let Some((_, Event::Start(by))) = self.entries.front_mut() {
             *by = Some(cause);
         }
     }
 
     pub fn add(&mut self, tick: u64, event: Event) {
-        if self.kept.is_full() {
-            self.kept.pop_front();
+        if self.entries.is_full() {
+            self.entries.pop_front();
         }
         // There is room now.
-        let _ = self.kept.push_back((tick, event));
+        let _ = self.entries.push_back((tick, event));
         self.count = self.count.wrapping_add(1);
     }
 
     /// Writes what is new into the black box; the first time, takes what is in it from before.
-    pub fn keep(&mut self, black_box: &BlackBox) {
-        let boxed = match self.boxed {
-            Some(boxed) => boxed,
+    pub fn retain(&mut self, black_box: &BlackBox) {
+        let retained = match self.retained {
+            Some(retained) => retained,
             None => self.recall(black_box),
         };
-        let first = self.count - self.kept.len() as u32;
-        let events = (first.wrapping_add(1)..).zip(&self.kept);
-        for (number, (tick, event)) in events.filter(|(number, _)| *number > boxed) {
+        let first = self.count - self.entries.len() as u32;
+        let events = (first.wrapping_add(1)..).zip(&self.entries);
+        for (number, (tick, event)) in events.filter(|(number, _)| *number > retained) {
             black_box
                 .events
                 .write(number, &words::words(number, *tick, event));
         }
-        self.boxed = Some(self.count);
+        self.retained = Some(self.count);
     }
 
     /// Puts events from before the start in front of those since; the number of the last of them.
     fn recall(&mut self, black_box: &BlackBox) -> u32 {
-        let since = core::mem::take(&mut self.kept);
+        let since = core::mem::take(&mut self.entries);
         let read = |number: u32| {
             let words = black_box.events.read(number)?;
             Some((words[0], words::event(&words)?))
@@ -135,7 +135,7 @@ impl Events {
                 Some((found, (tick, event))) if found == number => self.add(tick, event),
                 // Numbers tell places: what is left out must be behind all that is told.
                 _ => {
-                    self.kept.clear();
+                    self.entries.clear();
                     self.count = number;
                 }
             }
@@ -147,8 +147,8 @@ impl Events {
     }
 
     /// Finds out what has happened up to a snapshot.
-    pub fn take(&mut self, snapshot: &Snapshot) {
-        let now = Seen {
+    pub fn update(&mut self, snapshot: &Snapshot) {
+        let now = Observed {
             fault: snapshot.fault,
             worse: snapshot.worse,
             referenced: snapshot.referenced,
@@ -195,19 +195,19 @@ impl fmt::Display for Event {
             Self::ReferenceLost => f.write_str("reference lost"),
             Self::ServoOn => f.write_str("servo on"),
             Self::ServoOff => f.write_str("servo off"),
-            Self::Set(id, value) => write!(f, "parameter 0x{id:X} set to {value}"),
+            Self::ParameterSet(id, value) => write!(f, "parameter 0x{id:X} set to {value}"),
             Self::Stop => f.write_str("stopped by command"),
             Self::Halt => f.write_str("halted by command"),
             Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
             Self::Warning(pivot, true) => write!(f, "encoder warns, pivot {}", pivot + 1),
             Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
-            Self::Silent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
-            Self::Kept => f.write_str("settings kept"),
-            Self::NotKept(number) => {
+            Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
+            Self::Stored => f.write_str("settings kept"),
+            Self::StoreFailed(number) => {
                 write!(f, "settings could not be kept, error {number}")
             }
             Self::Recalled => f.write_str("parameters as they are kept"),
-            Self::Unknown(count) => {
+            Self::UnknownParameters(count) => {
                 write!(f, "{count} kept parameters are unknown here and ignored")
             }
         }
@@ -216,10 +216,10 @@ impl fmt::Display for Event {
 
 impl Panel {
     /// Answers `EVT?`: number, tick and what has happened.
-    pub(super) fn tell_events(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
-        let gone = self.events.count - self.events.kept.len() as u32;
-        for (number, (tick, event)) in (gone + 1..).zip(&self.events.kept) {
+    pub(super) fn reply_events(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
+        let gone = self.events.count - self.events.entries.len() as u32;
+        for (number, (tick, event)) in (gone + 1..).zip(&self.events.entries) {
             reply.line(format_args!("{number} {tick} {event}"))?;
         }
         reply.end()

@@ -39,22 +39,22 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::ReferenceLost => bare(4),
         Event::ServoOn => bare(5),
         Event::ServoOff => bare(6),
-        Event::Set(id, value) => {
+        Event::ParameterSet(id, value) => {
             let [low, high] = number(*value);
             (7, [0; 2], [*id, low, high])
         }
         Event::Stop => bare(8),
         Event::Halt => bare(9),
         Event::Refused(count) => (10, [0; 2], [*count, 0, 0]),
-        Event::Silent(ms) => {
+        Event::HostSilent(ms) => {
             let [low, high] = number(*ms);
             (11, [0; 2], [0, low, high])
         }
         Event::Warning(pivot, warns) => (12, [*pivot, u8::from(*warns)], [0; 3]),
-        Event::Kept => bare(13),
-        Event::NotKept(number) => (14, [0; 2], [u32::from(*number), 0, 0]),
+        Event::Stored => bare(13),
+        Event::StoreFailed(number) => (14, [0; 2], [u32::from(*number), 0, 0]),
         Event::Recalled => bare(15),
-        Event::Unknown(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
+        Event::UnknownParameters(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
     }
 }
 
@@ -78,16 +78,16 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         4 => Event::ReferenceLost,
         5 => Event::ServoOn,
         6 => Event::ServoOff,
-        7 => Event::Set(a, number),
+        7 => Event::ParameterSet(a, number),
         8 => Event::Stop,
         9 => Event::Halt,
         10 => Event::Refused(a),
-        11 => Event::Silent(number),
+        11 => Event::HostSilent(number),
         12 => Event::Warning(first, second != 0),
-        13 => Event::Kept,
-        14 => Event::NotKept(a as u16),
+        13 => Event::Stored,
+        14 => Event::StoreFailed(a as u16),
         15 => Event::Recalled,
-        16 => Event::Unknown(a as u16),
+        16 => Event::UnknownParameters(a as u16),
         _ => return None,
     };
     Some((tick, event))

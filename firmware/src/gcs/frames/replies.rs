@@ -2,65 +2,66 @@
 
 use crate::commander::axis::Axis;
 use crate::commander::frames::{
-    Enabled, Frame, FrameName, FrameQuery, Frames, Kind, ListItem, Transform,
+    EnabledFrames, Frame, FrameKind, FrameName, FrameQuery, FrameTree, ListItem, Transform,
 };
 use crate::gcs::error::ErrorCode;
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply::{Reply, one_line};
+use crate::gcs::reply::{ReplyWriter, one_line};
 
 /// Names of the centre of rotation's coordinates.
-const PIVOT_AXES: [char; 3] = ['R', 'S', 'T'];
+const CENTRE_AXES: [char; 3] = ['R', 'S', 'T'];
 
-impl Frames {
+impl FrameTree {
     /// Answers a query; with an error number instead, and then nothing is written, when it asks for what is not there.
-    pub(in crate::gcs) fn answer(
+    pub(in crate::gcs) fn reply(
         &self,
         query: FrameQuery,
         out: &mut Output<'_>,
     ) -> Result<Result<(), ErrorCode>, WriteFailed> {
         let good = match query {
             FrameQuery::Enabled(name) | FrameQuery::Chains(name) | FrameQuery::List(name, _) => {
-                name.is_none_or(|name| self.knows(name))
+                name.is_none_or(|name| self.contains(name))
             }
             FrameQuery::Totals(start, end) => {
-                start.is_none_or(|name| self.knows(name))
+                start.is_none_or(|name| self.contains(name))
                     && end.is_none_or(|end| start.is_some_and(|start| self.is_above(start, end)))
             }
-            FrameQuery::Types(_) | FrameQuery::Pivot(_) => true,
+            FrameQuery::Types(_) | FrameQuery::RotationCentre(_) => true,
         };
         if !good {
             return Ok(Err(ErrorCode::OutOfRange));
         }
         match query {
-            FrameQuery::Enabled(Some(name)) => self.tell_enabled(name, out)?,
-            FrameQuery::Enabled(None) => self.tell_all_enabled(out)?,
-            FrameQuery::Types(kind) => self.tell_types(kind, out)?,
-            FrameQuery::Chains(name) => self.tell_chains(name, out)?,
-            FrameQuery::List(name, item) => self.tell_list(name, item, out)?,
-            FrameQuery::Totals(start, end) => self.tell_totals(start, end, out)?,
-            FrameQuery::Pivot(named) => self.tell_pivot(named, out)?,
+            FrameQuery::Enabled(Some(name)) => self.reply_enabled(name, out)?,
+            FrameQuery::Enabled(None) => self.reply_all_enabled(out)?,
+            FrameQuery::Types(kind) => self.reply_types(kind, out)?,
+            FrameQuery::Chains(name) => self.reply_chains(name, out)?,
+            FrameQuery::List(name, item) => self.reply_list(name, item, out)?,
+            FrameQuery::Totals(start, end) => self.reply_totals(start, end, out)?,
+            FrameQuery::RotationCentre(named) => self.reply_rotation_centre(named, out)?,
         }
         Ok(Ok(()))
     }
 
-    fn knows(&self, name: FrameName) -> bool {
+    fn contains(&self, name: FrameName) -> bool {
         name == FrameName::ZERO || self.find(name).is_some()
     }
 
     fn is_above(&self, start: FrameName, end: FrameName) -> bool {
-        end == FrameName::ZERO || self.chain(start).any(|frame| frame.name == end)
+        end == FrameName::ZERO || self.ancestry(start).any(|frame| frame.name == end)
     }
 
     fn is_enabled(&self, name: FrameName) -> bool {
-        match self.choice.enabled {
-            Enabled::Zero => name == FrameName::ZERO,
+        match self.selection.enabled {
+            EnabledFrames::Zero => name == FrameName::ZERO,
             _ => self.enabled().any(|enabled| enabled == name),
         }
     }
 
     /// `ZERO` counts as a directed frame.
-    fn kind(&self, name: FrameName) -> Kind {
-        self.find(name).map_or(Kind::Directed, |frame| frame.kind)
+    fn kind(&self, name: FrameName) -> FrameKind {
+        self.find(name)
+            .map_or(FrameKind::Directed, |frame| frame.kind)
     }
 
     /// Every name that is there, `ZERO` first.
@@ -74,7 +75,7 @@ impl Frames {
             .filter(move |other| name.is_none_or(|name| name == *other))
     }
 
-    fn tell_enabled(&self, name: FrameName, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    fn reply_enabled(&self, name: FrameName, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         let kind = if self.is_enabled(name) {
             self.kind(name).word()
         } else {
@@ -83,17 +84,21 @@ impl Frames {
         one_line(out, format_args!("{name}={kind}"))
     }
 
-    fn tell_all_enabled(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
+    fn reply_all_enabled(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
         for name in self.names().filter(|&name| self.is_enabled(name)) {
             reply.line(format_args!("{name}={}", self.kind(name).word()))?;
         }
         reply.end()
     }
 
-    fn tell_types(&self, wanted: Option<Kind>, out: &mut Output<'_>) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
-        for kind in Kind::ALL {
+    fn reply_types(
+        &self,
+        wanted: Option<FrameKind>,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
+        for kind in FrameKind::ALL {
             let mut names = self.names();
             let name = names.find(|&name| self.is_enabled(name) && self.kind(name) == kind);
             match (name, wanted) {
@@ -106,23 +111,23 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_chains(
+    fn reply_chains(
         &self,
         name: Option<FrameName>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         for name in self.wanted(name) {
             reply.line(format_args!("{name}="))?;
-            for parent in self.chain(name).filter_map(|frame| frame.parent) {
-                reply.more(format_args!("{parent} "))?;
+            for parent in self.ancestry(name).filter_map(|frame| frame.parent) {
+                reply.continue_line(format_args!("{parent} "))?;
             }
-            reply.more(format_args!("{}", FrameName::ZERO))?;
+            reply.continue_line(format_args!("{}", FrameName::ZERO))?;
         }
         reply.end()
     }
 
-    fn tell_list(
+    fn reply_list(
         &self,
         name: Option<FrameName>,
         item: Option<ListItem>,
@@ -130,12 +135,12 @@ impl Frames {
     ) -> Result<(), WriteFailed> {
         let zero = Frame {
             name: FrameName::ZERO,
-            kind: Kind::Directed,
-            own: Transform::IDENTITY,
+            kind: FrameKind::Directed,
+            in_parent: Transform::IDENTITY,
             parent: None,
         };
         let all = |part: ListItem| item.is_none() || item == Some(part);
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         for name in self.wanted(name) {
             let frame = self.find(name).unwrap_or(&zero);
             if all(ListItem::Type) {
@@ -152,7 +157,7 @@ impl Frames {
             for axis in Axis::ALL {
                 let named = all(ListItem::Position(None)) || all(ListItem::Position(Some(axis)));
                 if named {
-                    let value = along(&frame.own, axis);
+                    let value = along(&frame.in_parent, axis);
                     reply.line(format_args!("{name} POS {}={value}", axis.letter()))?;
                 }
             }
@@ -160,18 +165,20 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_totals(
+    fn reply_totals(
         &self,
         start: Option<FrameName>,
         end: Option<FrameName>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         for name in self.wanted(start) {
             let total = self
-                .chain(name)
+                .ancestry(name)
                 .take_while(|frame| Some(frame.name) != end)
-                .fold(Transform::IDENTITY, |inner, frame| frame.own.then(&inner));
+                .fold(Transform::IDENTITY, |inner, frame| {
+                    frame.in_parent.then(&inner)
+                });
             for axis in Axis::ALL {
                 let value = along(&total, axis);
                 reply.line(format_args!("{name} {}={value}", axis.letter()))?;
@@ -180,11 +187,15 @@ impl Frames {
         reply.end()
     }
 
-    fn tell_pivot(&self, named: [bool; 3], out: &mut Output<'_>) -> Result<(), WriteFailed> {
-        let [r, s] = self.pivot();
+    fn reply_rotation_centre(
+        &self,
+        named: [bool; 3],
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let [r, s] = self.rotation_centre();
         let all = named == [false; 3];
-        let mut reply = Reply::new(out);
-        for ((axis, value), named) in PIVOT_AXES.into_iter().zip([r, s, 0.0]).zip(named) {
+        let mut reply = ReplyWriter::new(out);
+        for ((axis, value), named) in CENTRE_AXES.into_iter().zip([r, s, 0.0]).zip(named) {
             if named || all {
                 reply.line(format_args!("{axis}={value}"))?;
             }

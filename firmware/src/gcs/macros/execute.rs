@@ -1,15 +1,15 @@
 //! Carrying out what is about macros and variables, and running the macro.
 
 use super::state::lines;
-use super::{Failure, LINES, MacroRequest, Macros};
+use super::{Failure, LINES_PER_TICK, MacroRequest, Macros};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::output::{Discard, Output, WriteFailed};
-use crate::gcs::reply::Reply;
+use crate::gcs::reply::ReplyWriter;
 use crate::gcs::request::Condition;
 use crate::gcs::session::Session;
 use crate::gcs::text::{Name, Text};
-use crate::gcs::variables::{Locals, VariableRequest, text_of};
+use crate::gcs::variables::{Locals, VariableRequest, number_text};
 use crate::queues::PanelLink;
 
 impl Macros {
@@ -49,7 +49,7 @@ impl Macros {
 
     /// The text that was added is the macro of this name; false when there are too many.
     pub fn end_text(&mut self, name: Name) -> bool {
-        self.store.find(&name).is_none() && self.store.keep(name).is_ok()
+        self.store.find(&name).is_none() && self.store.commit(name).is_ok()
     }
 
     /// Forgets all.
@@ -71,7 +71,7 @@ impl Macros {
     }
 
     /// The macro's line has been carried out: whether it goes on.
-    fn look_at_line(&mut self, session: &mut Session) -> bool {
+    fn check_line_result(&mut self, session: &mut Session) -> bool {
         match core::mem::take(&mut session.error) {
             // What `HLT` leaves; after `STP` nothing runs any more.
             ErrorCode::None | ErrorCode::Stopped => {}
@@ -93,14 +93,14 @@ impl Macros {
 
 impl Panel {
     /// Carries out what is about macros; queries are answered.
-    pub(in crate::gcs) fn obey_macro(
+    pub(in crate::gcs) fn execute_macro(
         &mut self,
         request: &MacroRequest,
         session: &mut Session,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let result = match request {
-            MacroRequest::Begin(name) => self.macros.begin(*name, self.stage.tick(), session),
+            MacroRequest::Begin(name) => self.macros.begin(*name, self.commander.tick(), session),
             MacroRequest::End => self.macros.end(session),
             MacroRequest::Start(name, times, arguments) => {
                 self.start(name, *times, arguments, session)
@@ -108,23 +108,27 @@ impl Panel {
             MacroRequest::Delete(name) => self.macros.delete(name),
             MacroRequest::Stop(name) => self.stop_macro(name.as_ref()),
             MacroRequest::List(Some(name)) => match self.macros.place(name) {
-                Ok(place) => return tell_lines(self.macros.store.text(place), out),
+                Ok(place) => return reply_lines(self.macros.store.text(place), out),
                 Err(code) => Err(code),
             },
-            _ => return self.tell_macros(request, out),
+            _ => return self.reply_macros(request, out),
         };
         let changes = matches!(request, MacroRequest::End | MacroRequest::Delete(_));
         match result {
-            Ok(()) if changes => self.keeping.note_macros(),
+            Ok(()) if changes => self.persistence.mark_macros_changed(),
             Ok(()) => {}
             Err(code) => session.error = code,
         }
         Ok(())
     }
 
-    fn tell_macros(&self, request: &MacroRequest, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    fn reply_macros(
+        &self,
+        request: &MacroRequest,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let macros = &self.macros;
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         match request {
             MacroRequest::Error => {
                 if let Some(Failure {
@@ -174,7 +178,7 @@ impl Panel {
             self.macros.session = Session::for_macro(session.level);
             // What is old news already does not end it.
             let mut session = core::mem::take(&mut self.macros.session);
-            self.tell_bad_news(&mut session);
+            self.report_errors(&mut session);
             session.error = ErrorCode::None;
             self.macros.session = session;
         }
@@ -202,7 +206,7 @@ impl Panel {
         if !session.is_macro {
             return Err(ErrorCode::NotAllowed);
         }
-        if !self.holds(condition, session)? {
+        if !self.is_met(condition, session)? {
             return Ok(());
         }
         let macros = &mut self.macros;
@@ -220,7 +224,7 @@ impl Panel {
     }
 
     /// Carries out what is about variables.
-    pub(in crate::gcs) fn obey_variables(
+    pub(in crate::gcs) fn execute_variables(
         &mut self,
         request: &VariableRequest,
         session: &mut Session,
@@ -229,14 +233,14 @@ impl Panel {
         let result = match request {
             VariableRequest::Set(name, value) => self.set_variable(name, *value, session),
             VariableRequest::Add(name, a, b) => {
-                text_of(a + b).and_then(|sum| self.set_variable(name, Some(sum), session))
+                number_text(a + b).and_then(|sum| self.set_variable(name, Some(sum), session))
             }
-            VariableRequest::Tell(names) => {
+            VariableRequest::Query(names) => {
                 let named = names.iter().flatten();
                 let locals = self.macros.locals(session);
                 let known = |name: &Name| self.variables.get(name, locals).is_some();
                 if named.clone().all(known) {
-                    return self.tell_variables(names, out);
+                    return self.reply_variables(names, out);
                 }
                 Err(ErrorCode::UnknownVariable)
             }
@@ -257,12 +261,12 @@ impl Panel {
         self.variables.set(name, value, locals)
     }
 
-    fn tell_variables(
+    fn reply_variables(
         &self,
         names: &[Option<Name>],
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         let all = names.iter().all(Option::is_none);
         for (name, value) in self.variables.iter() {
             if all || names.contains(&Some(*name)) {
@@ -277,17 +281,17 @@ impl Panel {
         if !self.macros.is_running() {
             return;
         }
-        let tick = self.stage.tick();
+        let tick = self.commander.tick();
         if self.macros.tick != tick {
             self.macros.tick = tick;
-            self.macros.lines = LINES;
+            self.macros.lines = LINES_PER_TICK;
         }
         let mut session = core::mem::take(&mut self.macros.session);
-        self.tell_bad_news(&mut session);
+        self.report_errors(&mut session);
         loop {
             // Nothing that is thrown away fails.
             let _ = self.handle(&mut session, link, &mut Discard);
-            if !session.is_idle() || !self.macros.look_at_line(&mut session) {
+            if !session.is_idle() || !self.macros.check_line_result(&mut session) {
                 break;
             }
             if self.macros.lines == 0 {
@@ -307,8 +311,8 @@ impl Panel {
     }
 }
 
-fn tell_lines(text: &[u8], out: &mut Output<'_>) -> Result<(), WriteFailed> {
-    let mut reply = Reply::new(out);
+fn reply_lines(text: &[u8], out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     for line in lines(text) {
         // Only what could be printed was recorded.
         let line = core::str::from_utf8(line).unwrap_or_default();

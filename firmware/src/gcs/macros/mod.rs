@@ -4,16 +4,16 @@
 //! recorded and are no part of it; every other line is, and is only checked: a line that could never be carried out spoils the
 //! recording, and `MAC END` then keeps nothing. Variables are put in when the macro runs.
 //!
-//! One macro runs at a time; it may start others, up to [`DEPTH`] deep. It goes on when its client leaves. `STP` and `#24`
+//! One macro runs at a time; it may start others, up to [`MAX_CALL_DEPTH`] deep. It goes on when its client leaves. `STP` and `#24`
 //! from anywhere end it, `MAC STOP` too (and leaves the motion alone); an error ends it and is told by `MAC ERR?`. It gets
-//! [`LINES`] lines a tick and one jump, so that a loop without a wait holds up nobody.
+//! [`LINES_PER_TICK`] lines a tick and one jump, so that a loop without a wait holds up nobody.
 //!
 //! | what is bounded | by |
 //! |---|---|
 //! | text of all macros | [`MACRO_BYTES`] |
-//! | macros | [`MACROS`] |
+//! | macros | [`MAX_MACROS`] |
 //! | names, arguments and values | 16 and 32 characters |
-//! | depth of macros in macros | [`DEPTH`] |
+//! | depth of macros in macros | [`MAX_CALL_DEPTH`] |
 //! | variables | 32, and 10 local ones a macro |
 //!
 //! | file | idea |
@@ -32,18 +32,18 @@ mod state;
 
 pub(super) use parse::{MacroSyntax, add, jump, macro_request, set, tell, variable};
 pub(super) use recording::Recorded;
-pub use running::DEPTH;
-pub use state::{MACRO_BYTES, MACROS};
+pub use running::MAX_CALL_DEPTH;
+pub use state::{MACRO_BYTES, MAX_MACROS};
 
 use super::error::ErrorCode;
 use super::session::Session;
 use super::text::{Name, Text};
 use recording::Recording;
 use running::Calls;
-use state::Store;
+use state::MacroTexts;
 
 /// Lines of a macro carried out in a tick.
-pub const LINES: u32 = 8;
+pub const LINES_PER_TICK: u32 = 8;
 
 /// What a line wants of the macros.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,7 @@ pub enum MacroRequest {
 /// All about macros that the connections share.
 #[derive(Default)]
 pub(super) struct Macros {
-    store: Store,
+    store: MacroTexts,
     recording: Option<Recording>,
     /// Recordings begun so far: identifies one.
     recordings: u32,

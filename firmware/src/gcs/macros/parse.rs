@@ -5,7 +5,7 @@ use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::{ParseError, number};
 use crate::gcs::scan::{Scanner, Word};
 use crate::gcs::text::{Name, Text};
-use crate::gcs::variables::{NAMED, VariableRequest};
+use crate::gcs::variables::{MAX_NAMED_VARIABLES, VariableRequest};
 
 /// What follows a command about macros or variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,15 +38,15 @@ pub(in crate::gcs) fn macro_request(
             let count = whole(times, 1.0, f64::from(u32::MAX))?;
             MacroRequest::Start(name, count as u32, arguments(scanner)?)
         }
-        MacroSyntax::Stop => MacroRequest::Stop(perhaps_a_name(scanner)?),
-        MacroSyntax::List => MacroRequest::List(perhaps_a_name(scanner)?),
+        MacroSyntax::Stop => MacroRequest::Stop(optional_name(scanner)?),
+        MacroSyntax::List => MacroRequest::List(optional_name(scanner)?),
     })
 }
 
 /// What follows `VAR`: a name and, unless it is to be forgotten, a value.
 pub(in crate::gcs) fn set(scanner: &mut Scanner<'_>) -> Result<VariableRequest, ParseError> {
     let name = variable(scanner)?;
-    Ok(VariableRequest::Set(name, perhaps_a_text(scanner)?))
+    Ok(VariableRequest::Set(name, optional_text(scanner)?))
 }
 
 /// What follows `ADD`: a name and two numbers.
@@ -58,14 +58,14 @@ pub(in crate::gcs) fn add(scanner: &mut Scanner<'_>) -> Result<VariableRequest, 
 
 /// What follows `VAR?`: names.
 pub(in crate::gcs) fn tell(scanner: &mut Scanner<'_>) -> Result<VariableRequest, ParseError> {
-    let mut names = [None; NAMED];
+    let mut names = [None; MAX_NAMED_VARIABLES];
     for place in &mut names {
         if scanner.is_at_end() {
             break;
         }
         *place = Some(variable(scanner)?);
     }
-    Ok(VariableRequest::Tell(names))
+    Ok(VariableRequest::Query(names))
 }
 
 /// What follows `JRC`, before its condition: how many lines to go.
@@ -82,15 +82,15 @@ pub(in crate::gcs) fn variable(scanner: &mut Scanner<'_>) -> Result<Name, ParseE
     };
     Name::named(word.text)
         .filter(starts_well)
-        .ok_or_else(|| word.unfit(ErrorCode::InvalidIdentifier, "a variable's name"))
+        .ok_or_else(|| word.error(ErrorCode::InvalidIdentifier, "a variable's name"))
 }
 
 fn macro_name(scanner: &mut Scanner<'_>) -> Result<Name, ParseError> {
     let word = required(scanner, "a macro's name")?;
-    Name::named(word.text).ok_or_else(|| word.unfit(ErrorCode::MacroName, "a macro's name"))
+    Name::named(word.text).ok_or_else(|| word.error(ErrorCode::MacroName, "a macro's name"))
 }
 
-fn perhaps_a_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError> {
+fn optional_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError> {
     if scanner.is_at_end() {
         return Ok(None);
     }
@@ -98,17 +98,17 @@ fn perhaps_a_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError>
 }
 
 fn arguments(scanner: &mut Scanner<'_>) -> Result<[Option<Text>; 2], ParseError> {
-    Ok([perhaps_a_text(scanner)?, perhaps_a_text(scanner)?])
+    Ok([optional_text(scanner)?, optional_text(scanner)?])
 }
 
-fn perhaps_a_text(scanner: &mut Scanner<'_>) -> Result<Option<Text>, ParseError> {
+fn optional_text(scanner: &mut Scanner<'_>) -> Result<Option<Text>, ParseError> {
     let word = scanner.word();
     if word.text.is_empty() {
         return Ok(None);
     }
     let text = Text::new(word.text);
     text.map(Some).ok_or_else(|| {
-        word.unfit(
+        word.error(
             ErrorCode::OutOfRange,
             "a value of 32 printable characters at most",
         )
@@ -120,13 +120,13 @@ fn whole(word: Word<'_>, lowest: f64, highest: f64) -> Result<f64, ParseError> {
     if libm::rint(value) == value && (lowest..=highest).contains(&value) {
         return Ok(value);
     }
-    Err(word.unfit(ErrorCode::OutOfRange, "a whole number"))
+    Err(word.error(ErrorCode::OutOfRange, "a whole number"))
 }
 
 fn required<'a>(scanner: &mut Scanner<'a>, expected: &'static str) -> Result<Word<'a>, ParseError> {
     let word = scanner.word();
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, expected));
+        return Err(word.error(ErrorCode::ParameterCount, expected));
     }
     Ok(word)
 }

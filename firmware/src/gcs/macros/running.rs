@@ -1,18 +1,18 @@
 //! Which line of the running macros comes next.
 
-use super::state::Store;
+use super::state::MacroTexts;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::text::Text;
-use crate::gcs::variables::{Locals, text_of};
+use crate::gcs::variables::{Locals, number_text};
 use heapless::Vec;
 
 /// How deep a macro may start macros.
-pub const DEPTH: usize = 5;
+pub const MAX_CALL_DEPTH: usize = 5;
 
 /// The macros that run, the one that started the others first.
 #[derive(Default)]
 pub(super) struct Calls {
-    calls: Vec<Call, DEPTH>,
+    calls: Vec<Call, MAX_CALL_DEPTH>,
 }
 
 struct Call {
@@ -23,7 +23,7 @@ struct Call {
     /// Number of the line that was taken last, counted from 1; 0 before the first.
     line: u16,
     /// How often it runs once more after this.
-    again: u32,
+    repeats_left: u32,
     locals: Locals,
 }
 
@@ -67,13 +67,13 @@ impl Calls {
     ) -> Result<(), ErrorCode> {
         let mut locals = Locals::default();
         let count = arguments.iter().flatten().count();
-        locals[0] = Some(text_of(count as f64)?);
+        locals[0] = Some(number_text(count as f64)?);
         locals[1..=arguments.len()].copy_from_slice(arguments);
         let call = Call {
             place,
             at: 0,
             line: 0,
-            again: times.saturating_sub(1),
+            repeats_left: times.saturating_sub(1),
             locals,
         };
         self.calls
@@ -87,7 +87,7 @@ impl Calls {
     }
 
     /// Takes the next line; an empty one when a macro has come to its end, which is a step too.
-    pub fn next<'a>(&mut self, store: &'a Store) -> &'a [u8] {
+    pub fn next<'a>(&mut self, store: &'a MacroTexts) -> &'a [u8] {
         let Some(call) = self.calls.last_mut() else {
             return &[];
         };
@@ -97,8 +97,8 @@ impl Calls {
             call.line += 1;
             return &rest[..end];
         }
-        if call.again > 0 {
-            call.again -= 1;
+        if call.repeats_left > 0 {
+            call.repeats_left -= 1;
             (call.at, call.line) = (0, 0);
         } else {
             self.leave();
@@ -107,7 +107,7 @@ impl Calls {
     }
 
     /// `JRC`: what comes next is `by` lines from the one that is being carried out. An error leads out of the macro.
-    pub fn jump(&mut self, by: i32, store: &Store) -> Result<(), ErrorCode> {
+    pub fn jump(&mut self, by: i32, store: &MacroTexts) -> Result<(), ErrorCode> {
         let call = self.calls.last_mut().ok_or(ErrorCode::NotAllowed)?;
         let line = i64::from(call.line) + i64::from(by);
         let before = usize::try_from(line - 1).map_err(|_| ErrorCode::OutOfRange)?;

@@ -14,7 +14,7 @@ mod consistency;
 mod execute;
 mod table;
 
-pub(super) use execute::PASSWORD;
+pub(super) use execute::LEVEL_PASSWORD;
 pub use table::PARAMETERS;
 
 use super::error::ErrorCode;
@@ -41,11 +41,11 @@ pub struct Address {
 }
 
 /// Parameters that a line can name.
-pub const ADDRESSES: usize = 8;
+pub const MAX_ADDRESSES: usize = 8;
 /// The parameters that `SPA?` names, from the left; none stands for all.
-pub type Addresses = [Option<Address>; ADDRESSES];
+pub type Addresses = [Option<Address>; MAX_ADDRESSES];
 /// The parameters that `SPA` sets, from the left.
-pub type Settings = [Option<(Address, f64)>; ADDRESSES];
+pub type Settings = [Option<(Address, f64)>; MAX_ADDRESSES];
 
 /// A parameter: what `HPA?` says of it.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +66,7 @@ pub struct Parameter {
     pub unit: &'static str,
     /// Smallest and largest value.
     pub range: [f64; 2],
-    source: Source,
+    source: ValueSource,
 }
 
 /// Kind of a parameter's value.
@@ -93,13 +93,13 @@ pub enum When {
 
 /// Where its value is.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum ValueSource {
     /// Read only.
-    Told(fn(&Parameters) -> f64),
+    ReadOnly(fn(&Parameters) -> f64),
     /// A text for each axis; read only.
     Axis(fn(Axis) -> &'static str),
     /// How it is read and set.
-    Kept(fn(&Parameters) -> f64, fn(&mut Parameters, f64)),
+    Settable(fn(&Parameters) -> f64, fn(&mut Parameters, f64)),
 }
 
 /// A value as it is answered.
@@ -121,12 +121,12 @@ impl Parameter {
 
     /// Whether it has a value for `item`: those of the system are told for every axis too.
     pub(super) const fn belongs_to(&self, item: Item) -> bool {
-        !matches!((&self.source, item), (Source::Axis(_), Item::System))
+        !matches!((&self.source, item), (ValueSource::Axis(_), Item::System))
     }
 
     /// The items under which it is listed.
     pub(super) fn items(&self) -> impl Iterator<Item = Item> {
-        let of_axes = matches!(self.source, Source::Axis(_));
+        let of_axes = matches!(self.source, ValueSource::Axis(_));
         let axes = (Axis::ALL.into_iter())
             .filter(move |_| of_axes)
             .map(Item::Axis);
@@ -136,17 +136,19 @@ impl Parameter {
     /// Its value for an item that it [belongs to](Self::belongs_to).
     pub(super) fn value(&self, item: Item, parameters: &Parameters) -> Value {
         match (&self.source, item) {
-            (Source::Told(get) | Source::Kept(get, _), _) => Value::Number(get(parameters)),
-            (Source::Axis(text), Item::Axis(axis)) => Value::Text(text(axis)),
-            (Source::Axis(_), Item::System) => Value::Text(""),
+            (ValueSource::ReadOnly(get) | ValueSource::Settable(get, _), _) => {
+                Value::Number(get(parameters))
+            }
+            (ValueSource::Axis(text), Item::Axis(axis)) => Value::Text(text(axis)),
+            (ValueSource::Axis(_), Item::System) => Value::Text(""),
         }
     }
 
     /// Its value, where that is a number.
     pub fn number(&self, parameters: &Parameters) -> Option<f64> {
         match self.source {
-            Source::Told(get) | Source::Kept(get, _) => Some(get(parameters)),
-            Source::Axis(_) => None,
+            ValueSource::ReadOnly(get) | ValueSource::Settable(get, _) => Some(get(parameters)),
+            ValueSource::Axis(_) => None,
         }
     }
 
@@ -156,8 +158,8 @@ impl Parameter {
     /// # Errors
     /// [`ErrorCode::ReadOnly`], or [`ErrorCode::OutOfRange`] when it is out of its range or not whole where it has to be;
     /// nothing has changed then.
-    pub fn put(&self, value: f64, parameters: &mut Parameters) -> Result<(), ErrorCode> {
-        let Source::Kept(_, set) = self.source else {
+    pub fn set(&self, value: f64, parameters: &mut Parameters) -> Result<(), ErrorCode> {
+        let ValueSource::Settable(_, set) = self.source else {
             return Err(ErrorCode::ReadOnly);
         };
         let [lowest, highest] = self.range;

@@ -6,7 +6,7 @@
 
 use super::options::{Scales, words};
 use super::trigger::Trigger;
-use super::{Desk, Record, Wish};
+use super::{PendingOrder, Record, RecorderState};
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
 use crate::recorder::{PanelRecorder, Progress, Setup, Watch};
@@ -22,35 +22,43 @@ pub(in crate::gcs) enum Announced {
     Record,
 }
 
-impl Desk {
+impl RecorderState {
     /// Orders what is wanted, as far as there is room in the queue; later calls go on.
-    pub fn carry_on(&mut self, parameters: &Parameters, recorder: &mut PanelRecorder<'_>) {
-        let done = match self.wish {
-            Wish::Nothing => return,
-            Wish::Stop => {
+    pub fn send_pending_order(
+        &mut self,
+        parameters: &Parameters,
+        recorder: &mut PanelRecorder<'_>,
+    ) {
+        let done = match self.pending_order {
+            PendingOrder::Nothing => return,
+            PendingOrder::Stop => {
                 self.stopped = true;
                 recorder.stop().is_ok()
             }
-            Wish::Record => self.order(self.triggered(parameters), parameters, recorder),
+            PendingOrder::Record => self.order(self.triggered(parameters), parameters, recorder),
         };
         if done {
-            self.wish = Wish::Nothing;
+            self.pending_order = PendingOrder::Nothing;
         }
     }
 
     /// A record that waits for its trigger is ordered anew, so that a change counts for it too.
-    pub fn arm_again(&mut self, recorder: &PanelRecorder<'_>) {
+    pub fn rearm(&mut self, recorder: &PanelRecorder<'_>) {
         if self.is_waiting(recorder) {
             let recorded = self.tables.iter().any(|table| table.channel.is_some());
-            self.wish = if recorded { Wish::Record } else { Wish::Stop };
+            self.pending_order = if recorded {
+                PendingOrder::Record
+            } else {
+                PendingOrder::Stop
+            };
         }
     }
 
     /// Rows of the record that was ordered last.
     pub(super) fn progress(&self, recorder: &PanelRecorder<'_>) -> Progress {
         let number = self.record.as_ref().map(|record| record.setup.number);
-        match (self.wish, number) {
-            (Wish::Record, _) | (_, None) => Progress::default(),
+        match (self.pending_order, number) {
+            (PendingOrder::Record, _) | (_, None) => Progress::default(),
             (_, Some(number)) => recorder.progress(number),
         }
     }
@@ -58,10 +66,10 @@ impl Desk {
     /// Whether a record waits for its trigger.
     pub(super) fn is_waiting(&self, recorder: &PanelRecorder<'_>) -> bool {
         let armed = self.record.is_some() && !self.stopped;
-        match self.wish {
-            Wish::Record => true,
-            Wish::Stop => false,
-            Wish::Nothing => armed && self.progress(recorder).rows == 0,
+        match self.pending_order {
+            PendingOrder::Record => true,
+            PendingOrder::Stop => false,
+            PendingOrder::Nothing => armed && self.progress(recorder).rows == 0,
         }
     }
 
@@ -80,7 +88,7 @@ impl Desk {
         if step && self.channels().iter().all(Option::is_none) {
             return Err(ErrorCode::TableOff);
         }
-        self.carry_on(parameters, recorder);
+        self.send_pending_order(parameters, recorder);
         let every = self.has(|trigger| trigger == Trigger::EveryMove);
         let complete = (self.record.as_ref())
             .is_some_and(|record| self.progress(recorder).rows == record.setup.rows);
@@ -96,7 +104,7 @@ impl Desk {
                 (false, false) => Ok(Announced::Nothing),
             };
         }
-        let waits = self.is_waiting(recorder) && self.has(Trigger::is_of_moves);
+        let waits = self.is_waiting(recorder) && self.has(Trigger::is_by_command);
         if waits && recorder.expect(Some(commands)).is_ok() {
             return Ok(Announced::Trigger);
         }
@@ -104,7 +112,7 @@ impl Desk {
     }
 
     /// The command has been refused: what it was announced as is taken back.
-    pub fn take_back(&mut self, announced: Announced, recorder: &mut PanelRecorder<'_>) {
+    pub fn revoke(&mut self, announced: Announced, recorder: &mut PanelRecorder<'_>) {
         match announced {
             Announced::Nothing => {}
             // There is room: the announcement was the last, and at most the second, order in the queue.
@@ -184,7 +192,7 @@ impl Desk {
         let scales = Scales::new(parameters);
         for table in &self.tables {
             if let Trigger::Crosses { value, rising } = table.trigger
-                && let Some(word) = table.channel.and_then(|channel| channel.watched())
+                && let Some(word) = table.channel.and_then(|channel| channel.trigger_word())
             {
                 // As many fit as there are tables.
                 let watch = Watch::new(word, value / scales.factor(word), rising);

@@ -6,7 +6,7 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | requests, and what the desk keeps |
+//! | here | requests, and what the recorder_state keeps |
 //! | `option` | what can be recorded, and of what words it is worked out |
 //! | `trigger` | what can begin a record |
 //! | `arm` | from tables and triggers to an order, and the commands that trigger |
@@ -23,13 +23,13 @@ mod readout;
 mod replies;
 mod trigger;
 
-pub(super) use fault_record_readout::HistoryDump;
-pub use options::{Channel, Source};
+pub(super) use fault_record_readout::FaultRecordReadout;
+pub use options::{Channel, SignalSource};
 pub(super) use parse::{
     channels, count, data, fault_record, help, lengths, rate, set_channels, set_rate, set_triggers,
     triggers,
 };
-pub(super) use readout::Dump;
+pub(super) use readout::RecordReadout;
 pub use trigger::Trigger;
 
 use super::error::ErrorCode;
@@ -62,7 +62,7 @@ pub enum RecordQuery {
     /// `DRR?`: rows, counted from 1, and how many; all without them.
     Data(Option<[u32; 2]>, TableList),
     /// `FLR?`: the fault record.
-    History,
+    FaultRecord,
 }
 
 /// Something to be done to the recorder.
@@ -115,7 +115,7 @@ struct Record {
 
 /// What is to be told to the tick when there is room in the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Wish {
+enum PendingOrder {
     #[default]
     Nothing,
     Record,
@@ -123,7 +123,7 @@ enum Wish {
 }
 
 /// What the panel keeps of the recorder.
-pub(super) struct Desk {
+pub(super) struct RecorderState {
     tables: [Table; TABLES],
     every: u32,
     /// The record that was ordered last, and the one before, in case that is taken back.
@@ -131,14 +131,14 @@ pub(super) struct Desk {
     before: Option<Record>,
     /// Whether it was stopped while it was waiting for its trigger.
     stopped: bool,
-    wish: Wish,
+    pending_order: PendingOrder,
 }
 
-impl Desk {
+impl RecorderState {
     /// The pose, commanded and real, a motor, and the supervisor's state.
     pub fn new() -> Self {
         Self {
-            tables: options::DEFAULT.map(|channel| Table {
+            tables: options::DEFAULT_CHANNELS.map(|channel| Table {
                 channel: Some(channel),
                 trigger: Trigger::Never,
             }),
@@ -146,7 +146,7 @@ impl Desk {
             record: None,
             before: None,
             stopped: false,
-            wish: Wish::Nothing,
+            pending_order: PendingOrder::Nothing,
         }
     }
 
@@ -171,7 +171,7 @@ impl Desk {
                 let tuning = &mut parameters.recorder;
                 tuning.points = tuning.points.min(self.most_rows(recorder.capacity()));
                 tuning.before = tuning.before.min(tuning.points - 1);
-                self.arm_again(recorder);
+                self.rearm(recorder);
             }
             RecordAction::Triggers(changes) => self.set_triggers(changes, recorder)?,
             RecordAction::Rate(ticks) => {
@@ -180,7 +180,7 @@ impl Desk {
                     return Err(ErrorCode::OutOfRange);
                 }
                 self.every = *ticks as u32;
-                self.arm_again(recorder);
+                self.rearm(recorder);
             }
         }
         Ok(())
@@ -190,7 +190,7 @@ impl Desk {
         self.tables.map(|table| table.channel)
     }
 
-    /// A value that is watched is one of the signal that was there: it goes with it.
+    /// A value that is trigger_word is one of the signal that was there: it goes with it.
     fn set_channel(&mut self, table: usize, channel: Option<Channel>) {
         let table = &mut self.tables[table];
         if table.channel != channel && matches!(table.trigger, Trigger::Crosses { .. }) {
@@ -209,7 +209,7 @@ impl Desk {
             let table = &mut tables[usize::from(table)];
             if matches!(trigger, Trigger::Crosses { .. }) {
                 let channel = table.channel.ok_or(ErrorCode::TableOff)?;
-                channel.watched().ok_or(ErrorCode::OutOfRange)?;
+                channel.trigger_word().ok_or(ErrorCode::OutOfRange)?;
             }
             table.trigger = trigger;
         }
@@ -219,9 +219,9 @@ impl Desk {
         }
         self.tables = tables;
         if armed {
-            self.wish = Wish::Record;
+            self.pending_order = PendingOrder::Record;
         } else if self.is_waiting(recorder) {
-            self.wish = Wish::Stop;
+            self.pending_order = PendingOrder::Stop;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@
 
 use crate::commander::axis::Axis;
 use crate::commander::coordinates::measured;
-use crate::commander::frames::View;
+use crate::commander::frames::ActiveFrames;
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::parameters::Parameters;
 use crate::recorder::{Kind, TABLES, WIDEST, Word};
@@ -14,7 +14,7 @@ use kinematics::{Angle, Geometry};
 
 /// Where a signal comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum SignalSource {
     /// `0`: the controller as a whole.
     Controller,
     /// `1` to `3`: a pivot, counted from 0 here.
@@ -29,7 +29,7 @@ pub struct Channel {
     /// The record option.
     pub option: u16,
     /// Where from.
-    pub source: Source,
+    pub source: SignalSource,
     signal: Signal,
 }
 
@@ -41,7 +41,7 @@ enum Signal {
     /// A word.
     Word(Word),
     /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
-    Real(u8),
+    Measured(u8),
     /// Measured pose minus its setpoint.
     Error(u8),
     /// Time since the trigger, which the row tells.
@@ -55,38 +55,38 @@ pub(super) struct RecordOption {
     pub name: &'static str,
     /// Of what, and its unit.
     pub detail: &'static str,
-    signal: fn(Source) -> Option<Signal>,
+    signal: fn(SignalSource) -> Option<Signal>,
 }
 
 /// Nothing is recorded.
-pub(super) const OFF: u16 = 0;
+pub(super) const OPTION_OFF: u16 = 0;
 
 /// Every option that records something.
 #[rustfmt::skip]
 pub(super) const OPTIONS: &[RecordOption] = &[
     option(1, "commanded position", " of axis or pivot, mm or deg", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotSetpoint(i))),
-        Source::Controller => None,
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
+        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotSetpoint(i))),
+        SignalSource::Controller => None,
     }),
     option(2, "real position", " of axis or pivot, mm or deg", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, Signal::Real)),
-        Source::Pivot(i) => Some(Signal::Word(Word::Pivot(i))),
-        Source::Controller => None,
+        SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Measured)),
+        SignalSource::Pivot(i) => Some(Signal::Word(Word::Pivot(i))),
+        SignalSource::Controller => None,
     }),
     option(3, "position error", " of axis or pivot, real minus commanded, mm or deg", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, Signal::Error)),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotError(i))),
-        Source::Controller => None,
+        SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Error)),
+        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotError(i))),
+        SignalSource::Controller => None,
     }),
     option(8, "time since the trigger", ", s", |source| of_controller(source, Signal::Time)),
     option(70, "commanded velocity", " of axis or pivot, mm/s or deg/s", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Velocity(i)))),
-        Source::Pivot(i) => Some(Signal::Word(Word::PivotRate(i))),
-        Source::Controller => None,
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Velocity(i)))),
+        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotRate(i))),
+        SignalSource::Controller => None,
     }),
     option(71, "commanded acceleration", " of axis, mm/s^2 or deg/s^2", |source| match source {
-        Source::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Acceleration(i)))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Acceleration(i)))),
         _ => None,
     }),
     option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, Word::Duty)),
@@ -101,7 +101,7 @@ const fn option(
     number: u16,
     name: &'static str,
     detail: &'static str,
-    signal: fn(Source) -> Option<Signal>,
+    signal: fn(SignalSource) -> Option<Signal>,
 ) -> RecordOption {
     RecordOption {
         number,
@@ -115,56 +115,56 @@ fn of_axis(axis: Axis, signal: fn(u8) -> Signal) -> Signal {
     axis.component().map_or(Signal::Zero, |i| signal(i as u8))
 }
 
-fn of_pivot(source: Source, word: fn(u8) -> Word) -> Option<Signal> {
+fn of_pivot(source: SignalSource, word: fn(u8) -> Word) -> Option<Signal> {
     match source {
-        Source::Pivot(i) => Some(Signal::Word(word(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(word(i))),
         _ => None,
     }
 }
 
-fn of_controller(source: Source, signal: Signal) -> Option<Signal> {
-    (source == Source::Controller).then_some(signal)
+fn of_controller(source: SignalSource, signal: Signal) -> Option<Signal> {
+    (source == SignalSource::Controller).then_some(signal)
 }
 
 /// What the tables record before they are told.
-pub(super) const DEFAULT: [Channel; TABLES] = [
-    commanded(Axis::X, Word::Centre(0)),
-    real(Axis::X, 0),
-    commanded(Axis::Y, Word::Centre(1)),
-    real(Axis::Y, 1),
-    commanded(Axis::W, Word::Theta),
-    real(Axis::W, 2),
+pub(super) const DEFAULT_CHANNELS: [Channel; TABLES] = [
+    commanded_channel(Axis::X, Word::Centre(0)),
+    measured_channel(Axis::X, 0),
+    commanded_channel(Axis::Y, Word::Centre(1)),
+    measured_channel(Axis::Y, 1),
+    commanded_channel(Axis::W, Word::Theta),
+    measured_channel(Axis::W, 2),
     Channel {
         option: 73,
-        source: Source::Pivot(0),
+        source: SignalSource::Pivot(0),
         signal: Signal::Word(Word::Duty(0)),
     },
     Channel {
         option: 202,
-        source: Source::Controller,
+        source: SignalSource::Controller,
         signal: Signal::Word(Word::Mode),
     },
 ];
 
-const fn commanded(axis: Axis, word: Word) -> Channel {
+const fn commanded_channel(axis: Axis, word: Word) -> Channel {
     Channel {
         option: 1,
-        source: Source::Axis(axis),
+        source: SignalSource::Axis(axis),
         signal: Signal::Word(word),
     }
 }
 
-const fn real(axis: Axis, component: u8) -> Channel {
+const fn measured_channel(axis: Axis, component: u8) -> Channel {
     Channel {
         option: 2,
-        source: Source::Axis(axis),
-        signal: Signal::Real(component),
+        source: SignalSource::Axis(axis),
+        signal: Signal::Measured(component),
     }
 }
 
 const PIVOTS: [Word; 3] = [Word::Pivot(0), Word::Pivot(1), Word::Pivot(2)];
 
-impl Source {
+impl SignalSource {
     /// The source of a name, in either case.
     pub(super) fn named(name: &[u8]) -> Option<Self> {
         match name {
@@ -175,7 +175,7 @@ impl Source {
     }
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for SignalSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Controller => f.write_str("0"),
@@ -187,7 +187,7 @@ impl fmt::Display for Source {
 
 impl Channel {
     /// An option of a source; `None` when there is no such option, or not of this source.
-    pub(super) fn new(option: u16, source: Source) -> Option<Self> {
+    pub(super) fn new(option: u16, source: SignalSource) -> Option<Self> {
         let known = OPTIONS.iter().find(|known| known.number == option)?;
         Some(Self {
             option,
@@ -197,7 +197,7 @@ impl Channel {
     }
 
     /// The word whose crossing of a value can trigger; none where the value is worked out after the tick.
-    pub(super) fn watched(self) -> Option<Word> {
+    pub(super) fn trigger_word(self) -> Option<Word> {
         match self.signal {
             Signal::Word(word) => Some(word),
             _ => None,
@@ -208,7 +208,7 @@ impl Channel {
         let (own, pivots) = match self.signal {
             Signal::Zero | Signal::Time => (None, false),
             Signal::Word(word) => (Some(word), false),
-            Signal::Real(_) => (None, true),
+            Signal::Measured(_) => (None, true),
             Signal::Error(i) => (Some(setpoint(i)), true),
         };
         let pivots = PIVOTS.into_iter().filter(move |_| pivots);
@@ -217,7 +217,7 @@ impl Channel {
 
     fn unit(self) -> &'static str {
         let of_axis = |mm: &'static str, deg: &'static str| match self.source {
-            Source::Axis(axis) if axis.unit() == "mm" => mm,
+            SignalSource::Axis(axis) if axis.unit() == "mm" => mm,
             _ => deg,
         };
         match self.option {
@@ -247,9 +247,9 @@ impl fmt::Display for Channel {
         let known = OPTIONS.iter().find(|known| known.number == self.option);
         f.write_str(known.map_or("", |known| known.name))?;
         match self.source {
-            Source::Controller => {}
-            Source::Pivot(i) => write!(f, " of pivot {}", i + 1)?,
-            Source::Axis(axis) => write!(f, " of {}", axis.letter())?,
+            SignalSource::Controller => {}
+            SignalSource::Pivot(i) => write!(f, " of pivot {}", i + 1)?,
+            SignalSource::Axis(axis) => write!(f, " of {}", axis.letter())?,
         }
         match self.unit() {
             "" => Ok(()),
@@ -326,7 +326,7 @@ impl Scales {
 }
 
 /// A row of a record, as it was read.
-pub(super) struct Row<'a> {
+pub(super) struct RecordRow<'a> {
     pub words: &'a [Word],
     pub values: [i64; WIDEST],
     pub scales: &'a Scales,
@@ -338,13 +338,13 @@ pub(super) struct Row<'a> {
     pub pose: Option<[f64; 3]>,
 }
 
-impl Row<'_> {
+impl RecordRow<'_> {
     /// The value of a channel, mm, deg or as its option says; not a number where the pivots are no pose.
     pub fn value(&mut self, channel: Channel) -> f64 {
         match channel.signal {
             Signal::Zero => 0.0,
             Signal::Word(word) => self.word(word),
-            Signal::Real(i) => self.pose()[usize::from(i)],
+            Signal::Measured(i) => self.pose()[usize::from(i)],
             Signal::Error(i) => self.pose()[usize::from(i)] - self.word(setpoint(i)),
             Signal::Time => self.row as f64 * f64::from(self.every) * self.scales.period_s,
         }
@@ -369,7 +369,7 @@ impl Row<'_> {
             return pose;
         }
         let pivots = PIVOTS.map(|pivot| Angle::from_units(self.integer(pivot) << 4));
-        let pose = measured(&pivots, &View::BASE, &self.scales.geometry)
+        let pose = measured(&pivots, &ActiveFrames::BASE, &self.scales.geometry)
             .map_or([f64::NAN; 3], |pose| [pose[0], pose[1], pose[5]]);
         self.pose = Some(pose);
         pose

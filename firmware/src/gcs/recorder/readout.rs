@@ -6,8 +6,8 @@
 //! If another record takes the place of the one that is being read, the rest is answered as not a number, with an error: a
 //! client counts the rows.
 
-use super::options::{Channel, Row};
-use super::{Desk, HistoryDump, Record, RecordQuery, TableList, replies};
+use super::options::{Channel, RecordRow};
+use super::{FaultRecordReadout, Record, RecordQuery, RecorderState, TableList, replies};
 use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::output::{Output, WriteFailed};
@@ -18,17 +18,17 @@ use core::fmt::{self, Write as _};
 use heapless::String;
 
 /// Longest line: eight numbers.
-pub(super) const LINE: usize = 384;
+pub(super) const MAX_LINE_BYTES: usize = 384;
 /// Lines that a service writes at most, so that other work is not kept waiting.
-pub(super) const LINES: usize = 8;
+pub(super) const LINES_PER_SERVICE: usize = 8;
 
 /// What is left of an answer.
-pub(in crate::gcs) struct Dump {
+pub(in crate::gcs) struct RecordReadout {
     /// The record.
     number: u32,
     columns: [Option<Channel>; TABLES],
     /// Lines of the head that are written.
-    head: usize,
+    header_lines_written: usize,
     cursor: Cursor,
     /// The next row, counted from that of the trigger.
     row: i64,
@@ -38,31 +38,33 @@ pub(in crate::gcs) struct Dump {
 
 impl Panel {
     /// Answers a question about the recorder, or begins to.
-    pub(in crate::gcs) fn tell_record(
+    pub(in crate::gcs) fn reply_record(
         &mut self,
         query: RecordQuery,
         session: &mut Session,
         link: &PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
-        let desk = &self.desk;
+        let recorder_state = &self.recorder_state;
         match query {
-            RecordQuery::Channels(tables) => desk.tell_channels(&tables, out),
-            RecordQuery::Triggers(tables) => desk.tell_triggers(&tables, out),
-            RecordQuery::Rate => desk.tell_rate(out),
-            RecordQuery::Lengths(tables) => desk.tell_lengths(&tables, &link.recorder, out),
-            RecordQuery::History => {
-                match HistoryDump::new(link.black_box) {
-                    Ok(dump) => session.history = Some(dump),
+            RecordQuery::Channels(tables) => recorder_state.reply_channels(&tables, out),
+            RecordQuery::Triggers(tables) => recorder_state.reply_triggers(&tables, out),
+            RecordQuery::Rate => recorder_state.reply_rate(out),
+            RecordQuery::Lengths(tables) => {
+                recorder_state.reply_lengths(&tables, &link.recorder, out)
+            }
+            RecordQuery::FaultRecord => {
+                match FaultRecordReadout::new(link.black_box) {
+                    Ok(readout) => session.fault_record_readout = Some(readout),
                     Err(code) => session.error = code,
                 }
                 Ok(())
             }
-            RecordQuery::Help => replies::tell_help(self.parameters.recorder.points, out),
-            RecordQuery::Count => replies::tell_count(out),
+            RecordQuery::Help => replies::reply_help(self.parameters.recorder.points, out),
+            RecordQuery::Count => replies::reply_count(out),
             RecordQuery::Data(span, tables) => {
-                match desk.dump(span, &tables, &link.recorder) {
-                    Ok(dump) => session.dump = Some(dump),
+                match recorder_state.begin_readout(span, &tables, &link.recorder) {
+                    Ok(readout) => session.readout = Some(readout),
                     Err(code) => session.error = code,
                 }
                 Ok(())
@@ -71,29 +73,29 @@ impl Panel {
     }
 
     /// Writes some more of the answer that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn carry_dump(
+    pub(in crate::gcs) fn write_readout(
         &self,
         session: &mut Session,
         link: &PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<bool, WriteFailed> {
-        let Some(dump) = &mut session.dump else {
+        let Some(readout) = &mut session.readout else {
             return Ok(false);
         };
-        for _ in 0..LINES {
-            if session.room.is_some_and(|room| room < LINE) {
+        for _ in 0..LINES_PER_SERVICE {
+            if session.room.is_some_and(|room| room < MAX_LINE_BYTES) {
                 return Ok(true);
             }
-            let record = self.desk.record.as_ref();
-            let record = record.filter(|record| record.setup.number == dump.number);
+            let record = self.recorder_state.record.as_ref();
+            let record = record.filter(|record| record.setup.number == readout.number);
             if record.is_none() {
                 session.error = ErrorCode::NotRecorded;
             }
-            let line = dump.line(record, &link.recorder);
+            let line = readout.line(record, &link.recorder);
             out.write_all(line.as_bytes())?;
             session.room = session.room.map(|room| room - line.len());
-            if dump.left == 0 {
-                session.dump = None;
+            if readout.left == 0 {
+                session.readout = None;
                 return Ok(false);
             }
         }
@@ -101,13 +103,13 @@ impl Panel {
     }
 }
 
-impl Desk {
-    fn dump(
+impl RecorderState {
+    fn begin_readout(
         &self,
         span: Option<[u32; 2]>,
         tables: &TableList,
         recorder: &PanelRecorder<'_>,
-    ) -> Result<Dump, ErrorCode> {
+    ) -> Result<RecordReadout, ErrorCode> {
         let progress = self.progress(recorder);
         let [first, rows] = span.unwrap_or([1, progress.rows]);
         let enough = first
@@ -127,10 +129,10 @@ impl Desk {
                 *column = Some(channel.ok_or(ErrorCode::TableOff)?);
             }
         }
-        Ok(Dump {
+        Ok(RecordReadout {
             number: record.setup.number,
             columns,
-            head: 0,
+            header_lines_written: 0,
             cursor: recorder.seek(&record.setup, first - 1),
             row: i64::from(first - 1) - i64::from(progress.before),
             rows,
@@ -139,15 +141,19 @@ impl Desk {
     }
 }
 
-impl Dump {
+impl RecordReadout {
     /// The next line, with its end.
-    fn line(&mut self, record: Option<&Record>, recorder: &PanelRecorder<'_>) -> String<LINE> {
+    fn line(
+        &mut self,
+        record: Option<&Record>,
+        recorder: &PanelRecorder<'_>,
+    ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
-        if self.head < HEAD + self.columns() {
-            let _ = self.head_line(record, &mut line);
+        if self.header_lines_written < HEADER_LINES + self.columns() {
+            let _ = self.header_line(record, &mut line);
             let _ = line.write_str(" \n");
-            self.head += 1;
+            self.header_lines_written += 1;
         } else {
             let _ = self.row_line(record, recorder, &mut line);
             self.left -= 1;
@@ -160,12 +166,16 @@ impl Dump {
         self.columns.iter().flatten().count()
     }
 
-    fn head_line(&self, record: Option<&Record>, line: &mut String<LINE>) -> fmt::Result {
+    fn header_line(
+        &self,
+        record: Option<&Record>,
+        line: &mut String<MAX_LINE_BYTES>,
+    ) -> fmt::Result {
         let period_s = record.map_or(0.0, |record| {
             record.scales.period_s() * f64::from(record.setup.every)
         });
         let names = self.columns();
-        match self.head {
+        match self.header_lines_written {
             0 => write!(line, "# DIM = {names}"),
             1 => write!(line, "# NDATA = {}", self.rows),
             2 => write!(line, "# SAMPLE_TIME = {period_s}"),
@@ -182,9 +192,9 @@ impl Dump {
         &mut self,
         record: Option<&Record>,
         recorder: &PanelRecorder<'_>,
-        line: &mut String<LINE>,
+        line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
-        let mut row = record.map(|record| Row {
+        let mut row = record.map(|record| RecordRow {
             words: &record.setup.words,
             values: recorder.next(&record.setup, &mut self.cursor),
             scales: &record.scales,
@@ -211,4 +221,4 @@ impl Dump {
 }
 
 /// Lines of the head besides the names.
-const HEAD: usize = 6;
+const HEADER_LINES: usize = 6;

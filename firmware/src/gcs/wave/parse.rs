@@ -1,6 +1,6 @@
 //! From lines to what they ask of tables and generators.
 
-use crate::commander::wave::{Curve, Join, LONGEST, Shape, TABLES};
+use crate::commander::wave::{Curve, Join, MAX_TABLE_POINTS, Shape, TABLES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::{ParseError, number};
 use crate::gcs::request::{Action, Request};
@@ -29,7 +29,7 @@ impl WavePoints {
 #[derive(Clone, Copy, Debug, PartialEq)]
 // A line's points are by far the largest; there is no heap to box them in.
 #[allow(clippy::large_enum_variant)]
-pub enum WaveAction {
+pub enum WaveChange {
     /// `WAV`, calculated.
     Define {
         /// Which.
@@ -78,7 +78,7 @@ pub enum WaveQuery {
     /// `WTR?`
     Rates([bool; 6]),
     /// `WGO?`
-    Going([bool; 6]),
+    Running([bool; 6]),
 }
 
 /// What follows the name of a command about waveforms.
@@ -92,14 +92,14 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
         b"X" | b"x" => Join::Anew,
         b"&" => Join::Append,
         b"+" => Join::Add,
-        b"" => return Err(word.unfit(ErrorCode::ParameterCount, "X, & or +")),
-        _ => return Err(word.unfit(ErrorCode::OutOfRange, "X, & or +")),
+        b"" => return Err(word.error(ErrorCode::ParameterCount, "X, & or +")),
+        _ => return Err(word.error(ErrorCode::OutOfRange, "X, & or +")),
     };
     let word = scanner.word();
     let is = |name: &[u8]| word.text.eq_ignore_ascii_case(name);
     if is(b"PNT") {
         let points = points(scanner)?;
-        return act(WaveAction::Points {
+        return act(WaveChange::Points {
             table,
             join,
             points,
@@ -107,7 +107,7 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
     }
     let (line, ramp, sine) = (is(b"LIN"), is(b"RAMP"), is(b"SIN_P"));
     if !(line || ramp || sine) {
-        return Err(word.unfit(ErrorCode::OutOfRange, "PNT, LIN, RAMP or SIN_P"));
+        return Err(word.error(ErrorCode::OutOfRange, "PNT, LIN, RAMP or SIN_P"));
     }
     let length = whole(scanner)?;
     let (amplitude, offset) = (number(scanner.word())?, number(scanner.word())?);
@@ -137,7 +137,7 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
             }
         }
     };
-    act(WaveAction::Define {
+    act(WaveChange::Define {
         table,
         join,
         length,
@@ -149,16 +149,16 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
 fn points(scanner: &mut Scanner<'_>) -> Result<WavePoints, ParseError> {
     // Where the segment goes is what `X`, `&` and `+` say; clients count on in lines that append.
     whole(scanner)?;
-    let column = scanner.word_ahead();
+    let column = scanner.peek_word();
     let count = whole(scanner)?;
     let mut values: Vec<f64, LINE_POINTS> = Vec::new();
     while !scanner.is_at_end() {
         let word = scanner.word();
-        let full = word.unfit(ErrorCode::ParameterCount, "32 points at most in a line");
+        let full = word.error(ErrorCode::ParameterCount, "32 points at most in a line");
         values.push(number(word)?).map_err(|_| full)?;
     }
     if values.is_empty() || values.len() != count as usize {
-        return Err(column.unfit(ErrorCode::ParameterCount, "how many points follow"));
+        return Err(column.error(ErrorCode::ParameterCount, "how many points follow"));
     }
     let mut points = WavePoints {
         values: [0.0; LINE_POINTS],
@@ -176,7 +176,7 @@ pub fn clear(scanner: &mut Scanner<'_>) -> Parsed {
     loop {
         wanted[place::<TABLES>(scanner)?] = true;
         if scanner.is_at_end() {
-            return act(WaveAction::Clear(wanted));
+            return act(WaveChange::Clear(wanted));
         }
     }
 }
@@ -184,19 +184,19 @@ pub fn clear(scanner: &mut Scanner<'_>) -> Parsed {
 /// `WSL`
 pub fn select(scanner: &mut Scanner<'_>) -> Parsed {
     let tables = pairs(scanner, TABLES as u32)?;
-    act(WaveAction::Select(tables))
+    act(WaveChange::Select(tables))
 }
 
 /// `WGC`
 pub fn cycles(scanner: &mut Scanner<'_>) -> Parsed {
-    let cycles = pairs(scanner, LONGEST)?;
-    act(WaveAction::Cycles(cycles))
+    let cycles = pairs(scanner, MAX_TABLE_POINTS)?;
+    act(WaveChange::Cycles(cycles))
 }
 
 /// `WGO`
 pub fn go(scanner: &mut Scanner<'_>) -> Parsed {
     let modes = pairs(scanner, 1)?;
-    act(WaveAction::Go(modes))
+    act(WaveChange::Go(modes))
 }
 
 /// `WTR`: triples of generator (0: all, as any of them does), ticks a point and interpolation, which is what it is.
@@ -207,7 +207,7 @@ pub fn rate(scanner: &mut Scanner<'_>) -> Parsed {
         ticks = whole(scanner)?;
         within(scanner, 0, 1)?;
         if scanner.is_at_end() {
-            return act(WaveAction::Rate(ticks));
+            return act(WaveChange::Rate(ticks));
         }
     }
 }
@@ -236,22 +236,22 @@ pub fn generators(query: fn([bool; 6]) -> WaveQuery, scanner: &mut Scanner<'_>) 
     ask(query(named))
 }
 
-fn act(action: WaveAction) -> Parsed {
+fn act(action: WaveChange) -> Parsed {
     Ok(Request::Act(Action::Wave(action)))
 }
 
 fn ask(query: WaveQuery) -> Parsed {
-    Ok(Request::Waves(query))
+    Ok(Request::Waveforms(query))
 }
 
 /// Pairs of generator and a number up to `most`, at least one.
 fn pairs(scanner: &mut Scanner<'_>, most: u32) -> Result<[Option<u32>; 6], ParseError> {
     let mut values = [None; 6];
     loop {
-        let word = scanner.word_ahead();
+        let word = scanner.peek_word();
         let place = place::<6>(scanner)?;
         if values[place].is_some() {
-            return Err(word.unfit(
+            return Err(word.error(
                 ErrorCode::AxisTwice,
                 "a generator that has not been named yet",
             ));
@@ -270,7 +270,7 @@ fn place<const COUNT: usize>(scanner: &mut Scanner<'_>) -> Result<usize, ParseEr
 }
 
 fn whole(scanner: &mut Scanner<'_>) -> Result<u32, ParseError> {
-    within(scanner, 0, LONGEST)
+    within(scanner, 0, MAX_TABLE_POINTS)
 }
 
 /// A whole number of a range.
@@ -278,7 +278,7 @@ fn within(scanner: &mut Scanner<'_>, least: u32, most: u32) -> Result<u32, Parse
     let word: Word<'_> = scanner.word();
     let value = number(word)?;
     if !(f64::from(least)..=f64::from(most)).contains(&value) || value != libm::trunc(value) {
-        return Err(word.unfit(ErrorCode::OutOfRange, "a whole number that is there"));
+        return Err(word.error(ErrorCode::OutOfRange, "a whole number that is there"));
     }
     Ok(value as u32)
 }

@@ -1,28 +1,28 @@
 //! What queries about tables and generators answer.
 
-use crate::commander::wave::{WaveQuery, Waves};
+use crate::commander::wave::{WaveQuery, Waveforms};
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply::{Reply, one_line};
+use crate::gcs::reply::{ReplyWriter, one_line};
 
-impl Waves {
-    /// Answers a query; `going` says which generators run.
-    pub(in crate::gcs) fn answer(
+impl Waveforms {
+    /// Answers a query; `running` says which generators run.
+    pub(in crate::gcs) fn reply(
         &self,
         query: WaveQuery,
-        going: &[bool; 6],
+        running: &[bool; 6],
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         match query {
             WaveQuery::Generators => one_line(out, format_args!("{}", self.generators.len())),
             WaveQuery::Mask => {
-                let bits = going
+                let bits = running
                     .iter()
                     .zip(0..)
-                    .map(|(&going, bit)| u8::from(going) << bit);
+                    .map(|(&running, bit)| u8::from(running) << bit);
                 one_line(out, format_args!("{:x}", bits.sum::<u8>()))
             }
             WaveQuery::Lengths(named) => {
-                let mut reply = Reply::new(out);
+                let mut reply = ReplyWriter::new(out);
                 for (table, _) in wanted(&named) {
                     reply.line(format_args!("{} 1={}", table + 1, self.length(table)))?;
                 }
@@ -30,9 +30,9 @@ impl Waves {
             }
             WaveQuery::Tables(named) => each(&named, out, |i| self.generators[i].table.into()),
             WaveQuery::Cycles(named) => each(&named, out, |i| self.generators[i].cycles),
-            WaveQuery::Going(named) => each(&named, out, |i| going[i].into()),
+            WaveQuery::Running(named) => each(&named, out, |i| running[i].into()),
             WaveQuery::Rates(named) => {
-                let mut reply = Reply::new(out);
+                let mut reply = ReplyWriter::new(out);
                 for (generator, _) in wanted(&named) {
                     reply.line(format_args!("{}={} 1", generator + 1, self.ticks))?;
                 }
@@ -54,7 +54,7 @@ fn each(
     out: &mut Output<'_>,
     value: impl Fn(usize) -> u32,
 ) -> Result<(), WriteFailed> {
-    let mut reply = Reply::new(out);
+    let mut reply = ReplyWriter::new(out);
     for (generator, _) in wanted(named) {
         reply.line(format_args!("{}={}", generator + 1, value(generator)))?;
     }
