@@ -9,7 +9,7 @@
 //! ```
 #![cfg_attr(not(test), no_std)]
 
-pub(crate) mod commander;
+pub mod commander;
 pub mod control;
 
 pub mod drivers;

@@ -2,7 +2,7 @@
 
 mod panel_bench;
 
-use firmware::gcs::{Curve, Shape};
+use firmware::commander::wave::{Curve, Shape};
 use panel_bench::Bench;
 
 fn curve(length: u32, start: u32) -> Curve {

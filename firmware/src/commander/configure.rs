@@ -1,9 +1,10 @@
 //! Other parameters, for the plans to come and for the tick.
 
 use super::coordinates::travel;
-use super::{Commander, InFlight};
+use super::error::CommandError;
+use super::in_flight::InFlight;
+use super::state::Commander;
 use crate::control::config::Config;
-use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{Ground, Limits};
 use crate::parameters::Parameters;
@@ -14,27 +15,27 @@ impl Commander {
     /// called only at rest, and only when [`Commander::current_snapshot`] is known.
     ///
     /// # Errors
-    /// [`ErrorCode::SoftLimit`] when the travel leaves nothing of the soft limits, [`ErrorCode::Busy`] when the tick can not
-    /// be told, [`ErrorCode::NotForStage`] for another radius of the track while a point beside the platform centre is moved.
+    /// [`CommandError::SoftLimitsInvalid`] when the travel leaves nothing of the soft limits, [`CommandError::Busy`] when the tick can not
+    /// be told, [`CommandError::RadiusWithToolFrame`] for another radius of the track while a point beside the platform centre is moved.
     /// Nothing has changed then.
     pub fn configure(
         &mut self,
         now: &Parameters,
         wanted: &Parameters,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         let moved = self.active_frames.tool.origin() != [0.0; 2];
         if moved && now.geometry.radius_mm != wanted.geometry.radius_mm {
             // The tick knows that point in track radii.
-            return Err(ErrorCode::NotForStage);
+            return Err(CommandError::RadiusWithToolFrame);
         }
         let soft = self
             .soft_limits
             .narrowed_to(&travel(&self.active_frames, &wanted.geometry));
-        let soft = soft.ok_or(ErrorCode::SoftLimit)?;
+        let soft = soft.ok_or(CommandError::SoftLimitsInvalid)?;
         let config = Config::new(wanted);
         if config != Config::new(now) {
-            self.send(Command::Configure(config), InFlight::Configure, link)?;
+            self.send(Command::Configure(config), InFlight::Configure, queues)?;
         }
         self.soft_limits = soft;
         self.use_parameters(wanted);

@@ -1,21 +1,10 @@
 //! Between mm and deg of the interface and the [`Position`]s of the motion layer, through the frames in force.
 
-use super::axis::{Axis, AxisValues};
+use super::axis::{Axis, Coordinates, Travel};
+use super::error::CommandError;
 use super::frames::{ActiveFrames, Transform};
-use crate::gcs::error::ErrorCode;
 use crate::motion::{Ground, Position, check_target};
 use kinematics::{Angle, Geometry, direct};
-
-/// Coordinates in the order of [`Axis::ALL`], mm and deg.
-pub(crate) type Coordinates = [f64; 6];
-
-/// Lowest and highest coordinate of each axis, mm and deg.
-pub(crate) type Travel = [[f64; 2]; 6];
-
-/// The coordinates with those replaced that have a value.
-pub(crate) fn replaced(coordinates: &Coordinates, values: &AxisValues) -> Coordinates {
-    core::array::from_fn(|i| values[i].unwrap_or(coordinates[i]))
-}
 
 /// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
 const W_TRAVEL_DEG: f64 = 3_600_000.0;
@@ -67,21 +56,24 @@ pub(crate) fn position(
     last: &Coordinates,
     active_frames: &ActiveFrames,
     constraints: &Ground,
-) -> Result<Position, ErrorCode> {
+) -> Result<Position, CommandError> {
     let frozen = |axis: Axis| axis.component().is_none() && target[axis.index()] != 0.0;
     let point = active_frames.point_of(target);
     let turned = target[Axis::W.index()] != last[Axis::W.index()];
     let far = turned && point.w_deg.abs() > W_TRAVEL_DEG;
     // Sums of huge numbers may be none.
     let numbers = point.x_mm.is_finite() && point.y_mm.is_finite();
-    if far || !numbers || Axis::ALL.into_iter().any(frozen) {
-        return Err(ErrorCode::PositionLimit);
+    if let Some(axis) = Axis::ALL.into_iter().find(|&axis| frozen(axis)) {
+        return Err(CommandError::FrozenAxis(axis));
+    }
+    if far || !numbers {
+        return Err(CommandError::OutsideTravel);
     }
     let length =
         |mm: f64| libm::rint(mm / constraints.geometry.radius_mm * UNITS_PER_RADIUS) as i64;
-    let theta = Angle::from_degrees(point.w_deg).ok_or(ErrorCode::PositionLimit)?;
+    let theta = Angle::from_degrees(point.w_deg).ok_or(CommandError::OutsideTravel)?;
     let position = [length(point.x_mm), length(point.y_mm), theta.units()];
-    check_target(&position, constraints).map_err(|_| ErrorCode::PositionLimit)?;
+    check_target(&position, constraints)?;
     Ok(position)
 }
 

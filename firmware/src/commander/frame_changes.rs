@@ -1,12 +1,14 @@
 //! Frames and the centre of rotation: changes to what targets mean, at rest, by which nothing moves.
 
+use super::axis::Coordinates;
 use super::axis::{Axis, AxisValues};
-use super::coordinates::Coordinates;
+use super::error::CommandError;
 use super::frames::{
-    ActiveFrames, FrameChange, FrameKind, FrameName, FrameSelection, FrameTree, Transform,
+    ActiveFrames, FrameChange, FrameError, FrameKind, FrameName, FrameSelection, FrameTree,
+    Transform,
 };
-use super::{Commander, InFlight};
-use crate::gcs::error::ErrorCode;
+use super::in_flight::InFlight;
+use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::{Centre, FURTHEST};
 use crate::queues::{Command, PanelLink};
@@ -15,6 +17,7 @@ use crate::queues::{Command, PanelLink};
 const WHOLE_TURN_DEG: f64 = 1e-7;
 
 impl Commander {
+    /// The frames there are, and which are in force.
     pub const fn frames(&self) -> &FrameTree {
         &self.frames
     }
@@ -23,60 +26,60 @@ impl Commander {
     pub fn change_frames(
         &mut self,
         action: &FrameChange,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         match *action {
             FrameChange::Define(kind, name, values) => {
-                self.frames.define(name, kind, planar(&values)?)
+                Ok(self.frames.define(name, kind, planar(&values)?)?)
             }
             FrameChange::Here(name) => self.define_here(name),
-            FrameChange::Link(child, parent) => self.frames.link(child, parent),
-            FrameChange::Remove(name) => self.frames.remove(name),
+            FrameChange::Link(child, parent) => Ok(self.frames.link(child, parent)?),
+            FrameChange::Remove(name) => Ok(self.frames.remove(name)?),
             FrameChange::Enable(name) => {
                 self.check_at_rest()?;
-                self.select_frames(self.frames.with_enabled(name)?, link)
+                self.select_frames(self.frames.with_enabled(name)?, queues)
             }
-            FrameChange::RotationCentre(values) => self.set_rotation_centre(values, link),
+            FrameChange::RotationCentre(values) => self.set_rotation_centre(values, queues),
         }
     }
 
     /// `KSF`: where the platform is commanded to be, or is, when nobody commands it.
-    fn define_here(&mut self, name: FrameName) -> Result<(), ErrorCode> {
+    fn define_here(&mut self, name: FrameName) -> Result<(), CommandError> {
         self.check_at_rest()?;
         if !self.snapshot().is_some_and(|snapshot| snapshot.referenced) {
-            return Err(ErrorCode::NotReady);
+            return Err(CommandError::NotReady);
         }
         let pose = self.active_frames.pose_at(&self.rest_target());
-        self.frames.define(name, FrameKind::Here, pose)
+        Ok(self.frames.define(name, FrameKind::Here, pose)?)
     }
 
     fn set_rotation_centre(
         &mut self,
         values: [Option<f64>; 3],
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         self.check_at_rest()?;
         let [r, s, t] = values;
         if t.is_some_and(|t| t != 0.0) {
-            return Err(ErrorCode::OutOfRange);
+            return Err(FrameError::CentreNotPlanar.into());
         }
         let w_deg = libm::remainder(self.rest_target()[Axis::W.index()], 360.0);
         if w_deg.abs() > WHOLE_TURN_DEG {
-            return Err(ErrorCode::CentreNotSettable);
+            return Err(FrameError::CentreWhileTurned.into());
         }
         let [old_r, old_s] = self.frames.rotation_centre();
         let wanted = [r.unwrap_or(old_r), s.unwrap_or(old_s)];
-        self.select_frames(self.frames.with_rotation_centre(wanted)?, link)
+        self.select_frames(self.frames.with_rotation_centre(wanted)?, queues)
     }
 
     /// Puts other frames in force. Where the tool's origin changes, the tick has to know it: what moves is that point.
     fn select_frames(
         &mut self,
         selection: FrameSelection,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         if self.is_faulted() {
-            return Err(ErrorCode::MotionError);
+            return Err(CommandError::Faulted);
         }
         let most_arm_mm = FURTHEST * self.base_constraints.geometry.radius_mm;
         let active_frames = self.frames.active_frames(&selection, most_arm_mm)?;
@@ -87,18 +90,18 @@ impl Commander {
                 .soft_limits
                 .contain(&active_frames.travel_coordinates(&target))
         {
-            return Err(ErrorCode::SoftLimit);
+            return Err(FrameError::OutsideSoftLimits.into());
         }
         if active_frames.tool.origin() == self.active_frames.tool.origin() {
             self.apply_frames(selection, active_frames);
             return Ok(());
         }
         let centre =
-            Centre::new(self.radii(active_frames.tool.origin())).ok_or(ErrorCode::OutOfRange)?;
+            Centre::new(self.radii(active_frames.tool.origin())).ok_or(FrameError::TooFar)?;
         self.send(
             Command::Centre(centre),
-            InFlight::FrameTree(selection, active_frames),
-            link,
+            InFlight::SelectFrames(selection, active_frames),
+            queues,
         )
     }
 
@@ -123,22 +126,22 @@ impl Commander {
         }
     }
 
-    fn check_at_rest(&self) -> Result<(), ErrorCode> {
+    fn check_at_rest(&self) -> Result<(), CommandError> {
         if self.mode() == Mode::Moving || self.is_motion_pending() {
-            return Err(ErrorCode::WhileMoving);
+            return Err(FrameError::InMotion.into());
         }
         Ok(())
     }
 }
 
 /// The transform of values, those that are not given 0: in the plane.
-fn planar(values: &AxisValues) -> Result<Transform, ErrorCode> {
+fn planar(values: &AxisValues) -> Result<Transform, FrameError> {
     let value = |axis: Axis| values[axis.index()].unwrap_or(0.0);
     if [Axis::Z, Axis::U, Axis::V]
         .iter()
         .any(|&axis| value(axis) != 0.0)
     {
-        return Err(ErrorCode::NotForStage);
+        return Err(FrameError::NotPlanar);
     }
     Ok(Transform {
         x_mm: value(Axis::X),

@@ -1,7 +1,7 @@
 //! How far a target can go in a direction.
 
 use super::axis::Axis;
-use super::coordinates::Coordinates;
+use super::axis::Coordinates;
 use super::frames::ActiveFrames;
 
 /// Halvings of the way on which the end is looked for: as many as a number has bits.

@@ -1,29 +1,33 @@
-//! Constant velocities (`JOG`): kept until they are changed, another motion is commanded, or the way ends.
+//! Constant velocities: kept until they are changed, another motion is commanded, or the way ends.
 
-use super::Commander;
-use super::axis::{Axis, AxisValues};
-use super::coordinates::{Coordinates, coordinates, replaced};
+use super::axis::{Axis, AxisValues, Coordinates, replaced};
+use super::coordinates::coordinates;
+use super::error::CommandError;
 use super::sent_plan::Goal;
-use crate::gcs::error::ErrorCode;
+use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::Stop;
 use crate::queues::PanelLink;
 
 impl Commander {
-    /// `JOG`: axes that are not named keep the velocity that an earlier one gave them; whatever else moves comes to rest.
-    pub fn jog(&mut self, values: &AxisValues, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    /// Moves at constant velocities, mm/s and deg/s: axes that are not named keep the velocity that an earlier one gave them; whatever else moves comes to rest.
+    pub fn jog(
+        &mut self,
+        values: &AxisValues,
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         self.check_ready()?;
-        if self.streaming.is_some() {
-            return Err(ErrorCode::NotAllowed);
+        if self.pending.stream().is_some() {
+            return Err(CommandError::Streaming);
         }
         let wanted = replaced(&self.jog_velocities, values);
         for axis in Axis::ALL {
             let velocity = wanted[axis.index()].abs();
             if axis.component().is_none() && velocity != 0.0 {
-                return Err(ErrorCode::PositionLimit);
+                return Err(CommandError::FrozenAxis(axis));
             }
             if velocity > self.axis_velocity(axis) {
-                return Err(ErrorCode::VelocityLimit);
+                return Err(CommandError::VelocityOutOfRange { axis: Some(axis) });
             }
         }
         // A velocity of zero for what does not jog leaves a move alone.
@@ -32,7 +36,7 @@ impl Commander {
         }
         let [x, y] = [Axis::X, Axis::Y].map(|axis| wanted[axis.index()]);
         let [x, y] = self.active_frames.work.turned([x, y]);
-        self.request_goal(Goal::Velocity([x, y, wanted[Axis::W.index()]]), link)?;
+        self.request_goal(Goal::Velocity([x, y, wanted[Axis::W.index()]]), queues)?;
         for axis in Axis::ALL {
             if wanted[axis.index()] != 0.0 {
                 self.moving_axes.insert(axis);

@@ -1,29 +1,27 @@
 //! What is commanded: checked as a whole, then sent or kept as a wish. All but [`Commander::stop`] and [`Commander::set_velocity`]
 //! are to be called only when [`Commander::current_snapshot`] is known.
 
-use super::axis::{Axis, AxisValues};
-use super::coordinates::{Coordinates, Travel, replaced, travel};
+use super::axis::{Axis, AxisValues, Coordinates, replaced};
+use super::coordinates::travel;
+use super::error::CommandError;
 use super::frames::Transform;
+use super::in_flight::InFlight;
 use super::sent_plan::Goal;
-use super::soft_limits::SoftLimits;
-use super::{Commander, InFlight};
-use crate::gcs::error::ErrorCode;
+use super::soft_limits::SoftLimitChange;
+use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::Stop;
 use crate::queues::{Command, PanelLink, Snapshot};
 use kinematics::Angle;
-
-/// Slowest `VLS`. The longest move then still has a duration that the motion layer can count.
-pub(super) const MIN_SPEED_MM_S: f64 = 1e-3;
 
 impl Commander {
     /// `MOV`: everything is checked before anything changes.
     pub fn move_to(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
-        self.move_to_target(self.resolve_target(&self.base_target(), values), link)
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
+        self.move_to_target(self.resolve_target(&self.base_target(), values), queues)
     }
 
     /// The target that `MOV` means when `last` is the one before.
@@ -51,21 +49,21 @@ impl Commander {
     pub fn move_by(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         let mut target = self.base_target();
         for (coordinate, value) in target.iter_mut().zip(values) {
             *coordinate += value.unwrap_or(0.0);
         }
-        self.move_to_target(target, link)
+        self.move_to_target(target, queues)
     }
 
     /// `MRT`: relative to the last target, along the axes of the tool as it is turned there.
     pub fn move_in_tool(
         &mut self,
         values: &AxisValues,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         let (x, y) = (Axis::X.index(), Axis::Y.index());
         let turned = Transform {
             w_deg: self.base_target()[Axis::W.index()],
@@ -74,21 +72,21 @@ impl Commander {
         let [along, across] = turned.turned([x, y].map(|i| values[i].unwrap_or(0.0)));
         let mut values = *values;
         (values[x], values[y]) = (Some(along), Some(across));
-        self.move_by(&values, link)
+        self.move_by(&values, queues)
     }
 
     fn move_to_target(
         &mut self,
         target: Coordinates,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         self.check_ready()?;
         let from = self.setpoint();
         let to = self.position_of(&target)?;
         if self.targets.streamed {
             return self.stream(target, to);
         }
-        self.request_goal(Goal::Position(to), link)?;
+        self.request_goal(Goal::Position(to), queues)?;
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
                 self.moving_axes.insert(axis);
@@ -101,85 +99,66 @@ impl Commander {
     }
 
     /// Whether motion can be commanded.
-    pub(super) fn check_ready(&self) -> Result<(), ErrorCode> {
+    pub(super) fn check_ready(&self) -> Result<(), CommandError> {
         if self.is_faulted() {
-            return Err(ErrorCode::MotionError);
+            return Err(CommandError::Faulted);
         }
         if self.running_generators() != [false; 6] {
-            return Err(ErrorCode::GeneratorActive);
+            return Err(CommandError::GeneratorsRunning);
         }
         let held = matches!(self.mode(), Mode::Holding | Mode::Moving);
         let ready = |snapshot: &Snapshot| snapshot.referenced && held;
         if self.current_snapshot().is_some_and(ready) {
             Ok(())
         } else {
-            Err(ErrorCode::NotReady)
+            Err(CommandError::NotReady)
         }
     }
 
     /// `STP`, `#24`, `HLT`.
-    pub fn stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    pub fn stop(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }
-        self.pending_goal = None;
-        self.streaming = None;
         self.jog_velocities = [0.0; 6];
         self.target_is_rest = true;
-        if self.pending_stop != Some(Stop::Urgent) {
-            self.pending_stop = Some(stop);
-        }
-        self.advance_pending(link);
+        self.pending.request_stop(stop);
+        self.advance_pending(queues);
     }
 
     /// `SVO`. Before referencing there is no pose to hold: servo on is accepted, as clients send it first, and comes about
     /// with `FRF`.
-    pub fn set_servo(&mut self, on: bool, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn set_servo(&mut self, on: bool, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
-            return Err(ErrorCode::Busy);
+            return Err(CommandError::Busy);
         };
         match (on, snapshot.mode) {
-            (true, Mode::Fault | Mode::Stopping) => Err(ErrorCode::MotionError),
+            (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
             (true, Mode::Off) if snapshot.referenced => {
-                self.send(Command::Servo(true), InFlight::Other, link)
+                self.send(Command::Servo(true), InFlight::Other, queues)
             }
             (false, Mode::Holding | Mode::Moving) => {
-                self.send(Command::Servo(false), InFlight::Other, link)
+                self.send(Command::Servo(false), InFlight::Other, queues)
             }
             _ => Ok(()),
         }
     }
 
     /// `FLC`.
-    pub fn acknowledge_fault(&mut self, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
+    pub fn acknowledge_fault(&mut self, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
         if self.mode() == Mode::Stopping {
-            return Err(ErrorCode::InMotion);
+            return Err(CommandError::InMotion);
         }
         if self.is_faulted() {
-            self.send(Command::Acknowledge, InFlight::Other, link)?;
+            self.send(Command::Acknowledge, InFlight::Other, queues)?;
         }
         Ok(())
     }
 
-    /// Changes the soft limits; only by ones that leave the target inside.
-    pub fn set_soft_limits(
-        &mut self,
-        change: fn(&mut SoftLimits, &AxisValues, &Coordinates, &Travel) -> Result<(), ErrorCode>,
-        values: &AxisValues,
-    ) -> Result<(), ErrorCode> {
-        let limited = self.active_frames.travel_coordinates(&self.target);
+    /// Changes the soft limits; only to ones that leave the target inside.
+    pub fn set_soft_limits(&mut self, change: &SoftLimitChange) -> Result<(), CommandError> {
+        let target = self.active_frames.travel_coordinates(&self.target);
         let travel = travel(&self.active_frames, &self.base_constraints.geometry);
-        change(&mut self.soft_limits, values, &limited, &travel)
-    }
-
-    /// `VLS`: speed of the platform centre; rotation goes down with it in proportion, so that a slow move is slow in W too.
-    pub fn set_velocity(&mut self, mm_s: f64) -> Result<(), ErrorCode> {
-        if !(MIN_SPEED_MM_S..=self.full_limits.speed_mm_s).contains(&mm_s) {
-            return Err(ErrorCode::VelocityLimit);
-        }
-        self.base_constraints.limits.speed_mm_s = mm_s;
-        self.base_constraints.limits.turn_speed_deg_s =
-            self.full_limits.turn_speed_deg_s * (mm_s / self.full_limits.speed_mm_s);
-        Ok(())
+        self.soft_limits.apply(change, &target, &travel)
     }
 }

@@ -1,14 +1,13 @@
 //! What queries ask of the stage.
 
-use super::axis::{Axis, AxisSet, AxisValues};
-use super::coordinates::{
-    Coordinates, coordinates, max_distance_mm, measured, position, target_travel, travel,
-};
+use super::axis::{Axis, AxisSet, AxisValues, Coordinates};
+use super::coordinates::{coordinates, max_distance_mm, measured, position, target_travel, travel};
+use super::error::CommandError;
 use super::frames::ActiveFrames;
 use super::furthest_target::furthest_target;
-use super::{Commander, InFlight};
-use crate::gcs::error::ErrorCode;
-use crate::gcs::request::Quantity;
+use super::in_flight::InFlight;
+use super::quantity::Quantity;
+use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::{Position, check_line};
 use kinematics::Angle;
@@ -69,12 +68,12 @@ impl Commander {
     }
 
     /// The position of a target that `MOV` would take.
-    pub(super) fn position_of(&self, target: &Coordinates) -> Result<Position, ErrorCode> {
+    pub(super) fn position_of(&self, target: &Coordinates) -> Result<Position, CommandError> {
         if !self
             .soft_limits
             .contain(&self.active_frames.travel_coordinates(target))
         {
-            return Err(ErrorCode::PositionLimit);
+            return Err(CommandError::OutsideSoftLimits);
         }
         position(
             target,
@@ -186,6 +185,7 @@ impl Commander {
         self.commands_sent
     }
 
+    /// Speed of the platform's centre that moves keep to, mm/s.
     pub const fn velocity_mm_s(&self) -> f64 {
         self.base_constraints.limits.speed_mm_s
     }
@@ -219,11 +219,9 @@ impl Commander {
         self.is_referencing() || self.is_motion_pending() || self.mode() == Mode::Moving
     }
 
-    /// A motion is wanted or in flight that the snapshot does not show yet.
+    /// A motion is pending or in flight that the snapshot does not show yet.
     pub const fn is_motion_pending(&self) -> bool {
-        self.pending_goal.is_some()
-            || self.streaming.is_some()
-            || matches!(self.in_flight, Some(InFlight::Move(_)))
+        self.pending.is_motion() || matches!(self.in_flight, Some(InFlight::Plan(..)))
     }
 }
 

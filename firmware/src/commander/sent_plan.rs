@@ -1,9 +1,9 @@
 //! A plan as the command side knows it: with the state it starts from, so that it can be left from outside the tick.
 
-use crate::gcs::error::ErrorCode;
+use super::error::CommandError;
 use crate::motion::{
-    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Refusal, Start, Stop, Tries,
-    plan_jog, plan_line, plan_stop, try_transition,
+    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Start, Stop, Tries, plan_jog,
+    plan_line, plan_stop, try_transition,
 };
 
 /// What a motion is for.
@@ -37,20 +37,20 @@ impl SentPlan {
         from: Position,
         goal: Goal,
         constraints: &Ground,
-    ) -> Result<Self, ErrorCode> {
+    ) -> Result<Self, CommandError> {
         let start = from.map(Axis::at_rest);
         let plan = match goal {
             // It makes its plans itself.
-            Goal::Stream => Err(ErrorCode::Busy),
+            Goal::Stream => Err(CommandError::Busy),
             Goal::Position(to) => {
-                plan_line(id, from, to, constraints).map_err(|refusal| code(&refusal))
+                plan_line(id, from, to, constraints).map_err(CommandError::Refused)
             }
             Goal::Velocity(velocity) => {
                 plan_jog(id, Start::Rest(from), &start, &velocity, constraints).map_err(|no| {
                     match no {
-                        NoTransition::Refused(refusal) => code(&refusal),
+                        NoTransition::Refused(refusal) => CommandError::Refused(refusal),
                         // At rest there is nothing to stop.
-                        NoTransition::NeedsStop | NoTransition::TooFast => ErrorCode::PositionLimit,
+                        NoTransition::NeedsStop | NoTransition::TooFast => CommandError::NoMotion,
                     }
                 })
             }
@@ -141,18 +141,5 @@ impl SentPlan {
             stop: Some(stop),
             goal: self.goal,
         })
-    }
-}
-
-/// What a connection is told of a refusal.
-pub(crate) const fn code(refusal: &Refusal) -> ErrorCode {
-    match refusal {
-        Refusal::Velocity
-        | Refusal::PivotRate { .. }
-        | Refusal::Limits
-        | Refusal::Acceleration
-        | Refusal::Jerk
-        | Refusal::Pivots => ErrorCode::VelocityLimit,
-        _ => ErrorCode::PositionLimit,
     }
 }

@@ -1,40 +1,28 @@
 //! Targets that follow one another in time: streamed by `MOV` (parameter 0x19001900), or made by wave generators.
 
-use super::Commander;
-use super::coordinates::Coordinates;
-use super::sent_plan::{Goal, SentPlan, code};
+use super::axis::Coordinates;
+use super::error::CommandError;
+use super::pending::Pending;
+use super::sent_plan::{Goal, SentPlan};
+use super::state::Commander;
+use super::stream_source::Streaming;
 use super::wave::GeneratorRun;
-use crate::gcs::error::ErrorCode;
 use crate::mode::Mode;
 use crate::motion::{Clock, End, Next, NotTaken, PERIODS, Position, Progress, Stream};
 use crate::queues::PanelLink;
-
-/// `SCT` at first.
-pub(super) const DEFAULT_CYCLE_MS: f64 = 10.0;
 
 /// How far a stream may end from its last target and have come to rest there, 2^-32 track radii or turns: below what an
 /// encoder tells apart.
 const REST_TOLERANCE: u64 = 32;
 
-/// A stream under way, or about to be.
-pub(super) struct Streaming {
-    /// `None` until the stage stands where the waves begin.
-    stream: Option<Stream>,
-    /// The generators that make its targets; none: `MOV` brings them.
-    run: Option<GeneratorRun>,
-    /// The last target, and the tick when it came.
-    last: (Position, u64),
-    started: bool,
-}
-
 impl Commander {
     /// `SCT`: ms between streamed targets.
-    pub fn set_cycle_time(&mut self, ms: f64) -> Result<(), ErrorCode> {
-        if self.streaming.is_some() {
-            return Err(ErrorCode::InMotion);
+    pub fn set_cycle_time(&mut self, ms: f64) -> Result<(), CommandError> {
+        if self.pending.stream().is_some() {
+            return Err(CommandError::InMotion);
         }
         if !PERIODS.contains(&self.period(ms)) {
-            return Err(ErrorCode::OutOfRange);
+            return Err(CommandError::PeriodOutOfRange);
         }
         self.cycle_ms = ms;
         Ok(())
@@ -52,38 +40,35 @@ impl Commander {
 
     /// Which generators run, or are about to.
     pub fn running_generators(&self) -> [bool; 6] {
-        let run = self
-            .streaming
-            .as_ref()
-            .and_then(|streaming| streaming.run.as_ref());
+        let run = (self.pending.stream()).and_then(|streaming| streaming.run.as_ref());
         run.map_or([false; 6], GeneratorRun::running)
     }
 
     /// A streamed target.
-    pub(super) fn stream(&mut self, target: Coordinates, to: Position) -> Result<(), ErrorCode> {
+    pub(super) fn stream(&mut self, target: Coordinates, to: Position) -> Result<(), CommandError> {
         let constraints = self.constraints();
-        if self.streaming.is_none() {
+        if self.pending.stream().is_none() {
             if self.mode() != Mode::Holding || self.is_motion_pending() {
-                return Err(ErrorCode::NotAllowed);
+                return Err(CommandError::StreamNotAtRest);
             }
             let period = self.period(self.cycle_ms);
             let stream = Stream::new(self.setpoint(), period, Clock::Sender);
-            self.streaming = Some(Streaming {
-                stream: Some(stream.ok_or(ErrorCode::OutOfRange)?),
+            self.pending.begin_stream(Streaming {
+                stream: Some(stream.ok_or(CommandError::PeriodOutOfRange)?),
                 run: None,
                 last: (to, 0),
                 started: false,
             });
         }
         let now = self.tick();
-        if let Some(streaming) = &mut self.streaming
+        if let Some(streaming) = self.pending.stream_mut()
             && let Some(stream) = &mut streaming.stream
         {
             match stream.push(to, &constraints) {
                 Ok(()) => {}
-                Err(NotTaken::Full) => return Err(ErrorCode::StreamFull),
-                Err(NotTaken::Over) => return Err(ErrorCode::Busy),
-                Err(NotTaken::Refused(refusal)) => return Err(code(&refusal)),
+                Err(NotTaken::Full) => return Err(CommandError::StreamFull),
+                Err(NotTaken::Over) => return Err(CommandError::Busy),
+                Err(NotTaken::Refused(refusal)) => return Err(refusal.into()),
             }
             streaming.last = (to, now);
         }
@@ -96,11 +81,11 @@ impl Commander {
     pub(super) fn start_generators(
         &mut self,
         starting: &[bool; 6],
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         self.check_ready()?;
         if self.mode() != Mode::Holding || self.is_motion_pending() {
-            return Err(ErrorCode::InMotion);
+            return Err(CommandError::InMotion);
         }
         let run = GeneratorRun::new(
             &self.waves,
@@ -109,9 +94,9 @@ impl Commander {
             self.base_constraints.limits.rate_hz,
         );
         let start = self.position_of(&run.start(&self.waves))?;
-        self.request_goal(Goal::Position(start), link)?;
+        self.request_goal(Goal::Position(start), queues)?;
         self.target_is_rest = true;
-        self.streaming = Some(Streaming {
+        self.pending.begin_stream(Streaming {
             stream: None,
             run: Some(run),
             last: (start, 0),
@@ -121,36 +106,33 @@ impl Commander {
     }
 
     /// Takes the next step of the stream.
-    pub(super) fn advance_streaming(&mut self, link: &mut PanelLink<'_>) {
-        let Some(mut streaming) = self.streaming.take() else {
+    pub(super) fn advance_streaming(&mut self, queues: &mut PanelLink<'_>) {
+        let Some(mut streaming) = self.pending.take_stream() else {
             return;
         };
         match self.next_step(&mut streaming) {
-            Ok(Next::Wait) => self.streaming = Some(streaming),
+            Ok(Next::Wait) => self.pending.begin_stream(streaming),
             Ok(Next::Send(plan, start)) => {
-                // A queue that is full would be a plan that is lost.
-                match self.send_plan(SentPlan::streamed(plan, start), link) {
+                match self.send_plan(SentPlan::streamed(plan, start), None, queues) {
                     Ok(()) => {
                         streaming.started = true;
-                        self.streaming = Some(streaming);
+                        self.pending.begin_stream(streaming);
                     }
-                    Err(_) => self.abort_streaming(),
+                    // The plan is lost.
+                    Err(error) => self.report_stream_lost(error),
                 }
             }
             Ok(Next::Over(end)) => self.finish_streaming(&streaming, end),
-            Err(code) => {
-                self.target_is_rest = true;
-                self.report_error(code);
-            }
+            Err(error) => self.report_stream_lost(error),
         }
     }
 
     /// Brings targets where generators make them, and asks the stream what is to be done.
-    fn next_step(&mut self, streaming: &mut Streaming) -> Result<Next, ErrorCode> {
+    fn next_step(&mut self, streaming: &mut Streaming) -> Result<Next, CommandError> {
         let constraints = self.constraints();
         let (now, period) = (self.tick(), self.period(self.cycle_ms));
         if streaming.stream.is_none() {
-            let there = self.mode() == Mode::Holding && self.pending_goal.is_none();
+            let there = self.mode() == Mode::Holding;
             if !there {
                 return Ok(Next::Wait);
             }
@@ -159,7 +141,7 @@ impl Commander {
         }
         let id = self.next_plan_id();
         let (Some(stream), run) = (&mut streaming.stream, &mut streaming.run) else {
-            return Err(ErrorCode::OutOfRange);
+            return Err(CommandError::PeriodOutOfRange);
         };
         if let Some(run) = run {
             while stream.room() > RESERVED_KNOTS {
@@ -169,7 +151,7 @@ impl Commander {
                 };
                 let place = self.position_of(&target)?;
                 if let Err(NotTaken::Refused(refusal)) = stream.push(place, &constraints) {
-                    return Err(code(&refusal));
+                    return Err(refusal.into());
                 }
                 streaming.last.0 = place;
             }
@@ -202,17 +184,23 @@ impl Commander {
         match end {
             End::Done => {}
             End::Dry if there && streaming.run.is_none() => {}
-            End::Dry => self.report_error(ErrorCode::StreamDry),
-            End::Refused(refusal) => self.report_error(code(&refusal)),
+            End::Dry => self.report_late(CommandError::StreamDry),
+            End::Refused(refusal) => self.report_late(refusal.into()),
         }
     }
 
     /// A plan of the stream has not been taken in time: it ends by itself.
     pub(super) fn abort_streaming(&mut self) {
-        if self.streaming.take().is_some() {
-            self.target_is_rest = true;
-            self.report_error(ErrorCode::StreamDry);
+        if self.pending.stream().is_some() {
+            self.pending = self.pending.stop().map_or(Pending::Nothing, Pending::Stop);
+            self.report_stream_lost(CommandError::StreamDry);
         }
+    }
+
+    /// There is no stream any more, and the target is where the stage comes to rest.
+    const fn report_stream_lost(&mut self, error: CommandError) {
+        self.target_is_rest = true;
+        self.report_late(error);
     }
 }
 

@@ -1,6 +1,11 @@
 //! GCS error numbers: those this controller can set.
 
+use crate::commander::CommandError;
+use crate::commander::frames::FrameError;
+use crate::commander::wave::WaveError;
 use crate::fault::FaultKind;
+use crate::motion::Refusal;
+use crate::settings_store::StoreError;
 
 /// The error of a connection, read and cleared by `ERR?`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,5 +120,84 @@ impl ErrorCode {
     /// The number that `ERR?` answers.
     pub const fn number(self) -> u16 {
         self as u16
+    }
+}
+
+/// The table of what a connection is told when the stage does not do what was asked.
+impl From<CommandError> for ErrorCode {
+    fn from(error: CommandError) -> Self {
+        match error {
+            CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
+            CommandError::NotReady => Self::NotReady,
+            CommandError::Faulted => Self::MotionError,
+            CommandError::InMotion => Self::InMotion,
+            CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,
+            CommandError::GeneratorsRunning => Self::GeneratorActive,
+            CommandError::ReferencingFailed => Self::ReferencingFailed,
+            CommandError::FrozenAxis(_)
+            | CommandError::OutsideTravel
+            | CommandError::OutsideSoftLimits
+            | CommandError::NoMotion => Self::PositionLimit,
+            CommandError::VelocityOutOfRange { .. } => Self::VelocityLimit,
+            CommandError::PeriodOutOfRange => Self::OutOfRange,
+            CommandError::SoftLimitsInvalid => Self::SoftLimit,
+            CommandError::RadiusWithToolFrame => Self::NotForStage,
+            CommandError::StreamDry => Self::StreamDry,
+            CommandError::StreamFull => Self::StreamFull,
+            CommandError::Refused(refusal) => Self::of_refusal(&refusal),
+            CommandError::Frame(error) => Self::of_frames(error),
+            CommandError::Wave(error) => Self::of_waves(error),
+        }
+    }
+}
+
+impl From<StoreError> for ErrorCode {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::TooLong => Self::NoMemory,
+            StoreError::Flash => Self::FlashFailed,
+        }
+    }
+}
+
+impl ErrorCode {
+    const fn of_refusal(refusal: &Refusal) -> Self {
+        match refusal {
+            Refusal::Velocity
+            | Refusal::PivotRate { .. }
+            | Refusal::Limits
+            | Refusal::Acceleration
+            | Refusal::Jerk
+            | Refusal::Pivots => Self::VelocityLimit,
+            _ => Self::PositionLimit,
+        }
+    }
+
+    const fn of_frames(error: FrameError) -> Self {
+        match error {
+            FrameError::InUse(_)
+            | FrameError::HasChildren(_)
+            | FrameError::KindsDoNotMix
+            | FrameError::NotPlanar => Self::NotForStage,
+            FrameError::Unknown(_)
+            | FrameError::Full
+            | FrameError::Circular
+            | FrameError::CentreNotPlanar
+            | FrameError::TooFar => Self::OutOfRange,
+            FrameError::CentreWhileTurned | FrameError::CentreGivenByTool => {
+                Self::CentreNotSettable
+            }
+            FrameError::OutsideSoftLimits => Self::SoftLimit,
+            FrameError::InMotion => Self::WhileMoving,
+        }
+    }
+
+    const fn of_waves(error: WaveError) -> Self {
+        match error {
+            WaveError::NoCurve | WaveError::TableTooLong => Self::OutOfRange,
+            WaveError::NoMemory => Self::WaveTooLarge,
+            WaveError::FrozenAxis(_) => Self::NotForStage,
+            WaveError::NoTable(_) => Self::NoWave,
+        }
     }
 }

@@ -5,8 +5,8 @@ use super::events::Event;
 use super::request::Action;
 use super::session::{Awaited, Session, Wait};
 use super::{MAX_DELAY_MS, Panel};
+use crate::commander::SoftLimitChange;
 use crate::commander::axis::{Axis, AxisValues};
-use crate::commander::soft_limits::SoftLimits;
 use crate::motion::Stop;
 use crate::queues::PanelLink;
 
@@ -17,60 +17,61 @@ impl Panel {
         &mut self,
         action: Action,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
-                Some(on) => self.commander.set_servo(on, link),
+                Some(on) => Ok(self.commander.set_servo(on, queues)?),
                 None => Ok(()),
             },
             // Whichever axes are named: the encoders give all of them at once.
             Action::Reference(_) => {
-                if self.commander.begin_referencing(link)? {
+                if self.commander.begin_referencing(queues)? {
                     self.wait(session, Awaited::Reference);
                 }
                 Ok(())
             }
-            Action::Move(values) => self.commander.move_to(&values, link),
+            Action::Move(values) => Ok(self.commander.move_to(&values, queues)?),
             Action::MoveRelative(values) | Action::Step(values) => {
-                self.commander.move_by(&values, link)
+                Ok(self.commander.move_by(&values, queues)?)
             }
             Action::Record(action) => {
-                (self.recorder_state).change(&action, &mut self.parameters, &link.recorder)
+                (self.recorder_state).change(&action, &mut self.parameters, &queues.recorder)
             }
-            Action::MoveInTool(values) => self.commander.move_in_tool(&values, link),
-            Action::CycleTime(ms) => self.commander.set_cycle_time(ms),
-            Action::Jog(values) => self.commander.jog(&values, link),
-            Action::AxisVelocity(values) => self.commander.set_axis_velocity(&values),
-            Action::Wave(action) => self.commander.change_waves(&action, link),
-            Action::Frame(action) => self.commander.change_frames(&action, link),
-            Action::SoftLowest(values) => self
-                .commander
-                .set_soft_limits(SoftLimits::set_lowest, &values),
-            Action::SoftHighest(values) => self
-                .commander
-                .set_soft_limits(SoftLimits::set_highest, &values),
-            Action::SoftActive(values) => self
-                .commander
-                .set_soft_limits(SoftLimits::activate, &values),
-            Action::Set(settings) => self.set(&settings, session, link),
+            Action::MoveInTool(values) => Ok(self.commander.move_in_tool(&values, queues)?),
+            Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
+            Action::Jog(values) => Ok(self.commander.jog(&values, queues)?),
+            Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
+            Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
+            Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
+            Action::SoftLowest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
+            }
+            Action::SoftHighest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Highest(values))?)
+            }
+            Action::SoftActive(values) => {
+                let change = SoftLimitChange::Active(flags(&values)?);
+                Ok(self.commander.set_soft_limits(&change)?)
+            }
+            Action::Set(settings) => self.set(&settings, session, queues),
             Action::Store(addresses) => {
                 self.store_parameters(&addresses)?;
                 self.wait(session, Awaited::Stored);
                 Ok(())
             }
-            Action::Recall(addresses) => self.recall(&addresses, link),
+            Action::Recall(addresses) => self.recall(&addresses, queues),
             Action::Level(level, password) => Self::set_level(session, level, password),
-            Action::Velocity(mm_s) => self.commander.set_velocity(mm_s),
+            Action::Velocity(mm_s) => Ok(self.commander.set_velocity(mm_s)?),
             Action::Stop => {
                 self.events.add(self.commander.tick(), Event::Stop);
-                self.stop_all(Stop::Urgent, link);
+                self.stop_all(Stop::Urgent, queues);
                 Err(ErrorCode::Stopped)
             }
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => {
                 self.events.add(self.commander.tick(), Event::Halt);
-                self.commander.stop(Stop::Smooth, link);
+                self.commander.stop(Stop::Smooth, queues);
                 Err(ErrorCode::Stopped)
             }
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
@@ -79,7 +80,7 @@ impl Panel {
                 Ok(())
             }
             Action::Restart => self.restart(),
-            Action::Acknowledge => self.commander.acknowledge_fault(link),
+            Action::Acknowledge => Ok(self.commander.acknowledge_fault(queues)?),
             Action::Delay(ms) => {
                 if !(0.0..=MAX_DELAY_MS).contains(&ms) {
                     return Err(ErrorCode::OutOfRange);
@@ -98,10 +99,10 @@ impl Panel {
     }
 
     /// Stops the motion, and with it every macro and every wait.
-    pub(super) fn stop_all(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
         self.stops = self.stops.wrapping_add(1);
         self.macros.stop();
-        self.commander.stop(stop, link);
+        self.commander.stop(stop, queues);
     }
 
     /// `RBT`: a stage in motion would be let go.
@@ -125,16 +126,26 @@ impl Panel {
 /// frozen axes have none to switch.
 fn servo(values: &AxisValues) -> Result<Option<bool>, ErrorCode> {
     let mut wanted = None;
-    for (axis, value) in Axis::ALL.into_iter().zip(values) {
-        let on = match *value {
-            None => continue,
-            Some(0.0) => false,
-            Some(1.0) => true,
-            Some(_) => return Err(ErrorCode::OutOfRange),
-        };
-        if axis.component().is_some() {
+    for (axis, on) in Axis::ALL.into_iter().zip(flags(values)?) {
+        if let Some(on) = on
+            && axis.component().is_some()
+        {
             wanted = Some(on && wanted != Some(false));
         }
     }
     Ok(wanted)
+}
+
+/// Values that are 0 or 1.
+fn flags(values: &AxisValues) -> Result<[Option<bool>; 6], ErrorCode> {
+    let mut flags = [None; 6];
+    for (flag, value) in flags.iter_mut().zip(values) {
+        *flag = match *value {
+            None => None,
+            Some(0.0) => Some(false),
+            Some(1.0) => Some(true),
+            Some(_) => return Err(ErrorCode::OutOfRange),
+        };
+    }
+    Ok(flags)
 }

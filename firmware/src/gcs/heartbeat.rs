@@ -77,7 +77,7 @@ impl Panel {
     }
 
     /// Stops when the host has been silent for too long.
-    pub(super) fn watch_heartbeat(&mut self, link: &mut PanelLink<'_>) {
+    pub(super) fn watch_heartbeat(&mut self, queues: &mut PanelLink<'_>) {
         let Heartbeat {
             last_heard_tick,
             is_silent,
@@ -90,7 +90,7 @@ impl Panel {
         }
         self.heartbeat.is_silent = true;
         self.events.add(tick, Event::HostSilent(ms));
-        self.stop_all(Stop::Urgent, link);
-        self.commander.report_error(ErrorCode::Stopped);
+        self.stop_all(Stop::Urgent, queues);
+        self.report_to_all(ErrorCode::Stopped);
     }
 }

@@ -32,12 +32,10 @@
 //! connection ends those waits on all of them, with error 10, and throws away the lines behind them: a script does not go on
 //! after a stop.
 
-pub mod frames;
-pub mod wave;
-
-pub(crate) mod error;
+mod error;
 mod events;
 mod execute;
+mod frames;
 mod heartbeat;
 mod macros;
 mod monitor;
@@ -48,37 +46,35 @@ mod persistence;
 mod recorder;
 mod replies;
 mod reply;
-pub(crate) mod request;
+mod request;
 mod scan;
 mod session;
 mod statistics;
-mod store_error;
 mod table;
 mod text;
 mod variables;
+mod wave;
 
 pub use events::CAUSES;
+use frames::reply_frames;
+use wave::reply_waves;
 
-pub use crate::commander::axis::{Axis, AxisSet, AxisValues};
 pub use error::ErrorCode;
 pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};
 pub use parameter::{
     Address, Addresses, Item, Kind, MAX_ADDRESSES, PARAMETERS, Parameter, Settings, When,
 };
 
-pub use crate::commander::frames::{
-    FRAME_NAME_BYTES, FrameChange, FrameKind, FrameName, FrameQuery, ListItem,
-};
-pub use crate::commander::wave::{Curve, Join, Shape, WaveChange, WavePoints, WaveQuery};
+pub use frames::{FrameQuery, ListItem};
 pub use parse::{ParseError, parse};
 pub use recorder::{Channel, RecordAction, RecordQuery, SignalSource, TableList, Trigger};
-pub use request::{Action, Condition, Operand, Operator, Property, Quantity, Query, Request};
+pub use request::{Action, Condition, Operand, Operator, Property, Query, Request};
 pub use session::{LINE_BYTES, Session};
-pub use store_error::StoreError;
 pub use text::{FixedText, NAME_BYTES, Name, TEXT_BYTES, Text};
 pub use variables::{MAX_NAMED_VARIABLES, MAX_VARIABLES, VariableRequest};
+pub use wave::WaveQuery;
 
-use crate::commander::{Commander, Referencing};
+use crate::commander::{Commander, Quantity, Referencing};
 use crate::motion::Limits;
 use crate::parameters::Parameters;
 use crate::queues::PanelLink;
@@ -128,6 +124,8 @@ pub struct Panel {
     macros: Macros,
     variables: Variables,
     persistence: Persistence,
+    /// Errors for every connection: how many so far, and the latest.
+    reported: (u32, ErrorCode),
 }
 
 impl Panel {
@@ -148,6 +146,7 @@ impl Panel {
             macros: Macros::default(),
             variables: Variables::default(),
             persistence: Persistence::new(parameters),
+            reported: (0, ErrorCode::None),
             start_cause: None,
         }
     }
@@ -177,20 +176,20 @@ impl Panel {
     pub fn service<W: Write>(
         &mut self,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         self.note_activity(session);
-        self.advance(link);
+        self.advance(queues);
         if let Some(snapshot) = self.commander.snapshot() {
             session.monitor.update(snapshot);
         }
         self.report_errors(session);
         let mut out = Connected::new(out);
-        let result = self.handle(session, link, &mut out);
-        self.commander.advance_pending(link);
+        let result = self.handle(session, queues, &mut out);
+        self.commander.advance_pending(queues);
         self.recorder_state
-            .send_pending_order(&self.parameters, &mut link.recorder);
+            .send_pending_order(&self.parameters, &mut queues.recorder);
         match (result, out.error) {
             (Err(WriteFailed), Some(error)) => Err(error),
             _ => Ok(()),
@@ -198,29 +197,44 @@ impl Panel {
     }
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
-    pub fn advance(&mut self, link: &mut PanelLink<'_>) {
+    pub fn advance(&mut self, queues: &mut PanelLink<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next call.
-        if let Some(snapshot) = link.snapshot() {
+        if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
             self.commander.update(snapshot);
         }
-        if let Some(black_box) = link.black_box {
+        if let Some(black_box) = queues.black_box {
             self.events.retain(black_box);
         }
         self.revert_if_refused();
-        self.commander.advance_pending(link);
-        self.watch_heartbeat(link);
-        self.run_macro(link);
+        self.commander.advance_pending(queues);
+        self.watch_heartbeat(queues);
+        self.run_macro(queues);
     }
 
-    /// A fault sets the error of every connection, once.
-    fn report_errors(&self, session: &mut Session) {
-        let (count, code) = self.commander.last_error();
+    /// Sets the error of every connection.
+    pub(crate) fn report_to_all(&mut self, code: ErrorCode) {
+        self.collect_late_error();
+        self.reported = (self.reported.0.wrapping_add(1), code);
+    }
+
+    /// What became of a request that had been accepted sets the error of every connection too: the one that asked has had its
+    /// silence, which means yes, long since.
+    fn collect_late_error(&mut self) {
+        if let Some(error) = self.commander.take_late_error() {
+            self.reported = (self.reported.0.wrapping_add(1), error.into());
+        }
+    }
+
+    /// What has been reported to all connections sets the error of this one, and so does a fault, each once.
+    fn report_errors(&mut self, session: &mut Session) {
+        self.collect_late_error();
+        let (count, code) = self.reported;
         if session
             .errors_reported
             .replace(count)
-            .is_some_and(|told| told != count)
+            .is_some_and(|before| before != count)
         {
             session.error = code;
         }
@@ -238,22 +252,22 @@ impl Panel {
     fn handle(
         &mut self,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         loop {
-            while self.write_readout(session, link, out)?
-                || self.write_fault_record_readout(session, link, out)?
-                || self.is_waiting(session, link)
+            while self.write_readout(session, queues, out)?
+                || self.write_fault_record_readout(session, queues, out)?
+                || self.is_waiting(session, queues)
             {
                 let Some(byte) = session.take_single() else {
                     return Ok(());
                 };
-                self.execute_byte(byte, session, link, out)?;
+                self.execute_byte(byte, session, queues, out)?;
             }
             match session.next_item() {
                 None => return Ok(()),
-                Some(InputItem::Byte(byte)) => self.execute_byte(byte, session, link, out)?,
+                Some(InputItem::Byte(byte)) => self.execute_byte(byte, session, queues, out)?,
                 Some(InputItem::Discarded(error)) => session.error = error,
                 Some(InputItem::Line) => match self.parse_line(session) {
                     Ok(request)
@@ -264,7 +278,7 @@ impl Panel {
                     }
                     Ok(request) => {
                         session.finish_line();
-                        self.execute(request, session, link, out)?;
+                        self.execute(request, session, queues, out)?;
                     }
                     Err(code) => {
                         session.finish_line();
@@ -297,21 +311,21 @@ impl Panel {
         &mut self,
         byte: u8,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let Some(request) = find_byte(byte) else {
             session.error = ErrorCode::UnknownCommand;
             return Ok(());
         };
-        self.execute(request, session, link, out)
+        self.execute(request, session, queues, out)
     }
 
     fn execute(
         &mut self,
         request: Request,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         match request {
@@ -332,18 +346,18 @@ impl Panel {
             },
             Request::Macro(request) => self.execute_macro(&request, session, out)?,
             Request::Variables(request) => self.execute_variables(&request, session, out)?,
-            Request::Record(query) => self.reply_record(query, session, link, out)?,
+            Request::Record(query) => self.reply_record(query, session, queues, out)?,
             Request::Frames(query) => {
-                if let Err(code) = self.commander.frames().reply(query, out)? {
+                if let Err(code) = reply_frames(self.commander.frames(), query, out)? {
                     session.error = code;
                 }
             }
             Request::Waveforms(query) => {
                 let running = self.commander.running_generators();
-                self.commander.waves().reply(query, &running, out)?;
+                reply_waves(self.commander.waves(), query, &running, out)?;
             }
             Request::Act(action) => {
-                if let Err(code) = self.perform_announced(action, session, link) {
+                if let Err(code) = self.perform_announced(action, session, queues) {
                     session.error = code;
                 }
             }
@@ -356,18 +370,18 @@ impl Panel {
         &mut self,
         action: Action,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
         if !action.starts_motion() {
-            return self.perform(action, session, link);
+            return self.perform(action, session, queues);
         }
         let step = matches!(action, Action::Step(_));
         let (sent, parameters) = (self.commander.commands_sent(), &self.parameters);
-        let recorder = &mut link.recorder;
+        let recorder = &mut queues.recorder;
         let announced =
             (self.recorder_state).announce(step, sent.wrapping_add(1), parameters, recorder)?;
-        let result = self.perform(action, session, link);
-        let recorder = &mut link.recorder;
+        let result = self.perform(action, session, queues);
+        let recorder = &mut queues.recorder;
         match result {
             // Already there: nothing had to be sent.
             Ok(())
@@ -383,7 +397,7 @@ impl Panel {
     }
 
     /// Whether the lines of the connection have to wait; ends the wait when it is over.
-    fn is_waiting(&mut self, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
+    fn is_waiting(&mut self, session: &mut Session, queues: &mut PanelLink<'_>) -> bool {
         let Some(wait) = session.wait else {
             return false;
         };
@@ -410,11 +424,11 @@ impl Panel {
                     true
                 }
             },
-            Awaited::Reference => match self.commander.poll_referencing(link) {
+            Awaited::Reference => match self.commander.poll_referencing(queues) {
                 Referencing::Waiting => false,
                 Referencing::Done => true,
-                Referencing::Failed(code) => {
-                    session.error = code;
+                Referencing::Failed(error) => {
+                    session.error = error.into();
                     true
                 }
             },

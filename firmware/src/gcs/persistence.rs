@@ -8,10 +8,10 @@ use super::error::ErrorCode;
 use super::events::Event;
 use super::parameter::{Addresses, Parameter};
 use super::text::Name;
-use crate::gcs::StoreError;
 use crate::parameters::Parameters;
 use crate::parameters::RECORD_ROWS;
 use crate::queues::PanelLink;
+use crate::settings_store::StoreError;
 
 /// What `WPA` has to be given, so that nothing is overwritten by a slip.
 pub(super) const STORE_PASSWORD: &[u8] = b"100";
@@ -79,12 +79,12 @@ impl Panel {
     pub(super) fn recall(
         &mut self,
         addresses: &Addresses,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_store()?;
         let wanted = replaced(&self.parameters, &self.persistence.stored, addresses)?;
         self.check_change_allowed(&wanted)?;
-        self.apply_parameters(wanted, link)?;
+        self.apply_parameters(wanted, queues)?;
         self.events.add(self.commander.tick(), Event::Recalled);
         Ok(())
     }
@@ -119,17 +119,13 @@ impl Panel {
         let persistence = &mut self.persistence;
         let asked_for = persistence.before.take();
         persistence.macros_changed = false;
-        persistence.result = match result {
-            Ok(()) => Ok(()),
-            Err(StoreError::TooLong) => Err(ErrorCode::NoMemory),
-            Err(StoreError::Flash) => Err(ErrorCode::FlashFailed),
-        };
+        persistence.result = result.map_err(ErrorCode::from);
         let code = persistence.result.err();
         match (code, asked_for) {
             (None, _) => persistence.stored_is_invalid = false,
             (Some(_), Some(before)) => persistence.stored = before,
             // Who recorded the macro does not wait for it.
-            (Some(code), None) => self.commander.report_error(code),
+            (Some(code), None) => self.report_to_all(code),
         }
         let event = code.map_or(Event::Stored, |code| Event::StoreFailed(code.number()));
         self.events.add(self.commander.tick(), event);

@@ -4,11 +4,11 @@ use super::Panel;
 use super::output::{Output, WriteFailed};
 use super::parameter::{Address, Addresses, PARAMETERS, Parameter};
 use super::reply::{ReplyWriter, one_line};
-use super::request::{Property, Quantity, Query};
+use super::request::{Property, Query};
 use super::session::Session;
 use super::table::COMMANDS;
-use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::coordinates::Coordinates;
+use crate::commander::Quantity;
+use crate::commander::axis::{Axis, AxisSet, AxisValues, Coordinates};
 
 /// What `CST?` answers.
 const STAGE_TYPE: &str = "XYT-1";

@@ -1,13 +1,16 @@
 //! What a line or a single byte asks for.
 
+use super::frames::FrameQuery;
 use super::macros::MacroRequest;
 use super::parameter::{Addresses, Settings};
 use super::recorder::{RecordAction, RecordQuery};
 use super::text::Name;
 use super::variables::VariableRequest;
+use super::wave::WaveQuery;
+use crate::commander::Quantity;
 use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::frames::{FrameChange, FrameQuery};
-use crate::commander::wave::{WaveChange, WaveQuery};
+use crate::commander::frames::FrameChange;
+use crate::commander::wave::WaveChange;
 
 /// A command, understood but not yet carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,39 +86,6 @@ pub enum Query {
     Changed,
     /// `#7`
     Ready,
-}
-
-/// What can be read of each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// `POS?`: measured, mm and deg.
-    Position,
-    /// `MOV?`: commanded, mm and deg.
-    Target,
-    /// `ONT?`: 1 when settled.
-    OnTarget,
-    /// `SVO?`: 1 when on.
-    Servo,
-    /// `FRF?`: 1 when referenced.
-    Referenced,
-    /// `TMN?`: mm and deg.
-    Lowest,
-    /// `TMX?`: mm and deg.
-    Highest,
-    /// `NLM?`: mm and deg.
-    SoftLowest,
-    /// `PLM?`: mm and deg.
-    SoftHighest,
-    /// `JOG?`: velocities that are kept, mm/s and deg/s.
-    Jog,
-    /// `VEL?`: mm/s and deg/s.
-    Velocity,
-    /// `SSL?`: 1 when soft limits count.
-    SoftActive,
-    /// `LIM?`: 0, there are no limit switches.
-    LimitSwitch,
-    /// `TRS?`: 0, there are no reference switches; the encoders are absolute.
-    ReferenceSwitch,
 }
 
 /// What is told of each axis in words.
@@ -266,7 +236,7 @@ impl Action {
                 | Self::MoveInTool(_)
                 | Self::Step(_)
                 | Self::Jog(_)
-                | Self::Wave(WaveChange::Go(_))
+                | Self::Wave(WaveChange::Switch(_))
         )
     }
 }

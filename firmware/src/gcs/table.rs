@@ -1,16 +1,16 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
+use super::frames::parse as frames;
 use super::macros::{MacroRequest, MacroSyntax};
 use super::parameter::Settings;
 use super::parse::{self, ParseError};
 use super::recorder;
-use super::request::{Action, Condition, Property, Quantity, Query, Request};
+use super::request::{Action, Condition, Property, Query, Request};
 use super::scan::Scanner;
+use super::wave::{WaveQuery, parse as wave};
+use crate::commander::Quantity;
 use crate::commander::axis::{AxisSet, AxisValues};
-use crate::commander::frames;
 use crate::commander::frames::FrameKind;
-use crate::commander::wave;
-use crate::commander::wave::WaveQuery;
 
 /// A command.
 pub(super) struct Entry {

@@ -5,7 +5,7 @@
 //! that is cut off leaves behind.
 
 use super::envelope::{Head, Reader, WORD, Wholeness, Writer, is_erased};
-use crate::gcs::StoreError;
+use super::error::StoreError;
 use core::ops::Range;
 use embedded_storage::nor_flash::NorFlash;
 

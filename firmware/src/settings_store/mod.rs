@@ -17,13 +17,15 @@
 //! wrong after damage: an encoder's offset would silently be the default again.
 
 mod envelope;
+mod error;
 mod image;
 mod journal;
 
 use crate::fault::FaultKind;
-use crate::gcs::{Panel, StoreError};
+use crate::gcs::Panel;
 use embedded_storage::nor_flash::NorFlash;
 use envelope::Head;
+pub use error::StoreError;
 use journal::{Condition, Journal};
 
 /// Bytes that the longest settings take: a sector must have them.

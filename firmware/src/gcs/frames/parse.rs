@@ -1,58 +1,13 @@
 //! From lines to what they ask of the frames.
 
-use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::frames::{FrameKind, FrameName};
+use super::keyword::{KINDS, keyword};
+use super::request::{FrameQuery, ListItem};
+use crate::commander::axis::{AxisSet, AxisValues};
+use crate::commander::frames::{FrameChange, FrameKind, FrameName};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::{ParseError, axis, number, values};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::Scanner;
-
-/// What is to be done with frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FrameChange {
-    /// `KSD`, `KST`, `KSW`
-    Define(FrameKind, FrameName, AxisValues),
-    /// `KSF`
-    Here(FrameName),
-    /// `KLN`: child and parent.
-    Link(FrameName, FrameName),
-    /// `KEN`
-    Enable(FrameName),
-    /// `KRM`
-    Remove(FrameName),
-    /// `SPI`: R, S and T, mm.
-    RotationCentre([Option<f64>; 3]),
-}
-
-/// A question about frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameQuery {
-    /// `KEN?`: types of the enabled frames.
-    Enabled(Option<FrameName>),
-    /// `KET?`: enabled frames of the types.
-    Types(Option<FrameKind>),
-    /// `KLN?`
-    Chains(Option<FrameName>),
-    /// `KLS?`
-    List(Option<FrameName>, Option<ListItem>),
-    /// `KLT?`: start and end of the chain.
-    Totals(Option<FrameName>, Option<FrameName>),
-    /// `SPI?`: which of R, S and T; none stands for all.
-    RotationCentre([bool; 3]),
-}
-
-/// A property that `KLS?` tells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ListItem {
-    /// The type.
-    Type,
-    /// The frame it is in.
-    Parent,
-    /// Whether it is enabled.
-    Enabled,
-    /// Where it lies: along one axis, or all.
-    Position(Option<Axis>),
-}
 
 /// What follows the name of a command about frames.
 type Parsed = Result<Request, ParseError>;
@@ -137,9 +92,9 @@ pub fn totals(scanner: &mut Scanner<'_>) -> Parsed {
 /// `KET?`
 pub fn types(scanner: &mut Scanner<'_>) -> Parsed {
     let word = scanner.word();
-    let kind = FrameKind::ALL
+    let kind = KINDS
         .into_iter()
-        .find(|kind| kind.word().as_bytes().eq_ignore_ascii_case(word.text));
+        .find(|&kind| keyword(kind).as_bytes().eq_ignore_ascii_case(word.text));
     if kind.is_none() && !word.text.is_empty() {
         return Err(word.error(ErrorCode::OutOfRange, "a type: KSD, KSF, KST or KSW"));
     }

@@ -277,7 +277,7 @@ impl Panel {
     }
 
     /// Carries on the macro that runs, as far as its lines for this tick go.
-    pub(in crate::gcs) fn run_macro(&mut self, link: &mut PanelLink<'_>) {
+    pub(in crate::gcs) fn run_macro(&mut self, queues: &mut PanelLink<'_>) {
         if !self.macros.is_running() {
             return;
         }
@@ -290,7 +290,7 @@ impl Panel {
         self.report_errors(&mut session);
         loop {
             // Nothing that is thrown away fails.
-            let _ = self.handle(&mut session, link, &mut Discard);
+            let _ = self.handle(&mut session, queues, &mut Discard);
             if !session.is_idle() || !self.macros.check_line_result(&mut session) {
                 break;
             }

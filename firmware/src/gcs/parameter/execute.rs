@@ -22,7 +22,7 @@ impl Panel {
         &mut self,
         settings: &Settings,
         session: &Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
         let mut wanted = self.parameters.clone();
         for (address, value) in settings.iter().flatten() {
@@ -33,7 +33,7 @@ impl Panel {
         if session.level == 0 && !self.is_within_rated_limits(&wanted) {
             return Err(ErrorCode::OutOfRange);
         }
-        self.apply_parameters(wanted, link)?;
+        self.apply_parameters(wanted, queues)?;
         for (address, value) in settings.iter().flatten() {
             self.events.add(
                 self.commander.tick(),
@@ -47,15 +47,16 @@ impl Panel {
     pub(in crate::gcs) fn apply_parameters(
         &mut self,
         wanted: Parameters,
-        link: &mut PanelLink<'_>,
+        queues: &mut PanelLink<'_>,
     ) -> Result<(), ErrorCode> {
-        let most_rows = self.recorder_state.most_rows(link.recorder.capacity());
+        let most_rows = self.recorder_state.most_rows(queues.recorder.capacity());
         if wanted.recorder.points > most_rows || !wanted.are_sound() {
             return Err(ErrorCode::OutOfRange);
         }
-        self.commander.configure(&self.parameters, &wanted, link)?;
+        self.commander
+            .configure(&self.parameters, &wanted, queues)?;
         if wanted.recorder != self.parameters.recorder {
-            self.recorder_state.rearm(&link.recorder);
+            self.recorder_state.rearm(&queues.recorder);
         }
         self.rated_limits = highest(&self.rated_limits, &wanted.limits);
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);

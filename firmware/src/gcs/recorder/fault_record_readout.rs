@@ -125,10 +125,11 @@ impl Panel {
     pub(in crate::gcs) fn write_fault_record_readout(
         &self,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<bool, WriteFailed> {
-        let (Some(readout), Some(black_box)) = (&mut session.fault_record_readout, link.black_box)
+        let (Some(readout), Some(black_box)) =
+            (&mut session.fault_record_readout, queues.black_box)
         else {
             return Ok(false);
         };

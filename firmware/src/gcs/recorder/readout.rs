@@ -42,7 +42,7 @@ impl Panel {
         &mut self,
         query: RecordQuery,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let recorder_state = &self.recorder_state;
@@ -51,10 +51,10 @@ impl Panel {
             RecordQuery::Triggers(tables) => recorder_state.reply_triggers(&tables, out),
             RecordQuery::Rate => recorder_state.reply_rate(out),
             RecordQuery::Lengths(tables) => {
-                recorder_state.reply_lengths(&tables, &link.recorder, out)
+                recorder_state.reply_lengths(&tables, &queues.recorder, out)
             }
             RecordQuery::FaultRecord => {
-                match FaultRecordReadout::new(link.black_box) {
+                match FaultRecordReadout::new(queues.black_box) {
                     Ok(readout) => session.fault_record_readout = Some(readout),
                     Err(code) => session.error = code,
                 }
@@ -63,7 +63,7 @@ impl Panel {
             RecordQuery::Help => replies::reply_help(self.parameters.recorder.points, out),
             RecordQuery::Count => replies::reply_count(out),
             RecordQuery::Data(span, tables) => {
-                match recorder_state.begin_readout(span, &tables, &link.recorder) {
+                match recorder_state.begin_readout(span, &tables, &queues.recorder) {
                     Ok(readout) => session.readout = Some(readout),
                     Err(code) => session.error = code,
                 }
@@ -76,7 +76,7 @@ impl Panel {
     pub(in crate::gcs) fn write_readout(
         &self,
         session: &mut Session,
-        link: &PanelLink<'_>,
+        queues: &PanelLink<'_>,
         out: &mut Output<'_>,
     ) -> Result<bool, WriteFailed> {
         let Some(readout) = &mut session.readout else {
@@ -91,7 +91,7 @@ impl Panel {
             if record.is_none() {
                 session.error = ErrorCode::NotRecorded;
             }
-            let line = readout.line(record, &link.recorder);
+            let line = readout.line(record, &queues.recorder);
             out.write_all(line.as_bytes())?;
             session.room = session.room.map(|room| room - line.len());
             if readout.left == 0 {

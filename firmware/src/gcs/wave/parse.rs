@@ -1,92 +1,21 @@
 //! From lines to what they ask of tables and generators.
 
-use crate::commander::wave::{Curve, Join, MAX_TABLE_POINTS, Shape, TABLES};
+use super::request::WaveQuery;
+use crate::commander::wave::{
+    Curve, Join, LINE_POINTS, MAX_TABLE_POINTS, Shape, WAVE_TABLES, WaveChange, WavePoints,
+};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::{ParseError, number};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::{Scanner, Word};
 use heapless::Vec;
 
-/// Points that one line can give.
-pub const LINE_POINTS: usize = 32;
-
-/// Points of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WavePoints {
-    values: [f64; LINE_POINTS],
-    count: u8,
-}
-
-impl WavePoints {
-    /// The points.
-    pub fn values(&self) -> &[f64] {
-        let count = usize::from(self.count).min(LINE_POINTS);
-        &self.values[..count]
-    }
-}
-
-/// What is to be done with tables and generators. Tables are counted from 0, generators are the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-// A line's points are by far the largest; there is no heap to box them in.
-#[allow(clippy::large_enum_variant)]
-pub enum WaveChange {
-    /// `WAV`, calculated.
-    Define {
-        /// Which.
-        table: u8,
-        /// How it joins.
-        join: Join,
-        /// Points of the segment.
-        length: u32,
-        /// Its curve.
-        shape: Shape,
-    },
-    /// `WAV PNT`
-    Points {
-        /// Which.
-        table: u8,
-        /// How it joins.
-        join: Join,
-        /// The values.
-        points: WavePoints,
-    },
-    /// `WCL`: a flag for each table.
-    Clear([bool; TABLES]),
-    /// `WSL`: a table (from 1, 0: none) for each generator.
-    Select([Option<u32>; 6]),
-    /// `WGC`: cycles of each generator.
-    Cycles([Option<u32>; 6]),
-    /// `WTR`: ticks of a point.
-    Rate(u32),
-    /// `WGO`: 1 starts, 0 stops.
-    Go([Option<u32>; 6]),
-}
-
-/// A question about tables and generators: a flag for each that was named, none stands for all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WaveQuery {
-    /// `WAV?`
-    Lengths([bool; TABLES]),
-    /// `TWG?`
-    Generators,
-    /// `#9`: mask of those that run, hexadecimal.
-    Mask,
-    /// `WSL?`
-    Tables([bool; 6]),
-    /// `WGC?`
-    Cycles([bool; 6]),
-    /// `WTR?`
-    Rates([bool; 6]),
-    /// `WGO?`
-    Running([bool; 6]),
-}
-
 /// What follows the name of a command about waveforms.
 type Parsed = Result<Request, ParseError>;
 
 /// `WAV`: table, how it joins, type, and what the type takes.
 pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
-    let table = place::<TABLES>(scanner)? as u8;
+    let table = place::<WAVE_TABLES>(scanner)? as u8;
     let word = scanner.word();
     let join = match word.text {
         b"X" | b"x" => Join::Anew,
@@ -160,21 +89,16 @@ fn points(scanner: &mut Scanner<'_>) -> Result<WavePoints, ParseError> {
     if values.is_empty() || values.len() != count as usize {
         return Err(column.error(ErrorCode::ParameterCount, "how many points follow"));
     }
-    let mut points = WavePoints {
-        values: [0.0; LINE_POINTS],
-        count: values.len() as u8,
-    };
-    for (point, value) in points.values.iter_mut().zip(&values) {
-        *point = *value;
-    }
-    Ok(points)
+    // They fit, as the values did.
+    WavePoints::new(&values)
+        .ok_or(column.error(ErrorCode::ParameterCount, "how many points follow"))
 }
 
 /// `WCL`
 pub fn clear(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut wanted = [false; TABLES];
+    let mut wanted = [false; WAVE_TABLES];
     loop {
-        wanted[place::<TABLES>(scanner)?] = true;
+        wanted[place::<WAVE_TABLES>(scanner)?] = true;
         if scanner.is_at_end() {
             return act(WaveChange::Clear(wanted));
         }
@@ -183,7 +107,7 @@ pub fn clear(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// `WSL`
 pub fn select(scanner: &mut Scanner<'_>) -> Parsed {
-    let tables = pairs(scanner, TABLES as u32)?;
+    let tables = pairs(scanner, WAVE_TABLES as u32)?;
     act(WaveChange::Select(tables))
 }
 
@@ -196,7 +120,9 @@ pub fn cycles(scanner: &mut Scanner<'_>) -> Parsed {
 /// `WGO`
 pub fn go(scanner: &mut Scanner<'_>) -> Parsed {
     let modes = pairs(scanner, 1)?;
-    act(WaveChange::Go(modes))
+    act(WaveChange::Switch(
+        modes.map(|mode| mode.map(|mode| mode == 1)),
+    ))
 }
 
 /// `WTR`: triples of generator (0: all, as any of them does), ticks a point and interpolation, which is what it is.
@@ -214,9 +140,9 @@ pub fn rate(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// `WAV?`: pairs of table and 1, which asks for the length.
 pub fn lengths(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut named = [false; TABLES];
+    let mut named = [false; WAVE_TABLES];
     while !scanner.is_at_end() {
-        named[place::<TABLES>(scanner)?] = true;
+        named[place::<WAVE_TABLES>(scanner)?] = true;
         within(scanner, 1, 1)?;
     }
     ask(WaveQuery::Lengths(named))

@@ -1,43 +1,42 @@
 //! What queries about tables and generators answer.
 
-use crate::commander::wave::{WaveQuery, Waveforms};
+use super::request::WaveQuery;
+use crate::commander::wave::Waveforms;
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply::{ReplyWriter, one_line};
 
-impl Waveforms {
-    /// Answers a query; `running` says which generators run.
-    pub(in crate::gcs) fn reply(
-        &self,
-        query: WaveQuery,
-        running: &[bool; 6],
-        out: &mut Output<'_>,
-    ) -> Result<(), WriteFailed> {
-        match query {
-            WaveQuery::Generators => one_line(out, format_args!("{}", self.generators.len())),
-            WaveQuery::Mask => {
-                let bits = running
-                    .iter()
-                    .zip(0..)
-                    .map(|(&running, bit)| u8::from(running) << bit);
-                one_line(out, format_args!("{:x}", bits.sum::<u8>()))
+/// Answers a query; `running` says which generators run.
+pub(in crate::gcs) fn reply_waves(
+    waves: &Waveforms,
+    query: WaveQuery,
+    running: &[bool; 6],
+    out: &mut Output<'_>,
+) -> Result<(), WriteFailed> {
+    match query {
+        WaveQuery::Generators => one_line(out, format_args!("{}", waves.generators.len())),
+        WaveQuery::Mask => {
+            let bits = running
+                .iter()
+                .zip(0..)
+                .map(|(&running, bit)| u8::from(running) << bit);
+            one_line(out, format_args!("{:x}", bits.sum::<u8>()))
+        }
+        WaveQuery::Lengths(named) => {
+            let mut reply = ReplyWriter::new(out);
+            for (table, _) in wanted(&named) {
+                reply.line(format_args!("{} 1={}", table + 1, waves.length(table)))?;
             }
-            WaveQuery::Lengths(named) => {
-                let mut reply = ReplyWriter::new(out);
-                for (table, _) in wanted(&named) {
-                    reply.line(format_args!("{} 1={}", table + 1, self.length(table)))?;
-                }
-                reply.end()
+            reply.end()
+        }
+        WaveQuery::Tables(named) => each(&named, out, |i| waves.generators[i].table.into()),
+        WaveQuery::Cycles(named) => each(&named, out, |i| waves.generators[i].cycles),
+        WaveQuery::Running(named) => each(&named, out, |i| running[i].into()),
+        WaveQuery::Rates(named) => {
+            let mut reply = ReplyWriter::new(out);
+            for (generator, _) in wanted(&named) {
+                reply.line(format_args!("{}={} 1", generator + 1, waves.ticks))?;
             }
-            WaveQuery::Tables(named) => each(&named, out, |i| self.generators[i].table.into()),
-            WaveQuery::Cycles(named) => each(&named, out, |i| self.generators[i].cycles),
-            WaveQuery::Running(named) => each(&named, out, |i| running[i].into()),
-            WaveQuery::Rates(named) => {
-                let mut reply = ReplyWriter::new(out);
-                for (generator, _) in wanted(&named) {
-                    reply.line(format_args!("{}={} 1", generator + 1, self.ticks))?;
-                }
-                reply.end()
-            }
+            reply.end()
         }
     }
 }

@@ -14,7 +14,7 @@
 
 use super::Waveforms;
 use crate::commander::axis::Axis;
-use crate::commander::coordinates::Coordinates;
+use crate::commander::axis::Coordinates;
 
 /// How long the run-up lasts, s.
 const RUN_UP_S: f64 = 0.1;

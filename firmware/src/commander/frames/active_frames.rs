@@ -12,8 +12,7 @@
 //! straight line.
 
 use super::transform::Transform;
-use crate::commander::axis::Axis;
-use crate::commander::coordinates::Coordinates;
+use crate::commander::axis::{Axis, Coordinates};
 
 /// The frames in force.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,14 @@
 //! Waveforms: what changes tables and generators.
 
-use super::Commander;
 use super::axis::Axis;
-use super::wave::{WaveChange, Waveforms};
-use crate::gcs::error::ErrorCode;
+use super::error::CommandError;
+use super::state::Commander;
+use super::wave::{WaveChange, WaveError, Waveforms};
 use crate::motion::{PERIODS, Stop};
 use crate::queues::PanelLink;
 
 impl Commander {
+    /// Tables and generators.
     pub const fn waves(&self) -> &Waveforms {
         &self.waves
     }
@@ -16,13 +17,13 @@ impl Commander {
     pub fn change_waves(
         &mut self,
         action: &WaveChange,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
-        if let WaveChange::Go(modes) = action {
-            return self.switch_generators(modes, link);
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
+        if let WaveChange::Switch(modes) = action {
+            return self.switch_generators(modes, queues);
         }
         if self.running_generators() != [false; 6] {
-            return Err(ErrorCode::GeneratorActive);
+            return Err(CommandError::GeneratorsRunning);
         }
         match action {
             WaveChange::Define {
@@ -30,16 +31,18 @@ impl Commander {
                 join,
                 length,
                 shape,
-            } => self
-                .waves
-                .define(usize::from(*table), *join, *length, *shape),
+            } => {
+                let table = usize::from(*table);
+                Ok(self.waves.define(table, *join, *length, *shape)?)
+            }
             WaveChange::Points {
                 table,
                 join,
                 points,
-            } => self
-                .waves
-                .define_points(usize::from(*table), *join, points.values()),
+            } => {
+                let table = usize::from(*table);
+                Ok(self.waves.define_points(table, *join, points.values())?)
+            }
             WaveChange::Clear(wanted) => {
                 for (table, _) in wanted.iter().enumerate().filter(|(_, wanted)| **wanted) {
                     self.waves.clear(table);
@@ -50,8 +53,8 @@ impl Commander {
                 let frozen = |axis: Axis| {
                     axis.component().is_none() && tables[axis.index()].is_some_and(|t| t > 0)
                 };
-                if Axis::ALL.into_iter().any(frozen) {
-                    return Err(ErrorCode::NotForStage);
+                if let Some(axis) = Axis::ALL.into_iter().find(|&axis| frozen(axis)) {
+                    return Err(WaveError::FrozenAxis(axis).into());
                 }
                 for (generator, table) in self.waves.generators.iter_mut().zip(tables) {
                     generator.table = table.map_or(generator.table, |table| table as u8);
@@ -66,31 +69,31 @@ impl Commander {
             }
             WaveChange::Rate(ticks) => {
                 if !PERIODS.contains(&f64::from(*ticks)) {
-                    return Err(ErrorCode::OutOfRange);
+                    return Err(CommandError::PeriodOutOfRange);
                 }
                 self.waves.ticks = *ticks;
                 Ok(())
             }
-            WaveChange::Go(_) => Ok(()),
+            WaveChange::Switch(_) => Ok(()),
         }
     }
 
     fn switch_generators(
         &mut self,
-        modes: &[Option<u32>; 6],
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        modes: &[Option<bool>; 6],
+        queues: &mut PanelLink<'_>,
+    ) -> Result<(), CommandError> {
         let running = self.running_generators();
-        let starting = modes.map(|mode| mode == Some(1));
+        let starting = modes.map(|mode| mode == Some(true));
         if running != [false; 6] {
             let stops =
-                (modes.iter().zip(running)).any(|(mode, running)| running && *mode == Some(0));
+                (modes.iter().zip(running)).any(|(mode, running)| running && *mode == Some(false));
             if starting != [false; 6] {
-                return Err(ErrorCode::GeneratorActive);
+                return Err(CommandError::GeneratorsRunning);
             }
             if stops {
                 // The axes move as one: all of them stop.
-                self.stop(Stop::Smooth, link);
+                self.stop(Stop::Smooth, queues);
             }
             return Ok(());
         }
@@ -99,9 +102,9 @@ impl Commander {
         }
         let has_wave = |axis: Axis| self.waves.table_of(axis).is_some();
         let mut named = Axis::ALL.into_iter().zip(starting);
-        if named.any(|(axis, starts)| starts && !has_wave(axis)) {
-            return Err(ErrorCode::NoWave);
+        if let Some((axis, _)) = named.find(|&(axis, starts)| starts && !has_wave(axis)) {
+            return Err(WaveError::NoTable(axis).into());
         }
-        self.start_generators(&starting, link)
+        self.start_generators(&starting, queues)
     }
 }

@@ -1,39 +1,19 @@
-//! Which frames are in force, and what they make of a target.
+//! From a selection of frames to the transforms it means.
 
-use super::{ActiveFrames, FrameKind, FrameName, FrameTree, Transform};
-use crate::gcs::error::ErrorCode;
+use super::active_frames::ActiveFrames;
+use super::error::FrameError;
+use super::frame::FrameKind;
+use super::name::FrameName;
+use super::selection::{EnabledFrames, FrameSelection};
+use super::transform::Transform;
+use super::tree::FrameTree;
 
 /// Furthest that a work frame may lie from the base frame's origin, mm: far beyond any laboratory, near enough for f64.
 const MAX_WORK_FRAME_MM: f64 = 1e5;
 
-/// Which frames are in force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnabledFrames {
-    /// The base frame.
-    Zero,
-    /// A directed frame, or one that was made where the platform was.
-    Alone(FrameName),
-    /// A work frame, a tool frame, or both.
-    Pair {
-        /// `None`: the base frame.
-        work: Option<FrameName>,
-        /// `None`: the platform's in_parent.
-        tool: Option<FrameName>,
-    },
-}
-
-/// The frames that are in force, and the centre of rotation: what `KEN` and `SPI` change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameSelection {
-    /// Which frames.
-    pub enabled: EnabledFrames,
-    /// The point that `SPI` sets, mm.
-    pub rotation_centre: [f64; 2],
-}
-
 impl FrameTree {
     /// What would be in force once `name` is enabled.
-    pub fn with_enabled(&self, name: FrameName) -> Result<FrameSelection, ErrorCode> {
+    pub fn with_enabled(&self, name: FrameName) -> Result<FrameSelection, FrameError> {
         let (work, tool) = match self.selection.enabled {
             EnabledFrames::Pair { work, tool } => (work, tool),
             _ => (None, None),
@@ -41,7 +21,7 @@ impl FrameTree {
         let enabled = if name == FrameName::ZERO {
             EnabledFrames::Zero
         } else {
-            match self.find(name).ok_or(ErrorCode::OutOfRange)?.kind {
+            match self.find(name).ok_or(FrameError::Unknown(name))?.kind {
                 FrameKind::Directed | FrameKind::Here => EnabledFrames::Alone(name),
                 FrameKind::Work => EnabledFrames::Pair {
                     work: Some(name),
@@ -63,9 +43,9 @@ impl FrameTree {
     pub fn with_rotation_centre(
         &self,
         rotation_centre: [f64; 2],
-    ) -> Result<FrameSelection, ErrorCode> {
+    ) -> Result<FrameSelection, FrameError> {
         if matches!(self.selection.enabled, EnabledFrames::Pair { .. }) {
-            return Err(ErrorCode::CentreNotSettable);
+            return Err(FrameError::CentreGivenByTool);
         }
         Ok(FrameSelection {
             rotation_centre,
@@ -73,7 +53,7 @@ impl FrameTree {
         })
     }
 
-    /// The centre of rotation that `SPI` has set, as far as it counts.
+    /// The centre of rotation that has been set, as far as it counts, mm.
     pub fn rotation_centre(&self) -> [f64; 2] {
         match self.selection.enabled {
             EnabledFrames::Pair { .. } => [0.0; 2],
@@ -81,13 +61,13 @@ impl FrameTree {
         }
     }
 
-    /// How targets are poses with these frames; [`ErrorCode::OutOfRange`] for a tool that is more than `most_arm_mm` from
+    /// How targets are poses with these frames; [`FrameError::TooFar`] for a tool that is more than `most_arm_mm` from
     /// the platform centre, or a work frame out of any laboratory.
     pub fn active_frames(
         &self,
         selection: &FrameSelection,
         most_arm_mm: f64,
-    ) -> Result<ActiveFrames, ErrorCode> {
+    ) -> Result<ActiveFrames, FrameError> {
         let rotation_centre = Transform::to(selection.rotation_centre);
         let active_frames = match selection.enabled {
             EnabledFrames::Zero => ActiveFrames {
@@ -123,7 +103,7 @@ impl FrameTree {
         };
         let [x, y] = active_frames.work.origin();
         if active_frames.arm_mm() > most_arm_mm || libm::hypot(x, y) > MAX_WORK_FRAME_MM {
-            return Err(ErrorCode::OutOfRange);
+            return Err(FrameError::TooFar);
         }
         Ok(active_frames)
     }

@@ -1,4 +1,4 @@
-//! Why settings could not be kept.
+//! Why settings could not be stored.
 
 use core::fmt;
 
