@@ -59,7 +59,7 @@ impl Commander {
         matches!(self.mode(), Mode::Holding | Mode::Moving)
     }
 
-    /// Other limits of motion. `VLS` stays, as far as they allow it.
+    /// Other limits of motion. The velocity stays, as far as they allow it.
     fn set_limits(&mut self, limits: Limits) {
         let mm_s = self
             .base_constraints

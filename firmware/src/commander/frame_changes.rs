@@ -22,7 +22,7 @@ impl Commander {
         &self.frames
     }
 
-    /// `KSD`, `KSF`, `KST`, `KSW`, `KLN`, `KRM`, `KEN`, `SPI`.
+    /// Makes, links, forgets and enables frames, and sets the centre of rotation.
     pub fn change_frames(
         &mut self,
         action: &FrameChange,
@@ -43,7 +43,7 @@ impl Commander {
         }
     }
 
-    /// `KSF`: where the platform is commanded to be, or is, when nobody commands it.
+    /// A frame where the platform is commanded to be, or is, when nobody commands it.
     fn define_here(&mut self, name: FrameName) -> Result<(), CommandError> {
         self.check_at_rest()?;
         if !self.snapshot().is_some_and(|snapshot| snapshot.referenced) {

@@ -1,5 +1,5 @@
-//! What is commanded: checked as a whole, then sent or kept as a wish. All but [`Commander::stop`] and [`Commander::set_velocity`]
-//! are to be called only when [`Commander::current_snapshot`] is known.
+//! What is commanded: checked as a whole, then sent, or kept until its time comes. All but [`Commander::stop`] are to be called
+//! only when [`Commander::current_snapshot`] is known.
 
 use super::axis::{Axis, AxisValues, Coordinates, replaced};
 use super::coordinates::travel;
@@ -15,7 +15,8 @@ use crate::queues::{Command, PanelLink, Snapshot};
 use kinematics::Angle;
 
 impl Commander {
-    /// `MOV`: everything is checked before anything changes.
+    /// Moves to a target in the frames in force, mm and deg; axes without a value keep theirs. Everything is checked before
+    /// anything changes.
     pub fn move_to(
         &mut self,
         values: &AxisValues,
@@ -24,7 +25,7 @@ impl Commander {
         self.move_to_target(self.resolve_target(&self.base_target(), values), queues)
     }
 
-    /// The target that `MOV` means when `last` is the one before.
+    /// The target that these values mean when `last` is the one before.
     pub(super) fn resolve_target(&self, last: &Coordinates, values: &AxisValues) -> Coordinates {
         let mut target = replaced(last, values);
         if values[Axis::W.index()].is_some() {
@@ -45,7 +46,7 @@ impl Commander {
         target[w] += turns as f64 * 360.0;
     }
 
-    /// `MVR`: relative to the last target.
+    /// Moves relative to the last target.
     pub fn move_by(
         &mut self,
         values: &AxisValues,
@@ -58,7 +59,7 @@ impl Commander {
         self.move_to_target(target, queues)
     }
 
-    /// `MRT`: relative to the last target, along the axes of the tool as it is turned there.
+    /// Moves relative to the last target, along the axes of the tool as it is turned there.
     pub fn move_in_tool(
         &mut self,
         values: &AxisValues,
@@ -115,7 +116,7 @@ impl Commander {
         }
     }
 
-    /// `STP`, `#24`, `HLT`.
+    /// Brings the motion to rest, if there is one; whatever else was asked is over.
     pub fn stop(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
@@ -126,8 +127,8 @@ impl Commander {
         self.advance_pending(queues);
     }
 
-    /// `SVO`. Before referencing there is no pose to hold: servo on is accepted, as clients send it first, and comes about
-    /// with `FRF`.
+    /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and comes about
+    /// with referencing.
     pub fn set_servo(&mut self, on: bool, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);
@@ -144,7 +145,7 @@ impl Commander {
         }
     }
 
-    /// `FLC`.
+    /// Acknowledges the latched fault; without one nothing is done.
     pub fn acknowledge_fault(&mut self, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
         if self.mode() == Mode::Stopping {
             return Err(CommandError::InMotion);

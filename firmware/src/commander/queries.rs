@@ -1,4 +1,4 @@
-//! What queries ask of the stage.
+//! What can be asked of the stage.
 
 use super::axis::{Axis, AxisSet, AxisValues, Coordinates};
 use super::coordinates::{coordinates, max_distance_mm, measured, position, target_travel, travel};
@@ -16,7 +16,7 @@ use kinematics::Angle;
 const CHANGE_TOLERANCE: f64 = 1e-4;
 
 impl Commander {
-    /// The value that the query of `quantity` answers, mm and deg or 0 and 1.
+    /// A value of an axis, in the unit of the quantity.
     pub fn value(&self, quantity: Quantity, axis: Axis) -> f64 {
         let index = axis.index();
         let servo = matches!(self.mode(), Mode::Holding | Mode::Moving);
@@ -42,7 +42,7 @@ impl Commander {
         }
     }
 
-    /// Whether `MOV` would take this target and go there, from where the stage is commanded to be, once referenced and with
+    /// Whether a move would take this target and go there, from where the stage is commanded to be, once referenced and with
     /// the servo on.
     pub fn is_reachable(&self, values: &AxisValues) -> bool {
         let last = self.base_target();
@@ -67,7 +67,7 @@ impl Commander {
         from.is_none_or(|from| check_line(&from, &to, &self.constraints()).is_ok())
     }
 
-    /// The position of a target that `MOV` would take.
+    /// The position of a target that a move would take.
     pub(super) fn position_of(&self, target: &Coordinates) -> Result<Position, CommandError> {
         if !self
             .soft_limits

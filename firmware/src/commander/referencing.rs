@@ -21,7 +21,7 @@ pub enum Referencing {
 }
 
 impl Commander {
-    /// `FRF` begins: whether there is something to wait for.
+    /// Begins to reference: whether there is something to wait for.
     pub fn begin_referencing(&mut self, queues: &mut PanelLink<'_>) -> Result<bool, CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);
@@ -40,7 +40,7 @@ impl Commander {
         Ok(true)
     }
 
-    /// `FRF` goes on: encoders are given a moment to answer, then the tick references.
+    /// Goes on with it: encoders are given a moment to answer, then the tick references.
     pub fn poll_referencing(&mut self, queues: &mut PanelLink<'_>) -> Referencing {
         let Some(snapshot) = self.current_snapshot() else {
             return Referencing::Waiting;

@@ -1,4 +1,5 @@
-//! Targets that follow one another in time: streamed by `MOV` (parameter 0x19001900), or made by wave generators.
+//! Targets that follow one another in time: streamed by moves (as the parameters ask for), or made by wave
+//! generators.
 
 use super::axis::Coordinates;
 use super::error::CommandError;
@@ -16,7 +17,7 @@ use crate::queues::PanelLink;
 const REST_TOLERANCE: u64 = 32;
 
 impl Commander {
-    /// `SCT`: ms between streamed targets.
+    /// Sets the ms between streamed targets.
     pub fn set_cycle_time(&mut self, ms: f64) -> Result<(), CommandError> {
         if self.pending.stream().is_some() {
             return Err(CommandError::InMotion);
@@ -28,7 +29,7 @@ impl Commander {
         Ok(())
     }
 
-    /// `SCT?`
+    /// The time between streamed targets, ms.
     pub const fn cycle_time_ms(&self) -> f64 {
         self.cycle_ms
     }

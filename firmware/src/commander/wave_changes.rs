@@ -13,7 +13,7 @@ impl Commander {
         &self.waves
     }
 
-    /// `WAV`, `WCL`, `WSL`, `WGC`, `WTR`, `WGO`: what a generator reads does not change while it runs.
+    /// Changes tables and generators, starts and stops these: what a generator reads does not change while it runs.
     pub fn change_waves(
         &mut self,
         action: &WaveChange,

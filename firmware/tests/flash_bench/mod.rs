@@ -1,8 +1,8 @@
 //! A flash that loses its power in the middle of a word or of an erase, and a panel whose settings it keeps.
 #![allow(dead_code)] // Each test file uses its part.
 
-#[path = "../panel_bench/mod.rs"]
-pub mod panel_bench;
+#[path = "../gcs_bench/mod.rs"]
+pub mod gcs_bench;
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
@@ -11,7 +11,7 @@ use embedded_storage::nor_flash::{
 use firmware::gcs::{Identity, PARAMETERS, Panel};
 use firmware::parameters::Parameters;
 use firmware::settings_store::Keeper;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 pub const SECTORS: usize = 4;
 const WORD: usize = 4;

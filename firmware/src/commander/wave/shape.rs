@@ -1,7 +1,7 @@
 //! Curves of waveforms, point by point.
 //!
 //! ```text
-//!   LIN                     RAMP                     SIN_P
+//!   line                    ramp                     sine
 //!   |            ____ amp   |       .                |       _-_
 //!   |          .'           |     .' '.              |     .'   '.
 //!   |        .'             |   .'     '.            |    .       .
@@ -9,7 +9,7 @@
 //!     start  |<- length       start  center            start  center
 //! ```
 //!
-//! `LIN` holds its ends outside of the curve. `RAMP` and `SIN_P` are cyclic: `start` shifts them inside their length; behind
+//! The line holds its ends outside of the curve. Ramp and sine are cyclic: `start` shifts them inside their length; behind
 //! the end of that they hold their first value.
 
 use core::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! Frames and the centre of rotation by command: what queries answer, what is refused, and where the platform is.
 
-mod panel_bench;
+mod gcs_bench;
 
-use panel_bench::Bench;
+use gcs_bench::Bench;
 use proptest::prelude::*;
 
 /// mm and deg: what rounding to the tick's units makes of a place.

@@ -1,11 +1,11 @@
 //! The controller's own words: events, statistics of the loop, heartbeat, restart, and which axes have moved.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::fault::FaultKind;
 use firmware::gcs::{Identity, Panel};
 use firmware::parameters::Parameters;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// What `EVT?` tells, without the ticks.
 fn events(bench: &mut Bench) -> Vec<String> {

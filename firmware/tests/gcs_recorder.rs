@@ -1,9 +1,9 @@
 //! The recorder at the front panel, byte for byte.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::fault::FaultKind;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// Rows of a `DRR?` answer, without its head.
 fn rows(answer: &str) -> Vec<Vec<f64>> {

@@ -1,11 +1,11 @@
 //! Byte-exact transcripts: what is sent, what comes back, rule by rule.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 const ZEROS: &str = "X=0.000000000 \nY=0.000000000 \nZ=0.000000000 \nU=0.000000000 \nV=0.000000000 \nW=0.000000000\n";
 

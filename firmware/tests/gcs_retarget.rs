@@ -1,9 +1,9 @@
 //! Targets and stops by command at random ticks: the setpoint never steps, and the last target is reached exactly.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::mode::Mode;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// Largest change of velocity in a tick: an urgent stop brakes as hard as a pivot can, 300 rad/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 1.5e-2;

@@ -1,12 +1,12 @@
 //! Parameters: every one can be set to the ends of its range and no further, by whom and when it says, all of a line or
 //! nothing; what the tick gets is always numbers.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::control::config::Config;
 use firmware::gcs::{Kind, PARAMETERS, Parameter, When};
 use firmware::parameters::Parameters;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -1,9 +1,9 @@
 //! Waveforms: what curves are, how tables are made of them, and what is refused.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::commander::wave::{Curve, Shape};
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 fn curve(length: u32, start: u32) -> Curve {
     Curve {

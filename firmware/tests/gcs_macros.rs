@@ -1,12 +1,12 @@
 //! Macros and variables: recorded on one connection, run in the background, stopped from anywhere, bounded in everything.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::fault::FaultKind;
 use firmware::gcs::{
     LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MAX_VARIABLES, NAME_BYTES, TEXT_BYTES,
 };
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// Referenced, with these macros.
 fn with(macros: &[(&str, &str)]) -> Bench {

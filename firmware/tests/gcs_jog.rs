@@ -1,9 +1,9 @@
 //! Constant velocities, and velocities of single axes, by command.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::mode::Mode;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 6.5e-3;

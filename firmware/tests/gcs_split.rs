@@ -1,9 +1,9 @@
 //! Any bytes, at any split: no panic, and the same result.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::gcs::parse;
-use panel_bench::Bench;
+use gcs_bench::Bench;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -3,7 +3,7 @@
 mod flash_bench;
 
 use firmware::fault::FaultKind;
-use flash_bench::panel_bench::Bench;
+use flash_bench::gcs_bench::Bench;
 use flash_bench::{Flash, KeptBench};
 
 /// As on the chip.

@@ -1,11 +1,11 @@
 //! Motion by command: moves, retargets, stops, waits, and what the connections see of them meanwhile.
 
-mod panel_bench;
+mod gcs_bench;
 
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::queues::{COMMANDS, Command};
-use panel_bench::Bench;
+use gcs_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 6.5e-3;
@@ -55,7 +55,7 @@ fn the_mask_is_there_until_settled() {
     }
     assert!(!bench.tick.now.settled);
     assert_eq!(bench.say("\x05"), "1\n");
-    bench.run(2 * panel_bench::DWELL);
+    bench.run(2 * gcs_bench::DWELL);
     assert_eq!(bench.say("\x05"), "0\n");
 }
 
