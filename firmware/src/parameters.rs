@@ -3,6 +3,10 @@
 //! What the tick uses is derived from these once, in [`Config`](crate::control::config::Config). Defaults come from the reference
 //! stage (DESIGN section 4) unless a line says otherwise.
 
+mod consistency;
+
+pub(crate) use consistency::MIN_HOST_SILENCE_MS;
+
 use crate::motion::{Limits, Way};
 use kinematics::Geometry;
 

@@ -3,7 +3,7 @@
 mod gcs_bench;
 
 use firmware::fault::FaultKind;
-use firmware::gcs::{Identity, Panel};
+use firmware::gcs::{Identity, Interpreter};
 use firmware::parameters::Parameters;
 use gcs_bench::Bench;
 
@@ -80,8 +80,8 @@ fn a_start_with_a_cause_is_told_with_it() {
         serial: "1",
         version: "1",
     };
-    let mut panel = Panel::new(&Parameters::REFERENCE, identity);
-    panel.note_start("the watchdog");
+    let mut panel = Interpreter::new(&Parameters::REFERENCE, identity);
+    panel.set_start_cause("the watchdog");
     let mut bench = Bench::with(panel);
     assert_eq!(events(&mut bench), ["1 start by the watchdog"]);
 }

@@ -192,7 +192,7 @@ fn damage_is_overwritten_by_wpa_alone() {
     flash.bytes[38] ^= 4;
     let damaged = flash.clone();
     let mut panel = flash_bench::fresh();
-    let mut keeper = firmware::settings_store::Keeper::new(flash);
+    let mut keeper = firmware::settings_store::SettingsStore::new(flash);
     assert_eq!(keeper.restore(&mut panel), Some(FaultKind::SettingsDamaged));
     let mut bench = KeptBench {
         bench: Bench::with(panel),

@@ -6,7 +6,7 @@ use std::time::Instant;
 use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::{Link, PanelLink, TickLink};
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
@@ -114,7 +114,7 @@ fn recorded_inputs() -> Vec<Inputs> {
 struct Rig {
     tick_link: TickLink<'static>,
     panel_link: PanelLink<'static>,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
     record: TickRecord,
 }
@@ -126,7 +126,7 @@ impl Rig {
         Self {
             tick_link,
             panel_link,
-            panel: Panel::new(&Parameters::REFERENCE, IDENTITY),
+            panel: Interpreter::new(&Parameters::REFERENCE, IDENTITY),
             session: Session::new(),
             record: TickRecord::default(),
         }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use firmware::fault::{Fault, FaultKind};
 use firmware::fault_record::BlackBox;
-use firmware::gcs::{Identity, Panel, Session};
+use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use firmware::queues::Link;
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 
 use crate::client::{Client, Event};
 use crate::devices::{FINE_PWM, SettingsFlash, StageParameters};
@@ -125,9 +125,9 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
 /// The panel of a controller that starts with what is kept, and the fault that it starts with.
 pub(crate) fn started(
     parameters: &Parameters,
-    keeper: &mut Keeper<SettingsFlash>,
-) -> (Panel, Option<FaultKind>) {
-    let mut panel = Panel::new(parameters, IDENTITY);
+    keeper: &mut SettingsStore<SettingsFlash>,
+) -> (Interpreter, Option<FaultKind>) {
+    let mut panel = Interpreter::new(parameters, IDENTITY);
     let fault = keeper.restore(&mut panel);
     (panel, fault)
 }
@@ -163,7 +163,7 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut keeper = Keeper::new(flash);
+    let mut keeper = SettingsStore::new(flash);
     let (mut panel, fault) = started(parameters, &mut keeper);
     let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
     let mut host = Host::new(stage, panel.parameters());
@@ -195,7 +195,7 @@ fn simulate(
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
-        keeper.carry_on(&mut panel);
+        keeper.store_pending(&mut panel);
         if panel.wants_restart() {
             let fault;
             (panel, fault) = started(parameters, &mut keeper);

@@ -2,15 +2,16 @@
 
 use super::error::ErrorCode;
 use super::events::Event;
+use super::interpreter::Interpreter;
 use super::request::Action;
+use super::request::MAX_DELAY_MS;
 use super::session::{Awaited, Session, Wait};
-use super::{MAX_DELAY_MS, Panel};
 use crate::commander::SoftLimitChange;
 use crate::commander::axis::{Axis, AxisValues};
 use crate::motion::Stop;
 use crate::queues::PanelLink;
 
-impl Panel {
+impl Interpreter {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
     /// [`ErrorCode::Stopped`].
     pub(super) fn perform(

@@ -1,5 +1,5 @@
 //! Where replies go. What writes them is in the image once, whatever the connection is made of: everything below
-//! [`Panel::service`](super::Panel::service) knows an [`Output`] only.
+//! [`Interpreter::service`](super::Interpreter::service) knows an [`Output`] only.
 
 use core::fmt;
 use embedded_io::{ErrorType, Write};

@@ -1,9 +1,9 @@
 //! Answering queries.
 
-use super::Panel;
+use super::interpreter::Interpreter;
 use super::output::{Output, WriteFailed};
-use super::parameter::{Address, Addresses, PARAMETERS, Parameter};
-use super::reply::{ReplyWriter, one_line};
+use super::parameter::parameter_help;
+use super::reply_writer::{ReplyWriter, one_line};
 use super::request::{Property, Query};
 use super::session::Session;
 use super::table::COMMANDS;
@@ -16,7 +16,7 @@ const STAGE_TYPE: &str = "XYT-1";
 /// Bit 16 of `#4`: referenced.
 const STATUS_REFERENCED: u32 = 1 << 16;
 
-impl Panel {
+impl Interpreter {
     /// Answers a query about the controller as a whole.
     pub(super) fn reply_query(
         &mut self,
@@ -112,30 +112,6 @@ impl Panel {
         reply.end()
     }
 
-    /// Answers `SPA?`.
-    pub(super) fn reply_parameters(
-        &self,
-        addresses: &Addresses,
-        out: &mut Output<'_>,
-    ) -> Result<(), WriteFailed> {
-        let mut reply = ReplyWriter::new(out);
-        for &Address { item, id } in addresses.iter().flatten() {
-            if let Some(parameter) = Parameter::find(id) {
-                let value = parameter.value(item, &self.parameters);
-                reply.line(format_args!("{item} 0x{id:X}={value}"))?;
-            }
-        }
-        if addresses[0].is_none() {
-            for parameter in PARAMETERS {
-                for item in parameter.items() {
-                    let (id, value) = (parameter.id, parameter.value(item, &self.parameters));
-                    reply.line(format_args!("{item} 0x{id:X}={value}"))?;
-                }
-            }
-        }
-        reply.end()
-    }
-
     /// Answers `VMO?`.
     pub(super) fn reply_reachable(
         &self,
@@ -197,16 +173,6 @@ pub(super) fn reply_furthest_target(
             reply.line(format_args!("{}={}", axis.letter(), end[axis.index()]))?;
         }
     }
-    reply.end()
-}
-
-fn parameter_help(out: &mut Output<'_>) -> Result<(), WriteFailed> {
-    let mut reply = ReplyWriter::new(out);
-    reply.line(format_args!("The following parameters are there:"))?;
-    for parameter in PARAMETERS {
-        reply.line(format_args!("{parameter}"))?;
-    }
-    reply.line(format_args!("end of help"))?;
     reply.end()
 }
 

@@ -12,6 +12,9 @@ use crate::commander::axis::{Axis, AxisSet, AxisValues};
 use crate::commander::frames::FrameChange;
 use crate::commander::wave::WaveChange;
 
+/// Longest time that a line can ask for: a day.
+pub(super) const MAX_DELAY_MS: f64 = 86_400_000.0;
+
 /// A command, understood but not yet carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {

@@ -4,18 +4,17 @@ use super::error::ErrorCode;
 use super::monitor::Monitor;
 use super::recorder::{FaultRecordReadout, RecordReadout};
 use super::request::Condition;
+use super::text::LINE_BYTES;
 use heapless::{Deque, Vec};
 use kinematics::Angle;
 
-/// Longest line, without its LF.
-pub const LINE_BYTES: usize = 256;
 /// Bytes that may wait to be handled.
 const INPUT_BYTES: usize = 512;
 
 /// `#24`.
 const STOP: u8 = 24;
 
-/// One connection. What it sends goes into [`receive`](Self::receive); [`Panel::service`](super::Panel::service) does the rest.
+/// One connection. What it sends goes into [`receive`](Self::receive); [`Interpreter::service`](super::Interpreter::service) does the rest.
 #[derive(Default)]
 pub struct Session {
     input: Deque<u8, INPUT_BYTES>,
@@ -131,7 +130,7 @@ impl Session {
     }
 
     /// Takes bytes as far as there is room and says how many; the rest is to be offered again after a
-    /// [`service`](super::Panel::service). A line has to be handled before the bytes far behind it can be taken, so while
+    /// [`service`](super::Interpreter::service). A line has to be handled before the bytes far behind it can be taken, so while
     /// a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only by another
     /// connection.
     pub fn receive(&mut self, bytes: &[u8]) -> usize {

@@ -1,16 +1,21 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
+use super::arguments::{ParseError, axis_identifiers};
 use super::frames::parse as frames;
-use super::macros::{MacroRequest, MacroSyntax};
-use super::parameter::Settings;
-use super::parse::{self, ParseError};
-use super::recorder;
+use super::macros::{MacroRequest, parse as macros};
+use super::parameter::parse as parameter;
+use super::recorder::parse as recorder;
 use super::request::{Action, Condition, Property, Query, Request};
 use super::scan::Scanner;
+use super::streaming;
+use super::variables::parse as variables;
 use super::wave::{WaveQuery, parse as wave};
 use crate::commander::Quantity;
 use crate::commander::axis::{AxisSet, AxisValues};
 use crate::commander::frames::FrameKind;
+
+/// The query of variables, which conditions can ask too.
+pub(super) const VARIABLE_QUERY: &str = "VAR?";
 
 /// A command.
 pub(super) struct Entry {
@@ -28,8 +33,6 @@ pub(super) enum Syntax {
     Byte(u8, Request),
     /// Nothing.
     Plain(Request),
-    /// Nothing or `ALL`.
-    All(Request),
     /// As this function understands it.
     Own(fn(&mut Scanner<'_>) -> Result<Request, ParseError>),
     /// Axes; none stands for all.
@@ -42,22 +45,8 @@ pub(super) enum Syntax {
     Values(fn(AxisValues) -> Action),
     /// Pairs of axis and number.
     QueryValues(fn(AxisValues) -> Request),
-    /// Pairs of item and parameter; none stands for all.
-    Parameters,
-    /// Triples of item, parameter and number.
-    Settings(fn(Settings) -> Action),
-    /// About macros.
-    Macro(MacroSyntax),
-    /// Name and value of a variable.
-    SetVariable,
-    /// Name of a variable, two numbers.
-    AddVariable,
-    /// Names of variables; none stands for all.
-    Variables,
-    /// A number of lines, and a condition.
+    /// A number of lines, and a condition, which is read with this table: no function in it can.
     Jump,
-    /// Level and password.
-    Level,
     /// A number.
     Number(fn(f64) -> Action),
     /// Query, axis, operator, number.
@@ -119,14 +108,14 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     byte("#24", 24, Request::Act(Action::Stop), "stop all axes"),
     ask("*IDN?", Query::Identity, "get device identification"),
-    entry(
+    own(
         "ADD",
-        Syntax::AddVariable,
+        variables::add,
         "<variable> <number> <number> set variable to the sum",
     ),
-    entry(
+    own(
         "CCL",
-        Syntax::Level,
+        parameter::level,
         "<level> [<password>] set command level",
     ),
     ask("CCL?", Query::Level, "get command level"),
@@ -282,16 +271,12 @@ pub(super) static COMMANDS: &[Entry] = &[
         Query::Statistics,
         "get loop statistics, and the peak following error since they were last asked for",
     ),
-    entry(
+    own(
         "MAC BEG",
-        Syntax::Macro(MacroSyntax::Begin),
+        macros::begin,
         "<macro> record the lines that follow",
     ),
-    entry(
-        "MAC DEL",
-        Syntax::Macro(MacroSyntax::Delete),
-        "<macro> forget it",
-    ),
+    own("MAC DEL", macros::delete, "<macro> forget it"),
     entry(
         "MAC END",
         Syntax::Plain(Request::Macro(MacroRequest::End)),
@@ -307,26 +292,18 @@ pub(super) static COMMANDS: &[Entry] = &[
         Syntax::Plain(Request::Macro(MacroRequest::Free)),
         "get bytes left",
     ),
-    entry(
+    own(
         "MAC NSTART",
-        Syntax::Macro(MacroSyntax::StartTimes),
+        macros::start_times,
         "<macro> <times> [<argument> [<argument>]] run it repeatedly",
     ),
-    entry(
+    own(
         "MAC START",
-        Syntax::Macro(MacroSyntax::Start),
+        macros::start,
         "<macro> [<argument> [<argument>]] run it",
     ),
-    entry(
-        "MAC STOP",
-        Syntax::Macro(MacroSyntax::Stop),
-        "[<macro>] stop it",
-    ),
-    entry(
-        "MAC?",
-        Syntax::Macro(MacroSyntax::List),
-        "[<macro>] get macros or lines of one",
-    ),
+    own("MAC STOP", macros::stop, "[<macro>] stop it"),
+    own("MAC?", macros::list, "[<macro>] get macros or lines of one"),
     entry(
         "MEX",
         Syntax::Condition(Action::Leave),
@@ -397,34 +374,30 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "RPA",
-        parse::recall,
+        parameter::recall,
         "[{<item> <parameter>}] get parameters back as they are kept",
     ),
     own("RTR", recorder::set_rate, "<ticks> set ticks a point"),
     own("RTR?", recorder::rate, "get ticks a point"),
-    entry(
-        "SAI?",
-        Syntax::All(Request::Query(Query::Axes)),
-        "[ALL] get axis identifiers",
-    ),
+    own("SAI?", axis_identifiers, "[ALL] get axis identifiers"),
     own(
         "SCT",
-        parse::cycle_time,
+        streaming::cycle_time,
         "T <milliseconds> set time between streamed targets",
     ),
     own(
         "SCT?",
-        parse::cycle_time_query,
+        streaming::cycle_time_query,
         "[T] get time between streamed targets",
     ),
-    entry(
+    own(
         "SPA",
-        Syntax::Settings(Action::Set),
+        parameter::set,
         "{<item> <parameter> <value>} set parameter",
     ),
-    entry(
+    own(
         "SPA?",
-        Syntax::Parameters,
+        parameter::query,
         "[{<item> <parameter>}] get parameter",
     ),
     own(
@@ -478,12 +451,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         "[{<axis>}] get whether there are reference switches",
     ),
     own("TWG?", wave::count, "get number of wave generators"),
-    entry(
+    own(
         "VAR",
-        Syntax::SetVariable,
+        variables::set,
         "<variable> [<value>] set or forget variable",
     ),
-    entry("VAR?", Syntax::Variables, "[{<variable>}] get variable"),
+    own(
+        VARIABLE_QUERY,
+        variables::query,
+        "[{<variable>}] get variable",
+    ),
     entry(
         "VEL",
         Syntax::Values(Action::AxisVelocity),
@@ -544,7 +521,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "WPA",
-        parse::keep,
+        parameter::store,
         "<password> [{<item> <parameter>}] keep parameters over a restart",
     ),
     own(

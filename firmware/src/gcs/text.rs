@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+/// Longest line, without its LF.
+pub const LINE_BYTES: usize = 256;
 /// Longest name of a macro or a variable.
 pub const NAME_BYTES: usize = 16;
 /// Longest value of a variable, and longest argument of a macro.

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // Each test file uses its part.
 
 use core::convert::Infallible;
-use firmware::gcs::{Identity, Panel, Session};
+use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::{Link, PanelLink};
 
@@ -30,7 +30,7 @@ impl embedded_io::Write for Written {
 
 /// The panel, its connections and the tick.
 pub struct Bench {
-    panel: Panel,
+    panel: Interpreter,
     sessions: Vec<(Session, Written)>,
     pub link: PanelLink<'static>,
     pub tick: FakeTick,
@@ -43,11 +43,11 @@ impl Bench {
             serial: "4711",
             version: "0.1.0",
         };
-        Self::with(Panel::new(&Parameters::REFERENCE, identity))
+        Self::with(Interpreter::new(&Parameters::REFERENCE, identity))
     }
 
     /// The same with this panel.
-    pub fn with(panel: Panel) -> Self {
+    pub fn with(panel: Interpreter) -> Self {
         let parameters = Parameters::REFERENCE;
         let (tick, link) = Box::leak(Box::new(Link::new())).split();
         Self {
@@ -135,11 +135,11 @@ impl Bench {
         panic!("never at rest");
     }
 
-    pub fn panel(&self) -> &Panel {
+    pub fn panel(&self) -> &Interpreter {
         &self.panel
     }
 
-    pub fn panel_mut(&mut self) -> &mut Panel {
+    pub fn panel_mut(&mut self) -> &mut Interpreter {
         &mut self.panel
     }
 

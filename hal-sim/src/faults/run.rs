@@ -2,11 +2,11 @@
 
 use firmware::fault::Fault;
 use firmware::fault_record::BlackBox;
-use firmware::gcs::{CAUSES, Panel, Session};
+use firmware::gcs::{Interpreter, START_CAUSES, Session};
 use firmware::mode::Mode;
 use firmware::queues::{Command, Link, PanelLink};
 use firmware::recorder::{Record, Sample};
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 
 use super::injection::Injection;
 use super::random::Random;
@@ -123,7 +123,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let mut link = Box::new(Link::new());
     let black_box = Box::new(BlackBox::new());
     let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
-    let mut panel = Box::new(Panel::new(parameters, IDENTITY));
+    let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
     let mut session = Session::new();
     let mut flooding = Session::new();
     let mut seen = Seen::default();
@@ -134,7 +134,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     // What the controller's own count of ticks is behind.
     let mut restarted_at = 0;
     if scenario.injection == Injection::DamagedSettings && !is_control {
-        let problem = Keeper::new(damaged(&mut random)).restore(&mut panel);
+        let problem = SettingsStore::new(damaged(&mut random)).restore(&mut *panel);
         host.restart(parameters, problem);
     }
 
@@ -148,8 +148,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
                 host.stage.advance_period([BridgeState::RESET; AXES]);
             }
             host.restart(parameters, None);
-            *panel = Panel::new(parameters, IDENTITY);
-            panel.note_start(CAUSES[0]);
+            *panel = Interpreter::new(parameters, IDENTITY);
+            panel.set_start_cause(START_CAUSES[0]);
             session = Session::new();
             tick_link.clear();
             panel_link.clear();
@@ -209,7 +209,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
 }
 
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.
-fn flood(panel: &mut Panel, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
+fn flood(panel: &mut Interpreter, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
     // In no state but a fault does it do anything.
     while link.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();

@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::Link;
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 
 use super::random::Random;
 use crate::devices::{SettingsFlash, StageParameters};
@@ -41,17 +41,17 @@ fn kept() -> Vec<u8> {
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
     let mut link = Box::new(Link::new());
     let (mut tick_link, mut panel_link) = link.split();
-    let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
-    let mut keeper = Keeper::new(SettingsFlash::in_memory());
+    let mut panel = Box::new(Interpreter::new(&parameters, IDENTITY));
+    let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
     let mut session = Session::new();
     let mut answers = Vec::new();
-    assert_eq!(keeper.restore(&mut panel), None, "an erased flash is none");
+    assert_eq!(keeper.restore(&mut *panel), None, "an erased flash is none");
     session.receive(LINES);
     for _ in 0..TICKS {
         host.tick(&mut tick_link, &mut ());
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut panel_link, &mut answers);
-        keeper.carry_on(&mut panel);
+        keeper.store_pending(&mut *panel);
     }
     assert_eq!(answers, b"0\n", "the settings are kept");
     keeper.flash().bytes().to_vec()

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::queues::PanelLink;
 use rustix::event::PollFlags;
 
@@ -107,7 +107,7 @@ impl Connection {
     /// Has the panel carry out what has come, line by line, so that a refusal can be told with its line.
     pub fn service(
         &mut self,
-        panel: &mut Panel,
+        panel: &mut Interpreter,
         link: &mut PanelLink<'_>,
         say: &mut dyn FnMut(Notice),
     ) {

@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use firmware::fault_record::BlackBox;
-use firmware::gcs::Panel;
+use firmware::gcs::Interpreter;
 use firmware::parameters::Parameters;
 use firmware::queues::{Link, PanelLink, TickLink};
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
@@ -96,7 +96,7 @@ impl Server {
         // The client's end has to stay open as long as the controller's.
         let (terminal, _client) = self.terminal.map(|t| (t.controller, t.client)).unzip();
         let connections = terminal.map(|port| Connection::new("terminal".into(), port, true, now));
-        let mut keeper = Keeper::new(self.flash);
+        let mut keeper = SettingsStore::new(self.flash);
         let (panel, fault) = started(parameters, &mut keeper);
         let mut host = Host::new(&self.options.stage, panel.parameters());
         host.restart(panel.parameters(), fault);
@@ -132,8 +132,8 @@ fn listen(address: &str) -> io::Result<TcpListener> {
 struct Service<'a> {
     parameters: Parameters,
     host: Host,
-    panel: Panel,
-    keeper: Keeper<SettingsFlash>,
+    panel: Interpreter,
+    keeper: SettingsStore<SettingsFlash>,
     tick_link: TickLink<'a>,
     panel_link: PanelLink<'a>,
     pace: Pace,
@@ -183,7 +183,7 @@ impl Service<'_> {
         for connection in &mut self.connections {
             connection.service(&mut self.panel, &mut self.panel_link, self.say);
         }
-        self.keeper.carry_on(&mut self.panel);
+        self.keeper.store_pending(&mut self.panel);
     }
 
     fn tell_fault(&mut self) {

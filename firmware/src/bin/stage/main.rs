@@ -76,10 +76,10 @@ mod app {
     use core::mem::MaybeUninit;
     use firmware::control::config::Config;
     use firmware::control::{Inputs, State, tick};
-    use firmware::gcs::{Identity, Panel, Session};
+    use firmware::gcs::{Identity, Interpreter, Session};
     use firmware::parameters::Parameters;
     use firmware::queues::{Link, PanelLink, TickLink};
-    use firmware::settings_store::Keeper;
+    use firmware::settings_store::SettingsStore;
 
     const IDENTITY: Identity = Identity {
         serial: "0",
@@ -100,9 +100,9 @@ mod app {
         tracer: Tracer,
         stopwatch: Stopwatch,
         tick_link: TickLink<'static>,
-        panel: &'static mut Panel,
+        panel: &'static mut Interpreter,
         session: &'static mut Session,
-        keeper: Keeper<SettingsFlash>,
+        keeper: SettingsStore<SettingsFlash>,
         panel_link: PanelLink<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
@@ -111,7 +111,7 @@ mod app {
     // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
     #[init(local = [
         link: Link = Link::new(),
-        panel_place: MaybeUninit<Panel> = MaybeUninit::uninit(),
+        panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
     ])]
@@ -131,12 +131,12 @@ mod app {
         let panel = context
             .local
             .panel_place
-            .write(Panel::new(&PARAMETERS, IDENTITY));
+            .write(Interpreter::new(&PARAMETERS, IDENTITY));
         if let Some(cause) = reset_cause.unasked() {
-            panel.note_start(cause);
+            panel.set_start_cause(cause);
         }
         // Before anything can move.
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         let state = match keeper.restore(panel) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
@@ -220,7 +220,7 @@ mod app {
                 .service(local.session, local.panel_link, local.transmitter);
             TRACE.note_service(received, local.panel.tick() as u32);
             local.transmitter.send();
-            local.keeper.carry_on(local.panel);
+            local.keeper.store_pending(local.panel);
             if local.panel.wants_restart() {
                 restart::now();
             }

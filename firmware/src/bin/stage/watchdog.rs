@@ -2,7 +2,7 @@
 
 use crate::{restart, trace::TRACE};
 use core::sync::atomic::{AtomicU32, Ordering};
-use firmware::gcs::CAUSES;
+use firmware::gcs::START_CAUSES;
 use stm32f4xx_hal::{pac, prelude::*, watchdog::IndependentWatchdog};
 
 /// How long the loop may stand still, ms. The oscillator behind it is good to -30 and +50 %.
@@ -53,9 +53,9 @@ impl ResetCause {
     /// What is worth telling over the command interface: a start that nobody asked for.
     pub const fn unasked(self) -> Option<&'static str> {
         match self {
-            Self::Watchdog => Some(CAUSES[0]),
-            Self::Software => Some(CAUSES[1]),
-            Self::BrownOut => Some(CAUSES[2]),
+            Self::Watchdog => Some(START_CAUSES[0]),
+            Self::Software => Some(START_CAUSES[1]),
+            Self::BrownOut => Some(START_CAUSES[2]),
             _ => None,
         }
     }

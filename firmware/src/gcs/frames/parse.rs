@@ -4,8 +4,8 @@ use super::keyword::{KINDS, keyword};
 use super::request::{FrameQuery, ListItem};
 use crate::commander::axis::{AxisSet, AxisValues};
 use crate::commander::frames::{FrameChange, FrameKind, FrameName};
+use crate::gcs::arguments::{ParseError, axis, number, values};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, axis, number, values};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::Scanner;
 

@@ -6,7 +6,7 @@ use crate::commander::axis::Axis;
 use crate::commander::frames::{Frame, FrameKind, FrameName, FrameTree, Transform};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply::{ReplyWriter, one_line};
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
 
 /// Names of the centre of rotation's coordinates.
 const CENTRE_AXES: [char; 3] = ['R', 'S', 'T'];

@@ -4,7 +4,8 @@
 //! recorded for [`RECORDING_TIMEOUT_TICKS`]. The lines of the one that lost it, should it be there still, are thrown away up to its
 //! `MAC END`, which is an error: they were never meant to be carried out.
 
-use super::{MacroRequest, Macros};
+use super::request::MacroRequest;
+use super::state::{Macros, Recording};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::parse;
 use crate::gcs::request::Request;
@@ -15,17 +16,6 @@ use crate::gcs::text::Name;
 
 /// How long a recording without a new line keeps others out: 10 s at 20 kHz.
 pub const RECORDING_TIMEOUT_TICKS: u64 = 200_000;
-
-/// The recording under way.
-pub(super) struct Recording {
-    name: Name,
-    /// Its connection holds the same number.
-    number: u32,
-    /// When its last line came.
-    tick: u64,
-    /// Why it will not be kept.
-    error: Option<ErrorCode>,
-}
 
 /// What becomes of a line of a connection that records.
 pub(in crate::gcs) enum Recorded {

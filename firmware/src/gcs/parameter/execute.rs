@@ -4,19 +4,18 @@
 //! computes with is derived from them here and handed over as one command, which the tick takes only at rest. Nothing that
 //! depends on them is decided before the tick has said that it did.
 
-use super::{PARAMETERS, Parameter, Settings, When};
-use crate::gcs::Panel;
+use super::address::Settings;
+use super::descriptor::{Parameter, When};
+use super::table::PARAMETERS;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
+use crate::gcs::interpreter::Interpreter;
 use crate::gcs::session::Session;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
 use crate::queues::PanelLink;
 
-/// What `CCL 1` asks for: against accidents, not against intruders. The same for all controllers of this family.
-pub(in crate::gcs) const LEVEL_PASSWORD: &[u8] = b"ADVANCED";
-
-impl Panel {
+impl Interpreter {
     /// `SPA`: all settings or, with an error, none.
     pub(in crate::gcs) fn set(
         &mut self,

@@ -4,10 +4,10 @@
 //! stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set up for; level 1
 //! raises them further.
 
-use super::{Kind, Parameter, ValueSource, When};
+use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
-use crate::gcs::MAX_DELAY_MS;
+use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::Way;
 use crate::recorder::RECORD_WORDS;
 
@@ -199,3 +199,10 @@ pub static PARAMETERS: &[Parameter] = &[
     Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.drive.pwm_hz)) },
     Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.drive.pwm_counts))) },
 ];
+
+impl Parameter {
+    /// The parameter of an id.
+    pub fn find(id: u32) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| parameter.id == id)
+    }
+}

@@ -2,14 +2,10 @@
 //!
 //! When the servo is switched on meanwhile the record is no more; the rest is answered as not a number, with an error.
 
-use super::readout::{LINES_PER_SERVICE, MAX_LINE_BYTES};
+use super::readout::MAX_LINE_BYTES;
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::fault_record::{BlackBox, Row, Span};
-use crate::gcs::Panel;
 use crate::gcs::error::ErrorCode;
-use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::session::Session;
-use crate::queues::PanelLink;
 use core::fmt::{self, Write as _};
 use heapless::String;
 
@@ -44,7 +40,7 @@ pub(in crate::gcs) struct FaultRecordReadout {
     /// Lines of the head that are written.
     header_lines_written: usize,
     cursor: u32,
-    left: u32,
+    pub(super) left: u32,
 }
 
 impl FaultRecordReadout {
@@ -59,7 +55,7 @@ impl FaultRecordReadout {
     }
 
     /// The next line, with its end; `None` for a row that is gone.
-    fn line(
+    pub(super) fn line(
         &mut self,
         black_box: &BlackBox,
         period_s: f64,
@@ -118,36 +114,4 @@ fn row_line(row: Option<&Row>, line: &mut String<MAX_LINE_BYTES>) -> fmt::Result
     }
     let supply_v = f64::from(row.supply_counts) * SUPPLY_V_PER_COUNT;
     write!(line, " {supply_v:.3} {}", row.tick_cycles)
-}
-
-impl Panel {
-    /// Writes some more of the fault record that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn write_fault_record_readout(
-        &self,
-        session: &mut Session,
-        queues: &PanelLink<'_>,
-        out: &mut Output<'_>,
-    ) -> Result<bool, WriteFailed> {
-        let (Some(readout), Some(black_box)) =
-            (&mut session.fault_record_readout, queues.black_box)
-        else {
-            return Ok(false);
-        };
-        for _ in 0..LINES_PER_SERVICE {
-            if session.room.is_some_and(|room| room < MAX_LINE_BYTES) {
-                return Ok(true);
-            }
-            let mut line = String::new();
-            if !readout.line(black_box, 1.0 / self.parameters.limits.rate_hz, &mut line) {
-                session.error = ErrorCode::NotRecorded;
-            }
-            out.write_all(line.as_bytes())?;
-            session.room = session.room.map(|room| room - line.len());
-            if readout.left == 0 {
-                session.fault_record_readout = None;
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
 }

@@ -1,10 +1,10 @@
 //! Understanding the lines about the recorder.
 
-use super::options::{Channel, OPTION_OFF, SignalSource};
+use super::channel::{Channel, OPTION_OFF, SignalSource};
 use super::trigger::Trigger;
 use super::{RecordAction, RecordQuery, TableList};
+use crate::gcs::arguments::{ParseError, number};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, number};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::{Scanner, Word};
 use crate::recorder::TABLES;

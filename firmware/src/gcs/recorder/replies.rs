@@ -1,10 +1,10 @@
 //! Answers about the recorder that are a few lines.
 
-use super::options::{OPTION_OFF, OPTIONS, SignalSource};
+use super::channel::{OPTION_OFF, OPTIONS, SignalSource};
 use super::trigger::TRIGGERS;
 use super::{RecorderState, TableList};
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply::{ReplyWriter, one_line};
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
 use crate::recorder::{PanelRecorder, TABLES};
 
 impl RecorderState {

@@ -4,8 +4,8 @@ use super::request::WaveQuery;
 use crate::commander::wave::{
     Curve, Join, LINE_POINTS, MAX_TABLE_POINTS, Shape, WAVE_TABLES, WaveChange, WavePoints,
 };
+use crate::gcs::arguments::{ParseError, number};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, number};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::{Scanner, Word};
 use heapless::Vec;

@@ -3,7 +3,7 @@
 use super::request::WaveQuery;
 use crate::commander::wave::Waveforms;
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply::{ReplyWriter, one_line};
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
 
 /// Answers a query; `running` says which generators run.
 pub(in crate::gcs) fn reply_waves(

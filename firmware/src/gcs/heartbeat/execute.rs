@@ -1,41 +1,23 @@
-//! The host's heartbeat: when one is asked for with `HBT` or its parameter, a host that is not heard for longer is taken for gone.
-//!
-//! Heard is any byte on a connection that has promised it with `HBT`: a page that looks on beside a script, or another client,
-//! does not stand for a script that has died. Where no connection has promised anything (the parameter was set, kept
-//! settings ask for it, or a macro said `HBT`) it is any byte on any connection. What follows is what `STP` does: the motion ends at the highest deceleration, on its
-//! path, the macro and all waits end, every connection gets error 10, and the event is kept. It is no fault: a stage that
-//! stands still under its servo is safer than one whose motors are off, and whoever comes back finds it where it stopped.
+//! `HBT`, and what follows a silence of the host.
 
-use super::error::ErrorCode;
-use super::events::Event;
-use super::session::Session;
-use super::{MAX_DELAY_MS, Panel};
+use super::state::Heartbeat;
+use crate::gcs::error::ErrorCode;
+use crate::gcs::events::Event;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::request::MAX_DELAY_MS;
+use crate::gcs::session::Session;
 use crate::motion::Stop;
+use crate::parameters::MIN_HOST_SILENCE_MS;
 use crate::queues::PanelLink;
 
-/// Shortest heartbeat that can be asked for: what an operating system keeps with ease.
-pub(super) const SHORTEST_MS: f64 = 10.0;
-
-/// See the module.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Heartbeat {
-    last_heard_tick: u64,
-    /// It has been silent for too long, and not heard since.
-    is_silent: bool,
-    /// Connections have promised to be heard, and they alone count.
-    is_promised: bool,
-    /// Times it was switched off: promises from before that are void.
-    generation: u32,
-}
-
-impl Panel {
+impl Interpreter {
     /// `HBT`: longest silence, or 0 for none. With it a connection promises to be heard; a macro can not.
-    pub(super) fn set_heartbeat(
+    pub(in crate::gcs) fn set_heartbeat(
         &mut self,
         ms: f64,
         session: &mut Session,
     ) -> Result<(), ErrorCode> {
-        if ms != 0.0 && !(SHORTEST_MS..=MAX_DELAY_MS).contains(&ms) {
+        if ms != 0.0 && !(MIN_HOST_SILENCE_MS..=MAX_DELAY_MS).contains(&ms) {
             return Err(ErrorCode::OutOfRange);
         }
         for parameters in [&mut self.parameters, &mut self.previous_parameters] {
@@ -63,7 +45,7 @@ impl Panel {
     }
 
     /// Notes whether a connection has been heard.
-    pub(super) fn note_activity(&mut self, session: &mut Session) {
+    pub(in crate::gcs) fn note_activity(&mut self, session: &mut Session) {
         let Heartbeat {
             is_promised,
             generation,
@@ -77,7 +59,7 @@ impl Panel {
     }
 
     /// Stops when the host has been silent for too long.
-    pub(super) fn watch_heartbeat(&mut self, queues: &mut PanelLink<'_>) {
+    pub(in crate::gcs) fn watch_heartbeat(&mut self, queues: &mut PanelLink<'_>) {
         let Heartbeat {
             last_heard_tick,
             is_silent,

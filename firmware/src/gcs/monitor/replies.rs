@@ -1,71 +1,21 @@
-//! `MON?`: what a client needs to draw the stage while it moves, in one answer.
-//!
-//! Pose and pivots are those of the base frame and of the platform's centre, whatever frame and centre of rotation are in
-//! force. Following errors and duties change faster than anybody asks: told is the lowest and the highest since this
-//! connection asked last, among the ticks that the panel has seen (on the host all of them).
+//! What `MON?` answers.
 
-use super::Panel;
-use super::output::{Output, WriteFailed};
-use super::reply::ReplyWriter;
-use super::session::Session;
 use crate::commander::axis::Axis;
 use crate::control::config::UNITS_PER_RAD;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::output::{Output, WriteFailed};
+use crate::gcs::reply_writer::ReplyWriter;
+use crate::gcs::session::Session;
 use crate::mode::Mode;
-use crate::queues::Snapshot;
 
 /// Urad in a unit of a pivot's following error.
 const URAD_PER_UNIT: f32 = (1e6 / UNITS_PER_RAD) as f32;
 /// Deg in a unit of an angle.
 const DEG_PER_UNIT: f64 = 360.0 / 4_294_967_296.0;
 
-/// The lowest and highest of one quantity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Range {
-    lowest: i32,
-    highest: i32,
-}
-
-impl Range {
-    fn widen(&mut self, value: i32, first: bool) {
-        if first || value < self.lowest {
-            self.lowest = value;
-        }
-        if first || value > self.highest {
-            self.highest = value;
-        }
-    }
-}
-
-/// What a connection has not been told yet.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Monitor {
-    /// The tick looked at last.
-    tick: u64,
-    /// The next tick begins new ranges.
-    starts_anew: bool,
-    errors: [Range; 3],
-    duties: [Range; 3],
-}
-
-impl Monitor {
-    /// Takes what is known at a tick; the same one again changes nothing.
-    pub fn update(&mut self, snapshot: &Snapshot) {
-        if snapshot.tick == self.tick {
-            return;
-        }
-        let first = self.starts_anew || self.tick == 0;
-        self.tick = snapshot.tick;
-        self.starts_anew = false;
-        for i in 0..3 {
-            self.errors[i].widen(snapshot.pivot_errors[i], first);
-            self.duties[i].widen(snapshot.duty[i].0.into(), first);
-        }
-    }
-}
-
-impl Panel {
+impl Interpreter {
     /// Answers `MON?`.
-    pub(super) fn reply_monitor(
+    pub(in crate::gcs) fn reply_monitor(
         &self,
         session: &mut Session,
         out: &mut Output<'_>,

@@ -1,37 +1,19 @@
-//! Variables: names for texts, put in for `$name` or `${name}` anywhere in a line before it is understood.
-//!
-//! Names of one digit are local to the macro that runs: 0 is how many arguments it was started with, 1 and 2 are those, the
-//! others are free. All other variables are the controller's, the same for every connection and macro. A name goes as far
-//! as letters, digits and underscores go; `${name}` ends it where one of those follows.
+//! The variables there are, and their places in a line.
 
-use super::error::ErrorCode;
-use super::session::LINE_BYTES;
-use super::text::{Name, Text, is_name_byte};
+use crate::gcs::error::ErrorCode;
+use crate::gcs::text::{LINE_BYTES, Name, Text, is_name_byte};
 use core::fmt::Write;
 use heapless::Vec;
 
 /// Variables that can be kept, besides the local ones.
 pub const MAX_VARIABLES: usize = 32;
-/// Variables that a line can ask for.
-pub const MAX_NAMED_VARIABLES: usize = 8;
 
 /// Variables 0 to 9 of a running macro.
-pub(super) type Locals = [Option<Text>; 10];
-
-/// What a line wants of the variables.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum VariableRequest {
-    /// `VAR`: set one, or, without a value, forget it.
-    Set(Name, Option<Text>),
-    /// `ADD`: set one to a sum.
-    Add(Name, f64, f64),
-    /// `VAR?`: tell those named, or all.
-    Query([Option<Name>; MAX_NAMED_VARIABLES]),
-}
+pub(in crate::gcs) type Locals = [Option<Text>; 10];
 
 /// The controller's variables.
 #[derive(Default)]
-pub(super) struct Variables {
+pub(in crate::gcs) struct Variables {
     entries: Vec<(Name, Text), MAX_VARIABLES>,
 }
 
@@ -128,7 +110,7 @@ fn reference(text: &[u8]) -> Result<(Name, &[u8]), ErrorCode> {
 }
 
 /// A number as the value of a variable: in full where that fits, which it does for all but the largest and the smallest.
-pub(super) fn number_text(number: f64) -> Result<Text, ErrorCode> {
+pub(in crate::gcs) fn number_text(number: f64) -> Result<Text, ErrorCode> {
     if !number.is_finite() {
         return Err(ErrorCode::OutOfRange);
     }

@@ -1,14 +1,7 @@
-//! Events as words, for the black box: number, tick (two), what, three of its own, and the check.
+//! Events as words, for the fault record: number, tick (two), what, three of its own, and the check.
 
-use super::Event;
+use super::event::{Event, START_CAUSES};
 use crate::fault::{ABOUT, Fault};
-
-/// What may start a controller unasked: the watchdog, the program, the supply.
-pub const CAUSES: [&str; 3] = [
-    "the watchdog: the control loop stood still",
-    "a panic or a processor fault",
-    "a dip of the supply",
-];
 
 /// Stands for no pivot, and for a cause that has no number.
 const NONE: u8 = 0xFF;
@@ -26,7 +19,7 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
     let bare = |code| (code, [0; 2], [0; 3]);
     match event {
         Event::Start(cause) => {
-            let known = |cause: &&str| CAUSES.iter().position(|known| known == cause);
+            let known = |cause: &&str| START_CAUSES.iter().position(|known| known == cause);
             let place = cause.as_ref().and_then(known);
             (0, [place.map_or(NONE, |place| place as u8), 0], [0; 3])
         }
@@ -65,7 +58,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
     let [code, first, second, _] = what.to_be_bytes();
     let number = f64::from_bits(u64::from(c) << 32 | u64::from(b));
     let event = match code {
-        0 => Event::Start(CAUSES.get(usize::from(first)).copied()),
+        0 => Event::Start(START_CAUSES.get(usize::from(first)).copied()),
         1 => Event::Fault(Fault {
             kind: ABOUT.get(usize::from(first))?.kind,
             pivot: (second != NONE).then_some(second),

@@ -1,6 +1,6 @@
 //! Which line of the running macros comes next.
 
-use super::state::MacroTexts;
+use super::texts::MacroTexts;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::text::Text;
 use crate::gcs::variables::{Locals, number_text};
@@ -112,7 +112,7 @@ impl Calls {
         let line = i64::from(call.line) + i64::from(by);
         let before = usize::try_from(line - 1).map_err(|_| ErrorCode::OutOfRange)?;
         let mut at = 0;
-        let mut lines = super::state::lines(store.text(call.place));
+        let mut lines = super::texts::lines(store.text(call.place));
         for _ in 0..before {
             at += lines.next().ok_or(ErrorCode::OutOfRange)?.len() + 1;
         }
