@@ -441,8 +441,8 @@ proptest! {
         prop_assert!((there[0] - pose.0).abs() < 3e-6 && (there[1] - pose.1).abs() < 3e-6);
     }
 
-    /// What `VMO?` and `TRA?` answer is what `MOV` meets, with any frames: a target is taken exactly when `VMO?` says so, the end
-    /// that `TRA?` tells can be moved to, and nothing further out.
+    /// What `VMO?` and `TRA?` answer is what `MOV` meets, with any frames: a target is taken exactly when `VMO?` says
+    /// so, the end that `TRA?` tells can be moved to, and nothing further out.
     #[test]
     fn queries_are_what_a_move_meets(
         work in frame(), tool in frame(), first in (-1.0..1.0, -1.0..1.0, -180.0..180.0),

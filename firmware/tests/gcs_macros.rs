@@ -1,4 +1,5 @@
-//! Macros and variables: recorded on one connection, run in the background, stopped from anywhere, bounded in everything.
+//! Macros and variables: recorded on one connection, run in the background, stopped from anywhere, bounded in
+//! everything.
 
 mod gcs_bench;
 

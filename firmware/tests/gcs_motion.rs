@@ -9,7 +9,8 @@ use gcs_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 6.5e-3;
-/// The same of an urgent stop: a pivot's 300 rad/s^2. That of x is 1 track radius a second or less for 1 rad/s of a pivot.
+/// The same of an urgent stop: a pivot's 300 rad/s^2. That of x is 1 track radius a second or less for 1 rad/s of a
+/// pivot.
 const HARD: f32 = 15e-3;
 
 #[test]

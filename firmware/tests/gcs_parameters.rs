@@ -255,7 +255,8 @@ fn a_travel_that_leaves_no_soft_limits_is_refused() {
     assert_eq!(bench.say("TMX? X\nNLM? X\n"), "X=80\nX=50\n");
 }
 
-/// Fixed seed and number of cases, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
+/// Fixed seed and number of cases, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the
+/// environment.
 fn settings() -> ProptestConfig {
     let seed = std::env::var("PROPTEST_RNG_SEED")
         .ok()

@@ -168,8 +168,8 @@ fn a_step_is_recorded_from_its_start() {
     }
 }
 
-/// The way that the tick has made so many rows after the first one, which has moved by itself: a sixth of the jerk, 4e5 mm/s^3,
-/// times t^3.
+/// The way that the tick has made so many rows after the first one, which has moved by itself: a sixth of the jerk, 4e5
+/// mm/s^3, times t^3.
 fn assert_from_start(way_mm: f64, row: usize) {
     let expected = 4e5 / 6.0 * ((row + 1) as f64 * 5e-5).powi(3);
     assert!(

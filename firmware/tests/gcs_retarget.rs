@@ -124,7 +124,8 @@ fn what_lies_ahead_takes_over_from_its_head() {
     assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
 }
 
-/// A command side that is busy with something else, as with writing to flash: the stage comes to rest in the head, and goes on.
+/// A command side that is busy with something else, as with writing to flash: the stage comes to rest in the head, and
+/// goes on.
 #[test]
 fn a_head_that_nothing_follows_comes_to_rest() {
     let mut bench = sent_far();

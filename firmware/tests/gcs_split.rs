@@ -7,7 +7,8 @@ use gcs_bench::Bench;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Fixed seed and number of cases, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
+/// Fixed seed and number of cases, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the
+/// environment.
 fn settings() -> ProptestConfig {
     let seed = std::env::var("PROPTEST_RNG_SEED")
         .ok()
@@ -104,7 +105,8 @@ fn stream() -> impl Strategy<Value = Vec<u8>> {
 /// What a refused line leaves as it was.
 const STATE: &str = "MOV?\nSVO?\nVLS?\nSPA?\nVAR?\nMAC?\nMAC FREE?\nHBT?\n";
 
-/// The answers to `bytes`, cut at `cuts`, with no tick between them; then the ticks run. `None` when a wait filled the input.
+/// The answers to `bytes`, cut at `cuts`, with no tick between them; then the ticks run. `None` when a wait filled the
+/// input.
 fn answers(bytes: &[u8], cuts: &[prop::sample::Index]) -> Option<(Vec<u8>, Vec<&'static str>)> {
     let mut bench = Bench::ready();
     let mut places: Vec<_> = cuts.iter().map(|cut| cut.index(bytes.len() + 1)).collect();

@@ -578,8 +578,8 @@ fn tra_is_exact() {
             let end: Vec<f64> = (answer.lines())
                 .map(|line| line.trim_end().split_once('=').unwrap().1.parse().unwrap())
                 .collect();
-            // Where the line meets the rim at its flattest, a twentieth of this hair points outwards: five times the slack
-            // that a target on the rim itself has.
+            // Where the line meets the rim at its flattest, a twentieth of this hair points outwards: five times the
+            // slack that a target on the rim itself has.
             let more = [end[0] + dx * 1e-5, end[1] + dy * 1e-5];
             let ask =
                 |bench: &mut Bench, [x, y]: [f64; 2]| bench.say(&format!("VMO? X {x} Y {y}\n"));

@@ -1,5 +1,5 @@
-//! Power cuts: whenever the power fails while settings are written, all of the old ones are there afterwards or all of the new
-//! ones. Cut off in the middle of every word and every erase of a random sequence of changes.
+//! Power cuts: whenever the power fails while settings are written, all of the old ones are there afterwards or all of
+//! the new ones. Cut off in the middle of every word and every erase of a random sequence of changes.
 //!
 //! `CHANGES=500 SEED=7 cargo test -p firmware --test store_power_cut` makes it longer, or another one.
 

@@ -1,5 +1,5 @@
-//! From what is pending to the next plan: a stop or another goal for the motion under way, a plan from rest for the stage that
-//! holds. The states are those of [`Pending`](super::pending).
+//! From what is pending to the next plan: a stop or another goal for the motion under way, a plan from rest for the
+//! stage that holds. The states are those of [`Pending`](super::pending).
 
 use super::error::CommandError;
 use super::in_flight::InFlight;
@@ -92,8 +92,9 @@ impl Commander {
         Ok(())
     }
 
-    /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while it is to
-    /// be tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
+    /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while
+    /// it is to be tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing
+    /// comes of it.
     fn retarget(
         &mut self,
         retarget: Retarget,
@@ -165,8 +166,8 @@ impl Commander {
         }
     }
 
-    /// The plan under way, and the tick of it at which another one can take over. A plan that is not the one sent last is about
-    /// to be: `next_plan`, or what the next snapshot tells.
+    /// The plan under way, and the tick of it at which another one can take over. A plan that is not the one sent last
+    /// is about to be: `next_plan`, or what the next snapshot tells.
     pub(super) fn active_plan(&self) -> Option<(&SentPlan, u64)> {
         let snapshot = self.snapshot()?;
         let sent_plan = self.sent_plan.as_ref()?;

@@ -11,13 +11,13 @@ use crate::parameters::Parameters;
 use crate::queues::{Command, PanelLink};
 
 impl Commander {
-    /// Goes over from the parameters `now` to those `wanted`; the tick is told when what it computes with changes. To be
-    /// called only at rest, and only when [`Commander::current_snapshot`] is known.
+    /// Goes over from the parameters `now` to those `wanted`; the tick is told when what it computes with changes. To
+    /// be called only at rest, and only when [`Commander::current_snapshot`] is known.
     ///
     /// # Errors
-    /// [`CommandError::SoftLimitsInvalid`] when the travel leaves nothing of the soft limits, [`CommandError::Busy`] when the tick can not
-    /// be told, [`CommandError::RadiusWithToolFrame`] for another radius of the track while a point beside the platform centre is moved.
-    /// Nothing has changed then.
+    /// [`CommandError::SoftLimitsInvalid`] when the travel leaves nothing of the soft limits, [`CommandError::Busy`]
+    /// when the tick can not be told, [`CommandError::RadiusWithToolFrame`] for another radius of the track while a
+    /// point beside the platform centre is moved. Nothing has changed then.
     pub fn configure(
         &mut self,
         now: &Parameters,

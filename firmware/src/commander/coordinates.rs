@@ -49,8 +49,9 @@ fn travel_around(middle: [f64; 3], active_frames: &ActiveFrames, geometry: &Geom
     })
 }
 
-/// The position of a target, if the motion layer can go there: frozen axes at 0, the platform centre inside the usable disk,
-/// theta inside the travel of W (but for a target that keeps the theta of `last`, which a jog may have taken further).
+/// The position of a target, if the motion layer can go there: frozen axes at 0, the platform centre inside the usable
+/// disk, theta inside the travel of W (but for a target that keeps the theta of `last`, which a jog may have taken
+/// further).
 pub(crate) fn position(
     target: &Coordinates,
     last: &Coordinates,

@@ -44,7 +44,8 @@ pub enum CommandError {
     NoMotion,
     /// The planner refuses.
     Refused(Refusal),
-    /// Another track radius while a point beside the platform's centre is moved: the tick knows that point in track radii.
+    /// Another track radius while a point beside the platform's centre is moved: the tick knows that point in track
+    /// radii.
     RadiusWithToolFrame,
     /// Streamed targets did not come in time: the stage has stopped.
     StreamDry,

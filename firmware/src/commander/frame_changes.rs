@@ -13,7 +13,8 @@ use crate::mode::Mode;
 use crate::motion::{Centre, FURTHEST};
 use crate::queues::{Command, PanelLink};
 
-/// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells apart.
+/// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells
+/// apart.
 const WHOLE_TURN_DEG: f64 = 1e-7;
 
 impl Commander {

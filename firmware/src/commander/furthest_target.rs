@@ -69,7 +69,8 @@ fn upper_bound(
     way
 }
 
-/// The multiple of `d` at which the ray from `p` leaves the circle; infinite when it does not move, 0 when it never is inside.
+/// The multiple of `d` at which the ray from `p` leaves the circle; infinite when it does not move, 0 when it never is
+/// inside.
 fn to_circle(p: [f64; 2], d: [f64; 2], radius: f64) -> f64 {
     let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
     let (a, b, c) = (dot(d, d), dot(p, d), dot(p, p) - radius * radius);

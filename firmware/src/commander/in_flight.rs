@@ -8,7 +8,8 @@ use super::sent_plan::SentPlan;
 // There is no heap to box the plan in, and there is one command in flight.
 #[allow(clippy::large_enum_variant)]
 pub(super) enum InFlight {
-    /// A plan; and, if it is the way to a goal, what has been tried of it: the tick may refuse it, then it is planned anew.
+    /// A plan; and, if it is the way to a goal, what has been tried of it: the tick may refuse it, then it is planned
+    /// anew.
     Plan(SentPlan, Option<Retarget>),
     /// Referencing.
     Reference,

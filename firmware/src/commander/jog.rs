@@ -10,7 +10,8 @@ use crate::motion::Stop;
 use crate::queues::PanelLink;
 
 impl Commander {
-    /// Moves at constant velocities, mm/s and deg/s: axes that are not named keep the velocity that an earlier one gave them; whatever else moves comes to rest.
+    /// Moves at constant velocities, mm/s and deg/s: axes that are not named keep the velocity that an earlier one gave
+    /// them; whatever else moves comes to rest.
     pub fn jog(
         &mut self,
         values: &AxisValues,

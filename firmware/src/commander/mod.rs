@@ -1,8 +1,9 @@
 //! The stage as the command side sees it: what is known of it, what is in flight to it, what is asked of it.
 //!
-//! A [`Commander`] takes requests (a move, a jog, a stop, a stream of targets, referencing, other frames or parameters), checks
-//! each as a whole, plans, and sends commands to the tick. It runs at low priority and meets the tick only through the queues of
-//! [`crate::queues`]. It knows no language: who calls it gets values and a [`CommandError`].
+//! A [`Commander`] takes requests (a move, a jog, a stop, a stream of targets, referencing, other frames or
+//! parameters), checks each as a whole, plans, and sends commands to the tick. It runs at low priority and meets the
+//! tick only through the queues of [`crate::queues`]. It knows no language: who calls it gets values and a
+//! [`CommandError`].
 //!
 //! ```text
 //! let mut commander = Commander::new(&parameters);
@@ -17,9 +18,10 @@
 //! ```
 //!
 //! One command is in flight at most. What a command does is known when the tick has counted it
-//! ([`Snapshot::commands`](crate::queues::Snapshot::commands)), a tick later; until then nothing that depends on it is decided:
-//! most requests need [`Commander::current_snapshot`]. What has to wait (a stop for the tick at which it takes over, a move for
-//! the stop before it) waits in the state machine of [`pending`], and [`Commander::advance_pending`] goes on with it.
+//! ([`Snapshot::commands`](crate::queues::Snapshot::commands)), a tick later; until then nothing that depends on it is
+//! decided: most requests need [`Commander::current_snapshot`]. What has to wait (a stop for the tick at which it takes
+//! over, a move for the stop before it) waits in the state machine of `pending.rs`, and [`Commander::advance_pending`]
+//! goes on with it.
 //!
 //! | file | idea |
 //! |---|---|

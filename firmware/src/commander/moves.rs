@@ -1,5 +1,5 @@
-//! What is commanded: checked as a whole, then sent, or kept until its time comes. All but [`Commander::stop`] are to be called
-//! only when [`Commander::current_snapshot`] is known.
+//! What is commanded: checked as a whole, then sent, or kept until its time comes. All but [`Commander::stop`] are to
+//! be called only when [`Commander::current_snapshot`] is known.
 
 use super::axis::{Axis, AxisValues, Coordinates, replaced};
 use super::coordinates::travel;
@@ -15,8 +15,8 @@ use crate::queues::{Command, PanelLink, Snapshot};
 use kinematics::Angle;
 
 impl Commander {
-    /// Moves to a target in the frames in force, mm and deg; axes without a value keep theirs. Everything is checked before
-    /// anything changes.
+    /// Moves to a target in the frames in force, mm and deg; axes without a value keep theirs. Everything is checked
+    /// before anything changes.
     pub fn move_to(
         &mut self,
         values: &AxisValues,
@@ -127,8 +127,8 @@ impl Commander {
         self.advance_pending(queues);
     }
 
-    /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and comes about
-    /// with referencing.
+    /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and
+    /// comes about with referencing.
     pub fn set_servo(&mut self, on: bool, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);

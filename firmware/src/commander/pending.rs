@@ -1,8 +1,8 @@
 //! What is asked of the stage and not handed over to the tick yet: the command side's state machine.
 //!
-//! A request for motion is carried out at once where that can be. What has to wait, because the stage moves or because the
-//! planning takes several slices, waits here as one of the variants of [`Pending`]. There is room for one thing to do and one
-//! to follow it; what is asked later takes the place of what was asked before.
+//! A request for motion is carried out at once where that can be. What has to wait, because the stage moves or because
+//! the planning takes several slices, waits here as one of the variants of [`Pending`]. There is room for one thing to
+//! do and one to follow it; what is asked later takes the place of what was asked before.
 //!
 //! | state | what happens next, as soon as nothing is in flight |
 //! |---|---|
@@ -31,9 +31,10 @@
 //! | the stage holds | | | `Nothing` | `Goal` | |
 //! | the stage is off or at fault | | `Nothing` | `Nothing` | `Nothing` | `Nothing` |
 //!
-//! What is in flight ([`InFlight`](super::in_flight::InFlight)) and what is under way (the plans that the tick has taken) are
-//! apart from this: a stop, a goal or a servo switched off may come at any moment of either, so every combination with the
-//! states above occurs. While something is in flight nothing is decided; only requests and acknowledgements change the state.
+//! What is in flight ([`InFlight`](super::in_flight::InFlight)) and what is under way (the plans that the tick has
+//! taken) are apart from this: a stop, a goal or a servo switched off may come at any moment of either, so every
+//! combination with the states above occurs. While something is in flight nothing is decided; only requests and
+//! acknowledgements change the state.
 
 use super::sent_plan::Goal;
 use super::stream_source::Streaming;
@@ -78,9 +79,9 @@ pub(super) enum Pending {
     Stream(Streaming),
     /// The tick has refused the way to where waveforms begin: once more, then the waveforms.
     GoalThenStream(Retarget, Streaming),
-    /// A stop came while the stage held, and stays pending until the next snapshot shows that there is nothing to stop. A stream
-    /// that begins before that snapshot and sends a plan at once is stopped by it. (A goal that is sent then is stopped too: its
-    /// state is `Stop`.)
+    /// A stop came while the stage held, and stays pending until the next snapshot shows that there is nothing to stop.
+    /// A stream that begins before that snapshot and sends a plan at once is stopped by it. (A goal that is sent then
+    /// is stopped too: its state is `Stop`.)
     StopThenStream(Stop, Streaming),
 }
 
@@ -140,7 +141,8 @@ impl Pending {
         *self = Self::Stop(stop);
     }
 
-    /// The stream, if its next plan can be asked for; a stop stays. Waveforms wait until the stage stands where they begin.
+    /// The stream, if its next plan can be asked for; a stop stays. Waveforms wait until the stage stands where they
+    /// begin.
     pub fn take_stream(&mut self) -> Option<Streaming> {
         if !matches!(self, Self::Stream(_) | Self::StopThenStream(..)) {
             return None;

@@ -42,8 +42,8 @@ impl Commander {
         }
     }
 
-    /// Whether a move would take this target and go there, from where the stage is commanded to be, once referenced and with
-    /// the servo on.
+    /// Whether a move would take this target and go there, from where the stage is commanded to be, once referenced and
+    /// with the servo on.
     pub fn is_reachable(&self, values: &AxisValues) -> bool {
         let last = self.base_target();
         let target = self.resolve_target(&last, values);
@@ -101,8 +101,8 @@ impl Commander {
         furthest_target(&last, &direction, &self.active_frames, most, soft, allowed)
     }
 
-    /// Measured pose, in the frames in force. Without a reference there is none: 0. With pivots that are no pose (a fault) the
-    /// setpoint stands for it.
+    /// Measured pose, in the frames in force. Without a reference there is none: 0. With pivots that are no pose (a
+    /// fault) the setpoint stands for it.
     pub fn measured(&self) -> Coordinates {
         let Some(snapshot) = self.snapshot.as_ref().filter(|s| s.referenced) else {
             return Coordinates::default();

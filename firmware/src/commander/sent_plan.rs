@@ -73,8 +73,8 @@ impl SentPlan {
         }
     }
 
-    /// The way to another goal that leaves this sent_plan at its tick `at`, by the next of `tries`; what of it is not planned yet is
-    /// left `ahead`.
+    /// The way to another goal that leaves this sent_plan at its tick `at`, by the next of `tries`; what of it is not
+    /// planned yet is left `ahead`.
     pub fn retargeted(
         &self,
         goal: Goal,

@@ -16,7 +16,8 @@ use crate::queues::{Command, PanelLink, Snapshot};
 
 /// Time between streamed targets at first, ms.
 const DEFAULT_CYCLE_MS: f64 = 10.0;
-/// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for planning.
+/// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for
+/// planning.
 const PLANNING_LEAD_TICKS: u64 = 40;
 /// Where doubling it ends: a stop that is late even so finds the motion at rest.
 const MAX_PLANNING_LEAD_TICKS: u64 = 20_000;
@@ -209,8 +210,8 @@ impl Commander {
         }
     }
 
-    /// After a stop by command the target is where it ends; known as soon as the stop is, so that a relative move can go on
-    /// from there.
+    /// After a stop by command the target is where it ends; known as soon as the stop is, so that a relative move can
+    /// go on from there.
     pub(super) fn set_target_to_rest(&mut self, end: &Position) {
         if self.target_is_rest {
             self.target = coordinates(end, &self.active_frames, &self.base_constraints.geometry);

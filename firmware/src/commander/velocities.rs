@@ -9,7 +9,8 @@ use crate::motion::Limits;
 const MIN_SPEED_MM_S: f64 = 1e-3;
 
 impl Commander {
-    /// Speed of the platform's centre, mm/s; rotation goes down with it in proportion, so that a slow move is slow in W too.
+    /// Speed of the platform's centre, mm/s; rotation goes down with it in proportion, so that a slow move is slow in W
+    /// too.
     pub fn set_velocity(&mut self, mm_s: f64) -> Result<(), CommandError> {
         if !(MIN_SPEED_MM_S..=self.full_limits.speed_mm_s).contains(&mm_s) {
             return Err(CommandError::VelocityOutOfRange { axis: None });
@@ -39,7 +40,8 @@ impl Commander {
         Ok(())
     }
 
-    /// The velocity of an axis, mm/s or deg/s: as far as the limits of motion, which may have been lowered since, allow it.
+    /// The velocity of an axis, mm/s or deg/s: as far as the limits of motion, which may have been lowered since, allow
+    /// it.
     pub(super) fn axis_velocity(&self, axis: Axis) -> f64 {
         let most = max_axis_velocity(&self.full_limits, axis);
         self.velocities[axis.index()].map_or(most, |velocity| velocity.min(most))

@@ -104,7 +104,7 @@ pub enum ErrorCode {
     MacroRunning = 1008,
     /// A fault is latched, the motors are off.
     MotionError = 1024,
-    /// The flash does not take the settings that are to be kept.
+    /// The flash does not take the settings that are to be stored.
     FlashFailed = 4001,
 }
 
@@ -123,7 +123,7 @@ impl ErrorCode {
     }
 }
 
-/// The table of what a connection is told when the stage does not do what was asked.
+/// The error numbers for when the stage does not do what was asked.
 impl From<CommandError> for ErrorCode {
     fn from(error: CommandError) -> Self {
         match error {

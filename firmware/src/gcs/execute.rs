@@ -123,8 +123,8 @@ impl Interpreter {
     }
 }
 
-/// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on. The
-/// frozen axes have none to switch.
+/// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on.
+/// The frozen axes have none to switch.
 fn servo(values: &AxisValues) -> Result<Option<bool>, ErrorCode> {
     let mut wanted = None;
     for (axis, on) in Axis::ALL.into_iter().zip(flags(values)?) {

@@ -1,8 +1,8 @@
 //! The language: the General Command Set.
 //!
 //! It runs at low priority, outside the tick, and meets it only through the queues of [`crate::queues`]. An
-//! [`Interpreter`] is what all connections share, a [`Session`] is one of them. Bytes go into the session, [`Interpreter::service`] handles them and writes
-//! the replies:
+//! [`Interpreter`] is what all connections share, a [`Session`] is one of them. Bytes go into the session,
+//! [`Interpreter::service`] handles them and writes the replies:
 //!
 //! ```text
 //! bytes -> Session::receive -> line or single byte -> parse -> Request -> Commander -> Command -> tick
@@ -30,17 +30,17 @@
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
-//! | `macros`, `variables` | lines that are kept and carried out later; values in lines |
+//! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //!
 //! Each folder has, as far as there is something to say: `state`, `request`, `parse`, `execute`, `replies`.
 //!
-//! Lines are handled in order. While a command is on its way to the tick (one tick) lines that depend on it stay where they
-//! are; while `DEL`, `WAC` or `FRF` waits all lines do, and single bytes act ahead of them. A stop (`STP`, `#24`) from any
-//! connection ends those waits on all of them, with error 10, and throws away the lines behind them: a script does not go on
-//! after a stop.
+//! Lines are handled in order. While a command is on its way to the tick (one tick) lines that depend on it stay where
+//! they are; while `DEL`, `WAC` or `FRF` waits all lines do, and single bytes act ahead of them. A stop (`STP`, `#24`)
+//! from any connection ends those waits on all of them, with error 10, and throws away the lines behind them: a script
+//! does not go on after a stop.
 
 mod arguments;
 mod error;

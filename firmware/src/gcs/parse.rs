@@ -9,8 +9,8 @@ use super::table::{Entry, Syntax, VARIABLE_QUERY, find, has_keywords};
 use super::variables::parse::variable;
 use crate::commander::axis::AxisSet;
 
-/// Understands a line (without its LF). Pure: no state of the controller is looked at, so whether the command can be carried
-/// out is another question.
+/// Understands a line (without its LF). Pure: no state of the controller is looked at, so whether the command can be
+/// carried out is another question.
 ///
 /// # Errors
 /// [`ParseError`] for the first word from the left that does not fit.

@@ -16,11 +16,12 @@ use crate::queues::PanelLink;
 use embedded_io::Write;
 
 impl Interpreter {
-    /// Takes a new snapshot, carries on what is pending, handles what `session` has received and writes the replies to `out`.
-    /// To be called for every connection as often as possible: on the host once every tick, on the chip in the idle loop.
+    /// Takes a new snapshot, carries on what is pending, handles what `session` has received and writes the replies to
+    /// `out`. To be called for every connection as often as possible: on the host once every tick, on the chip in the
+    /// idle loop.
     ///
     /// # Errors
-    /// Those of `out`. The connection is then to be closed; the panel goes on with the others.
+    /// Those of `out`. The connection is then to be closed; the interpreter goes on with the others.
     pub fn service<W: Write>(
         &mut self,
         session: &mut Session,
@@ -46,7 +47,8 @@ impl Interpreter {
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
     pub fn advance(&mut self, queues: &mut PanelLink<'_>) {
-        // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next call.
+        // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next
+        // call.
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
@@ -67,8 +69,8 @@ impl Interpreter {
         self.reported = (self.reported.0.wrapping_add(1), code);
     }
 
-    /// What became of a request that had been accepted sets the error of every connection too: the one that asked has had its
-    /// silence, which means yes, long since.
+    /// What became of a request that had been accepted sets the error of every connection too: the one that asked has
+    /// had its silence, which means yes, long since.
     fn collect_late_error(&mut self) {
         if let Some(error) = self.commander.take_late_error() {
             self.reported = (self.reported.0.wrapping_add(1), error.into());

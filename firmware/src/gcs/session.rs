@@ -14,7 +14,8 @@ const INPUT_BYTES: usize = 512;
 /// `#24`.
 const STOP: u8 = 24;
 
-/// One connection. What it sends goes into [`receive`](Self::receive); [`Interpreter::service`](super::Interpreter::service) does the rest.
+/// One connection. What it sends goes into [`receive`](Self::receive);
+/// [`Interpreter::service`](super::Interpreter::service) does the rest.
 #[derive(Default)]
 pub struct Session {
     input: Deque<u8, INPUT_BYTES>,
@@ -40,11 +41,11 @@ pub struct Session {
     pub(super) recording: Option<u32>,
     /// Its lines are those of a macro that runs.
     pub(super) is_macro: bool,
-    /// The tick of the last fault this connection was told of.
+    /// The tick of the last fault that was reported to this connection.
     pub(super) fault_tick: Option<u64>,
     /// What `MON?` has to tell it.
     pub(super) monitor: Monitor,
-    /// How much bad news this connection has been told; `None` before its first service.
+    /// How many errors have been reported to this connection; `None` before its first service.
     pub(super) errors_reported: Option<u32>,
 }
 
@@ -104,8 +105,8 @@ impl Session {
         Self::default()
     }
 
-    /// Says how many bytes of a long answer (`DRR?`) the output takes at the next services without keeping anybody waiting; any
-    /// number of them before this is called. Other answers are short and are written whatever the room.
+    /// Says how many bytes of a long answer (`DRR?`) the output takes at the next services without keeping anybody
+    /// waiting; any number of them before this is called. Other answers are short and are written whatever the room.
     pub const fn set_room(&mut self, bytes: usize) {
         self.room = Some(bytes);
     }
@@ -130,9 +131,9 @@ impl Session {
     }
 
     /// Takes bytes as far as there is room and says how many; the rest is to be offered again after a
-    /// [`service`](super::Interpreter::service). A line has to be handled before the bytes far behind it can be taken, so while
-    /// a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only by another
-    /// connection.
+    /// [`service`](super::Interpreter::service). A line has to be handled before the bytes far behind it can be taken,
+    /// so while a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only
+    /// by another connection.
     pub fn receive(&mut self, bytes: &[u8]) -> usize {
         self.received_bytes |= !bytes.is_empty();
         for (taken, &byte) in bytes.iter().enumerate() {
@@ -143,8 +144,8 @@ impl Session {
         bytes.len()
     }
 
-    /// Bytes have been lost behind those received so far. The line that is cut off there, and what comes up to the next LF, are
-    /// thrown away with error 304: pieces of two lines must never make up a third.
+    /// Bytes have been lost behind those received so far. The line that is cut off there, and what comes up to the next
+    /// LF, are thrown away with error 304: pieces of two lines must never make up a third.
     pub fn lose(&mut self) {
         if self.input.is_full() {
             self.input.pop_back();
@@ -225,8 +226,8 @@ impl Session {
         }
     }
 
-    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and ends
-    /// the wait.
+    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and
+    /// ends the wait.
     pub(super) fn take_single(&mut self) -> Option<u8> {
         let before = self.input.iter().position(|&byte| is_single(byte))?;
         self.rotate(before);
@@ -255,8 +256,8 @@ impl Session {
         self.discard(self.input.len());
     }
 
-    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line must
-    /// never be taken for a command.
+    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line
+    /// must never be taken for a command.
     fn discard(&mut self, count: usize) {
         let mut last = b'\n';
         for _ in 0..count {

@@ -3,13 +3,14 @@
 use super::Parameters;
 use kinematics::Geometry;
 
-/// Least and most of the track's radius that the usable disk may reach out to: closer to the track the pivots' rates have no
-/// bound.
+/// Least and most of the track's radius that the usable disk may reach out to: closer to the track the pivots' rates
+/// have no bound.
 const USABLE_RADIUS_RANGE: [f64; 2] = [0.05, 0.95];
-/// The tick's 32-bit rates end at 39 track radii or turns a second ([`Scale`](crate::motion::Scale)); a tenth is kept free.
+/// The tick's 32-bit rates end at 39 track radii or turns a second ([`Scale`](crate::motion::Scale)); a tenth is kept
+/// free.
 const MAX_RATE_1_S: f64 = 35.0;
-/// The same for accelerations, which end at 3,050 a second squared. What an urgent stop makes of the largest acceleration that
-/// a pivot may have, 2,000 rad/s^2, is less: at most 2/sqrt(3) of it in track radii.
+/// The same for accelerations, which end at 3,050 a second squared. What an urgent stop makes of the largest
+/// acceleration that a pivot may have, 2,000 rad/s^2, is less: at most 2/sqrt(3) of it in track radii.
 const MAX_ACCELERATION_1_S2: f64 = 2_700.0;
 /// Shortest silence of the host that can be noticed, ms: what an operating system keeps with ease.
 pub(crate) const MIN_HOST_SILENCE_MS: f64 = 10.0;
@@ -17,9 +18,9 @@ pub(crate) const MIN_HOST_SILENCE_MS: f64 = 10.0;
 const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
 
 impl Parameters {
-    /// Whether they make a stage that can be controlled: that the disk is not empty, that the tick's numbers hold every rate,
-    /// that no threshold contradicts another, and that a record has a point from its trigger on. Says nothing of each
-    /// parameter's own range.
+    /// Whether they make a stage that can be controlled: that the disk is not empty, that the tick's numbers hold every
+    /// rate, that no threshold contradicts another, and that a record has a point from its trigger on. Says nothing of
+    /// each parameter's own range.
     pub fn are_sound(&self) -> bool {
         self.has_disk()
             && self.rates_fit()

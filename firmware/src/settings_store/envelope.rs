@@ -5,9 +5,9 @@
 //!   magic, generation, length, CRC of these           of header and contents
 //! ```
 //!
-//! Written from left to right, the end when the contents have been read back and found right. So a wrong CRC is a power cut as
-//! long as the end is still erased, and damage when it is not. The header stands there twice, so that damage to one of
-//! them hides nothing. All CRCs are the 32-bit one of Ethernet and zip.
+//! Written from left to right, the end when the contents have been read back and found right. So a wrong CRC is a power
+//! cut as long as the end is still erased, and damage when it is not. The header stands there twice, so that damage to
+//! one of them hides nothing. All CRCs are the 32-bit one of Ethernet and zip.
 
 use core::ops::Range;
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why settings could not be written. What was kept before is kept still.
+/// Why settings could not be written. What was stored before is stored still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StoreError {
     /// They are longer than a sector of the flash.

@@ -1,8 +1,8 @@
 //! Where images lie: records one behind the other, from sector to sector round the flash.
 //!
 //! The newest whole record counts. The next one goes behind it, or, where there is no erased room for it, into the next
-//! sector, which is erased before. A sector that is erased holds older records only, so it does not matter what an erase
-//! that is cut off leaves behind.
+//! sector, which is erased before. A sector that is erased holds older records only, so it does not matter what an
+//! erase that is cut off leaves behind.
 
 use super::envelope::{EnvelopeState, Header, Reader, WORD, Writer, is_erased};
 use super::error::StoreError;
@@ -12,7 +12,7 @@ use embedded_storage::nor_flash::NorFlash;
 /// What a flash holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FlashState {
-    /// Nothing was ever kept.
+    /// Nothing was ever stored.
     Empty,
     /// There is a newest record.
     Good,

@@ -7,7 +7,8 @@ use super::stored_settings::{StoredSettings, Unusable};
 use crate::fault::FaultKind;
 use embedded_storage::nor_flash::NorFlash;
 
-/// Stores settings in flash, which is used from its first byte to its last: two sectors at least, written in words of 4 bytes.
+/// Stores settings in flash, which is used from its first byte to its last: two sectors at least, written in words of 4
+/// bytes.
 pub struct SettingsStore<F> {
     journal: Journal<F>,
 }
@@ -22,8 +23,8 @@ impl<F: NorFlash> SettingsStore<F> {
 
     /// Gives settings that have just been made what is stored; they are stored here from now on.
     ///
-    /// When what is stored cannot be used the settings stay the defaults, and the answer is the fault that the tick has to start
-    /// with ([`State::with_fault`](crate::control::State::with_fault)).
+    /// When what is stored cannot be used the settings stay the defaults, and the answer is the fault that the tick has
+    /// to start with ([`State::with_fault`](crate::control::State::with_fault)).
     pub fn restore(&mut self, settings: &mut impl StoredSettings) -> Option<FaultKind> {
         let problem = match self.journal.open() {
             FlashState::Empty => None,
@@ -45,7 +46,8 @@ impl<F: NorFlash> SettingsStore<F> {
     }
 
     /// Stores the settings if they wait for it and can be stored now. To be called after every
-    /// [`service`](crate::gcs::Interpreter::service). Takes as long as the flash does: an erased sector is needed now and then.
+    /// [`service`](crate::gcs::Interpreter::service). Takes as long as the flash does: an erased sector is needed now
+    /// and then.
     pub fn store_pending(&mut self, settings: &mut impl StoredSettings) {
         if settings.needs_storing() {
             let result = self.write(settings);

@@ -7,9 +7,9 @@
 //!   pose tool = work target
 //! ```
 //!
-//! The tool frame's origin is the point that moves and about which the platform turns. Its place in the base frame is the
-//! work frame's transform of the target's x and y, whatever the tool is: that point is what the motion layer moves in a
-//! straight line.
+//! The tool frame's origin is the point that moves and about which the platform turns. Its place in the base frame is
+//! the work frame's transform of the target's x and y, whatever the tool is: that point is what the motion layer moves
+//! in a straight line.
 
 use super::transform::Transform;
 use crate::commander::axis::{Axis, Coordinates};
@@ -67,7 +67,8 @@ impl ActiveFrames {
         self.work.then(&planar(target)).then(&self.tool.inverse())
     }
 
-    /// A target as travel and soft limits count it: the commanded point in the base frame's axes, from [`zero`](Self::zero).
+    /// A target as travel and soft limits count it: the commanded point in the base frame's axes, from
+    /// [`zero`](Self::zero).
     pub fn travel_coordinates(&self, target: &Coordinates) -> Coordinates {
         let point = self.point_of(target);
         let mut limited = *target;

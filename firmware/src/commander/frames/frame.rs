@@ -17,7 +17,8 @@ pub enum FrameKind {
 }
 
 impl FrameKind {
-    /// Tools lie in the platform, all others in the base frame: no chain goes through both. A directed frame lies in both.
+    /// Tools lie in the platform, all others in the base frame: no chain goes through both. A directed frame lies in
+    /// both.
     pub(super) const fn can_be_child_of(self, parent: Self) -> bool {
         matches!(parent, Self::Directed)
             || matches!(self, Self::Tool) == matches!(parent, Self::Tool)

@@ -9,13 +9,14 @@
 //! | directed | both: in the base frame and, at the zero pose, in the platform | the frame in its own place at zero |
 //! | here | a work frame where the platform is now: x, y and w become 0 | the platform in that frame |
 //!
-//! One directed frame, one made here, or a pair of work and tool frame is enabled at a time; enabling one of the former disables
-//! the pair and the other way round. [`FrameName::ZERO`] is the base frame, always there; enabling it disables all others. A
-//! frame can be linked to a parent: its values then are those in the parent, and a change to the parent moves it along. What is
-//! enabled, and what it is linked to, cannot be changed, linked or removed.
+//! One directed frame, one made here, or a pair of work and tool frame is enabled at a time; enabling one of the former
+//! disables the pair and the other way round. [`FrameName::ZERO`] is the base frame, always there; enabling it disables
+//! all others. A frame can be linked to a parent: its values then are those in the parent, and a change to the parent
+//! moves it along. What is enabled, and what it is linked to, cannot be changed, linked or removed.
 //!
-//! The centre of rotation is a directed frame that is only moved, on top of the base frame, a directed frame or one made here:
-//! at w = 0 it changes no coordinate. With a tool frame the tool's origin is the centre, and the other does not count.
+//! The centre of rotation is a directed frame that is only moved, on top of the base frame, a directed frame or one
+//! made here: at w = 0 it changes no coordinate. With a tool frame the tool's origin is the centre, and the other does
+//! not count.
 //!
 //! | file | idea |
 //! |---|---|

@@ -5,7 +5,8 @@ use core::fmt;
 /// Longest name.
 pub const FRAME_NAME_BYTES: usize = 16;
 
-/// A name: a letter, then letters, digits and underscores, at most [`FRAME_NAME_BYTES`] of them. Either case is the same name.
+/// A name: a letter, then letters, digits and underscores, at most [`FRAME_NAME_BYTES`] of them. Either case is the
+/// same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameName {
     letters: [u8; FRAME_NAME_BYTES],

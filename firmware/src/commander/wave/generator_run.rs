@@ -1,7 +1,7 @@
 //! A run of generators: sample after sample, from rest to rest.
 //!
-//! Curves begin and end at speed. A run passes them as they are, but slowly at first and at last: for a tenth of a second the
-//! place in the tables gains speed, so that the axes start from rest, on the very path.
+//! Curves begin and end at speed. A run passes them as they are, but slowly at first and at last: for a tenth of a
+//! second the place in the tables gains speed, so that the axes start from rest, on the very path.
 //!
 //! ```text
 //! points a sample
@@ -133,7 +133,8 @@ impl GeneratorRun {
     }
 }
 
-/// A part of the way from the second of four points to the third: a cubic whose slopes are those of the neighbours' chords.
+/// A part of the way from the second of four points to the third: a cubic whose slopes are those of the neighbours'
+/// chords.
 fn interpolate([a, b, c, d]: [f64; 4], part: f64) -> f64 {
     let (slope_b, slope_c) = ((c - a) / 2.0, (d - b) / 2.0);
     let bend = 3.0 * (c - b) - 2.0 * slope_b - slope_c;

@@ -1,8 +1,8 @@
 //! Waveforms: tables of curves, and generators that send an axis through one of them.
 //!
-//! The generators are those of the axes; Z, U and V stay at 0 and take no table. Values are targets, mm and deg, in the frames
-//! in force. A calculated segment is stored as what it is calculated from, however long it is: only points given one by one take
-//! memory, of which all tables share [`WAVE_POINTS`].
+//! The generators are those of the axes; Z, U and V stay at 0 and take no table. Values are targets, mm and deg, in the
+//! frames in force. A calculated segment is stored as what it is calculated from, however long it is: only points given
+//! one by one take memory, of which all tables share [`WAVE_POINTS`].
 //!
 //! | file | idea |
 //! |---|---|

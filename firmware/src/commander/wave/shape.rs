@@ -9,8 +9,8 @@
 //!     start  |<- length       start  center            start  center
 //! ```
 //!
-//! The line holds its ends outside of the curve. Ramp and sine are cyclic: `start` shifts them inside their length; behind
-//! the end of that they hold their first value.
+//! The line holds its ends outside of the curve. Ramp and sine are cyclic: `start` shifts them inside their length;
+//! behind the end of that they hold their first value.
 
 use core::f64::consts::PI;
 
@@ -134,7 +134,8 @@ impl Curve {
     }
 }
 
-/// From 0 to 1 on a way of `length` points, the first and last `rounding` of them at constant acceleration; 1 behind it.
+/// From 0 to 1 on a way of `length` points, the first and last `rounding` of them at constant acceleration; 1 behind
+/// it.
 fn rounded_line(way: u32, length: u32, rounding: u32) -> f64 {
     if way >= length {
         return 1.0;

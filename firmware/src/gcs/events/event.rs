@@ -39,7 +39,7 @@ pub(in crate::gcs) enum Event {
     StoreFailed(u16),
     /// `RPA`
     Recalled,
-    /// So many parameters are kept that this firmware does not know.
+    /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
 

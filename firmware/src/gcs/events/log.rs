@@ -1,4 +1,4 @@
-//! The events that are kept.
+//! The latest events.
 
 use super::encoding::{event, words};
 use super::event::Event;
@@ -42,7 +42,7 @@ impl EventLog {
         events
     }
 
-    /// Tells by what it started.
+    /// By what the controller started.
     pub fn set_start_cause(&mut self, cause: &'static str) {
         if let Some((_, Event::Start(by))) = self.entries.front_mut() {
             *by = Some(cause);

@@ -56,7 +56,7 @@ impl Interpreter {
         if !session.is_macro {
             self.macros.failure = None;
             self.macros.session = Session::for_macro(session.level);
-            // What is old news already does not end it.
+            // What was reported before does not end it.
             let mut session = core::mem::take(&mut self.macros.session);
             self.report_errors(&mut session);
             session.error = ErrorCode::None;

@@ -1,12 +1,12 @@
-//! Macros: lines kept under a name, and carried out in the background as if a connection of its own sent them.
+//! Macros: lines stored under a name, and carried out in the background as if a connection of its own sent them.
 //!
-//! A macro is recorded on one connection (`MAC BEG` to `MAC END`) while the others go on. Queries are answered while it is
-//! recorded and are no part of it; every other line is, and is only checked: a line that could never be carried out spoils the
-//! recording, and `MAC END` then keeps nothing. Variables are put in when the macro runs.
+//! A macro is recorded on one connection (`MAC BEG` to `MAC END`) while the others go on. Queries are answered while it
+//! is recorded and are no part of it; every other line is, and is only checked: a line that could never be carried out
+//! makes the recording invalid, and `MAC END` then stores nothing. Variables are put in when the macro runs.
 //!
-//! One macro runs at a time; it may start others, up to [`MAX_CALL_DEPTH`] deep. It goes on when its client leaves. `STP` and `#24`
-//! from anywhere end it, `MAC STOP` too (and leaves the motion alone); an error ends it and is told by `MAC ERR?`. It gets
-//! [`LINES_PER_TICK`] lines a tick and one jump, so that a loop without a wait holds up nobody.
+//! One macro runs at a time; it may start others, up to [`MAX_CALL_DEPTH`] deep. It goes on when its client leaves.
+//! `STP` and `#24` from anywhere end it, `MAC STOP` too (and leaves the motion alone); an error ends it and is told by
+//! `MAC ERR?`. It gets [`LINES_PER_TICK`] lines a tick and one jump, so that a loop without a wait holds up nobody.
 //!
 //! | what is bounded | by |
 //! |---|---|

@@ -1,8 +1,8 @@
 //! Recording a macro, one at a time in the whole controller.
 //!
-//! A client that goes away in the middle leaves its recording open; another connection may begin its own when nothing has been
-//! recorded for [`RECORDING_TIMEOUT_TICKS`]. The lines of the one that lost it, should it be there still, are thrown away up to its
-//! `MAC END`, which is an error: they were never meant to be carried out.
+//! A client that goes away in the middle leaves its recording open; another connection may begin its own when nothing
+//! has been recorded for [`RECORDING_TIMEOUT_TICKS`]. The lines of the one that lost it, should it be there still, are
+//! thrown away up to its `MAC END`, which is an error: they were never meant to be carried out.
 
 use super::request::MacroRequest;
 use super::state::{Macros, Recording};
@@ -102,8 +102,8 @@ fn is_immediate(line: &[u8]) -> bool {
         || matches!(parse(line), Ok(Request::Macro(MacroRequest::End)))
 }
 
-/// Whether a line can be one of a macro. What stands for a variable is known only when it runs, so of such a line only the
-/// command's name is looked at.
+/// Whether a line can be one of a macro. What stands for a variable is known only when it runs, so of such a line only
+/// the command's name is looked at.
 fn check_macro_line(line: &[u8]) -> Result<(), ErrorCode> {
     if !line.iter().all(|byte| matches!(byte, b' '..=b'~')) {
         return Err(ErrorCode::Syntax);

@@ -46,7 +46,7 @@ pub(super) struct Recording {
     pub number: u32,
     /// When its last line came.
     pub tick: u64,
-    /// Why it will not be kept.
+    /// Why it will not be stored.
     pub error: Option<ErrorCode>,
 }
 
@@ -79,7 +79,7 @@ impl Macros {
         self.store.all()
     }
 
-    /// Adds to the text of a macro that was kept; false when it can be none, or there is no room.
+    /// Adds to the text of a macro that was stored; false when it can be none, or there is no room.
     pub fn add_text(&mut self, text: &[u8]) -> bool {
         let printable = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
         text.iter().all(printable) && self.store.extend(text)

@@ -1,5 +1,6 @@
-//! The text of all macros: one block of bytes in which each has a text_range, line after line, each ended by LF, as it was sent.
-//! A text_range is all that has to be written to keep a macro somewhere else, and to be sent to have it again.
+//! The text of all macros: one block of bytes in which each has a text_range, line after line, each ended by LF, as it
+//! was sent. A text_range is all that has to be written to keep a macro somewhere else, and to be sent to have it
+//! again.
 
 use crate::gcs::error::ErrorCode;
 use crate::gcs::text::Name;
@@ -7,7 +8,7 @@ use heapless::Vec;
 
 /// Bytes for the text of all macros, a line's LF included.
 pub const MACRO_BYTES: usize = 8192;
-/// Macros that can be kept.
+/// Macros that can be stored.
 pub const MAX_MACROS: usize = 16;
 
 /// See the module. Stretches lie behind one another in no order; what is being recorded comes last.
@@ -68,7 +69,7 @@ impl MacroTexts {
         self.text.extend_from_slice(line).is_ok() && self.text.push(b'\n').is_ok()
     }
 
-    /// Adds text as it was kept; false, and nothing is added, when there is no room.
+    /// Adds text as it was stored; false, and nothing is added, when there is no room.
     pub fn extend(&mut self, text: &[u8]) -> bool {
         self.text.extend_from_slice(text).is_ok()
     }
@@ -79,7 +80,7 @@ impl MacroTexts {
         places.map(|place| (self.name(place), self.text(place)))
     }
 
-    /// Keeps what was recorded under a name; a macro that had it is gone. With an error nothing is kept of it.
+    /// Takes what was recorded as the macro of this name; one that had it is gone. With an error nothing of it is left.
     pub fn commit(&mut self, name: Name) -> Result<(), ErrorCode> {
         let old = self.find(&name);
         let Some(place) = old.or_else(|| self.macros.iter().position(Option::is_none)) else {
@@ -123,7 +124,7 @@ impl MacroTexts {
         }
     }
 
-    /// Bytes of the macros that are kept: what is being recorded starts behind them.
+    /// Bytes of the macros that are stored: what is being recorded starts behind them.
     fn committed_bytes(&self) -> usize {
         let lengths = self.macros.iter().flatten().map(|s| usize::from(s.length));
         lengths.sum()

@@ -1,8 +1,8 @@
 //! `MON?`: what a client needs to draw the stage while it moves, in one answer.
 //!
-//! Pose and pivots are those of the base frame and of the platform's centre, whatever frame and centre of rotation are in
-//! force. Following errors and duties change faster than anybody asks: told is the lowest and the highest since this
-//! connection asked last, among the ticks that the panel has seen (on the host all of them).
+//! Pose and pivots are those of the base frame and of the platform's centre, whatever frame and centre of rotation are
+//! in force. Following errors and duties change faster than anybody asks: told is the lowest and the highest since this
+//! connection asked last, among the ticks that have been seen (on the host all of them).
 //!
 //! | file | idea |
 //! |---|---|

@@ -110,8 +110,8 @@ impl Parameter {
     /// [`Parameters::are_sound`].
     ///
     /// # Errors
-    /// [`ErrorCode::ReadOnly`], or [`ErrorCode::OutOfRange`] when it is out of its range or not whole where it has to be;
-    /// nothing has changed then.
+    /// [`ErrorCode::ReadOnly`], or [`ErrorCode::OutOfRange`] when it is out of its range or not whole where it has to
+    /// be; nothing has changed then.
     pub fn set(&self, value: f64, parameters: &mut Parameters) -> Result<(), ErrorCode> {
         let ValueSource::Settable(_, set) = self.source else {
             return Err(ErrorCode::ReadOnly);

@@ -1,8 +1,8 @@
 //! Setting parameters: who may, when, and how the new values reach the tick.
 //!
-//! A line is carried out whole or not at all. The panel plans with the new parameters from the next line on; what the tick
-//! computes with is derived from them here and handed over as one command, which the tick takes only at rest. Nothing that
-//! depends on them is decided before the tick has said that it did.
+//! A line is carried out whole or not at all. The commander plans with the new parameters from the next line on; what
+//! the tick computes with is derived from them here and handed over as one command, which the tick takes only at rest.
+//! Nothing that depends on them is decided before the tick has said that it did.
 
 use super::address::Settings;
 use super::descriptor::{Parameter, When};
@@ -62,7 +62,7 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Whether this may become of the parameters now: what was kept may be in force again at any command level.
+    /// Whether this may become of the parameters now: what was stored may be in force again at any command level.
     pub(in crate::gcs) fn check_change_allowed(
         &self,
         wanted: &Parameters,

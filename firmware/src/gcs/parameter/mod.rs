@@ -1,5 +1,5 @@
-//! The parameters that `SPA?`, `SPA` and `HPA?` know: one line each in [`PARAMETERS`], from which all three come, and the page
-//! `PARAMETERS.md` with them.
+//! The parameters that `SPA?`, `SPA` and `HPA?` know: one line each in [`PARAMETERS`], from which all three come, and
+//! the page `PARAMETERS.md` with them.
 //!
 //! Ids that clients ask for by themselves are those of the hexapod profile; the others begin with 0x5450.
 //!

@@ -1,8 +1,8 @@
 //! The declaration of all parameters.
 //!
-//! Ranges are what a stage of this kind can be, and what the tick's arithmetic holds; what has to hold between several of them
-//! stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set up for; level 1
-//! raises them further.
+//! Ranges are what a stage of this kind can be, and what the tick's arithmetic holds; what has to hold between several
+//! of them stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set
+//! up for; level 1 raises them further.
 
 use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
@@ -70,8 +70,8 @@ impl Group {
     }
 }
 
-/// A parameter that is only told.
-const fn told(
+/// A parameter that can only be read.
+const fn read_only(
     id: u32,
     kind: Kind,
     text: &'static str,
@@ -115,8 +115,8 @@ fn way_number(way: Way) -> f64 {
 /// Every parameter, in the order of `HPA?`. A static: a constant would stand in the image once for each use.
 #[rustfmt::skip]
 pub static PARAMETERS: &[Parameter] = &[
-    told(0x0700_0601, Kind::Char, "unit of the axis", "", ValueSource::Axis(Axis::unit)),
-    told(0x0E00_0200, Kind::Float, "servo update time", "s", ValueSource::ReadOnly(|p| 1.0 / p.limits.rate_hz)),
+    read_only(0x0700_0601, Kind::Char, "unit of the axis", "", ValueSource::Axis(Axis::unit)),
+    read_only(0x0E00_0200, Kind::Float, "servo update time", "s", ValueSource::ReadOnly(|p| 1.0 / p.limits.rate_hz)),
     TARGET.int(0x1900_1900, "trajectory source: 0 moves to targets, 1 streamed targets", [0.0, 1.0], flag!(targets.streamed)),
 
     RECORDER.int(0x1600_0201, "points of a record, as many as the tables leave room for", [1.0, ROWS], whole!(u32: recorder.points)),

@@ -80,8 +80,8 @@ fn read<F: NorFlash>(
     Ok(())
 }
 
-/// The parameters, and how many there are that this firmware does not know: they are left alone. A value that is out of its
-/// range is no such thing: `None`, as when they do not go together.
+/// The parameters, and how many there are that this firmware does not know: they are left alone. A value that is out of
+/// its range is no such thing: `None`, as when they do not go together.
 fn read_parameters<F: NorFlash>(
     reader: &mut Reader<'_, F>,
     interpreter: &Interpreter,

@@ -25,7 +25,7 @@ impl Interpreter {
         Ok(())
     }
 
-    /// `RPA`: those named, or all parameters, as they are kept.
+    /// `RPA`: those named, or all parameters, as they are stored.
     pub(in crate::gcs) fn recall(
         &mut self,
         addresses: &Addresses,
@@ -71,12 +71,12 @@ impl Interpreter {
         &self.parameters
     }
 
-    /// The parameters that are kept, or about to be.
+    /// The parameters that are stored, or about to be.
     pub const fn parameters_to_store(&self) -> &Parameters {
         &self.persistence.stored
     }
 
-    /// The parameters that the controller has when nothing is kept.
+    /// The parameters that the controller has when nothing is stored.
     pub const fn default_parameters(&self) -> &Parameters {
         &self.persistence.defaults
     }
@@ -86,7 +86,7 @@ impl Interpreter {
         self.macros.all()
     }
 
-    /// Starts with these parameters; `unknown` ones were kept besides.
+    /// Starts with these parameters; `unknown` ones were stored besides.
     pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
@@ -104,7 +104,7 @@ impl Interpreter {
         }
     }
 
-    /// Adds to the text of a macro that is kept; false when it is none, or there is no room.
+    /// Adds to the text of a macro that is stored; false when it is none, or there is no room.
     pub(super) fn add_macro_text(&mut self, text: &[u8]) -> bool {
         self.macros.add_text(text)
     }

@@ -1,7 +1,8 @@
 //! Settings over a restart: `WPA`, `RPA`, and macros, which are stored as they are recorded and deleted.
 //!
-//! The interpreter says what is to be stored, [`SettingsStore`](crate::settings_store::SettingsStore) does it while the stage is at
-//! rest. `WPA` waits for it and tells the sender what came of it. Without a store, `WPA` and `RPA` are refused.
+//! The interpreter says what is to be stored, [`SettingsStore`](crate::settings_store::SettingsStore) does it while the
+//! stage is at rest. `WPA` waits for it and tells the sender what came of it. Without a store, `WPA` and `RPA` are
+//! refused.
 //!
 //! | file | idea |
 //! |---|---|

@@ -3,26 +3,26 @@
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
 
-/// What is kept, and what is to be.
+/// What is stored, and what is to be.
 pub(in crate::gcs) struct Persistence {
-    /// The parameters that the controller has when nothing is kept.
+    /// The parameters that the controller has when nothing is stored.
     pub(super) defaults: Parameters,
-    /// Those that are kept, or about to be.
+    /// Those that are stored, or about to be.
     pub(super) stored: Parameters,
     /// Somebody keeps settings.
     pub(super) has_store: bool,
-    /// What was kept could not be used: `WPA` alone may overwrite it.
+    /// What was stored could not be used: `WPA` alone may overwrite it.
     pub(super) stored_is_invalid: bool,
     /// `WPA` waits for its end, and what to go back to if it fails.
     pub(super) before: Option<Parameters>,
-    /// Macros have changed since they were kept.
+    /// Macros have changed since they were stored.
     pub(super) macros_changed: bool,
     /// What came of the last `WPA`.
     pub(super) result: Result<(), ErrorCode>,
 }
 
 impl Persistence {
-    /// Nothing is kept.
+    /// Nothing is stored.
     pub fn new(own: &Parameters) -> Self {
         Self {
             defaults: own.clone(),

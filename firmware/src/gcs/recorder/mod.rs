@@ -1,8 +1,9 @@
 //! The data recorder in the language: what is recorded, when it begins, and reading it.
 //!
-//! There are eight tables. `DRC` says what a table records, `RTR` how often, `DRT` what triggers; tables share the rate, and
-//! recording begins in all of them as soon as the trigger of any comes. `DRT` arms: it orders a record from the tick, and the
-//! one before is gone once the new one begins to be written. What is read is the last record that was ordered.
+//! There are eight tables. `DRC` says what a table records, `RTR` how often, `DRT` what triggers; tables share the
+//! rate, and recording begins in all of them as soon as the trigger of any comes. `DRT` arms: it orders a record from
+//! the tick, and the one before is gone once the new one begins to be written. What is read is the last record that was
+//! ordered.
 //!
 //! | file | idea |
 //! |---|---|

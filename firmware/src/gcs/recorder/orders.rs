@@ -1,8 +1,8 @@
 //! From tables and triggers to an order, and the commands that trigger.
 //!
-//! A command that moves has to be the first that the tick sees of its record. So the tick is told before the command is sent
-//! that its count of commands will be the trigger, and the order is taken back when the command is refused: nothing of the
-//! record before has been touched by then, unless rows before the trigger were being kept anyway.
+//! A command that moves has to be the first that the tick sees of its record. So the tick is told before the command is
+//! sent that its count of commands will be the trigger, and the order is taken back when the command is refused:
+//! nothing of the record before has been touched by then, unless rows before the trigger were being kept anyway.
 
 use super::channel::words;
 use super::scales::Scales;
@@ -74,11 +74,12 @@ impl RecorderState {
         }
     }
 
-    /// Before a command that moves is sent as the tick's command number `commands`; `step` is `STE`, which is recorded whatever
-    /// the triggers say.
+    /// Before a command that moves is sent as the tick's command number `commands`; `step` is `STE`, which is recorded
+    /// whatever the triggers say.
     ///
     /// # Errors
-    /// Of `STE`: [`ErrorCode::TableOff`] when nothing is to be recorded, [`ErrorCode::Busy`] when the tick can not be told.
+    /// Of `STE`: [`ErrorCode::TableOff`] when nothing is to be recorded, [`ErrorCode::Busy`] when the tick can not be
+    /// told.
     pub fn announce(
         &mut self,
         step: bool,
@@ -127,7 +128,8 @@ impl RecorderState {
         }
     }
 
-    /// The command has been accepted; `sent` is the number of the last one that was sent, when it needed none of its own.
+    /// The command has been accepted; `sent` is the number of the last one that was sent, when it needed none of its
+    /// own.
     pub fn confirm(
         &mut self,
         announced: Announced,

@@ -1,10 +1,11 @@
 //! `DRR?`: an answer of any length, out of a connection that goes on meanwhile.
 //!
-//! The answer is a state of its session. Each service writes some more of it, line by line, as far as the output has room; single
-//! bytes act and are answered between two lines, other connections are served as ever, and lines of this one wait.
+//! The answer is a state of its session. Each service writes some more of it, line by line, as far as the output has
+//! room; single bytes act and are answered between two lines, other connections are served as ever, and lines of this
+//! one wait.
 //!
-//! If another record takes the place of the one that is being read, the rest is answered as not a number, with an error: a
-//! client counts the rows.
+//! If another record takes the place of the one that is being read, the rest is answered as not a number, with an
+//! error: a client counts the rows.
 
 use super::channel::Channel;
 use super::scales::RecordRow;

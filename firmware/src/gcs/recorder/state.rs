@@ -20,7 +20,7 @@ pub(super) struct Record {
     pub(super) scales: Scales,
 }
 
-/// What is to be told to the tick when there is room in the queue.
+/// What is to be sent to the tick when there is room in the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum PendingOrder {
     #[default]
@@ -29,7 +29,7 @@ pub(super) enum PendingOrder {
     Stop,
 }
 
-/// What the panel keeps of the recorder.
+/// What the command side knows of the recorder.
 pub(in crate::gcs) struct RecorderState {
     pub(super) tables: [Table; TABLES],
     pub(super) every: u32,

@@ -1,8 +1,8 @@
 //! Variables: names for texts, put in for `$name` or `${name}` anywhere in a line before it is understood.
 //!
-//! Names of one digit are local to the macro that runs: 0 is how many arguments it was started with, 1 and 2 are those, the
-//! others are free. All other variables are the controller's, the same for every connection and macro. A name goes as far
-//! as letters, digits and underscores go; `${name}` ends it where one of those follows.
+//! Names of one digit are local to the macro that runs: 0 is how many arguments it was started with, 1 and 2 are those,
+//! the others are free. All other variables are the controller's, the same for every connection and macro. A name goes
+//! as far as letters, digits and underscores go; `${name}` ends it where one of those follows.
 //!
 //! | file | idea |
 //! |---|---|

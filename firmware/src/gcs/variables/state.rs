@@ -5,7 +5,7 @@ use crate::gcs::text::{LINE_BYTES, Name, Text, is_name_byte};
 use core::fmt::Write;
 use heapless::Vec;
 
-/// Variables that can be kept, besides the local ones.
+/// Variables that can be set, besides the local ones.
 pub const MAX_VARIABLES: usize = 32;
 
 /// Variables 0 to 9 of a running macro.
@@ -27,7 +27,7 @@ impl Variables {
     pub fn get<'a>(&'a self, name: &Name, locals: Option<&'a Locals>) -> Option<&'a Text> {
         match name.digit() {
             Some(digit) => locals?.get(digit)?.as_ref(),
-            None => (self.entries.iter().find(|(kept, _)| kept == name)).map(|(_, value)| value),
+            None => (self.entries.iter().find(|(other, _)| other == name)).map(|(_, value)| value),
         }
     }
 
@@ -52,7 +52,7 @@ impl Variables {
             *local.ok_or(ErrorCode::UnknownVariable)? = value;
             return Ok(());
         }
-        let place = self.entries.iter().position(|(kept, _)| kept == name);
+        let place = self.entries.iter().position(|(other, _)| other == name);
         match (place, value) {
             (Some(place), Some(value)) => self.entries[place].1 = value,
             (Some(place), None) => {
@@ -109,7 +109,8 @@ fn reference(text: &[u8]) -> Result<(Name, &[u8]), ErrorCode> {
     Ok((name, rest_of_line))
 }
 
-/// A number as the value of a variable: in full where that fits, which it does for all but the largest and the smallest.
+/// A number as the value of a variable: in full where that fits, which it does for all but the largest and the
+/// smallest.
 pub(in crate::gcs) fn number_text(number: f64) -> Result<Text, ErrorCode> {
     if !number.is_finite() {
         return Err(ErrorCode::OutOfRange);
