@@ -16,6 +16,7 @@
 //! | `service` | what a connection has sent: taken, understood, carried out, answered |
 //! | `waits` | what holds up the lines of a connection |
 //! | `table` | what commands there are; parsing, `HLP?` and dispatch read it |
+//! | `syntax` | what an entry of the table is |
 //! | `parse` | from a line to a [`Request`], or what is wrong with it and where |
 //! | `scan`, `arguments` | words of a line, and what commands take |
 //! | `request` | what a line asks for |
@@ -64,6 +65,7 @@ mod service;
 mod session;
 mod statistics;
 mod streaming;
+mod syntax;
 mod table;
 mod text;
 mod variables;

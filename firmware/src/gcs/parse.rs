@@ -3,9 +3,10 @@
 use super::arguments::{ParseError, axes, axis, end, number, values};
 use super::error::ErrorCode;
 use super::macros::parse::jump;
-use super::request::{Action, Condition, Operand, Operator, Request};
+use super::request::{Condition, Operand, Operator, Request};
 use super::scan::{Scanner, Word};
-use super::table::{Entry, Syntax, VARIABLE_QUERY, find, has_keywords};
+use super::syntax::{Entry, Syntax};
+use super::table::{VARIABLE_QUERY, find, has_keywords};
 use super::variables::parse::variable;
 use crate::commander::axis::AxisSet;
 
@@ -31,14 +32,16 @@ pub fn parse(line: &[u8]) -> Result<Request, ParseError> {
         Syntax::Quantity(quantity) => Request::Quantity(quantity, axes(&mut scanner)?),
         Syntax::Property(property) => Request::Property(property, axes(&mut scanner)?),
         Syntax::QueryValues(request) => request(values(&mut scanner)?),
-        Syntax::Jump => {
-            let by = jump(&mut scanner)?;
-            Request::Act(Action::Jump(by, condition(&mut scanner)?))
-        }
         Syntax::Axes(action) => Request::Act(action(axes(&mut scanner)?)),
         Syntax::Values(action) => Request::Act(action(values(&mut scanner)?)),
         Syntax::Number(action) => Request::Act(action(number(scanner.next())?)),
-        Syntax::Condition(action) => Request::Act(action(condition(&mut scanner)?)),
+        Syntax::Condition {
+            after_lines,
+            action,
+        } => {
+            let lines = if after_lines { jump(&mut scanner)? } else { 0 };
+            Request::Act(action(lines, condition(&mut scanner)?))
+        }
     };
     end(&mut scanner)?;
     Ok(request)

@@ -1,81 +1,21 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
-use super::arguments::{ParseError, axis_identifiers};
+use super::arguments::axis_identifiers;
 use super::frames::parse as frames;
 use super::macros::{MacroRequest, parse as macros};
 use super::parameter::parse as parameter;
 use super::recorder::parse as recorder;
-use super::request::{Action, Condition, Property, Query, Request};
-use super::scan::Scanner;
+use super::request::{Action, Property, Query, Request};
 use super::streaming;
+use super::syntax::{Entry, Syntax, ask, byte, entry, own, read};
 use super::variables::parse as variables;
 use super::wave::{WaveQuery, parse as wave};
 use crate::commander::Quantity;
-use crate::commander::axis::{AxisSet, AxisValues};
+use crate::commander::axis::AxisSet;
 use crate::commander::frames::FrameKind;
 
 /// The query of variables, which conditions can ask too.
 pub(super) const VARIABLE_QUERY: &str = "VAR?";
-
-/// A command.
-pub(super) struct Entry {
-    /// As `HLP?` lists it.
-    pub name: &'static str,
-    /// What follows the name, and what the whole then asks for.
-    pub syntax: Syntax,
-    /// Its parameters and its meaning, for `HLP?`.
-    pub help: &'static str,
-}
-
-/// What follows a command's name.
-pub(super) enum Syntax {
-    /// Not a line at all: this byte alone.
-    Byte(u8, Request),
-    /// Nothing.
-    Plain(Request),
-    /// As this function understands it.
-    Own(fn(&mut Scanner<'_>) -> Result<Request, ParseError>),
-    /// Axes; none stands for all.
-    Quantity(Quantity),
-    /// Axes; none stands for all.
-    Axes(fn(AxisSet) -> Action),
-    /// Axes; none stands for all.
-    Property(Property),
-    /// Pairs of axis and number.
-    Values(fn(AxisValues) -> Action),
-    /// Pairs of axis and number.
-    QueryValues(fn(AxisValues) -> Request),
-    /// A number of lines, and a condition, which is read with this table: no function in it can.
-    Jump,
-    /// A number.
-    Number(fn(f64) -> Action),
-    /// Query, axis, operator, number.
-    Condition(fn(Condition) -> Action),
-}
-
-const fn entry(name: &'static str, syntax: Syntax, help: &'static str) -> Entry {
-    Entry { name, syntax, help }
-}
-
-const fn ask(name: &'static str, query: Query, help: &'static str) -> Entry {
-    entry(name, Syntax::Plain(Request::Query(query)), help)
-}
-
-const fn read(name: &'static str, quantity: Quantity, help: &'static str) -> Entry {
-    entry(name, Syntax::Quantity(quantity), help)
-}
-
-const fn own(
-    name: &'static str,
-    parse: fn(&mut Scanner<'_>) -> Result<Request, ParseError>,
-    help: &'static str,
-) -> Entry {
-    entry(name, Syntax::Own(parse), help)
-}
-
-const fn byte(name: &'static str, byte: u8, request: Request, help: &'static str) -> Entry {
-    entry(name, Syntax::Byte(byte, request), help)
-}
 
 /// Every command there is, in the order of `HLP?`. A static: a constant would stand in the image once for each use.
 pub(super) static COMMANDS: &[Entry] = &[
@@ -209,7 +149,10 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     entry(
         "JRC",
-        Syntax::Jump,
+        Syntax::Condition {
+            after_lines: true,
+            action: Action::Jump,
+        },
         "<lines> <query> <operator> <value> jump in the macro on condition",
     ),
     own("KEN", frames::enable, "<name> enable frame"),
@@ -306,7 +249,10 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("MAC?", macros::list, "[<macro>] get macros or lines of one"),
     entry(
         "MEX",
-        Syntax::Condition(Action::Leave),
+        Syntax::Condition {
+            after_lines: false,
+            action: |_, condition| Action::Leave(condition),
+        },
         "<query> <operator> <value> end the macro on condition",
     ),
     ask(
@@ -485,7 +431,10 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     entry(
         "WAC",
-        Syntax::Condition(Action::Wait),
+        Syntax::Condition {
+            after_lines: false,
+            action: |_, condition| Action::Wait(condition),
+        },
         "<query> <axis> <operator> <value> wait for condition",
     ),
     own(
