@@ -24,7 +24,7 @@
 //! | planned: a head | | sent: `HeadSent` | | | |
 //! | planned: too fast, or not without rest | | `StopThenGoal`; `Goal` if a stop or a head is under way | | | |
 //! | planned: refused | | `Nothing`, and an error | | | |
-//! | the tick takes a plan | | | | | |
+//! | the tick takes a plan | the same | the same | the same | the same | the same |
 //! | the tick takes the stop | | | `Nothing` | `Goal` | |
 //! | the tick refuses a plan | `Goal` again | | | | `GoalThenStream`; of the stream: `Nothing`, and an error |
 //! | the tick refuses the stop | | | the same | the same | |
