@@ -27,7 +27,7 @@
 //! | [`number`] | fixed point and the functions of the tick, the same bits on every machine |
 #![cfg_attr(not(test), no_std)]
 
-pub(crate) mod commander;
+pub mod commander;
 pub mod control;
 pub mod drivers;
 pub mod fault;

@@ -3,7 +3,10 @@
 //! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
 //! unless a line says otherwise.
 
+mod consistency;
+
 use crate::motion::{Limits, TurnDirection};
+pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 use kinematics::Geometry;
 
 /// Rows that a record of any signals can have: with all tables 16,384 samples.

@@ -1,12 +1,9 @@
 //! What the simulation costs on this machine, as a table: `cargo bench -p hal-sim`.
 
-use std::hint::black_box;
-use std::time::Instant;
-
 use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Queues, TickQueues};
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
@@ -15,6 +12,8 @@ use hal_sim::observer::TickRecord;
 use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
 use hal_sim::run::{IDENTITY, RunOptions, run};
 use hal_sim::script::Script;
+use std::hint::black_box;
+use std::time::Instant;
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;
@@ -114,7 +113,7 @@ fn recorded_inputs() -> Vec<Inputs> {
 struct Rig {
     tick_queues: TickQueues<'static>,
     command_queues: CommandQueues<'static>,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
     record: TickRecord,
 }
@@ -126,7 +125,7 @@ impl Rig {
         Self {
             tick_queues,
             command_queues,
-            panel: Panel::new(&Parameters::REFERENCE, IDENTITY),
+            panel: Interpreter::new(&Parameters::REFERENCE, IDENTITY),
             session: Session::new(),
             record: TickRecord::default(),
         }

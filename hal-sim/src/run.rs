@@ -1,15 +1,5 @@
 //! Running a script on the simulated stage, on the host.
 
-use std::path::PathBuf;
-
-use firmware::fault::{Fault, FaultKind};
-use firmware::fault_record::RetainedMemory;
-use firmware::gcs::{Identity, Panel, Session};
-use firmware::mode::Mode;
-use firmware::parameters::Parameters;
-use firmware::queues::Queues;
-use firmware::settings_store::Keeper;
-
 use crate::client::{Client, Event};
 use crate::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::host::Host;
@@ -17,6 +7,14 @@ use crate::observer::{Observer, TickRecord};
 use crate::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Progress, Run};
 use crate::script::{Line, Script};
+use firmware::fault::{Fault, FaultKind};
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Identity, Interpreter, Session};
+use firmware::mode::Mode;
+use firmware::parameters::Parameters;
+use firmware::queues::Queues;
+use firmware::settings_store::SettingsStore;
+use std::path::PathBuf;
 
 /// What a run is to do besides the script.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,9 +123,9 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
 /// The panel of a controller that starts with what is kept, and the fault that it starts with.
 pub(crate) fn started(
     parameters: &Parameters,
-    keeper: &mut Keeper<SettingsFlash>,
-) -> (Panel, Option<FaultKind>) {
-    let mut panel = Panel::new(parameters, IDENTITY);
+    keeper: &mut SettingsStore<SettingsFlash>,
+) -> (Interpreter, Option<FaultKind>) {
+    let mut panel = Interpreter::new(parameters, IDENTITY);
     let fault = keeper.restore(&mut panel);
     (panel, fault)
 }
@@ -163,7 +161,7 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut keeper = Keeper::new(flash);
+    let mut keeper = SettingsStore::new(flash);
     let (mut panel, fault) = started(parameters, &mut keeper);
     let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
     let mut host = Host::new(stage, panel.parameters());
@@ -195,7 +193,7 @@ fn simulate(
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut command_queues, &mut wire.to_client);
-        keeper.carry_on(&mut panel);
+        keeper.store_pending(&mut panel);
         if panel.wants_restart() {
             let fault;
             (panel, fault) = started(parameters, &mut keeper);

@@ -4,12 +4,12 @@
 use firmware::control::config::Config;
 use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, QueueFull, Queues, TickQueues};
 use firmware::recorder::{Sample, TickObserver};
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 use hal_sim::devices::SettingsFlash;
 use hal_sim::devices::biss::{Preamble, encode};
 use hal_sim::run::IDENTITY;
@@ -58,9 +58,9 @@ pub struct Ideal {
     pub config: Config,
     state: State,
     /// All that the connections share.
-    pub panel: Panel,
+    pub panel: Interpreter,
     /// Keeps its settings, in memory.
-    pub keeper: Keeper<SettingsFlash>,
+    pub keeper: SettingsStore<SettingsFlash>,
     /// The connections.
     pub connections: Vec<Connection>,
     /// What is wrong with the hardware.
@@ -88,8 +88,8 @@ impl Ideal {
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
         let counts = [0, 1, 2].map(|i| config.encoders[i].ideal_counts_at(third(i)));
-        let mut panel = Panel::new(&parameters, IDENTITY);
-        let mut keeper = Keeper::new(SettingsFlash::in_memory());
+        let mut panel = Interpreter::new(&parameters, IDENTITY);
+        let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
         keeper.restore(&mut panel);
         Self {
             config,
@@ -144,7 +144,7 @@ impl Ideal {
             &mut self.command_queues,
             &mut connection.output,
         );
-        self.keeper.carry_on(&mut self.panel);
+        self.keeper.store_pending(&mut self.panel);
         if self.panel.wants_restart() {
             self.restart();
         }
@@ -174,7 +174,7 @@ impl Ideal {
 
     /// What `RBT` asks for.
     fn restart(&mut self) {
-        self.panel = Panel::new(&Parameters::REFERENCE, IDENTITY);
+        self.panel = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
         self.state =
             (self.keeper.restore(&mut self.panel)).map_or_else(State::new, State::with_fault);
         self.config = Config::new(self.panel.parameters());

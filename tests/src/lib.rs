@@ -10,7 +10,7 @@ pub mod trouble;
 use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
 use firmware::fault_record::RetainedMemory;
-use firmware::gcs::{Panel, Session};
+use firmware::gcs::{Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Queues, TickQueues};
@@ -31,7 +31,7 @@ pub struct Bench {
     pub host: Host,
     /// What the last tick put out.
     pub outputs: Outputs,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
     tick_queues: TickQueues<'static>,
     command_queues: CommandQueues<'static>,
@@ -59,7 +59,7 @@ impl Bench {
         Self {
             host: Host::new(stage, &parameters),
             outputs: Outputs::default(),
-            panel: Panel::new(&parameters, IDENTITY),
+            panel: Interpreter::new(&parameters, IDENTITY),
             session: Session::new(),
             tick_queues,
             command_queues,
@@ -73,8 +73,8 @@ impl Bench {
     pub fn reset(&mut self, cause: &'static str) {
         let parameters = Parameters::REFERENCE;
         self.host.restart(&parameters, None);
-        self.panel = Panel::new(&parameters, IDENTITY);
-        self.panel.note_start(cause);
+        self.panel = Interpreter::new(&parameters, IDENTITY);
+        self.panel.set_start_cause(cause);
         self.session = Session::new();
         self.tick_queues.clear();
         self.command_queues.clear();

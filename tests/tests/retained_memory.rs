@@ -1,7 +1,7 @@
 //! The retained memory on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
 
 use firmware::fault_record::{FAULT_RECORD_ROWS, ROWS_AFTER_FAULT};
-use firmware::gcs::CAUSES;
+use firmware::gcs::START_CAUSES;
 use firmware::mode::Mode;
 use tests::Bench;
 
@@ -91,7 +91,7 @@ fn events_and_record_survive_a_reset() {
     let mut bench = faulted();
     let rows = record(&mut bench);
     let before = bench.say("EVT?\n");
-    bench.reset(CAUSES[0]);
+    bench.reset(START_CAUSES[0]);
     bench.run(10);
     let after = bench.say("EVT?\n");
     let kept = after
@@ -118,7 +118,7 @@ fn a_reset_in_motion_leaves_the_last_ticks_before_it() {
     bench.send("MOV X 40 W 100\n");
     bench.run(1_500);
     let last = bench.sample().tick as f64;
-    bench.reset(CAUSES[0]);
+    bench.reset(START_CAUSES[0]);
     bench.run(100);
     let rows = record(&mut bench);
     assert_eq!(rows.len(), FAULT_RECORD_ROWS);
@@ -133,7 +133,7 @@ fn more_events_than_there_is_room_for_keep_their_numbers_over_resets() {
     }
     let before = bench.say("EVT?\n");
     assert_eq!(before.lines().count(), 64);
-    bench.reset(CAUSES[1]);
+    bench.reset(START_CAUSES[1]);
     bench.run(10);
     let after = bench.say("EVT?\n");
     assert_eq!(after.lines().count(), 64);

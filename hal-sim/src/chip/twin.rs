@@ -20,7 +20,7 @@ use crate::observer::TickRecord;
 use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::{RawFrame, decode};
-use firmware::gcs::{Identity, Panel, Session};
+use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Queues, Snapshot, TickQueues};
 use std::collections::VecDeque;
@@ -57,7 +57,7 @@ pub struct Twin {
     config: Config,
     state: State,
     record: TickRecord,
-    panel: Panel,
+    panel: Interpreter,
     session: Session,
     /// The panel's ends of the queues whose other side the twin holds.
     command_queues: CommandQueues<'static>,
@@ -105,7 +105,7 @@ pub enum Divergence {
         tick: u32,
     },
     /// The chip's panel has run in a way that the twin's can not repeat.
-    Panel {
+    Interpreter {
         /// Ticks done.
         ticks: u32,
     },
@@ -130,7 +130,7 @@ impl Twin {
             config: Config::new(parameters),
             state: State::new(),
             record: TickRecord::default(),
-            panel: Panel::new(parameters, identity),
+            panel: Interpreter::new(parameters, identity),
             session: Session::new(),
             command_queues,
             panel_side,
@@ -178,7 +178,7 @@ impl Twin {
         }
         let services = period.services(self.served, trace.served);
         self.services
-            .extend(services.ok_or(Divergence::Panel { ticks: trace.ticks })?);
+            .extend(services.ok_or(Divergence::Interpreter { ticks: trace.ticks })?);
         self.served = trace.served;
         let (current_counts, supply_counts) = period.stage.analog();
         let mut frames = period.stage.frames();
@@ -267,7 +267,7 @@ impl Twin {
         {
             self.services.pop_front();
             self.serve(service)
-                .ok_or(Divergence::Panel { ticks: self.ticks })?;
+                .ok_or(Divergence::Interpreter { ticks: self.ticks })?;
         }
         Ok(())
     }
@@ -365,7 +365,7 @@ impl fmt::Display for Divergence {
                     "at tick {tick} the chip has taken a command that the host's panel did not give"
                 )
             }
-            Self::Panel { ticks } => {
+            Self::Interpreter { ticks } => {
                 write!(
                     f,
                     "after {ticks} ticks the chip's panel had bytes or a snapshot that the host has not, or its record is lost"

@@ -1,13 +1,5 @@
 //! One run of the campaign.
 
-use firmware::fault::Fault;
-use firmware::fault_record::RetainedMemory;
-use firmware::gcs::{CAUSES, Panel, Session};
-use firmware::mode::Mode;
-use firmware::queues::{Command, CommandQueues, Queues};
-use firmware::recorder::{Sample, TickObserver};
-use firmware::settings_store::Keeper;
-
 use super::injection::Injection;
 use super::random::Random;
 use super::scenario::Scenario;
@@ -18,6 +10,13 @@ use crate::devices::BridgeState;
 use crate::host::Host;
 use crate::plant::AXES;
 use crate::run::IDENTITY;
+use firmware::fault::Fault;
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Interpreter, START_CAUSES, Session};
+use firmware::mode::Mode;
+use firmware::queues::{Command, CommandQueues, Queues};
+use firmware::recorder::{Sample, TickObserver};
+use firmware::settings_store::SettingsStore;
 
 /// Ticks from one sign of life of the host to the next.
 const HEARTBEAT_EVERY: u64 = 200;
@@ -123,7 +122,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let mut queues = Box::new(Queues::new());
     let black_box = Box::new(RetainedMemory::new());
     let (mut tick_queues, mut command_queues) = queues.split_with_retained(&black_box);
-    let mut panel = Box::new(Panel::new(parameters, IDENTITY));
+    let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
     let mut session = Session::new();
     let mut flooding = Session::new();
     let mut seen = Seen::default();
@@ -134,7 +133,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     // What the controller's own count of ticks is behind.
     let mut restarted_at = 0;
     if scenario.injection == Injection::DamagedSettings && !is_control {
-        let problem = Keeper::new(damaged(&mut random)).restore(&mut panel);
+        let problem = SettingsStore::new(damaged(&mut random)).restore(&mut *panel);
         host.restart(parameters, problem);
     }
 
@@ -148,8 +147,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
                 host.stage.advance_period([BridgeState::RESET; AXES]);
             }
             host.restart(parameters, None);
-            *panel = Panel::new(parameters, IDENTITY);
-            panel.note_start(CAUSES[0]);
+            *panel = Interpreter::new(parameters, IDENTITY);
+            panel.set_start_cause(START_CAUSES[0]);
             session = Session::new();
             tick_queues.clear();
             command_queues.clear();
@@ -209,7 +208,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
 }
 
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.
-fn flood(panel: &mut Panel, session: &mut Session, queues: &mut CommandQueues<'_>) -> bool {
+fn flood(panel: &mut Interpreter, session: &mut Session, queues: &mut CommandQueues<'_>) -> bool {
     // In no state but a fault does it do anything.
     while queues.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();

@@ -1,16 +1,14 @@
 //! Kept settings of which a bit has flipped.
 
-use std::sync::OnceLock;
-
-use firmware::gcs::{Panel, Session};
-use firmware::parameters::Parameters;
-use firmware::queues::Queues;
-use firmware::settings_store::Keeper;
-
 use super::random::Random;
 use crate::devices::{SettingsFlash, StageParameters};
 use crate::host::Host;
 use crate::run::IDENTITY;
+use firmware::gcs::{Interpreter, Session};
+use firmware::parameters::Parameters;
+use firmware::queues::Queues;
+use firmware::settings_store::SettingsStore;
+use std::sync::OnceLock;
 
 /// What an operator keeps, and the ticks in which it is kept.
 const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";
@@ -41,17 +39,17 @@ fn kept() -> Vec<u8> {
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
     let mut queues = Box::new(Queues::new());
     let (mut tick_queues, mut command_queues) = queues.split();
-    let mut panel = Box::new(Panel::new(&parameters, IDENTITY));
-    let mut keeper = Keeper::new(SettingsFlash::in_memory());
+    let mut panel = Box::new(Interpreter::new(&parameters, IDENTITY));
+    let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
     let mut session = Session::new();
     let mut answers = Vec::new();
-    assert_eq!(keeper.restore(&mut panel), None, "an erased flash is none");
+    assert_eq!(keeper.restore(&mut *panel), None, "an erased flash is none");
     session.receive(LINES);
     for _ in 0..TICKS {
         host.tick(&mut tick_queues, &mut ());
         // Writing to a vector does not fail.
         let _ = panel.service(&mut session, &mut command_queues, &mut answers);
-        keeper.carry_on(&mut panel);
+        keeper.store_pending(&mut *panel);
     }
     assert_eq!(answers, b"0\n", "the settings are kept");
     keeper.flash().bytes().to_vec()

@@ -1,16 +1,14 @@
 //! A client: its session, the bytes that come in and the replies that go out. Nothing here blocks.
 
+use super::Notice;
+use super::output::{Output, Overflow};
+use firmware::gcs::{Interpreter, Session};
+use firmware::queues::CommandQueues;
+use rustix::event::PollFlags;
 use std::fs::File;
 use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
-
-use firmware::gcs::{Panel, Session};
-use firmware::queues::CommandQueues;
-use rustix::event::PollFlags;
-
-use super::Notice;
-use super::output::{Output, Overflow};
 
 /// Bytes read at a time.
 const READ_BYTES: usize = 4096;
@@ -107,7 +105,7 @@ impl Connection {
     /// Has the panel carry out what has come, line by line, so that a refusal can be told with its line.
     pub fn service(
         &mut self,
-        panel: &mut Panel,
+        panel: &mut Interpreter,
         queues: &mut CommandQueues<'_>,
         say: &mut dyn FnMut(Notice),
     ) {

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! clock -> Pace -> due ticks -> Host::tick
-//!                               Panel::service, for each Connection: input -> Session -> Output
+//!                               Interpreter::service, for each Connection: input -> Session -> Output
 //! poll(listener, connections) -> accept, read, write
 //! ```
 //!

@@ -1,21 +1,5 @@
 //! The turns: ticks that are due, then what has come in meanwhile.
 
-use std::fs::File;
-use std::io;
-use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::os::fd::OwnedFd;
-use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
-use firmware::fault_record::RetainedMemory;
-use firmware::gcs::Panel;
-use firmware::parameters::Parameters;
-use firmware::queues::{CommandQueues, Queues, TickQueues};
-use firmware::settings_store::Keeper;
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::io::Errno;
-
 use super::connection::Connection;
 use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
@@ -23,6 +7,20 @@ use super::{Notice, ServeError, ServeOptions};
 use crate::devices::SettingsFlash;
 use crate::host::Host;
 use crate::run::started;
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::Interpreter;
+use firmware::parameters::Parameters;
+use firmware::queues::{CommandQueues, Queues, TickQueues};
+use firmware::settings_store::SettingsStore;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+use std::fs::File;
+use std::io;
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::fd::OwnedFd;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Clients at once.
 const CLIENTS: usize = 64;
@@ -96,7 +94,7 @@ impl Server {
         // The client's end has to stay open as long as the controller's.
         let (terminal, _client) = self.terminal.map(|t| (t.controller, t.client)).unzip();
         let connections = terminal.map(|port| Connection::new("terminal".into(), port, true, now));
-        let mut keeper = Keeper::new(self.flash);
+        let mut keeper = SettingsStore::new(self.flash);
         let (panel, fault) = started(parameters, &mut keeper);
         let mut host = Host::new(&self.options.stage, panel.parameters());
         host.restart(panel.parameters(), fault);
@@ -132,8 +130,8 @@ fn listen(address: &str) -> io::Result<TcpListener> {
 struct Service<'a> {
     parameters: Parameters,
     host: Host,
-    panel: Panel,
-    keeper: Keeper<SettingsFlash>,
+    panel: Interpreter,
+    keeper: SettingsStore<SettingsFlash>,
     tick_queues: TickQueues<'a>,
     command_queues: CommandQueues<'a>,
     pace: Pace,
@@ -183,7 +181,7 @@ impl Service<'_> {
         for connection in &mut self.connections {
             connection.service(&mut self.panel, &mut self.command_queues, self.say);
         }
-        self.keeper.carry_on(&mut self.panel);
+        self.keeper.store_pending(&mut self.panel);
     }
 
     fn tell_fault(&mut self) {

@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use crate::host::Host;
     use crate::run::{IDENTITY, RunOptions, controller_parameters, stage_parameters};
-    use firmware::gcs::{Panel, Session};
+    use firmware::gcs::{Interpreter, Session};
     use firmware::queues::Queues;
     use firmware::recorder::RunningHash;
 
@@ -69,7 +69,7 @@ mod tests {
         let mut host = Host::new(&stage_parameters(&options), &parameters);
         let mut queues = Queues::new();
         let (mut tick_queues, mut command_queues) = queues.split();
-        let mut panel = Panel::new(&parameters, IDENTITY);
+        let mut panel = Interpreter::new(&parameters, IDENTITY);
         let mut client = Session::new();
         let mut looking: Vec<_> = (0..viewers).map(|_| Session::new()).collect();
         let (mut hash, mut replies, mut seen) = (RunningHash::default(), Vec::new(), Vec::new());

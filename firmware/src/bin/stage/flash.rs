@@ -12,7 +12,7 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
-use firmware::settings_store::RECORD_BYTES;
+use firmware::gcs::STORED_BYTES;
 use stm32f4xx_hal::pac;
 
 /// Where it begins, after the code's memory.
@@ -25,7 +25,7 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Every error flag of `SR`, cleared by writing it.
 const ERRORS: u32 = 0b1_1111_0010;
 
-const _: () = assert!(RECORD_BYTES <= SECTOR_BYTES);
+const _: () = assert!(STORED_BYTES <= SECTOR_BYTES);
 
 /// See the module.
 pub struct SettingsFlash(pac::FLASH);

@@ -77,10 +77,10 @@ mod app {
     use core::mem::MaybeUninit;
     use firmware::control::config::Config;
     use firmware::control::{Inputs, State, tick};
-    use firmware::gcs::{Identity, Panel, Session};
+    use firmware::gcs::{Identity, Interpreter, Session};
     use firmware::parameters::Parameters;
     use firmware::queues::{CommandQueues, Queues, TickQueues};
-    use firmware::settings_store::Keeper;
+    use firmware::settings_store::SettingsStore;
 
     const IDENTITY: Identity = Identity {
         serial: "0",
@@ -101,9 +101,9 @@ mod app {
         trace_writer: TraceWriter,
         tick_timing: TickTiming,
         tick_queues: TickQueues<'static>,
-        panel: &'static mut Panel,
+        panel: &'static mut Interpreter,
         session: &'static mut Session,
-        keeper: Keeper<SettingsFlash>,
+        keeper: SettingsStore<SettingsFlash>,
         command_queues: CommandQueues<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
@@ -112,7 +112,7 @@ mod app {
     // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
     #[init(local = [
         queues: Queues = Queues::new(),
-        panel_place: MaybeUninit<Panel> = MaybeUninit::uninit(),
+        panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
     ])]
@@ -133,12 +133,12 @@ mod app {
         let panel = context
             .local
             .panel_place
-            .write(Panel::new(&PARAMETERS, IDENTITY));
+            .write(Interpreter::new(&PARAMETERS, IDENTITY));
         if let Some(cause) = reset_cause.unasked() {
-            panel.note_start(cause);
+            panel.set_start_cause(cause);
         }
         // Before anything can move.
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         let state = match keeper.restore(panel) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
@@ -223,7 +223,7 @@ mod app {
                     .service(local.session, local.command_queues, local.transmitter);
             TRACE.record_service(received, local.panel.tick() as u32);
             local.transmitter.send();
-            local.keeper.carry_on(local.panel);
+            local.keeper.store_pending(local.panel);
             if local.panel.wants_restart() {
                 restart::now();
             }

@@ -1,7 +1,7 @@
 //! Why the chip started.
 
 use crate::restart;
-use firmware::gcs::CAUSES;
+use firmware::gcs::START_CAUSES;
 use stm32f4xx_hal::pac;
 
 /// Why the chip started.
@@ -28,9 +28,9 @@ impl ResetCause {
     /// What is worth telling over the command interface: a start that nobody asked for.
     pub const fn unasked(self) -> Option<&'static str> {
         match self {
-            Self::Watchdog => Some(CAUSES[0]),
-            Self::Software => Some(CAUSES[1]),
-            Self::BrownOut => Some(CAUSES[2]),
+            Self::Watchdog => Some(START_CAUSES[0]),
+            Self::Software => Some(START_CAUSES[1]),
+            Self::BrownOut => Some(START_CAUSES[2]),
             _ => None,
         }
     }
