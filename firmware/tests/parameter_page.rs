@@ -1,4 +1,5 @@
-//! `PARAMETERS.md` is what the table of parameters says. `UPDATE=1 cargo test -p firmware --test parameter_page` writes it.
+//! `PARAMETERS.md` is what the table of parameters says. `UPDATE=1 cargo test -p firmware --test parameter_page` writes
+//! it.
 
 mod written_page;
 

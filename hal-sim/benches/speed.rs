@@ -13,7 +13,7 @@ use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, run};
 use hal_sim::rig::script::Script;
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;
@@ -113,7 +113,10 @@ struct Commanded<F> {
 
 impl<F: Front> Commanded<F> {
     fn new(front: impl FnOnce(&Parameters) -> F) -> Self {
-        let (queues, flash) = (Queues::endless().split(), SettingsFlash::in_memory());
+        let (queues, flash) = (
+            ControllerMemory::endless().split(),
+            SettingsFlash::in_memory(),
+        );
         Self {
             rig: Rig::new(queues, &Parameters::REFERENCE, flash, front),
             session: Session::new(),

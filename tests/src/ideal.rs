@@ -7,11 +7,11 @@ use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, QueueFull};
-use firmware::recorder::{Record, Sample};
+use firmware::recorder::{Sample, TickObserver};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 use kinematics::Angle;
 
 /// 48 V at the ADC.
@@ -45,8 +45,8 @@ pub struct Connection {
 #[derive(Default)]
 struct Last(Option<Sample>);
 
-impl Record for Last {
-    fn record(&mut self, sample: &Sample) {
+impl TickObserver for Last {
+    fn observe(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
 }
@@ -74,11 +74,14 @@ impl Ideal {
     #[must_use]
     pub fn new(connections: usize) -> Self {
         let parameters = Parameters::REFERENCE;
-        let (queues, flash) = (Queues::endless().split(), SettingsFlash::in_memory());
+        let (queues, flash) = (
+            ControllerMemory::endless().split(),
+            SettingsFlash::in_memory(),
+        );
         let rig = Rig::new(queues, &parameters, flash, ControlLoop::new);
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
-        let counts = [0, 1, 2].map(|i| rig.front.config.encoders[i].counts_at(third(i)));
+        let counts = [0, 1, 2].map(|i| rig.front.config.encoders[i].ideal_counts_at(third(i)));
         Self {
             rig,
             connections: (0..connections).map(|_| Connection::default()).collect(),
@@ -138,7 +141,7 @@ impl Ideal {
     /// # Errors
     /// [`QueueFull`]
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
-        self.rig.panel_link.send(command)
+        self.rig.command_queues.send(command)
     }
 
     /// What the last tick computed, once one has run.
@@ -188,7 +191,7 @@ impl Ideal {
                     now.pivot_setpoints[i] - before.pivot_setpoints[i]
                 });
             self.counts[i] =
-                self.rig.front.config.encoders[i].counts_at(now.pivot_setpoints[i] + step);
+                self.rig.front.config.encoders[i].ideal_counts_at(now.pivot_setpoints[i] + step);
         }
     }
 }

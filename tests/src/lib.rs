@@ -16,7 +16,7 @@ use firmware::recorder::Sample;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Encoder counts in 2^-32 turns.
 const UNITS_PER_COUNT: i64 = 64;
@@ -47,7 +47,7 @@ impl Bench {
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
         // A test has a few of them.
-        let queues = Queues::endless();
+        let queues = ControllerMemory::endless();
         let flash = SettingsFlash::in_memory();
         Self {
             rig: Rig::simulated(queues, stage, &Parameters::REFERENCE, flash),

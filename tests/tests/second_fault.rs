@@ -49,7 +49,8 @@ fn a_second_encoder_that_is_lost_in_the_stop_brakes_and_is_told() {
         bench.run(1);
         assert_eq!(bench.mode(), Mode::Fault, "{after}");
         assert!(bench.outputs.awake && bench.outputs.duty.iter().all(|duty| duty.0 == 0));
-        let [first, worse] = [bench.rig.front.fault(), bench.rig.front.worse()].map(Option::unwrap);
+        let [first, worse] =
+            [bench.rig.front.fault(), bench.rig.front.stop_ended_by()].map(Option::unwrap);
         assert_eq!(
             (first.kind, first.pivot),
             (FaultKind::EncoderSilent, Some(0))
@@ -82,11 +83,14 @@ fn a_second_encoder_that_is_bridged_does_not_end_the_stop() {
     bench.rig.front.stage.encoders[0].set_fault(None);
     bench.run(STOP_TICKS - 400);
     assert_eq!(
-        (bench.mode(), bench.rig.front.worse()),
+        (bench.mode(), bench.rig.front.stop_ended_by()),
         (Mode::Stopping, None)
     );
     bench.run(200);
-    assert_eq!((bench.mode(), bench.rig.front.worse()), (Mode::Fault, None));
+    assert_eq!(
+        (bench.mode(), bench.rig.front.stop_ended_by()),
+        (Mode::Fault, None)
+    );
     assert_eq!(bench.say("FRF? W\n"), "W=0\n");
 }
 
@@ -98,7 +102,7 @@ fn a_lost_encoder_is_not_watched_any_more() {
     bench.run_until("found", |bench| bench.mode() != Mode::Moving);
     for _ in 1..STOP_TICKS {
         assert_eq!(
-            (bench.mode(), bench.rig.front.worse()),
+            (bench.mode(), bench.rig.front.stop_ended_by()),
             (Mode::Stopping, None)
         );
         bench.tick();
@@ -126,7 +130,10 @@ fn a_fault_leaves_nothing_behind_for_the_next_one() {
         let before = bench.sample().tick;
         bench.run_until("stopped", |bench| bench.mode() != Mode::Stopping);
         assert_eq!(bench.sample().tick - before, u64::from(STOP_TICKS));
-        assert_eq!((bench.mode(), bench.rig.front.worse()), (Mode::Fault, None));
+        assert_eq!(
+            (bench.mode(), bench.rig.front.stop_ended_by()),
+            (Mode::Fault, None)
+        );
         mend(&mut bench);
     }
     // Let go by one fault, braked by the next.

@@ -1,10 +1,10 @@
 //! One run of the campaign.
 
 use firmware::fault::Fault;
-use firmware::gcs::{CAUSES, Session};
+use firmware::gcs::{START_CAUSES, Session};
 use firmware::mode::Mode;
 use firmware::queues::Command;
-use firmware::recorder::{Record, Sample};
+use firmware::recorder::{Sample, TickObserver};
 
 use super::injection::Injection;
 use super::scenario::Scenario;
@@ -15,7 +15,7 @@ use crate::front::Host;
 use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
 use crate::random::Random;
-use crate::rig::{Queues, Rig};
+use crate::rig::{ControllerMemory, Rig};
 
 /// Ticks from one sign of life of the host to the next.
 const HEARTBEAT_EVERY: u64 = 200;
@@ -97,8 +97,8 @@ impl Seen {
     }
 }
 
-impl Record for Seen {
-    fn record(&mut self, sample: &Sample) {
+impl TickObserver for Seen {
+    fn observe(&mut self, sample: &Sample) {
         // A fault leaves no rates: those that were asked for last count.
         let last = self
             .0
@@ -121,7 +121,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     } else {
         SettingsFlash::in_memory()
     };
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let mut rig = Rig::simulated(&mut queues, &scenario.stage, &scenario.parameters, flash);
     rig.front.stage.set_pose_at_rest(scenario.start);
     let mut session = Session::new();
@@ -142,7 +142,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             for _ in 0..START_TICKS {
                 (rig.front.stage).advance_period([BridgeState::RESET; AXES]);
             }
-            rig.reset(CAUSES[0]);
+            rig.reset(START_CAUSES[0]);
             session = Session::new();
             restarted_at = tick;
         }
@@ -202,7 +202,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.
 fn flood(rig: &mut Rig<'_>, session: &mut Session) -> bool {
     // In no state but a fault does it do anything.
-    while rig.panel_link.send(Command::Acknowledge).is_ok() {}
+    while rig.command_queues.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();
     if session.is_idle() {
         session.receive(b"ERR?\nSVO X 0\nERR?\n");

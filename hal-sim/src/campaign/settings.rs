@@ -7,7 +7,7 @@ use firmware::parameters::Parameters;
 
 use crate::machine::devices::{SettingsFlash, StageParameters};
 use crate::random::Random;
-use crate::rig::{Queues, Rig};
+use crate::rig::{ControllerMemory, Rig};
 
 /// What an operator keeps, and the ticks in which it is kept.
 const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";
@@ -35,7 +35,7 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (StageParameters::REFERENCE, SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut session = Session::new();

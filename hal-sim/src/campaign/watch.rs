@@ -98,7 +98,7 @@ impl<'a> Watch<'a> {
         };
         self.effects.look(&now);
         self.outcome.fault = self.outcome.fault.or(host.fault());
-        self.outcome.worse = host.worse();
+        self.outcome.worse = host.stop_ended_by();
         if let Some((at, pivot)) = self.effects.second_found(self.scenario)
             && at == tick
             && self.was_stopping

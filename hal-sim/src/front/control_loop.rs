@@ -5,8 +5,8 @@ use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
-use firmware::queues::TickLink;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use super::Front;
 
@@ -49,13 +49,13 @@ impl ControlLoop {
 
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
-    pub fn worse(&self) -> Option<Fault> {
-        self.state.worse()
+    pub fn stop_ended_by(&self) -> Option<Fault> {
+        self.state.stop_ended_by()
     }
 }
 
 impl Front for ControlLoop {
-    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         tick(
             &mut self.config,
             &mut self.state,

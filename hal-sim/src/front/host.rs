@@ -5,8 +5,8 @@ use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
-use firmware::queues::TickLink;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use super::{ControlLoop, Front};
 use crate::machine::devices::{
@@ -94,7 +94,7 @@ impl Host {
     }
 
     /// One tick of the controller, and the stage's motion up to the next.
-    pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    pub fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         self.control.inputs = self.inputs();
         let outputs = self.control.tick(link, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
@@ -135,8 +135,8 @@ impl Host {
 
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
-    pub fn worse(&self) -> Option<Fault> {
-        self.control.worse()
+    pub fn stop_ended_by(&self) -> Option<Fault> {
+        self.control.stop_ended_by()
     }
 
     fn inputs(&mut self) -> Inputs {
@@ -148,7 +148,7 @@ impl Host {
         let bridge_fault = self
             .drivers
             .each_mut()
-            .map(|driver| driver.faulty().unwrap_or(true));
+            .map(|driver| driver.reports_fault().unwrap_or(true));
         let (current_counts, supply_counts) = self.stage.analog();
         Inputs {
             frames,
@@ -163,7 +163,7 @@ impl Host {
 }
 
 impl Front for Host {
-    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
         self.tick(link, recorder)
     }
 

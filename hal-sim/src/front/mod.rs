@@ -14,13 +14,13 @@ pub use host::{Host, Wiring};
 use firmware::control::Outputs;
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
-use firmware::queues::TickLink;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 /// A controller's loop with what it stands before.
 pub trait Front {
     /// One tick of the controller, and what it stands before up to the next.
-    fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs;
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs;
 
     /// Starts the controller again, with these parameters and perhaps a fault; what it stands before stays as it is.
     fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>);

@@ -4,7 +4,7 @@
 //! replies, who records the ticks.
 //!
 //! ```text
-//! lines -> Session -> Panel -> queues -> tick of the Front -> recorder
+//! lines -> Session -> Interpreter -> queues -> tick of the Front -> recorder
 //! replies <---------/  |  ^------------/
 //!               SettingsFlash
 //! ```
@@ -12,12 +12,12 @@
 use embedded_io::Write;
 use firmware::control::Outputs;
 use firmware::fault::FaultKind;
-use firmware::fault_record::BlackBox;
-use firmware::gcs::{Identity, Panel, Session};
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink, TickLink};
-use firmware::recorder::Record;
-use firmware::settings_store::Keeper;
+use firmware::queues::{CommandQueues, Queues, TickQueues};
+use firmware::recorder::TickObserver;
+use firmware::settings_store::SettingsStore;
 
 use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};
@@ -29,9 +29,9 @@ pub const IDENTITY: Identity = Identity {
 };
 
 /// The queues between tick and command side, and what outlives a restart of both. A rig borrows it.
-pub struct Queues {
-    link: Box<Link>,
-    black_box: Box<BlackBox>,
+pub struct ControllerMemory {
+    queues: Box<Queues>,
+    retained_memory: Box<RetainedMemory>,
 }
 
 /// See the module.
@@ -39,35 +39,35 @@ pub struct Rig<'a, F = Host> {
     /// The tick, and what it stands before.
     pub front: F,
     /// The command side.
-    pub panel: Box<Panel>,
+    pub panel: Box<Interpreter>,
     /// Keeps its settings.
-    pub keeper: Keeper<SettingsFlash>,
+    pub keeper: SettingsStore<SettingsFlash>,
     /// The tick's ends of the queues.
-    pub tick_link: TickLink<'a>,
+    pub tick_queues: TickQueues<'a>,
     /// The command side's ends of the queues.
-    pub panel_link: PanelLink<'a>,
+    pub command_queues: CommandQueues<'a>,
     parameters: Parameters,
 }
 
-impl Default for Queues {
+impl Default for ControllerMemory {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Queues {
+impl ControllerMemory {
     /// Empty.
     #[must_use]
     pub fn new() -> Self {
         Self {
-            link: Box::new(Link::new()),
-            black_box: Box::new(BlackBox::new()),
+            queues: Box::new(Queues::new()),
+            retained_memory: Box::new(RetainedMemory::new()),
         }
     }
 
     /// The ends of the tick, and those of the command side.
-    pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
-        self.link.split_keeping(&self.black_box)
+    pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
+        self.queues.split_with_retained(&self.retained_memory)
     }
 
     /// Queues that live as long as the process: some kilobytes each time.
@@ -81,13 +81,13 @@ impl<'a> Rig<'a> {
     /// A simulated stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
     #[must_use]
     pub fn simulated(
-        queues: &'a mut Queues,
+        memory: &'a mut ControllerMemory,
         stage: &StageParameters,
         parameters: &Parameters,
         flash: SettingsFlash,
     ) -> Self {
         let front = |parameters: &Parameters| Host::new(stage, parameters);
-        Self::new(queues.split(), parameters, flash, front)
+        Self::new(memory.split(), parameters, flash, front)
     }
 }
 
@@ -96,12 +96,12 @@ impl<'a, F: Front> Rig<'a, F> {
     /// which parameters it starts.
     #[must_use]
     pub fn new(
-        (tick_link, panel_link): (TickLink<'a>, PanelLink<'a>),
+        (tick_queues, command_queues): (TickQueues<'a>, CommandQueues<'a>),
         parameters: &Parameters,
         flash: SettingsFlash,
         front: impl FnOnce(&Parameters) -> F,
     ) -> Self {
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         let (panel, fault) = started(parameters, &mut keeper);
         let mut front = front(panel.parameters());
         front.restart(panel.parameters(), fault);
@@ -109,15 +109,15 @@ impl<'a, F: Front> Rig<'a, F> {
             front,
             panel,
             keeper,
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             parameters: parameters.clone(),
         }
     }
 
     /// One tick of the controller, and of what it stands before up to the next.
-    pub fn tick(&mut self, recorder: &mut impl Record) -> Outputs {
-        self.front.tick(&mut self.tick_link, recorder)
+    pub fn tick(&mut self, recorder: &mut impl TickObserver) -> Outputs {
+        self.front.tick(&mut self.tick_queues, recorder)
     }
 
     /// Has the command side carry out what a connection has received.
@@ -129,17 +129,18 @@ impl<'a, F: Front> Rig<'a, F> {
         session: &mut Session,
         replies: &mut W,
     ) -> Result<(), W::Error> {
-        self.panel.service(session, &mut self.panel_link, replies)
+        self.panel
+            .service(session, &mut self.command_queues, replies)
     }
 
     /// What the command side does with no connection there: a macro goes on.
     pub fn advance(&mut self) {
-        self.panel.advance(&mut self.panel_link);
+        self.panel.advance(&mut self.command_queues);
     }
 
     /// Goes on keeping settings.
     pub fn keep(&mut self) {
-        self.keeper.carry_on(&mut self.panel);
+        self.keeper.store_pending(&mut *self.panel);
     }
 
     /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
@@ -155,24 +156,24 @@ impl<'a, F: Front> Rig<'a, F> {
     /// What a reset of the chip leaves: what the tick stands before as it is, the controller started anew for this cause.
     pub fn reset(&mut self, cause: &'static str) {
         self.start();
-        self.panel.note_start(cause);
+        self.panel.set_start_cause(cause);
     }
 
     fn start(&mut self) {
         let (panel, fault) = started(&self.parameters, &mut self.keeper);
         self.panel = panel;
         self.front.restart(self.panel.parameters(), fault);
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
     }
 }
 
 /// The panel of a controller that starts with what is kept, and the fault that it starts with.
 fn started(
     parameters: &Parameters,
-    keeper: &mut Keeper<SettingsFlash>,
-) -> (Box<Panel>, Option<FaultKind>) {
-    let mut panel = Box::new(Panel::new(parameters, IDENTITY));
-    let fault = keeper.restore(&mut panel);
+    keeper: &mut SettingsStore<SettingsFlash>,
+) -> (Box<Interpreter>, Option<FaultKind>) {
+    let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
+    let fault = keeper.restore(&mut *panel);
     (panel, fault)
 }

@@ -23,7 +23,7 @@ mod table {
     use desk::serve::{Pacing, ServeOptions, Server};
     use desk::web::{Endpoint, Page};
     use hal_sim::machine::devices::SettingsFlash;
-    use hal_sim::rig::Queues;
+    use hal_sim::rig::ControllerMemory;
     use hal_sim::rig::run::RunOptions;
     use tripivot::simulated::Simulated;
     use tungstenite::client;
@@ -66,7 +66,7 @@ mod table {
         let done = Arc::new(AtomicBool::new(false));
         thread::scope(|scope| {
             let served = scope.spawn(|| {
-                let mut queues = Queues::new();
+                let mut queues = ControllerMemory::new();
                 let mut stage = Simulated::new(&mut queues, &options, SettingsFlash::in_memory());
                 server
                     .run(&mut stage, &stop, &mut |_| {})

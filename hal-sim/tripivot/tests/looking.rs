@@ -6,7 +6,7 @@ use firmware::gcs::Session;
 use firmware::recorder::RunningHash;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Ticks between two looks: 60 times a second.
 const LOOK_EVERY: u64 = 333;
@@ -26,7 +26,7 @@ const DRIVEN: &[(u64, &str)] = &[
 fn run(viewers: usize, lines: &str) -> (RunningHash, usize) {
     let options = RunOptions::default();
     let parameters = controller_parameters(&options);
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut client = Session::new();

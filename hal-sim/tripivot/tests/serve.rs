@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use desk::serve::{Notice, Pacing, ServeOptions, Server};
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::Queues;
+use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
 use tripivot::simulated::Simulated;
 
@@ -45,7 +45,7 @@ impl Served {
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
             let mut say = |notice| drop(say.send(notice));
-            let mut queues = Queues::new();
+            let mut queues = ControllerMemory::new();
             let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut say).unwrap()
         });

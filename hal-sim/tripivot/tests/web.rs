@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use desk::serve::{ServeOptions, Server};
 use desk::web::{Endpoint, Page};
 use hal_sim::machine::devices::SettingsFlash;
-use hal_sim::rig::Queues;
+use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
 use serde_json::{Value, json};
 use tripivot::simulated::Simulated;
@@ -42,7 +42,7 @@ impl Stage {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
-            let mut queues = Queues::new();
+            let mut queues = ControllerMemory::new();
             let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut drop).unwrap();
         });

@@ -17,7 +17,7 @@ use hal_sim::rig::exercise::{Patience, script};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run, stage_parameters};
 use hal_sim::rig::script::{Script, ScriptError};
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Seed of the exercise's lines and of the simulated noise.
 const SEED: u64 = 1;
@@ -50,7 +50,7 @@ fn exercise(lines: &Script) -> u32 {
         ..RunOptions::default()
     };
     let parameters = controller_parameters(&options);
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let (mut session, mut client) = (Session::new(), Client::new(lines));

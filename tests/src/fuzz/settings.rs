@@ -5,9 +5,9 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
-use firmware::gcs::{PARAMETERS, Panel};
+use firmware::gcs::{Interpreter, PARAMETERS};
 use firmware::parameters::Parameters;
-use firmware::settings_store::Keeper;
+use firmware::settings_store::SettingsStore;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::random::Random;
 use hal_sim::rig::IDENTITY;
@@ -33,26 +33,26 @@ pub fn run(seed: u64) {
         let at = random.index(content.len());
         content[at] = random.bits() as u8;
     }
-    let mut keeper = Keeper::new(SettingsFlash::holding(&content));
+    let mut keeper = SettingsStore::new(SettingsFlash::holding(&content));
     let (panel, problem) = started(&mut keeper);
     check(&panel, problem);
     assert_eq!(keeper.write(&panel), Ok(()));
     let (again, problem) = started(&mut keeper);
     assert_eq!(problem, None);
     for parameter in PARAMETERS {
-        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_keep()));
+        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_store()));
         assert_eq!(now, before, "{:x}", parameter.id);
     }
     assert!(again.macros().eq(panel.macros()));
 }
 
-fn started(keeper: &mut Keeper<SettingsFlash>) -> (Panel, Option<FaultKind>) {
-    let mut panel = Panel::new(&Parameters::REFERENCE, IDENTITY);
+fn started(keeper: &mut SettingsStore<SettingsFlash>) -> (Interpreter, Option<FaultKind>) {
+    let mut panel = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
     let problem = keeper.restore(&mut panel);
     (panel, problem)
 }
 
-fn check(panel: &Panel, problem: Option<FaultKind>) {
+fn check(panel: &Interpreter, problem: Option<FaultKind>) {
     let parameters = panel.parameters();
     assert!(parameters.are_sound());
     for parameter in PARAMETERS.iter().filter(|p| !p.is_read_only()) {

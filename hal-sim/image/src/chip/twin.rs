@@ -19,12 +19,12 @@ use firmware::control::Inputs;
 use firmware::drivers::biss::{RawFrame, decode};
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
-use firmware::queues::{PanelLink, Snapshot, TickLink};
+use firmware::queues::{CommandQueues, Snapshot, TickQueues};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
 use hal_sim::rig::observer::TickRecord;
-use hal_sim::rig::{Queues, Rig};
+use hal_sim::rig::{ControllerMemory, Rig};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -61,8 +61,8 @@ pub struct Twin {
     record: TickRecord,
     session: Session,
     /// The other ends of the panel's queues, and of the tick's.
-    panel_side: TickLink<'static>,
-    tick_side: PanelLink<'static>,
+    panel_side: TickQueues<'static>,
+    tick_side: CommandQueues<'static>,
     /// Ticks and commands done, and bytes given to the panel.
     ticks: u32,
     commands: u32,
@@ -104,7 +104,7 @@ pub enum Divergence {
         tick: u32,
     },
     /// The chip's panel has run in a way that the twin's can not repeat.
-    Panel {
+    Interpreter {
         /// Ticks done.
         ticks: u32,
     },
@@ -117,11 +117,11 @@ impl Twin {
     /// A twin of a chip that has just started.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
-        let (mut panel_side, panel_link) = Queues::endless().split();
-        let (mut tick_link, tick_side) = Queues::endless().split();
+        let (mut panel_side, command_queues) = ControllerMemory::endless().split();
+        let (mut tick_queues, tick_side) = ControllerMemory::endless().split();
         // The twin's panel orders its records from the twin's tick; nothing of them has to be held back.
-        std::mem::swap(&mut panel_side.recorder, &mut tick_link.recorder);
-        let (links, flash) = ((tick_link, panel_link), SettingsFlash::in_memory());
+        std::mem::swap(&mut panel_side.recorder, &mut tick_queues.recorder);
+        let (links, flash) = ((tick_queues, command_queues), SettingsFlash::in_memory());
         Self {
             rig: Rig::new(links, parameters, flash, ControlLoop::new),
             record: TickRecord::default(),
@@ -170,7 +170,7 @@ impl Twin {
         }
         let services = period.services(self.served, trace.served);
         self.services
-            .extend(services.ok_or(Divergence::Panel { ticks: trace.ticks })?);
+            .extend(services.ok_or(Divergence::Interpreter { ticks: trace.ticks })?);
         self.served = trace.served;
         let (current_counts, supply_counts) = period.stage.analog();
         let mut frames = period.stage.frames();
@@ -254,7 +254,7 @@ impl Twin {
         {
             self.services.pop_front();
             self.serve(service)
-                .ok_or(Divergence::Panel { ticks: self.ticks })?;
+                .ok_or(Divergence::Interpreter { ticks: self.ticks })?;
         }
         Ok(())
     }
@@ -346,7 +346,7 @@ impl fmt::Display for Divergence {
                     "at tick {tick} the chip has taken a command that the host's panel did not give"
                 )
             }
-            Self::Panel { ticks } => {
+            Self::Interpreter { ticks } => {
                 write!(
                     f,
                     "after {ticks} ticks the chip's panel had bytes or a snapshot that the host has not, or its record is lost"
