@@ -7,11 +7,11 @@ mod consistency;
 
 pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 
-use crate::motion::{Limits, Way};
+use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
 
 /// Rows that a record of any signals can have: with all tables 16,384 samples.
-pub const RECORD_ROWS: usize = 2048;
+pub const MAX_RECORD_ROWS: usize = 2048;
 
 /// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
 pub const PWM_COUNTS: u16 = 4200;
@@ -30,13 +30,13 @@ pub struct Parameters {
     /// Servo gains.
     pub servo: Gains,
     /// Encoders, pivot by pivot.
-    pub encoders: [EncoderSetup; 3],
+    pub encoders: [EncoderMounting; 3],
     /// When the stage counts as settled.
-    pub window: Window,
+    pub window: SettlingWindow,
     /// Thresholds of the faults.
     pub supervision: Supervision,
     /// The data recorder.
-    pub recorder: Recording,
+    pub recorder: RecorderParameters,
     /// What targets mean.
     pub targets: Targets,
 }
@@ -45,7 +45,7 @@ pub struct Parameters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Targets {
     /// Which way round to an orientation.
-    pub way: Way,
+    pub turn_direction: TurnDirection,
     /// Whether `MOV` gives the targets of a stream, one after the other, instead of places to move to.
     pub streamed: bool,
 }
@@ -122,7 +122,7 @@ pub struct Gains {
 
 /// How an encoder is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EncoderSetup {
+pub struct EncoderMounting {
     /// Reading, in counts, at pivot angle 0.
     pub zero_counts: u32,
     /// Whether it counts down when the pivot angle grows.
@@ -131,7 +131,7 @@ pub struct EncoderSetup {
 
 /// When the stage counts as settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct SettlingWindow {
     /// Largest following error of any pivot, in encoder counts.
     pub counts: f64,
     /// For how long.
@@ -158,7 +158,7 @@ pub struct Supervision {
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
     /// Longest time of a bridge at its largest duty.
-    pub at_end_s: f64,
+    pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,
     /// Time in which a motor's winding goes most of the way (all but 1/e) to its final temperature.
@@ -179,7 +179,7 @@ pub struct Supervision {
 
 /// Records of the data recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Recording {
+pub struct RecorderParameters {
     /// Rows of a record.
     pub points: u32,
     /// How many of them are from before the trigger.
@@ -236,20 +236,20 @@ impl Parameters {
             latency_s: 65e-6,
         },
         encoders: [
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 12_345_678,
                 reversed: false,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 50_331_649,
                 reversed: true,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 67_000_000,
                 reversed: false,
             },
         ],
-        window: Window {
+        window: SettlingWindow {
             counts: 2.0,
             dwell_s: 2e-3,
         },
@@ -265,7 +265,7 @@ impl Parameters {
             frozen_rad: 2e-4,
             // Half a volt is 0.7 N m, seven times the friction.
             frozen_v: 0.5,
-            at_end_s: 0.1,
+            max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,
             late_ticks: 10,
@@ -275,12 +275,12 @@ impl Parameters {
             stop_s: 0.06,
             host_silence_ms: 0.0,
         },
-        recorder: Recording {
-            points: RECORD_ROWS as u32,
+        recorder: RecorderParameters {
+            points: MAX_RECORD_ROWS as u32,
             before: 0,
         },
         targets: Targets {
-            way: Way::Literal,
+            turn_direction: TurnDirection::AsGiven,
             streamed: false,
         },
     };

@@ -2,23 +2,23 @@
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
 //! for one, every fourth tick or when there is news, and not when it took a command: that tick is the longest as it is.
-//! [`PanelLink::snapshot`] throws away a snapshot that has been waiting, so that what it returns is new.
+//! [`CommandQueues::snapshot`] throws away a snapshot that has been waiting, so that what it returns is new.
 
 use crate::control::config::Config;
-use crate::control::loop_counters::Interval;
+use crate::control::loop_counters::LoopCounters;
 use crate::drivers::bridge::Duty;
 use crate::fault::Fault;
-use crate::fault_record::{BlackBox, History};
+use crate::fault_record::{FaultRecordWriter, RetainedMemory};
 use crate::mode::Mode;
-use crate::motion::{Centre, Plan, Position};
-use crate::recorder::{PanelRecorder, RECORD_WORDS, Recorder, TickRecorder};
+use crate::motion::{Plan, Position, RotationCentre};
+use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader, RecorderWriter};
 use heapless::spsc::{Consumer, Producer, Queue};
 use kinematics::Angle;
 
 /// Slots of the command queue (one is lost to the ring).
-pub const COMMANDS: usize = 5;
+pub const COMMAND_SLOTS: usize = 5;
 /// Slots of the snapshot queue: one snapshot waiting.
-pub const SNAPSHOTS: usize = 2;
+pub const SNAPSHOT_SLOTS: usize = 2;
 
 /// What the command side asks of the tick.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub enum Command {
     Move(Plan),
     /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or not;
     /// the platform does not move.
-    Centre(Centre),
+    Centre(RotationCentre),
     /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the encoders'
     /// readings mean; such a change takes the reference.
     Configure(Config),
@@ -54,7 +54,7 @@ pub struct Snapshot {
     /// The latched fault.
     pub fault: Option<Fault>,
     /// The fault that has ended its controlled stop, if one has.
-    pub worse: Option<Fault>,
+    pub stop_ended_by: Option<Fault>,
     /// Whether theta and the turns are known.
     pub referenced: bool,
     /// Whether all three encoders answer well, and, for those that do not, why (index: pivot).
@@ -70,7 +70,7 @@ pub struct Snapshot {
     /// Setpoint of the point that is moved.
     pub setpoint: Position,
     /// That point.
-    pub centre: Centre,
+    pub centre: RotationCentre,
     /// Identity of the plan under way, or of the last one.
     pub plan: u32,
     /// Ticks of it that are done.
@@ -84,36 +84,36 @@ pub struct Snapshot {
     /// Largest following error of a pivot since the last start of a motion, rad.
     pub peak_following_error_rad: f32,
     /// What the loop has counted since the snapshot before.
-    pub interval: Interval,
+    pub loop_counters: LoopCounters,
 }
 
 /// Storage of both queues, and of the data recorder.
-pub struct Link {
-    commands: Queue<Command, COMMANDS>,
-    snapshots: Queue<Snapshot, SNAPSHOTS>,
-    recorder: Recorder<RECORD_WORDS>,
+pub struct Queues {
+    commands: Queue<Command, COMMAND_SLOTS>,
+    snapshots: Queue<Snapshot, SNAPSHOT_SLOTS>,
+    recorder: Recorder<RECORDER_WORDS>,
 }
 
 /// The tick's ends.
-pub struct TickLink<'a> {
+pub struct TickQueues<'a> {
     /// Commands to take.
     pub commands: Consumer<'a, Command>,
     /// Where snapshots are left.
     pub snapshots: Producer<'a, Snapshot>,
     /// The data recorder's end in the tick.
-    pub recorder: TickRecorder<'a>,
+    pub recorder: RecorderWriter<'a>,
     /// The fault record's, where there is memory for one.
-    pub history: Option<History<'a>>,
+    pub fault_record: Option<FaultRecordWriter<'a>>,
 }
 
 /// The command side's ends.
-pub struct PanelLink<'a> {
+pub struct CommandQueues<'a> {
     commands: Producer<'a, Command>,
     snapshots: Consumer<'a, Snapshot>,
     /// The data recorder's end outside the tick.
-    pub recorder: PanelRecorder<'a>,
+    pub recorder: RecorderReader<'a>,
     /// The black box, if there is one.
-    pub black_box: Option<&'a BlackBox>,
+    pub retained_memory: Option<&'a RetainedMemory>,
 }
 
 /// The command queue is full: nothing was queued.
@@ -121,7 +121,7 @@ pub struct PanelLink<'a> {
 pub struct QueueFull;
 
 #[allow(clippy::new_without_default)] // A default of 100 KB is nothing to be made in passing.
-impl Link {
+impl Queues {
     /// Empty queues.
     pub const fn new() -> Self {
         Self {
@@ -132,61 +132,61 @@ impl Link {
     }
 
     /// The two sides, without a black box.
-    pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
+    pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
         self.split_with(None)
     }
 
     /// The two sides, with this black box, in which a start is noted.
-    pub fn split_keeping<'a>(
+    pub fn split_with_retained<'a>(
         &'a mut self,
-        black_box: &'a BlackBox,
-    ) -> (TickLink<'a>, PanelLink<'a>) {
-        self.split_with(Some(black_box))
+        retained_memory: &'a RetainedMemory,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
+        self.split_with(Some(retained_memory))
     }
 
     fn split_with<'a>(
         &'a mut self,
-        black_box: Option<&'a BlackBox>,
-    ) -> (TickLink<'a>, PanelLink<'a>) {
+        retained_memory: Option<&'a RetainedMemory>,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
         let (command_in, command_out) = self.commands.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
         let (tick_recorder, panel_recorder) = self.recorder.split();
         (
-            TickLink {
+            TickQueues {
                 commands: command_out,
                 snapshots: snapshot_in,
                 recorder: tick_recorder,
-                history: black_box.map(BlackBox::begin),
+                fault_record: retained_memory.map(RetainedMemory::begin),
             },
-            PanelLink {
+            CommandQueues {
                 commands: command_in,
                 snapshots: snapshot_out,
                 recorder: panel_recorder,
-                black_box,
+                retained_memory: retained_memory,
             },
         )
     }
 }
 
-impl TickLink<'_> {
+impl TickQueues<'_> {
     /// Whether there is room for a snapshot.
     // The queue carries its number of slots with it. To be told it spares the tick a division by what, for all the compiler
     // knows, could be zero, and the panic behind that.
     #[inline]
-    pub fn has_room(&self) -> bool {
-        self.snapshots.capacity() == SNAPSHOTS - 1 && self.snapshots.ready()
+    pub fn has_snapshot_room(&self) -> bool {
+        self.snapshots.capacity() == SNAPSHOT_SLOTS - 1 && self.snapshots.ready()
     }
 
     /// Throws away the commands that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.commands.dequeue().is_some() {}
-        if let Some(history) = &mut self.history {
-            history.start_again();
+        if let Some(history) = &mut self.fault_record {
+            history.restart();
         }
     }
 }
 
-impl PanelLink<'_> {
+impl CommandQueues<'_> {
     /// Throws away the snapshots that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.snapshots.dequeue().is_some() {}

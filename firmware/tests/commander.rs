@@ -12,7 +12,7 @@ use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::motion::Stop;
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink};
+use firmware::queues::{CommandQueues, Queues};
 
 /// Largest change of velocity in a tick: an urgent stop brakes as hard as a pivot can, 300 rad/s^2 at 20 kHz, in rad/s.
 const SMOOTH: f32 = 1.5e-2;
@@ -20,13 +20,13 @@ const SMOOTH: f32 = 1.5e-2;
 /// A commander in front of a tick.
 struct Bench {
     commander: Commander,
-    queues: PanelLink<'static>,
+    queues: CommandQueues<'static>,
     tick: FakeTick,
 }
 
 impl Bench {
     fn with(parameters: &Parameters) -> Self {
-        let (tick, queues) = Box::leak(Box::new(Link::new())).split();
+        let (tick, queues) = Box::leak(Box::new(Queues::new())).split();
         let mut bench = Self {
             commander: Commander::new(parameters),
             queues,

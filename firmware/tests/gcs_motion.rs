@@ -4,7 +4,7 @@ mod gcs_bench;
 
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
-use firmware::queues::{COMMANDS, Command};
+use firmware::queues::{COMMAND_SLOTS, Command};
 use gcs_bench::Bench;
 
 /// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
@@ -370,8 +370,8 @@ fn a_full_input_is_offered_again() {
 #[test]
 fn a_full_queue_is_an_error_and_changes_nothing() {
     let mut bench = Bench::ready();
-    for _ in 1..COMMANDS {
-        bench.link.send(Command::Acknowledge).unwrap();
+    for _ in 1..COMMAND_SLOTS {
+        bench.queues.send(Command::Acknowledge).unwrap();
     }
     bench.offer(0, b"MOV X 1\nERR?\nSVO X 0\nERR?\nMOV? X\n\x05");
     assert_eq!(bench.answers_of(0), b"1005\n1005\nX=0\n0\n");

@@ -119,11 +119,11 @@ fn statistics_add_up_and_start_again() {
     let tick = bench.tick.now.tick;
     bench.say("LST\n");
     for cycles in [100, 300, 200] {
-        bench.tick.now.interval.cycles = cycles;
-        bench.tick.now.interval.cycles_sum += cycles;
-        bench.tick.now.interval.cycles_worst = cycles;
-        bench.tick.now.interval.late = u32::from(cycles == 300);
-        bench.tick.now.interval.peak_error = cycles;
+        bench.tick.now.loop_counters.cycles = cycles;
+        bench.tick.now.loop_counters.cycles_sum += cycles;
+        bench.tick.now.loop_counters.cycles_worst = cycles;
+        bench.tick.now.loop_counters.late = u32::from(cycles == 300);
+        bench.tick.now.loop_counters.peak_error = cycles;
         bench.run(1);
     }
     let answer = bench.say("LST?\n");

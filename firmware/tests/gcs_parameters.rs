@@ -212,7 +212,7 @@ fn settings_that_the_tick_refuses_are_taken_back() {
 fn a_full_queue_refuses_the_line() {
     let mut bench = advanced();
     while bench
-        .link
+        .queues
         .send(firmware::queues::Command::Acknowledge)
         .is_ok()
     {}

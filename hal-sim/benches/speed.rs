@@ -8,7 +8,7 @@ use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink, TickLink};
+use firmware::queues::{CommandQueues, Queues, TickQueues};
 use hal_sim::devices::{BridgeState, Stage, StageParameters};
 use hal_sim::host::Host;
 use hal_sim::observer::TickRecord;
@@ -60,7 +60,7 @@ fn controller_alone() {
                 &mut config,
                 &mut state,
                 inputs,
-                &mut rig.tick_link,
+                &mut rig.tick_queues,
                 &mut rig.record,
             ));
         }
@@ -104,7 +104,7 @@ fn recorded_inputs() -> Vec<Inputs> {
                 tick_cycles: 0,
                 late: false,
             };
-            host.tick(&mut rig.tick_link, &mut rig.record);
+            host.tick(&mut rig.tick_queues, &mut rig.record);
             inputs
         })
         .collect()
@@ -112,8 +112,8 @@ fn recorded_inputs() -> Vec<Inputs> {
 
 /// What stands around a tick.
 struct Rig {
-    tick_link: TickLink<'static>,
-    panel_link: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    command_queues: CommandQueues<'static>,
     panel: Interpreter,
     session: Session,
     record: TickRecord,
@@ -122,10 +122,10 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         // As long as the process: a few of them are made.
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let (tick_queues, command_queues) = Box::leak(Box::new(Queues::new())).split();
         Self {
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             panel: Interpreter::new(&Parameters::REFERENCE, IDENTITY),
             session: Session::new(),
             record: TickRecord::default(),
@@ -145,7 +145,7 @@ impl Rig {
         }
         let mut answers = Vec::new();
         // Writing to a vector does not fail.
-        let _ = (self.panel).service(&mut self.session, &mut self.panel_link, &mut answers);
+        let _ = (self.panel).service(&mut self.session, &mut self.command_queues, &mut answers);
     }
 }
 

@@ -6,8 +6,8 @@ use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
 use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
-use firmware::queues::TickLink;
-use firmware::recorder::Record;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
 
 use crate::devices::{
     Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
@@ -96,9 +96,13 @@ impl Host {
     }
 
     /// One tick of the controller, and the stage's motion up to the next.
-    pub fn tick(&mut self, link: &mut TickLink<'_>, recorder: &mut impl Record) -> Outputs {
+    pub fn tick(
+        &mut self,
+        queues: &mut TickQueues<'_>,
+        recorder: &mut impl TickObserver,
+    ) -> Outputs {
         let inputs = self.inputs();
-        let outputs = tick(&mut self.config, &mut self.state, &inputs, link, recorder);
+        let outputs = tick(&mut self.config, &mut self.state, &inputs, queues, recorder);
         for (driver, duty) in self.drivers.iter_mut().zip(outputs.duty) {
             let done = if outputs.awake {
                 driver.drive(duty)
@@ -139,7 +143,7 @@ impl Host {
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
     pub fn worse(&self) -> Option<Fault> {
-        self.state.worse()
+        self.state.stop_ended_by()
     }
 
     fn inputs(&mut self) -> Inputs {
@@ -151,7 +155,7 @@ impl Host {
         let bridge_fault = self
             .drivers
             .each_mut()
-            .map(|driver| driver.faulty().unwrap_or(true));
+            .map(|driver| driver.reports_fault().unwrap_or(true));
         let (current_counts, supply_counts) = self.stage.analog();
         Inputs {
             frames,

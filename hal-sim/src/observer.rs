@@ -3,7 +3,7 @@
 use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
-use firmware::recorder::{Record, RunningHash, Sample as TickSample};
+use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
 use std::f64::consts::{PI, TAU};
 
 use crate::report::{MotionSample, Move, Sample, Trace};
@@ -21,9 +21,9 @@ pub struct TickRecord {
     pub hash: RunningHash,
 }
 
-impl Record for TickRecord {
-    fn record(&mut self, sample: &TickSample) {
-        self.hash.record(sample);
+impl TickObserver for TickRecord {
+    fn observe(&mut self, sample: &TickSample) {
+        self.hash.observe(sample);
         self.sample = Some(sample.clone());
     }
 }
@@ -105,7 +105,10 @@ impl Observer {
     }
 
     fn motion(&mut self, tick: &TickSample) -> MotionSample {
-        let (twist, acceleration) = (&tick.point.twist, &tick.point.acceleration);
+        let (twist, acceleration) = (
+            &tick.reference_point.twist,
+            &tick.reference_point.acceleration,
+        );
         let scaled = |x: f32, y: f32, theta: f32| {
             let [x, y] = [x, y].map(|radii| f64::from(radii) * self.radius_mm);
             [x, y, f64::from(theta).to_degrees()]

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use firmware::fault::{Fault, FaultKind};
-use firmware::fault_record::BlackBox;
+use firmware::fault_record::RetainedMemory;
 use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::queues::Link;
+use firmware::queues::Queues;
 use firmware::settings_store::SettingsStore;
 
 use crate::client::{Client, Event};
@@ -168,9 +168,9 @@ fn simulate(
     let (geometry, limits) = (panel.parameters().geometry, panel.parameters().limits);
     let mut host = Host::new(stage, panel.parameters());
     host.restart(panel.parameters(), fault);
-    let mut link = Link::new();
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
+    let mut queues = Queues::new();
+    let black_box = Box::new(RetainedMemory::new());
+    let (mut tick_queues, mut command_queues) = queues.split_with_retained(&black_box);
     let mut session = Session::new();
     let mut client = Client::new(script);
     let mut observer = Observer::new(panel.parameters(), options.every);
@@ -181,7 +181,7 @@ fn simulate(
     let progress = Progress::new(script.lines.len() as u64, options.quiet);
     let fault = loop {
         let pose = host.stage.latched_pose();
-        host.tick(&mut tick_link, &mut record);
+        host.tick(&mut tick_queues, &mut record);
         ticks += 1;
         let mut moving = false;
         if let Some(sample) = &record.sample {
@@ -194,15 +194,15 @@ fn simulate(
         let taken = session.receive(&wire.to_stage);
         wire.to_stage.drain(..taken);
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut wire.to_client);
+        let _ = panel.service(&mut session, &mut command_queues, &mut wire.to_client);
         keeper.store_pending(&mut panel);
         if panel.wants_restart() {
             let fault;
             (panel, fault) = started(parameters, &mut keeper);
             host.restart(panel.parameters(), fault);
             session.start_again();
-            tick_link.clear();
-            panel_link.clear();
+            tick_queues.clear();
+            command_queues.clear();
         }
         let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
         wire.to_stage.extend(bytes);

@@ -7,8 +7,8 @@ use firmware::drivers::biss::RawFrame;
 use firmware::gcs::{Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Link, PanelLink, QueueFull, TickLink};
-use firmware::recorder::{Record, Sample};
+use firmware::queues::{Command, CommandQueues, QueueFull, Queues, TickQueues};
+use firmware::recorder::{Sample, TickObserver};
 use firmware::settings_store::SettingsStore;
 use hal_sim::devices::SettingsFlash;
 use hal_sim::devices::biss::{Preamble, encode};
@@ -46,8 +46,8 @@ pub struct Connection {
 #[derive(Default)]
 struct Last(Option<Sample>);
 
-impl Record for Last {
-    fn record(&mut self, sample: &Sample) {
+impl TickObserver for Last {
+    fn observe(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
 }
@@ -69,8 +69,8 @@ pub struct Ideal {
     pub flicker: bool,
     /// What the last tick put out.
     pub outputs: Outputs,
-    tick_link: TickLink<'static>,
-    panel_link: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    command_queues: CommandQueues<'static>,
     last: Last,
     /// What the encoders show.
     counts: [u32; 3],
@@ -84,10 +84,10 @@ impl Ideal {
         let parameters = Parameters::REFERENCE;
         let config = Config::new(&parameters);
         // The queues live as long as the process: some kilobytes for each stage.
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split();
+        let (tick_queues, command_queues) = Box::leak(Box::new(Queues::new())).split();
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
-        let counts = [0, 1, 2].map(|i| config.encoders[i].counts_at(third(i)));
+        let counts = [0, 1, 2].map(|i| config.encoders[i].ideal_counts_at(third(i)));
         let mut panel = Interpreter::new(&parameters, IDENTITY);
         let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
         keeper.restore(&mut panel);
@@ -100,8 +100,8 @@ impl Ideal {
             trouble: Trouble::default(),
             flicker: false,
             outputs: Outputs::default(),
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             last: Last::default(),
             counts,
             last_bit: 0,
@@ -116,7 +116,7 @@ impl Ideal {
             &mut self.config,
             &mut self.state,
             &inputs,
-            &mut self.tick_link,
+            &mut self.tick_queues,
             &mut self.last,
         );
         self.follow(before.as_ref());
@@ -141,7 +141,7 @@ impl Ideal {
         // Writing to a vector does not fail.
         let _ = self.panel.service(
             &mut connection.session,
-            &mut self.panel_link,
+            &mut self.command_queues,
             &mut connection.output,
         );
         self.keeper.store_pending(&mut self.panel);
@@ -163,7 +163,7 @@ impl Ideal {
     /// # Errors
     /// [`QueueFull`]
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
-        self.panel_link.send(command)
+        self.command_queues.send(command)
     }
 
     /// What the last tick computed, once one has run.
@@ -178,8 +178,8 @@ impl Ideal {
         self.state =
             (self.keeper.restore(&mut self.panel)).map_or_else(State::new, State::with_fault);
         self.config = Config::new(self.panel.parameters());
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
         for connection in &mut self.connections {
             connection.session.start_again();
         }
@@ -225,7 +225,7 @@ impl Ideal {
                 .map_or(Angle::ZERO, |before| {
                     now.pivot_setpoints[i] - before.pivot_setpoints[i]
                 });
-            self.counts[i] = self.config.encoders[i].counts_at(now.pivot_setpoints[i] + step);
+            self.counts[i] = self.config.encoders[i].ideal_counts_at(now.pivot_setpoints[i] + step);
         }
     }
 }

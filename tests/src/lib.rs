@@ -9,11 +9,11 @@ pub mod trouble;
 
 use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
-use firmware::fault_record::BlackBox;
+use firmware::fault_record::RetainedMemory;
 use firmware::gcs::{Interpreter, Session};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink, TickLink};
+use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::recorder::Sample;
 use hal_sim::devices::StageParameters;
 use hal_sim::host::Host;
@@ -33,8 +33,8 @@ pub struct Bench {
     pub outputs: Outputs,
     panel: Interpreter,
     session: Session,
-    tick_link: TickLink<'static>,
-    panel_link: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    command_queues: CommandQueues<'static>,
     record: TickRecord,
     answers: Vec<u8>,
     /// Largest following error of a pivot since [`Bench::forget_errors`], encoder counts.
@@ -52,16 +52,17 @@ impl Bench {
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
         // The queues live as long as the process: a test has a few of them.
-        let black_box = Box::leak(Box::new(BlackBox::new()));
-        let (tick_link, panel_link) = Box::leak(Box::new(Link::new())).split_keeping(black_box);
+        let black_box = Box::leak(Box::new(RetainedMemory::new()));
+        let (tick_queues, command_queues) =
+            Box::leak(Box::new(Queues::new())).split_with_retained(black_box);
         let parameters = Parameters::REFERENCE;
         Self {
             host: Host::new(stage, &parameters),
             outputs: Outputs::default(),
             panel: Interpreter::new(&parameters, IDENTITY),
             session: Session::new(),
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             record: TickRecord::default(),
             answers: Vec::new(),
             worst_error_counts: 0,
@@ -75,8 +76,8 @@ impl Bench {
         self.panel = Interpreter::new(&parameters, IDENTITY);
         self.panel.set_start_cause(cause);
         self.session = Session::new();
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
     }
 
     /// Referenced, holding and settled.
@@ -93,12 +94,16 @@ impl Bench {
 
     /// One tick, and one turn of the command side.
     pub fn tick(&mut self) {
-        self.outputs = self.host.tick(&mut self.tick_link, &mut self.record);
+        self.outputs = self.host.tick(&mut self.tick_queues, &mut self.record);
         if matches!(self.mode(), Mode::Holding | Mode::Moving | Mode::Stopping) {
             self.worst_error_counts = self.worst_error_counts.max(self.error_counts());
         }
         // Writing to a vector does not fail.
-        let _ = (self.panel).service(&mut self.session, &mut self.panel_link, &mut self.answers);
+        let _ = (self.panel).service(
+            &mut self.session,
+            &mut self.command_queues,
+            &mut self.answers,
+        );
     }
 
     /// So many ticks.

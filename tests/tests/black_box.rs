@@ -1,6 +1,6 @@
 //! The black box on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
 
-use firmware::fault_record::{AFTER, ROWS};
+use firmware::fault_record::{FAULT_RECORD_ROWS, ROWS_AFTER_FAULT};
 use firmware::gcs::START_CAUSES;
 use firmware::mode::Mode;
 use tests::Bench;
@@ -41,9 +41,9 @@ fn the_ticks_around_a_fault_can_be_read_until_the_servo_is_on() {
     let mut bench = faulted();
     let tick = bench.fault().expect("a fault").tick as f64;
     let rows = record(&mut bench);
-    assert_eq!(rows.len(), ROWS);
+    assert_eq!(rows.len(), FAULT_RECORD_ROWS);
     for (number, row) in rows.iter().enumerate() {
-        let at = tick + f64::from(AFTER) - ROWS as f64 + number as f64;
+        let at = tick + f64::from(ROWS_AFTER_FAULT) - FAULT_RECORD_ROWS as f64 + number as f64;
         assert_eq!(row[0], at, "every tick, in order");
         // Mode and fault: moving before, then latched as the seventh kind.
         let expected = if at < tick { [2.0, 0.0] } else { [3.0, 7.0] };
@@ -72,7 +72,7 @@ fn the_record_of_a_controlled_stop_is_that_of_its_beginning() {
     bench.run_until("stopped", |bench| bench.mode() == Mode::Fault);
     let rows = record(&mut bench);
     let last = rows.last().map(|row| row[0]);
-    assert_eq!(last, Some(tick + f64::from(AFTER) - 1.0));
+    assert_eq!(last, Some(tick + f64::from(ROWS_AFTER_FAULT) - 1.0));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn a_record_of_the_users_own_changes_nothing() {
     bench.run(2_000);
     bench.host.emergency_stop = true;
     bench.run(100);
-    assert_eq!(record(&mut bench).len(), ROWS);
+    assert_eq!(record(&mut bench).len(), FAULT_RECORD_ROWS);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn a_reset_in_motion_leaves_the_last_ticks_before_it() {
     bench.reset(START_CAUSES[0]);
     bench.run(100);
     let rows = record(&mut bench);
-    assert_eq!(rows.len(), ROWS);
+    assert_eq!(rows.len(), FAULT_RECORD_ROWS);
     assert_eq!(rows.last().map(|row| (row[0], row[1])), Some((last, 2.0)));
 }
 

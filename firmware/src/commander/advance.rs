@@ -7,12 +7,12 @@ use super::pending::{Pending, Retarget};
 use super::sent_plan::{Goal, SentPlan};
 use super::state::Commander;
 use crate::mode::Mode;
-use crate::motion::{NoTransition, Stop};
-use crate::queues::{Command, PanelLink};
+use crate::motion::{RetargetError, Stop};
+use crate::queues::{Command, CommandQueues};
 
 impl Commander {
     /// Takes the next step of what is pending, if its time has come. To be called after every [`update`](Self::update).
-    pub fn advance_pending(&mut self, queues: &mut PanelLink<'_>) {
+    pub fn advance_pending(&mut self, queues: &mut CommandQueues<'_>) {
         if self.current_snapshot().is_none() {
             return;
         }
@@ -54,7 +54,7 @@ impl Commander {
     pub(super) fn request_goal(
         &mut self,
         goal: Goal,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         if self.pending.stream().is_some() {
             return Err(CommandError::Streaming);
@@ -76,7 +76,7 @@ impl Commander {
     fn start_from_rest(
         &mut self,
         retarget: Retarget,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let (from, goal) = (self.setpoint(), retarget.goal);
         let constraints = match goal {
@@ -98,7 +98,7 @@ impl Commander {
     fn retarget(
         &mut self,
         retarget: Retarget,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let goal = retarget.goal;
         let constraints = match goal {
@@ -132,10 +132,10 @@ impl Commander {
                 };
                 sent
             }
-            Err(NoTransition::Refused(refusal)) => Err(refusal.into()),
+            Err(RetargetError::Refused(refusal)) => Err(refusal.into()),
             Err(no) => {
                 let tried = Retarget {
-                    needs_rest: no == NoTransition::NeedsStop,
+                    needs_rest: no == RetargetError::NeedsStop,
                     ..tried
                 };
                 self.pending = Pending::with_goal((!stops).then_some(Stop::Smooth), tried);
@@ -144,7 +144,7 @@ impl Commander {
         }
     }
 
-    fn send_stop(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
+    fn send_stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         let id = self.next_plan_id();
         let constraints = self.constraints();
         let Some((under_way, at)) = self.active_plan() else {
@@ -179,7 +179,7 @@ impl Commander {
         &mut self,
         sent_plan: SentPlan,
         retarget: Option<Retarget>,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let command = Command::Move(sent_plan.plan.clone());
         self.send(command, InFlight::Plan(sent_plan, retarget), queues)

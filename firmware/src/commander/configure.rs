@@ -6,9 +6,9 @@ use super::in_flight::InFlight;
 use super::state::Commander;
 use crate::control::config::Config;
 use crate::mode::Mode;
-use crate::motion::{Ground, Limits};
+use crate::motion::{Constraints, Limits};
 use crate::parameters::Parameters;
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 impl Commander {
     /// Goes over from the parameters `now` to those `wanted`; the tick is told when what it computes with changes. To
@@ -22,7 +22,7 @@ impl Commander {
         &mut self,
         now: &Parameters,
         wanted: &Parameters,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let moved = self.active_frames.tool.origin() != [0.0; 2];
         if moved && now.geometry.radius_mm != wanted.geometry.radius_mm {
@@ -44,7 +44,7 @@ impl Commander {
 
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
-        self.base_constraints = Ground::new(self.base_constraints.limits, parameters.geometry);
+        self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
         self.targets = parameters.targets;
         self.set_limits(parameters.limits);
     }

@@ -3,16 +3,16 @@
 use super::axis::Axis;
 use super::coordinates::UNITS_PER_RADIUS;
 use super::state::Commander;
-use crate::motion::{Ground, Limits, Position};
+use crate::motion::{Constraints, Limits, Position};
 
 const DEGREES_A_TURN: f64 = 360.0;
 
 impl Commander {
     /// What plans keep to now.
-    pub(super) fn constraints(&self) -> Ground {
+    pub(super) fn constraints(&self) -> Constraints {
         let radius_mm = self.base_constraints.geometry.radius_mm;
         let mut constraints = self.base_constraints;
-        constraints.centre = self.radii(self.active_frames.tool.origin());
+        constraints.rotation_centre = self.radii(self.active_frames.tool.origin());
         let [x, y] = self.active_frames.zero;
         for (bounds, (axis, zero, per_unit)) in (constraints.bounds.iter_mut()).zip([
             (Axis::X, x, radius_mm),
@@ -34,7 +34,7 @@ impl Commander {
     }
 
     /// What a line between two positions keeps to: no axis of the work frame is faster than its velocity.
-    pub(super) fn line_constraints(&self, from: &Position, to: &Position) -> Ground {
+    pub(super) fn line_constraints(&self, from: &Position, to: &Position) -> Constraints {
         let [x, y] = [0, 1].map(|i| to[i].wrapping_sub(from[i]) as f64);
         let length = libm::hypot(x, y);
         let way = self.active_frames.work.inverse().turned([x, y]);
@@ -43,11 +43,11 @@ impl Commander {
     }
 
     /// What a way of any shape keeps to: it may turn into any direction.
-    pub(super) fn curve_constraints(&self) -> Ground {
+    pub(super) fn curve_constraints(&self) -> Constraints {
         self.constraints_with_shares([1.0; 2])
     }
 
-    fn constraints_with_shares(&self, shares: [f64; 2]) -> Ground {
+    fn constraints_with_shares(&self, shares: [f64; 2]) -> Constraints {
         let mut constraints = self.constraints();
         let Limits {
             speed_mm_s,

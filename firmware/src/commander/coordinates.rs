@@ -3,7 +3,7 @@
 use super::axis::{Axis, Coordinates, Travel};
 use super::error::CommandError;
 use super::frames::{ActiveFrames, Transform};
-use crate::motion::{Ground, Position, check_target};
+use crate::motion::{Constraints, Position, check_target};
 use kinematics::{Angle, Geometry, direct};
 
 /// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
@@ -56,7 +56,7 @@ pub(crate) fn position(
     target: &Coordinates,
     last: &Coordinates,
     active_frames: &ActiveFrames,
-    constraints: &Ground,
+    constraints: &Constraints,
 ) -> Result<Position, CommandError> {
     let frozen = |axis: Axis| axis.component().is_none() && target[axis.index()] != 0.0;
     let point = active_frames.point_of(target);

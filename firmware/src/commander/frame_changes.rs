@@ -10,8 +10,8 @@ use super::frames::{
 use super::in_flight::InFlight;
 use super::state::Commander;
 use crate::mode::Mode;
-use crate::motion::{Centre, FURTHEST};
-use crate::queues::{Command, PanelLink};
+use crate::motion::{MAX_CENTRE_OFFSET, RotationCentre};
+use crate::queues::{Command, CommandQueues};
 
 /// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells
 /// apart.
@@ -27,7 +27,7 @@ impl Commander {
     pub fn change_frames(
         &mut self,
         action: &FrameChange,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         match *action {
             FrameChange::Define(kind, name, values) => {
@@ -57,7 +57,7 @@ impl Commander {
     fn set_rotation_centre(
         &mut self,
         values: [Option<f64>; 3],
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         self.check_at_rest()?;
         let [r, s, t] = values;
@@ -77,12 +77,12 @@ impl Commander {
     fn select_frames(
         &mut self,
         selection: FrameSelection,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
-        let most_arm_mm = FURTHEST * self.base_constraints.geometry.radius_mm;
+        let most_arm_mm = MAX_CENTRE_OFFSET * self.base_constraints.geometry.radius_mm;
         let active_frames = self.frames.active_frames(&selection, most_arm_mm)?;
         let target = self.rest_target_in(&active_frames);
         let referenced = self.snapshot().is_some_and(|snapshot| snapshot.referenced);
@@ -97,8 +97,8 @@ impl Commander {
             self.apply_frames(selection, active_frames);
             return Ok(());
         }
-        let centre =
-            Centre::new(self.radii(active_frames.tool.origin())).ok_or(FrameError::TooFar)?;
+        let centre = RotationCentre::new(self.radii(active_frames.tool.origin()))
+            .ok_or(FrameError::TooFar)?;
         self.send(
             Command::Centre(centre),
             InFlight::SelectFrames(selection, active_frames),

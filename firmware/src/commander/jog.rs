@@ -7,7 +7,7 @@ use super::sent_plan::Goal;
 use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Commander {
     /// Moves at constant velocities, mm/s and deg/s: axes that are not named keep the velocity that an earlier one gave
@@ -15,7 +15,7 @@ impl Commander {
     pub fn jog(
         &mut self,
         values: &AxisValues,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         self.check_ready()?;
         if self.pending.stream().is_some() {

@@ -11,7 +11,7 @@ use super::soft_limits::SoftLimitChange;
 use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::Stop;
-use crate::queues::{Command, PanelLink, Snapshot};
+use crate::queues::{Command, CommandQueues, Snapshot};
 use kinematics::Angle;
 
 impl Commander {
@@ -20,7 +20,7 @@ impl Commander {
     pub fn move_to(
         &mut self,
         values: &AxisValues,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         self.move_to_target(self.resolve_target(&self.base_target(), values), queues)
     }
@@ -42,7 +42,7 @@ impl Commander {
         let (Some(from), Some(to)) = (units(last[w]), units(target[w])) else {
             return;
         };
-        let turns = (self.targets.way.target(from, to) - to) >> 32;
+        let turns = (self.targets.turn_direction.resolve(from, to) - to) >> 32;
         target[w] += turns as f64 * 360.0;
     }
 
@@ -50,7 +50,7 @@ impl Commander {
     pub fn move_by(
         &mut self,
         values: &AxisValues,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let mut target = self.base_target();
         for (coordinate, value) in target.iter_mut().zip(values) {
@@ -63,7 +63,7 @@ impl Commander {
     pub fn move_in_tool(
         &mut self,
         values: &AxisValues,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let (x, y) = (Axis::X.index(), Axis::Y.index());
         let turned = Transform {
@@ -79,7 +79,7 @@ impl Commander {
     fn move_to_target(
         &mut self,
         target: Coordinates,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         self.check_ready()?;
         let from = self.setpoint();
@@ -117,7 +117,7 @@ impl Commander {
     }
 
     /// Brings the motion to rest, if there is one; whatever else was asked is over.
-    pub fn stop(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
+    pub fn stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }
@@ -129,7 +129,11 @@ impl Commander {
 
     /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and
     /// comes about with referencing.
-    pub fn set_servo(&mut self, on: bool, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
+    pub fn set_servo(
+        &mut self,
+        on: bool,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);
         };
@@ -146,7 +150,10 @@ impl Commander {
     }
 
     /// Acknowledges the latched fault; without one nothing is done.
-    pub fn acknowledge_fault(&mut self, queues: &mut PanelLink<'_>) -> Result<(), CommandError> {
+    pub fn acknowledge_fault(
+        &mut self,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
         if self.mode() == Mode::Stopping {
             return Err(CommandError::InMotion);
         }

@@ -4,7 +4,7 @@ use super::error::CommandError;
 use super::in_flight::InFlight;
 use super::state::Commander;
 use crate::mode::Mode;
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 /// Ticks that referencing waits for encoders that do not answer yet: they need some good frames in a row.
 const REFERENCING_TIMEOUT_TICKS: u64 = 40;
@@ -22,7 +22,10 @@ pub enum Referencing {
 
 impl Commander {
     /// Begins to reference: whether there is something to wait for.
-    pub fn begin_referencing(&mut self, queues: &mut PanelLink<'_>) -> Result<bool, CommandError> {
+    pub fn begin_referencing(
+        &mut self,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<bool, CommandError> {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);
         };
@@ -41,7 +44,7 @@ impl Commander {
     }
 
     /// Goes on with it: encoders are given a moment to answer, then the tick references.
-    pub fn poll_referencing(&mut self, queues: &mut PanelLink<'_>) -> Referencing {
+    pub fn poll_referencing(&mut self, queues: &mut CommandQueues<'_>) -> Referencing {
         let Some(snapshot) = self.current_snapshot() else {
             return Referencing::Waiting;
         };

@@ -2,8 +2,8 @@
 
 use super::error::CommandError;
 use crate::motion::{
-    Ahead, Axis, Ground, Leave, NoTransition, Plan, Position, Start, Stop, Tries, plan_jog,
-    plan_line, plan_stop, try_transition,
+    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, RetargetError, Stop, Tries,
+    plan_jog, plan_line, plan_stop, try_retarget,
 };
 
 /// What a motion is for.
@@ -27,7 +27,7 @@ pub(crate) struct SentPlan {
     /// Of a stop, how it brakes.
     pub stop: Option<Stop>,
     /// The three axes at its first tick.
-    start: [Axis; 3],
+    start: [AxisState; 3],
 }
 
 impl SentPlan {
@@ -36,9 +36,9 @@ impl SentPlan {
         id: u32,
         from: Position,
         goal: Goal,
-        constraints: &Ground,
+        constraints: &Constraints,
     ) -> Result<Self, CommandError> {
-        let start = from.map(Axis::at_rest);
+        let start = from.map(AxisState::at_rest);
         let plan = match goal {
             // It makes its plans itself.
             Goal::Stream => Err(CommandError::Busy),
@@ -46,11 +46,11 @@ impl SentPlan {
                 plan_line(id, from, to, constraints).map_err(CommandError::Refused)
             }
             Goal::Velocity(velocity) => {
-                plan_jog(id, Start::Rest(from), &start, &velocity, constraints).map_err(|no| {
+                plan_jog(id, PlanStart::Rest(from), &start, &velocity, constraints).map_err(|no| {
                     match no {
-                        NoTransition::Refused(refusal) => CommandError::Refused(refusal),
+                        RetargetError::Refused(refusal) => CommandError::Refused(refusal),
                         // At rest there is nothing to stop.
-                        NoTransition::NeedsStop | NoTransition::TooFast => CommandError::NoMotion,
+                        RetargetError::NeedsStop | RetargetError::TooFast => CommandError::NoMotion,
                     }
                 })
             }
@@ -64,7 +64,7 @@ impl SentPlan {
     }
 
     /// A plan of a stream, from these axes.
-    pub const fn streamed(plan: Plan, start: [Axis; 3]) -> Self {
+    pub const fn streamed(plan: Plan, start: [AxisState; 3]) -> Self {
         Self {
             plan,
             goal: Goal::Stream,
@@ -80,10 +80,10 @@ impl SentPlan {
         goal: Goal,
         id: u32,
         at: u64,
-        constraints: &Ground,
+        constraints: &Constraints,
         tries: &mut Tries,
         ahead: &mut Option<Ahead>,
-    ) -> Result<Self, NoTransition> {
+    ) -> Result<Self, RetargetError> {
         let mut next = Self {
             plan: Plan::default(),
             goal,
@@ -92,16 +92,16 @@ impl SentPlan {
         };
         match goal {
             // It makes its plans itself.
-            Goal::Stream => Err(NoTransition::NeedsStop),
+            Goal::Stream => Err(RetargetError::NeedsStop),
             Goal::Position(to) => {
                 let (of, from) = (&self.plan, &self.start);
                 let leave = Leave { of, from, at };
-                try_transition(&mut next.plan, id, leave, to, constraints, tries, ahead)
+                try_retarget(&mut next.plan, id, leave, to, constraints, tries, ahead)
             }
             // A plan that has ended by then leaves nothing to leave.
-            Goal::Velocity(_) if at >= self.plan.ticks() => Err(NoTransition::NeedsStop),
+            Goal::Velocity(_) if at >= self.plan.ticks() => Err(RetargetError::NeedsStop),
             Goal::Velocity(velocity) => {
-                let splice = Start::Splice {
+                let splice = PlanStart::Splice {
                     plan: self.plan.id,
                     tick: at,
                 };
@@ -118,9 +118,9 @@ impl SentPlan {
         ahead: &Ahead,
         id: u32,
         at: u64,
-        constraints: &Ground,
+        constraints: &Constraints,
         tries: &mut Tries,
-    ) -> Result<Self, NoTransition> {
+    ) -> Result<Self, RetargetError> {
         Ok(Self {
             plan: ahead.go_on(id, at, constraints, tries)?,
             start: self.plan.state_after(&self.start, at),
@@ -130,11 +130,17 @@ impl SentPlan {
 
     /// Whether it takes over from another one in motion.
     pub fn takes_over(&self) -> bool {
-        matches!(self.plan.start, Start::Splice { .. })
+        matches!(self.plan.start, PlanStart::Splice { .. })
     }
 
     /// The stop that leaves this sent_plan at its tick `at`; `None` when it comes to rest by itself as soon.
-    pub fn with_stop(&self, id: u32, at: u64, constraints: &Ground, stop: Stop) -> Option<Self> {
+    pub fn with_stop(
+        &self,
+        id: u32,
+        at: u64,
+        constraints: &Constraints,
+        stop: Stop,
+    ) -> Option<Self> {
         Some(Self {
             plan: plan_stop(id, &self.plan, &self.start, at, constraints, stop)?,
             start: self.plan.state_after(&self.start, at),

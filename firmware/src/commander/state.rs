@@ -10,9 +10,9 @@ use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
 use crate::mode::Mode;
-use crate::motion::{Ground, Limits, Position};
+use crate::motion::{Constraints, Limits, Position};
 use crate::parameters::{Parameters, Targets};
-use crate::queues::{Command, PanelLink, Snapshot};
+use crate::queues::{Command, CommandQueues, Snapshot};
 
 /// Time between streamed targets at first, ms.
 const DEFAULT_CYCLE_MS: f64 = 10.0;
@@ -25,7 +25,7 @@ const MAX_PLANNING_LEAD_TICKS: u64 = 20_000;
 /// The stage as the command side sees it. See the [module](super).
 pub struct Commander {
     /// What plans keep to, without frames and soft limits: its disk takes long to compute.
-    pub(super) base_constraints: Ground,
+    pub(super) base_constraints: Constraints,
     /// Limits of the parameters: those of full system velocity.
     pub(super) full_limits: Limits,
     pub(super) soft_limits: SoftLimits,
@@ -68,7 +68,7 @@ impl Commander {
     /// For a stage of these parameters, of which nothing is known yet.
     pub fn new(parameters: &Parameters) -> Self {
         Self {
-            base_constraints: Ground::new(parameters.limits, parameters.geometry),
+            base_constraints: Constraints::new(parameters.limits, parameters.geometry),
             full_limits: parameters.limits,
             soft_limits: SoftLimits::new(),
             waves: Waveforms::new(),
@@ -251,7 +251,7 @@ impl Commander {
         &mut self,
         command: Command,
         in_flight: InFlight,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         queues.send(command).map_err(|_| CommandError::Busy)?;
         self.commands_sent = self.commands_sent.wrapping_add(1);

@@ -9,8 +9,10 @@ use super::state::Commander;
 use super::stream_source::Streaming;
 use super::wave::GeneratorRun;
 use crate::mode::Mode;
-use crate::motion::{Clock, End, Next, NotTaken, PERIODS, Position, Progress, Stream};
-use crate::queues::PanelLink;
+use crate::motion::{
+    Clock, PERIOD_RANGE, PlanProgress, Position, PushError, Stream, StreamEnd, StreamStep,
+};
+use crate::queues::CommandQueues;
 
 /// How far a stream may end from its last target and have come to rest there, 2^-32 track radii or turns: below what an
 /// encoder tells apart.
@@ -22,7 +24,7 @@ impl Commander {
         if self.pending.stream().is_some() {
             return Err(CommandError::InMotion);
         }
-        if !PERIODS.contains(&self.period(ms)) {
+        if !PERIOD_RANGE.contains(&self.period(ms)) {
             return Err(CommandError::PeriodOutOfRange);
         }
         self.cycle_ms = ms;
@@ -67,9 +69,9 @@ impl Commander {
         {
             match stream.push(to, &constraints) {
                 Ok(()) => {}
-                Err(NotTaken::Full) => return Err(CommandError::StreamFull),
-                Err(NotTaken::Over) => return Err(CommandError::Busy),
-                Err(NotTaken::Refused(refusal)) => return Err(refusal.into()),
+                Err(PushError::Full) => return Err(CommandError::StreamFull),
+                Err(PushError::Over) => return Err(CommandError::Busy),
+                Err(PushError::Refused(refusal)) => return Err(refusal.into()),
             }
             streaming.last = (to, now);
         }
@@ -82,7 +84,7 @@ impl Commander {
     pub(super) fn start_generators(
         &mut self,
         starting: &[bool; 6],
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         self.check_ready()?;
         if self.mode() != Mode::Holding || self.is_motion_pending() {
@@ -107,13 +109,13 @@ impl Commander {
     }
 
     /// Takes the next step of the stream.
-    pub(super) fn advance_streaming(&mut self, queues: &mut PanelLink<'_>) {
+    pub(super) fn advance_streaming(&mut self, queues: &mut CommandQueues<'_>) {
         let Some(mut streaming) = self.pending.take_stream() else {
             return;
         };
         match self.next_step(&mut streaming) {
-            Ok(Next::Wait) => self.pending.begin_stream(streaming),
-            Ok(Next::Send(plan, start)) => {
+            Ok(StreamStep::Wait) => self.pending.begin_stream(streaming),
+            Ok(StreamStep::Send(plan, start)) => {
                 match self.send_plan(SentPlan::streamed(plan, start), None, queues) {
                     Ok(()) => {
                         streaming.started = true;
@@ -123,19 +125,19 @@ impl Commander {
                     Err(error) => self.report_stream_lost(error),
                 }
             }
-            Ok(Next::Over(end)) => self.finish_streaming(&streaming, end),
+            Ok(StreamStep::Over(end)) => self.finish_streaming(&streaming, end),
             Err(error) => self.report_stream_lost(error),
         }
     }
 
     /// Brings targets where generators make them, and asks the stream what is to be done.
-    fn next_step(&mut self, streaming: &mut Streaming) -> Result<Next, CommandError> {
+    fn next_step(&mut self, streaming: &mut Streaming) -> Result<StreamStep, CommandError> {
         let constraints = self.constraints();
         let (now, period) = (self.tick(), self.period(self.cycle_ms));
         if streaming.stream.is_none() {
             let there = self.mode() == Mode::Holding;
             if !there {
-                return Ok(Next::Wait);
+                return Ok(StreamStep::Wait);
             }
             let period = f64::from(self.waves.ticks);
             streaming.stream = Stream::new(self.setpoint(), period, Clock::Own);
@@ -145,13 +147,13 @@ impl Commander {
             return Err(CommandError::PeriodOutOfRange);
         };
         if let Some(run) = run {
-            while stream.room() > RESERVED_KNOTS {
+            while stream.free_places() > RESERVED_KNOTS {
                 let Some(target) = run.next(&self.waves) else {
                     stream.finish();
                     break;
                 };
                 let place = self.position_of(&target)?;
-                if let Err(NotTaken::Refused(refusal)) = stream.push(place, &constraints) {
+                if let Err(PushError::Refused(refusal)) = stream.push(place, &constraints) {
                     return Err(refusal.into());
                 }
                 streaming.last.0 = place;
@@ -161,9 +163,9 @@ impl Commander {
             stream.finish();
         }
         let Some(snapshot) = &self.snapshot else {
-            return Ok(Next::Wait);
+            return Ok(StreamStep::Wait);
         };
-        let progress = Progress {
+        let progress = PlanProgress {
             plan: snapshot.plan,
             tick: snapshot.plan_tick,
             moving: snapshot.mode == Mode::Moving,
@@ -172,7 +174,7 @@ impl Commander {
     }
 
     /// A stream is over. What dries up at rest, at its last target, has come to a good end.
-    fn finish_streaming(&mut self, streaming: &Streaming, end: End) {
+    fn finish_streaming(&mut self, streaming: &Streaming, end: StreamEnd) {
         let rest = match self.active_plan() {
             Some((sent_plan, _)) if self.mode() == Mode::Moving => sent_plan.plan.end,
             _ => self.setpoint(),
@@ -183,10 +185,10 @@ impl Commander {
             self.target_is_rest = true;
         }
         match end {
-            End::Done => {}
-            End::Dry if there && streaming.run.is_none() => {}
-            End::Dry => self.report_late(CommandError::StreamDry),
-            End::Refused(refusal) => self.report_late(refusal.into()),
+            StreamEnd::Done => {}
+            StreamEnd::Starved if there && streaming.run.is_none() => {}
+            StreamEnd::Starved => self.report_late(CommandError::StreamDry),
+            StreamEnd::Refused(refusal) => self.report_late(refusal.into()),
         }
     }
 
@@ -207,7 +209,7 @@ impl Commander {
 
 /// Ticks without a target after which none is waited for any more.
 fn start_timeout(stream: &Stream, period: f64) -> u64 {
-    stream.start_at() as u64 * period as u64
+    stream.targets_to_start() as u64 * period as u64
 }
 
 /// Room that is left in a stream that generators fill: they make targets as these are used, not long before.

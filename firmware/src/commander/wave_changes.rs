@@ -4,8 +4,8 @@ use super::axis::Axis;
 use super::error::CommandError;
 use super::state::Commander;
 use super::wave::{WaveChange, WaveError, Waveforms};
-use crate::motion::{PERIODS, Stop};
-use crate::queues::PanelLink;
+use crate::motion::{PERIOD_RANGE, Stop};
+use crate::queues::CommandQueues;
 
 impl Commander {
     /// Tables and generators.
@@ -17,7 +17,7 @@ impl Commander {
     pub fn change_waves(
         &mut self,
         action: &WaveChange,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         if let WaveChange::Switch(modes) = action {
             return self.switch_generators(modes, queues);
@@ -68,7 +68,7 @@ impl Commander {
                 Ok(())
             }
             WaveChange::Rate(ticks) => {
-                if !PERIODS.contains(&f64::from(*ticks)) {
+                if !PERIOD_RANGE.contains(&f64::from(*ticks)) {
                     return Err(CommandError::PeriodOutOfRange);
                 }
                 self.waves.ticks = *ticks;
@@ -81,7 +81,7 @@ impl Commander {
     fn switch_generators(
         &mut self,
         modes: &[Option<bool>; 6],
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let running = self.running_generators();
         let starting = modes.map(|mode| mode == Some(true));

@@ -11,5 +11,5 @@ pub(crate) mod supervisor;
 pub mod tick;
 
 pub use state::{Inputs, Outputs, State};
-pub use supervisor::{Event, Outcome, STATES, TABLE};
+pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
 pub use tick::tick;

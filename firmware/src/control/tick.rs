@@ -1,10 +1,10 @@
 //! The control loop: one function of state and inputs.
 
 use super::state::{Inputs, Outputs, State};
-use super::supervisor::{TURN, Turn};
+use super::supervisor::{INSPECTION_PERIOD_TICKS, Inspection};
 use crate::control::config::Config;
 use crate::control::encoder::Encoder;
-use crate::control::loop_counters::Interval;
+use crate::control::loop_counters::LoopCounters;
 use crate::control::servo::{PivotSetpoint, platform_torques};
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
@@ -12,8 +12,8 @@ use crate::fault::FaultKind;
 use crate::mode::Mode;
 use crate::motion::{Position, Setpoint};
 use crate::number::Fixed;
-use crate::queues::{Snapshot, TickLink};
-use crate::recorder::{Record, Sample};
+use crate::queues::{Snapshot, TickQueues};
+use crate::recorder::{Sample, TickObserver};
 use kinematics::{
     Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
     pivot_motion_in_platform_axes,
@@ -31,11 +31,13 @@ pub fn tick(
     config: &mut Config,
     state: &mut State,
     inputs: &Inputs,
-    link: &mut TickLink<'_>,
-    recorder: &mut impl Record,
+    queues: &mut TickQueues<'_>,
+    recorder: &mut impl TickObserver,
 ) -> Outputs {
     state.tick = state.tick.wrapping_add(1);
-    state.interval.count(inputs.tick_cycles, inputs.late);
+    state
+        .loop_counters
+        .count_tick(inputs.tick_cycles, inputs.late);
     let mut pivots = decode(config, &mut state.encoders, inputs.frames);
     // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
@@ -45,22 +47,22 @@ pub fn tick(
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
     // Obeyed where it lies: a plan is too long to be moved twice.
-    let command = link.commands.peek();
+    let command = queues.commands.peek();
     let commanded = command.is_some();
     // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next one on.
     let drives = state.servo_on();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
-        state.obey(config, command, &pivots);
-        let _ = link.commands.dequeue();
+        state.handle_command(config, command, &pivots);
+        let _ = queues.commands.dequeue();
         // Once more: referencing gives the pivots their turns.
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
     state.check_inputs(config, inputs);
-    state.watch_heat(config, inputs);
+    state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);
-    let setpoint = state.motion.centre().platform(&point);
+    let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
         state.drive(config, &setpoint, &mut pivots)
     } else {
@@ -69,18 +71,18 @@ pub fn tick(
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
-    let turn = state.turn;
-    state.turn = (turn + 1) % TURN as usize;
+    let turn = state.inspection_slot;
+    state.inspection_slot = (turn + 1) % INSPECTION_PERIOD_TICKS as usize;
     let outputs = Outputs {
         duty,
-        awake: state.awake(),
+        awake: state.bridges_awake(),
     };
     let sample = || Sample {
         tick: state.tick,
         mode: state.mode,
         fault: state.fault.map(|fault| fault.kind),
         setpoint,
-        point,
+        reference_point: point,
         pivot_setpoints: target,
         pivot_rates: rates,
         pivots,
@@ -90,29 +92,29 @@ pub fn tick(
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,
     };
-    recorder.record(&sample());
-    if let Some(history) = &mut link.history {
-        history.record(&sample());
+    recorder.observe(&sample());
+    if let Some(history) = &mut queues.fault_record {
+        history.observe(&sample());
     }
     // Made anew, so that a tick that records nothing has it in registers only.
-    if link.recorder.is_wanted() {
-        link.recorder.record(&sample());
+    if queues.recorder.is_active() {
+        queues.recorder.observe(&sample());
     }
     // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is. Where there is
     // no room then, the next turn serves: so the ticks that can leave one do not depend on when the command side looks.
     let now = (state.mode, state.commands);
-    state.news |= now != state.known;
-    state.known = now;
-    if (turn == SNAPSHOT_TURN || state.news) && !commanded {
-        state.news = false;
-        state.leave_snapshot(link, &point.position, &pivots, &target, duty);
+    state.report_due |= now != state.last_reported;
+    state.last_reported = now;
+    if (turn == SNAPSHOT_SLOT || state.report_due) && !commanded {
+        state.report_due = false;
+        state.send_snapshot(queues, &point.position, &pivots, &target, duty);
     }
     outputs
 }
 
 /// In turn, a tick each: a look at every pivot, and a snapshot.
-const SNAPSHOT_TURN: usize = 3;
-const _: () = assert!(TURN as usize == SNAPSHOT_TURN + 1);
+const SNAPSHOT_SLOT: usize = 3;
+const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);
 
 // The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
 // each between its symbols.
@@ -121,7 +123,7 @@ const _: () = assert!(TURN as usize == SNAPSHOT_TURN + 1);
 #[inline(never)]
 fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -> [Angle; 3] {
     for i in 0..3 {
-        encoders[i].take(&config.encoders[i], &frames[i]);
+        encoders[i].update(&config.encoders[i], &frames[i]);
     }
     encoders.each_ref().map(Encoder::angle)
 }
@@ -131,8 +133,8 @@ fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -
 fn advance(config: &Config, state: &mut State) -> Setpoint {
     let motion = &mut state.motion;
     if state.mode == Mode::Stopping {
-        motion.advance_slower(&config.slowdown);
-        return motion.slowed_setpoint(&config.scale);
+        motion.advance_fault_stop(&config.fault_stop);
+        return motion.fault_stop_setpoint(&config.scale);
     }
     // With the servo off there is nothing under way.
     if matches!(state.mode, Mode::Holding | Mode::Moving) {
@@ -142,7 +144,7 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
 }
 
 /// Setpoints of the three pivots.
-struct Pivots {
+struct PivotSetpoints {
     angles: [Angle; 3],
     motion: PivotMotion<f32>,
     torques: [f32; 3],
@@ -152,11 +154,11 @@ struct Pivots {
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
 #[inline(never)]
-fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
+fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {
     let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
     let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
     let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
-    Some(Pivots {
+    Some(PivotSetpoints {
         angles: pivots,
         motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
         torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
@@ -166,7 +168,7 @@ fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
 
 const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
 
-type Driven = ([Angle; 3], [f32; 3], [Duty; 3]);
+type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
 
 impl State {
     /// Setpoint to duties; `None` when a fault came of it.
@@ -175,35 +177,35 @@ impl State {
         config: &Config,
         setpoint: &Setpoint,
         pivots: &mut [Angle; 3],
-    ) -> Option<Driven> {
+    ) -> Option<DriveOutputs> {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
         }
         // Looked at where it lies.
-        let Some(wanted) = &pivots_of(config, setpoint) else {
-            self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
+        let Some(wanted) = &pivot_setpoints(config, setpoint) else {
+            self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
         let target = &wanted.angles;
-        if let Some(lost) = self.lost
+        if let Some(lost) = self.lost_pivot
             && let (Some(pivot), Some(target)) = (pivots.get_mut(lost), target.get(lost))
         {
             // All that is known of it.
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, wanted)?;
-        (self.settling).look(&config.limits, worst, self.motion.moving());
-        self.interval.look(worst);
-        if self.mode != Mode::Holding && !self.motion.moving() {
-            self.come_to_rest();
+        (self.settling).update(&config.limits, worst, self.motion.is_moving());
+        self.loop_counters.observe_error(worst);
+        if self.mode != Mode::Holding && !self.motion.is_moving() {
+            self.finish_motion();
         }
-        let (duty, sum) = self.servos(config, &errors, wanted);
+        let (duty, sum) = self.step_servos(config, &errors, wanted);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
-            self.fail(FaultKind::NotFinite, None, 0.0, 0.0);
+            self.raise_fault(FaultKind::NotFinite, None, 0.0, 0.0);
             return None;
         }
-        let i = self.turn;
+        let i = self.inspection_slot;
         let after = if i < 2 { i + 1 } else { 0 };
         // All are there, but in the snapshot's turn none.
         if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
@@ -213,14 +215,14 @@ impl State {
             pivots.get(after),
             duty.get(i),
         ) {
-            let turn = Turn {
+            let turn = Inspection {
                 pivot: i,
                 setpoint,
                 angle,
                 next,
                 duty,
             };
-            if !(self.is_in_range(config, i, length) && self.watch_pivot(config, &turn)) {
+            if !(self.is_in_guide_range(config, i, length) && self.inspect_pivot(config, &turn)) {
                 return None;
             }
         }
@@ -229,7 +231,12 @@ impl State {
 
     /// Duties of the three servos, and the sum of what they asked for. The one whose turn it is learns.
     #[inline(never)]
-    fn servos(&mut self, config: &Config, errors: &[i32; 3], wanted: &Pivots) -> ([Duty; 3], f32) {
+    fn step_servos(
+        &mut self,
+        config: &Config,
+        errors: &[i32; 3],
+        wanted: &PivotSetpoints,
+    ) -> ([Duty; 3], f32) {
         let counts_per_volt = config.servo.counts_per_volt(self.supply);
         let mut duty = [Duty(0); 3];
         let mut sum = 0.0;
@@ -242,10 +249,10 @@ impl State {
             };
             let servo = &mut self.servo[i];
             duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
-            if i == self.turn {
+            if i == self.inspection_slot {
                 servo.learn(&config.servo);
             }
-            sum += servo.wanted();
+            sum += servo.requested_counts();
         }
         (duty, sum)
     }
@@ -256,7 +263,7 @@ impl State {
         &mut self,
         config: &Config,
         pivots: &[Angle; 3],
-        wanted: &Pivots,
+        wanted: &PivotSetpoints,
     ) -> Option<([i32; 3], u32)> {
         let errors = [0, 1, 2].map(|i| (pivots[i] - wanted.angles[i]).units());
         let small = errors.map(|error| error as i32);
@@ -268,7 +275,7 @@ impl State {
         }
         // What any rate allows, as a rule; else each is looked at for itself.
         let least = config.limits.following_error.unsigned_abs();
-        if (beyond != 0 || worst > least) && !self.may_follow_so(config, pivots, wanted) {
+        if (beyond != 0 || worst > least) && !self.is_following_allowed(config, pivots, wanted) {
             return None;
         }
         Some((small, worst))
@@ -276,16 +283,21 @@ impl State {
 
     /// Whether errors are allowed at these rates.
     #[cold]
-    fn may_follow_so(&mut self, config: &Config, pivots: &[Angle; 3], wanted: &Pivots) -> bool {
+    fn is_following_allowed(
+        &mut self,
+        config: &Config,
+        pivots: &[Angle; 3],
+        wanted: &PivotSetpoints,
+    ) -> bool {
         let pivots = pivots.iter().zip(&wanted.angles);
         for (i, ((&pivot, &target), rate)) in pivots.zip(&wanted.motion.rates).enumerate() {
             let error = (pivot - target).units();
-            let more = (rate.abs() * config.limits.following_per_rate) as i32;
+            let more = (rate.abs() * config.limits.following_error_per_rate) as i32;
             let most = config.limits.following_error.saturating_add(more);
             if error.unsigned_abs() > u64::from(most.unsigned_abs()) {
                 const RAD: f32 = (1.0 / crate::control::config::UNITS_PER_RAD) as f32;
                 let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
-                self.fail(FaultKind::FollowingError, Some(i), value, limit);
+                self.raise_fault(FaultKind::FollowingError, Some(i), value, limit);
                 return false;
             }
         }
@@ -294,19 +306,19 @@ impl State {
 
     /// Tells the command side, if there is room.
     #[inline(never)]
-    fn leave_snapshot(
+    fn send_snapshot(
         &mut self,
-        link: &mut TickLink<'_>,
+        queues: &mut TickQueues<'_>,
         setpoint: &Position,
         pivots: &[Angle; 3],
         target: &[Angle; 3],
         duty: [Duty; 3],
     ) {
-        if link.has_room() {
+        if queues.has_snapshot_room() {
             // There is room: only this side fills the queue.
             let snapshot = self.snapshot(setpoint, pivots, target, duty);
-            let _ = link.snapshots.enqueue(snapshot);
-            self.interval = Interval::default();
+            let _ = queues.snapshots.enqueue(snapshot);
+            self.loop_counters = LoopCounters::default();
         }
     }
 
@@ -323,7 +335,7 @@ impl State {
             tick: self.tick,
             mode: self.mode,
             fault: self.fault,
-            worse: self.worse,
+            stop_ended_by: self.stop_ended_by,
             referenced: self.referenced,
             encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
             encoder_warnings: self.encoders.each_ref().map(Encoder::warning),
@@ -338,8 +350,8 @@ impl State {
             settled: self.settling.settled() && self.servo_on(),
             commands: self.commands,
             refused: self.refused,
-            peak_following_error_rad: self.settling.peak_rad(),
-            interval: self.interval,
+            peak_following_error_rad: self.settling.peak_error_rad(),
+            loop_counters: self.loop_counters,
         }
     }
 }

@@ -71,7 +71,7 @@ where
 
     /// Whether the bridge reports a fault (pin low).
     #[inline]
-    pub fn faulty(&mut self) -> Result<bool, F::Error> {
+    pub fn reports_fault(&mut self) -> Result<bool, F::Error> {
         self.fault.is_low()
     }
 }

@@ -2,7 +2,7 @@
 
 mod description;
 
-pub use description::{ABOUT, About};
+pub use description::{FAULT_DESCRIPTIONS, FaultDescription};
 
 use core::fmt;
 
@@ -104,7 +104,7 @@ impl FaultKind {
     }
 
     /// Whether it is one of an encoder, which can not be used any more.
-    pub const fn is_of_encoder(self) -> bool {
+    pub const fn concerns_encoder(self) -> bool {
         matches!(
             self,
             Self::EncoderSilent

@@ -9,9 +9,11 @@ pub(crate) const EVENT_WORDS: usize = 8;
 const SEED: u32 = 0xB0C5_1AC7;
 
 /// So many entries of so many words, the check included.
-pub(crate) struct Entries<const COUNT: usize, const WORDS: usize>([[AtomicU32; WORDS]; COUNT]);
+pub(crate) struct CheckedEntries<const COUNT: usize, const WORDS: usize>(
+    [[AtomicU32; WORDS]; COUNT],
+);
 
-impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
+impl<const COUNT: usize, const WORDS: usize> CheckedEntries<COUNT, WORDS> {
     pub const fn new() -> Self {
         Self([const { [const { AtomicU32::new(0) }; WORDS] }; COUNT])
     }
@@ -26,7 +28,7 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
         let last = WORDS - 1;
         for (cell, word) in cells.iter().zip(words).take(last) {
             cell.store(*word, Ordering::Relaxed);
-            check = mixed(check, *word);
+            check = check_step(check, *word);
         }
         if let Some(cell) = cells.last() {
             cell.store(check, Ordering::Relaxed);
@@ -38,7 +40,7 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
         let cells = self.0.get(number as usize % COUNT)?;
         let words: [u32; WORDS] = from_fn(|i| cells[i].load(Ordering::Relaxed));
         let (check, covered) = words.split_last()?;
-        let sum = (covered.iter()).fold(SEED, |sum, word| mixed(sum, *word));
+        let sum = (covered.iter()).fold(SEED, |sum, word| check_step(sum, *word));
         (sum == *check).then_some(words)
     }
 
@@ -56,6 +58,6 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
 
 /// The turn tells words that have changed places apart.
 #[inline]
-const fn mixed(check: u32, word: u32) -> u32 {
+const fn check_step(check: u32, word: u32) -> u32 {
     check.rotate_left(5) ^ word
 }

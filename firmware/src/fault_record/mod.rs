@@ -20,60 +20,60 @@ mod reader;
 mod row;
 mod writer;
 
-pub use reader::Span;
-pub use row::Row;
-pub use writer::History;
+pub use reader::FaultRecord;
+pub use row::FaultRecordRow;
+pub use writer::FaultRecordWriter;
 
-use checked_words::Entries;
+use checked_words::CheckedEntries;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 /// Ticks that the fault record holds, those after the fault included: 12.8 ms.
-pub const ROWS: usize = 256;
+pub const FAULT_RECORD_ROWS: usize = 256;
 /// How many of them come after the fault.
-pub const AFTER: u32 = 64;
+pub const ROWS_AFTER_FAULT: u32 = 64;
 /// Events that are kept.
-pub const EVENTS: usize = 64;
+pub const RETAINED_EVENTS: usize = 64;
 
 /// Another one for each layout of the memory.
-const MARK: u32 = 0x5458_0001;
+const LAYOUT_MAGIC: u32 = 0x5458_0001;
 
 /// The memory. All zero at first, and any content at all is a valid one.
-pub struct BlackBox {
-    mark: AtomicU32,
+pub struct RetainedMemory {
+    layout: AtomicU32,
     /// Number of the start; its low byte is in every row.
     start: AtomicU32,
     /// The fault record is complete and not overwritten before the servo is on.
     frozen: AtomicU32,
-    pub(crate) events: Entries<EVENTS, { checked_words::EVENT_WORDS }>,
-    rows: Entries<ROWS, { row::WORDS }>,
+    pub(crate) events: CheckedEntries<RETAINED_EVENTS, { checked_words::EVENT_WORDS }>,
+    rows: CheckedEntries<FAULT_RECORD_ROWS, { row::WORDS }>,
 }
 
-impl BlackBox {
+impl RetainedMemory {
     /// Empty.
     #[allow(clippy::new_without_default)] // A default of 14 KB is nothing to be made in passing.
     pub const fn new() -> Self {
         Self {
-            mark: AtomicU32::new(0),
+            layout: AtomicU32::new(0),
             start: AtomicU32::new(0),
             frozen: AtomicU32::new(0),
-            events: Entries::new(),
-            rows: Entries::new(),
+            events: CheckedEntries::new(),
+            rows: CheckedEntries::new(),
         }
     }
 
     /// The controller starts: what is there from before is kept, as far as it is whole. Gives the end in the tick.
-    pub fn begin(&self) -> History<'_> {
-        if self.mark.load(Ordering::Relaxed) != MARK {
+    pub fn begin(&self) -> FaultRecordWriter<'_> {
+        if self.layout.load(Ordering::Relaxed) != LAYOUT_MAGIC {
             self.events.clear();
             self.rows.clear();
             self.start.store(0, Ordering::Relaxed);
-            self.mark.store(MARK, Ordering::Relaxed);
+            self.layout.store(LAYOUT_MAGIC, Ordering::Relaxed);
         }
         let start = self.start.load(Ordering::Relaxed).wrapping_add(1);
         self.start.store(start, Ordering::Relaxed);
-        let is_record = self.newest().is_some();
+        let is_record = self.newest_row().is_some();
         self.frozen.store(u32::from(is_record), Ordering::Relaxed);
-        History::new(self, start, is_record)
+        FaultRecordWriter::new(self, start, is_record)
     }
 }
 

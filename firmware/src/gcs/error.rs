@@ -165,7 +165,7 @@ impl ErrorCode {
         match refusal {
             Refusal::Velocity
             | Refusal::PivotRate { .. }
-            | Refusal::Limits
+            | Refusal::InvalidLimits
             | Refusal::Acceleration
             | Refusal::Jerk
             | Refusal::Pivots => Self::VelocityLimit,

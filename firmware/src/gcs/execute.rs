@@ -9,7 +9,7 @@ use super::session::{Awaited, Session, Wait};
 use crate::commander::SoftLimitChange;
 use crate::commander::axis::{Axis, AxisValues};
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Interpreter {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
@@ -18,7 +18,7 @@ impl Interpreter {
         &mut self,
         action: Action,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
@@ -100,7 +100,7 @@ impl Interpreter {
     }
 
     /// Stops the motion, and with it every macro and every wait.
-    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut PanelLink<'_>) {
+    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         self.stops = self.stops.wrapping_add(1);
         self.macros.stop();
         self.commander.stop(stop, queues);

@@ -140,7 +140,7 @@ impl Interpreter {
         if let Some(fault) = snapshot.fault {
             let mut reply = ReplyWriter::new(out);
             reply.line(format_args!("{fault}"))?;
-            if let Some(worse) = snapshot.worse {
+            if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
             return reply.end();

@@ -12,7 +12,7 @@ use super::session::{InputItem, Session};
 use super::table::find_byte;
 use super::wave::reply_waves;
 use crate::commander::Quantity;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 use embedded_io::Write;
 
 impl Interpreter {
@@ -25,7 +25,7 @@ impl Interpreter {
     pub fn service<W: Write>(
         &mut self,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
         self.note_activity(session);
@@ -46,7 +46,7 @@ impl Interpreter {
     }
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
-    pub fn advance(&mut self, queues: &mut PanelLink<'_>) {
+    pub fn advance(&mut self, queues: &mut CommandQueues<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next
         // call.
         if let Some(snapshot) = queues.snapshot() {
@@ -54,8 +54,8 @@ impl Interpreter {
             self.statistics.update(&snapshot);
             self.commander.update(snapshot);
         }
-        if let Some(black_box) = queues.black_box {
-            self.events.retain(black_box);
+        if let Some(retained_memory) = queues.retained_memory {
+            self.events.retain(retained_memory);
         }
         self.revert_if_refused();
         self.commander.advance_pending(queues);
@@ -102,7 +102,7 @@ impl Interpreter {
     pub(super) fn handle(
         &mut self,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         loop {
@@ -161,7 +161,7 @@ impl Interpreter {
         &mut self,
         byte: u8,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let Some(request) = find_byte(byte) else {
@@ -175,7 +175,7 @@ impl Interpreter {
         &mut self,
         request: Request,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         match request {
@@ -220,7 +220,7 @@ impl Interpreter {
         &mut self,
         action: Action,
         session: &mut Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         if !action.starts_motion() {
             return self.perform(action, session, queues);

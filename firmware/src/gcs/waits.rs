@@ -5,11 +5,15 @@ use super::interpreter::Interpreter;
 use super::request::{Condition, Operand};
 use super::session::{Awaited, Session};
 use crate::commander::Referencing;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Interpreter {
     /// Whether the lines of the connection have to wait; ends the wait when it is over.
-    pub(super) fn is_waiting(&mut self, session: &mut Session, queues: &mut PanelLink<'_>) -> bool {
+    pub(super) fn is_waiting(
+        &mut self,
+        session: &mut Session,
+        queues: &mut CommandQueues<'_>,
+    ) -> bool {
         let Some(wait) = session.wait else {
             return false;
         };

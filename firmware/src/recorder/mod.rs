@@ -1,7 +1,7 @@
 //! Recording: what a tick knows, offered at its end, and who keeps it.
 //!
-//! A [`Recorder`] is a store of 32-bit words with two ends. The [`TickRecorder`] writes into it inside the tick; the
-//! [`PanelRecorder`] orders records and reads them at low priority. Neither waits for the other, and there is no lock:
+//! A [`Recorder`] is a store of 32-bit words with two ends. The [`RecorderWriter`] writes into it inside the tick; the
+//! [`RecorderReader`] orders records and reads them at low priority. Neither waits for the other, and there is no lock:
 //!
 //! - Orders go to the tick by value, through a queue. A [`Setup`] is copied out of it once, so that the tick works on its own.
 //! - The words are atomics, each written and read in one access. The tick publishes how many rows of the record are complete
@@ -29,9 +29,11 @@ mod signal;
 mod writer;
 
 pub use memory::Recorder;
-pub use reader::{Cursor, PanelRecorder, Progress};
+pub use reader::{Cursor, Progress, RecorderReader};
 pub use running_hash::RunningHash;
-pub use sample::{Record, Sample};
-pub use setup::{MOST_BETWEEN, RECORD_WORDS, Setup, TABLES, WIDEST, Watch};
-pub use signal::{Kind, Word};
-pub use writer::TickRecorder;
+pub use sample::{Sample, TickObserver};
+pub use setup::{
+    LevelTrigger, MAX_ROW_PERIOD_TICKS, MAX_ROW_WORDS, RECORDER_TABLES, RECORDER_WORDS, RecordSetup,
+};
+pub use signal::{RawSignal, SignalFormat};
+pub use writer::RecorderWriter;

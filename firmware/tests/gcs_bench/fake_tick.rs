@@ -2,13 +2,13 @@
 #![allow(dead_code)] // Each test file uses its part.
 
 use firmware::control::config::Config;
-use firmware::control::loop_counters::Interval;
+use firmware::control::loop_counters::LoopCounters;
 use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
 use firmware::mode::Mode;
-use firmware::motion::{Motion, Scale, Setpoint};
+use firmware::motion::{PlanFollower, Setpoint, SetpointScale};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Snapshot, TickLink};
+use firmware::queues::{Command, Snapshot, TickQueues};
 use firmware::recorder::Sample;
 use kinematics::{Angle, Pose, inverse};
 
@@ -17,9 +17,9 @@ pub const DWELL: u64 = 40;
 
 /// A tick without encoders and motors: pivots are where the setpoint puts them.
 pub struct FakeTick {
-    link: TickLink<'static>,
-    motion: Motion,
-    scale: Scale,
+    queues: TickQueues<'static>,
+    motion: PlanFollower,
+    scale: SetpointScale,
     /// What the next snapshot says; tests set faults here.
     pub now: Snapshot,
     at_rest: u64,
@@ -36,11 +36,11 @@ pub struct FakeTick {
 
 impl FakeTick {
     /// At this end of the queues, of a stage of these parameters: not referenced, at the origin.
-    pub fn new(link: TickLink<'static>, parameters: &Parameters) -> Self {
+    pub fn new(queues: TickQueues<'static>, parameters: &Parameters) -> Self {
         Self {
-            link,
-            motion: Motion::default(),
-            scale: Scale::new(parameters.limits.rate_hz),
+            queues,
+            motion: PlanFollower::default(),
+            scale: SetpointScale::new(parameters.limits.rate_hz),
             now: Snapshot::default(),
             at_rest: 0,
             log: Vec::new(),
@@ -53,7 +53,7 @@ impl FakeTick {
 
     pub fn run(&mut self) {
         self.now.tick += 1;
-        if let Some(command) = self.link.commands.dequeue() {
+        if let Some(command) = self.queues.commands.dequeue() {
             self.now.commands += 1;
             self.obey(command);
         }
@@ -61,7 +61,7 @@ impl FakeTick {
         let setpoint = self.motion.setpoint(&self.scale);
         let on = matches!(self.now.mode, Mode::Holding | Mode::Moving);
         if on {
-            self.now.mode = if self.motion.moving() {
+            self.now.mode = if self.motion.is_moving() {
                 Mode::Moving
             } else {
                 Mode::Holding
@@ -79,13 +79,13 @@ impl FakeTick {
         self.now.centre = self.motion.centre();
         let platform = self.now.centre.to_platform(&setpoint.position);
         self.now.pivots = pivots(&platform);
-        self.now.interval.ticks += 1;
-        if self.link.recorder.is_wanted() {
-            self.link.recorder.record(&self.sample(setpoint));
+        self.now.loop_counters.ticks += 1;
+        if self.queues.recorder.is_active() {
+            self.queues.recorder.observe(&self.sample(setpoint));
         }
-        if self.link.snapshots.ready() {
-            let _ = self.link.snapshots.enqueue(self.now.clone());
-            self.now.interval = Interval::default();
+        if self.queues.snapshots.ready() {
+            let _ = self.queues.snapshots.enqueue(self.now.clone());
+            self.now.loop_counters = LoopCounters::default();
         }
     }
 
@@ -96,7 +96,7 @@ impl FakeTick {
             mode: self.now.mode,
             fault: self.now.fault.map(|fault| fault.kind),
             setpoint,
-            point: setpoint,
+            reference_point: setpoint,
             pivot_setpoints: self.now.pivots,
             pivot_rates: [0.0; 3],
             pivots: self.now.pivots,
@@ -172,7 +172,7 @@ impl FakeTick {
         let units = |mm: f64| (mm / 100.0 * 4_294_967_296.0).round() as i64;
         let theta = Angle::from_degrees(theta_deg).unwrap().units();
         let platform = [units(x_mm), units(y_mm), theta];
-        let point = self.motion.centre().of_platform(&platform);
+        let point = self.motion.centre().from_platform(&platform);
         self.motion.rest_at(point);
     }
 

@@ -4,7 +4,7 @@
 use core::convert::Infallible;
 use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink};
+use firmware::queues::{CommandQueues, Queues};
 
 pub mod fake_tick;
 pub use fake_tick::{DWELL, FakeTick};
@@ -32,7 +32,7 @@ impl embedded_io::Write for Written {
 pub struct Bench {
     panel: Interpreter,
     sessions: Vec<(Session, Written)>,
-    pub link: PanelLink<'static>,
+    pub queues: CommandQueues<'static>,
     pub tick: FakeTick,
 }
 
@@ -49,11 +49,11 @@ impl Bench {
     /// The same with this panel.
     pub fn with(panel: Interpreter) -> Self {
         let parameters = Parameters::REFERENCE;
-        let (tick, link) = Box::leak(Box::new(Link::new())).split();
+        let (tick, queues) = Box::leak(Box::new(Queues::new())).split();
         Self {
             panel,
             sessions: vec![(Session::new(), Written::default())],
-            link,
+            queues,
             tick: FakeTick::new(tick, &parameters),
         }
     }
@@ -84,7 +84,7 @@ impl Bench {
 
     pub fn service(&mut self, number: usize) {
         let (session, out) = &mut self.sessions[number];
-        match self.panel.service(session, &mut self.link, out) {
+        match self.panel.service(session, &mut self.queues, out) {
             Ok(()) => {}
         }
     }
@@ -92,7 +92,7 @@ impl Bench {
     /// Services the first connection with another output.
     pub fn service_into<W: embedded_io::Write>(&mut self, out: &mut W) -> Result<(), W::Error> {
         self.panel
-            .service(&mut self.sessions[0].0, &mut self.link, out)
+            .service(&mut self.sessions[0].0, &mut self.queues, out)
     }
 
     pub fn session(&mut self, number: usize) -> &mut Session {

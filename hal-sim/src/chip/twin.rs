@@ -22,7 +22,7 @@ use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::{RawFrame, decode};
 use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink, Snapshot, TickLink};
+use firmware::queues::{CommandQueues, Queues, Snapshot, TickQueues};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -59,11 +59,11 @@ pub struct Twin {
     record: TickRecord,
     panel: Interpreter,
     session: Session,
-    /// The panel's ends of the link whose other side the twin holds.
-    panel_link: PanelLink<'static>,
-    panel_side: TickLink<'static>,
-    tick_side: PanelLink<'static>,
-    tick_link: TickLink<'static>,
+    /// The panel's ends of the queues whose other side the twin holds.
+    command_queues: CommandQueues<'static>,
+    panel_side: TickQueues<'static>,
+    tick_side: CommandQueues<'static>,
+    tick_queues: TickQueues<'static>,
     /// Ticks and commands done, and bytes given to the panel.
     ticks: u32,
     commands: u32,
@@ -118,10 +118,10 @@ impl Twin {
     /// A twin of a chip that has just started.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
-        let (mut panel_side, panel_link) = endless_link();
-        let (mut tick_link, tick_side) = endless_link();
+        let (mut panel_side, command_queues) = endless_link();
+        let (mut tick_queues, tick_side) = endless_link();
         // The twin's panel orders its records from the twin's tick; nothing of them has to be held back.
-        std::mem::swap(&mut panel_side.recorder, &mut tick_link.recorder);
+        std::mem::swap(&mut panel_side.recorder, &mut tick_queues.recorder);
         let identity = Identity {
             serial: "",
             version: "",
@@ -132,10 +132,10 @@ impl Twin {
             record: TickRecord::default(),
             panel: Interpreter::new(parameters, identity),
             session: Session::new(),
-            panel_link,
+            command_queues,
             panel_side,
             tick_side,
-            tick_link,
+            tick_queues,
             ticks: 0,
             commands: 0,
             bytes: 0,
@@ -239,7 +239,7 @@ impl Twin {
             &mut self.config,
             &mut self.state,
             &inputs,
-            &mut self.tick_link,
+            &mut self.tick_queues,
             &mut self.record,
         );
         let tick = self.ticks;
@@ -294,7 +294,7 @@ impl Twin {
         }
         let Ok(()) = self
             .panel
-            .service(&mut self.session, &mut self.panel_link, &mut Nowhere);
+            .service(&mut self.session, &mut self.command_queues, &mut Nowhere);
         Some(())
     }
 
@@ -325,9 +325,9 @@ fn with_flipped_bit(frame: [u8; 8]) -> [u8; 8] {
     })
 }
 
-/// A link whose ends live as long as the process: some kilobytes for each run.
-fn endless_link() -> (TickLink<'static>, PanelLink<'static>) {
-    Box::leak(Box::new(Link::new())).split()
+/// A queues whose ends live as long as the process: some kilobytes for each run.
+fn endless_link() -> (TickQueues<'static>, CommandQueues<'static>) {
+    Box::leak(Box::new(Queues::new())).split()
 }
 
 /// Takes every byte and keeps none.

@@ -143,7 +143,7 @@ impl<'a> Effects<'a> {
     pub fn has(&mut self, effect: Effect, tick: u64, scenario: &Scenario, now: &Now<'_>) -> bool {
         let supervision = &self.parameters.supervision;
         let bridged = u64::from(supervision.bridged_frames);
-        let longest = (supervision.at_end_s * self.parameters.limits.rate_hz) as u64;
+        let longest = (supervision.max_saturation_s * self.parameters.limits.rate_hz) as u64;
         let bearable = supervision.motor_current_a * supervision.motor_current_a;
         let first = scenario.at + u64::from(scenario.injection.is_of_encoder());
         match effect {

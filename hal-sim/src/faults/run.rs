@@ -1,11 +1,11 @@
 //! One run of the campaign.
 
 use firmware::fault::Fault;
-use firmware::fault_record::BlackBox;
+use firmware::fault_record::RetainedMemory;
 use firmware::gcs::{Interpreter, START_CAUSES, Session};
 use firmware::mode::Mode;
-use firmware::queues::{Command, Link, PanelLink};
-use firmware::recorder::{Record, Sample};
+use firmware::queues::{Command, CommandQueues, Queues};
+use firmware::recorder::{Sample, TickObserver};
 use firmware::settings_store::SettingsStore;
 
 use super::injection::Injection;
@@ -99,8 +99,8 @@ impl Seen {
     }
 }
 
-impl Record for Seen {
-    fn record(&mut self, sample: &Sample) {
+impl TickObserver for Seen {
+    fn observe(&mut self, sample: &Sample) {
         // A fault leaves no rates: those that were asked for last count.
         let last = self
             .0
@@ -120,9 +120,9 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let parameters = &scenario.parameters;
     let mut host = Host::new(&scenario.stage, parameters);
     host.stage.set_pose_at_rest(scenario.start);
-    let mut link = Box::new(Link::new());
-    let black_box = Box::new(BlackBox::new());
-    let (mut tick_link, mut panel_link) = link.split_keeping(&black_box);
+    let mut queues = Box::new(Queues::new());
+    let black_box = Box::new(RetainedMemory::new());
+    let (mut tick_queues, mut command_queues) = queues.split_with_retained(&black_box);
     let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
     let mut session = Session::new();
     let mut flooding = Session::new();
@@ -151,19 +151,19 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             *panel = Interpreter::new(parameters, IDENTITY);
             panel.set_start_cause(START_CAUSES[0]);
             session = Session::new();
-            tick_link.clear();
-            panel_link.clear();
+            tick_queues.clear();
+            command_queues.clear();
             restarted_at = tick;
         }
         if let (Injection::QueueFull, Some(0..FLOOD_TICKS)) = (scenario.injection, age)
             && watch.outcome.told.is_none()
         {
-            let refused = flood(&mut panel, &mut flooding, &mut panel_link);
+            let refused = flood(&mut panel, &mut flooding, &mut command_queues);
             watch.outcome.told = refused.then_some(tick);
         }
         let shown = host.stage.encoders.clone();
         let (current_counts, _) = host.stage.analog();
-        let outputs = host.tick(&mut tick_link, &mut seen);
+        let outputs = host.tick(&mut tick_queues, &mut seen);
         watch.look(tick, &host, (&shown, current_counts), &seen);
         if seen
             .sample()
@@ -190,7 +190,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
         }
         if tick.is_multiple_of(SERVICE_EVERY) {
             // Writing to a vector does not fail.
-            let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+            let _ = panel.service(&mut session, &mut command_queues, &mut answers);
         }
     }
     if let Some(event) = scenario.injection.expected().told
@@ -199,8 +199,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
         session.receive(b"EVT?\n");
         answers.clear();
         for _ in 0..SERVICE_EVERY {
-            host.tick(&mut tick_link, &mut seen);
-            let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+            host.tick(&mut tick_queues, &mut seen);
+            let _ = panel.service(&mut session, &mut command_queues, &mut answers);
         }
         let events = String::from_utf8_lossy(&answers);
         watch.outcome.told = told(&events, event).map(|tick| tick + restarted_at);
@@ -209,15 +209,15 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
 }
 
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.
-fn flood(panel: &mut Interpreter, session: &mut Session, link: &mut PanelLink<'_>) -> bool {
+fn flood(panel: &mut Interpreter, session: &mut Session, queues: &mut CommandQueues<'_>) -> bool {
     // In no state but a fault does it do anything.
-    while link.send(Command::Acknowledge).is_ok() {}
+    while queues.send(Command::Acknowledge).is_ok() {}
     let mut answers = Vec::new();
     if session.is_idle() {
         session.receive(b"ERR?\nSVO X 0\nERR?\n");
     }
     // Writing to a vector does not fail.
-    let _ = panel.service(session, link, &mut answers);
+    let _ = panel.service(session, queues, &mut answers);
     answers.ends_with(b"1005\n")
 }
 

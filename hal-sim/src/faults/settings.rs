@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use firmware::gcs::{Interpreter, Session};
 use firmware::parameters::Parameters;
-use firmware::queues::Link;
+use firmware::queues::Queues;
 use firmware::settings_store::SettingsStore;
 
 use super::random::Random;
@@ -39,8 +39,8 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-    let mut link = Box::new(Link::new());
-    let (mut tick_link, mut panel_link) = link.split();
+    let mut queues = Box::new(Queues::new());
+    let (mut tick_queues, mut command_queues) = queues.split();
     let mut panel = Box::new(Interpreter::new(&parameters, IDENTITY));
     let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
     let mut session = Session::new();
@@ -48,9 +48,9 @@ fn kept() -> Vec<u8> {
     assert_eq!(keeper.restore(&mut *panel), None, "an erased flash is none");
     session.receive(LINES);
     for _ in 0..TICKS {
-        host.tick(&mut tick_link, &mut ());
+        host.tick(&mut tick_queues, &mut ());
         // Writing to a vector does not fail.
-        let _ = panel.service(&mut session, &mut panel_link, &mut answers);
+        let _ = panel.service(&mut session, &mut command_queues, &mut answers);
         keeper.store_pending(&mut *panel);
     }
     assert_eq!(answers, b"0\n", "the settings are kept");

@@ -3,7 +3,7 @@
 
 use core::f64::consts::TAU;
 
-use firmware::parameters::{EncoderSetup, Parameters};
+use firmware::parameters::{EncoderMounting, Parameters};
 use kinematics::{Inverse, Pose, inverse};
 
 use crate::devices::Encoder;
@@ -69,7 +69,7 @@ pub fn shown_errors_rad(
     })
 }
 
-fn shown_turns(setup: &EncoderSetup, counts: u32) -> f64 {
+fn shown_turns(setup: &EncoderMounting, counts: u32) -> f64 {
     let turned = counts.wrapping_sub(setup.zero_counts) % COUNTS_PER_TURN;
     let turns = f64::from(turned) / f64::from(COUNTS_PER_TURN);
     if setup.reversed { -turns } else { turns }

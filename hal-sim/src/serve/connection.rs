@@ -6,7 +6,7 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 
 use firmware::gcs::{Interpreter, Session};
-use firmware::queues::PanelLink;
+use firmware::queues::CommandQueues;
 use rustix::event::PollFlags;
 
 use super::Notice;
@@ -108,14 +108,14 @@ impl Connection {
     pub fn service(
         &mut self,
         panel: &mut Interpreter,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
         say: &mut dyn FnMut(Notice),
     ) {
         loop {
             let taken = self.feed();
             let waiting = self.output.len();
             (self.session).set_room(WAITING_BYTES.saturating_sub(waiting));
-            if let Err(Overflow) = panel.service(&mut self.session, link, &mut self.output) {
+            if let Err(Overflow) = panel.service(&mut self.session, queues, &mut self.output) {
                 self.state = ClientState::Unread;
                 return;
             }

@@ -8,10 +8,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use firmware::fault_record::BlackBox;
+use firmware::fault_record::RetainedMemory;
 use firmware::gcs::Interpreter;
 use firmware::parameters::Parameters;
-use firmware::queues::{Link, PanelLink, TickLink};
+use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::settings_store::SettingsStore;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
@@ -87,9 +87,9 @@ impl Server {
     /// # Errors
     /// [`ServeError::Wait`].
     pub fn run(self, stop: &AtomicBool, say: &mut dyn FnMut(Notice)) -> Result<Pacing, ServeError> {
-        let mut link = Link::new();
-        let black_box = Box::new(BlackBox::new());
-        let (tick_link, panel_link) = link.split_keeping(&black_box);
+        let mut queues = Queues::new();
+        let black_box = Box::new(RetainedMemory::new());
+        let (tick_queues, command_queues) = queues.split_with_retained(&black_box);
         let now = Instant::now();
         let parameters = &self.options.parameters;
         let rate_hz = parameters.limits.rate_hz * self.options.speed;
@@ -105,8 +105,8 @@ impl Server {
             host,
             panel,
             keeper,
-            tick_link,
-            panel_link,
+            tick_queues,
+            command_queues,
             pace: Pace::new(now, rate_hz),
             listener: self.listener,
             connections: connections.into_iter().collect(),
@@ -134,8 +134,8 @@ struct Service<'a> {
     host: Host,
     panel: Interpreter,
     keeper: SettingsStore<SettingsFlash>,
-    tick_link: TickLink<'a>,
-    panel_link: PanelLink<'a>,
+    tick_queues: TickQueues<'a>,
+    command_queues: CommandQueues<'a>,
     pace: Pace,
     listener: TcpListener,
     connections: Vec<Connection>,
@@ -151,7 +151,7 @@ struct Service<'a> {
 impl Service<'_> {
     fn turn(&mut self) -> io::Result<()> {
         for _ in 0..self.pace.take(Instant::now()) {
-            self.host.tick(&mut self.tick_link, &mut ());
+            self.host.tick(&mut self.tick_queues, &mut ());
             self.service();
             if self.panel.wants_restart() {
                 self.restart();
@@ -169,8 +169,8 @@ impl Service<'_> {
         let (panel, fault) = started(&self.parameters, &mut self.keeper);
         self.panel = panel;
         self.host.restart(self.panel.parameters(), fault);
-        self.tick_link.clear();
-        self.panel_link.clear();
+        self.tick_queues.clear();
+        self.command_queues.clear();
         for connection in &mut self.connections {
             connection.controller_restarts();
         }
@@ -179,9 +179,9 @@ impl Service<'_> {
 
     fn service(&mut self) {
         // Also with nobody there: a macro goes on.
-        self.panel.advance(&mut self.panel_link);
+        self.panel.advance(&mut self.command_queues);
         for connection in &mut self.connections {
-            connection.service(&mut self.panel, &mut self.panel_link, self.say);
+            connection.service(&mut self.panel, &mut self.command_queues, self.say);
         }
         self.keeper.store_pending(&mut self.panel);
     }

@@ -39,7 +39,7 @@ mod tests {
     use crate::host::Host;
     use crate::run::{IDENTITY, RunOptions, controller_parameters, stage_parameters};
     use firmware::gcs::{Interpreter, Session};
-    use firmware::queues::Link;
+    use firmware::queues::Queues;
     use firmware::recorder::RunningHash;
 
     /// Ticks between two looks: 60 times a second.
@@ -67,14 +67,14 @@ mod tests {
         let options = RunOptions::default();
         let parameters = controller_parameters(&options);
         let mut host = Host::new(&stage_parameters(&options), &parameters);
-        let mut link = Link::new();
-        let (mut tick_link, mut panel_link) = link.split();
+        let mut queues = Queues::new();
+        let (mut tick_queues, mut command_queues) = queues.split();
         let mut panel = Interpreter::new(&parameters, IDENTITY);
         let mut client = Session::new();
         let mut looking: Vec<_> = (0..viewers).map(|_| Session::new()).collect();
         let (mut hash, mut replies, mut seen) = (RunningHash::default(), Vec::new(), Vec::new());
         for tick in 0..TICKS {
-            host.tick(&mut tick_link, &mut hash);
+            host.tick(&mut tick_queues, &mut hash);
             for (_, line) in DRIVEN.iter().filter(|(at, _)| *at == tick) {
                 client.receive(format!("{line}\n").as_bytes());
             }
@@ -83,9 +83,9 @@ mod tests {
                 if (tick + number) % LOOK_EVERY == 0 {
                     assert_eq!(session.receive(lines.as_bytes()), lines.len(), "no room");
                 }
-                (panel.service(session, &mut panel_link, &mut seen)).expect("a vector");
+                (panel.service(session, &mut command_queues, &mut seen)).expect("a vector");
             }
-            (panel.service(&mut client, &mut panel_link, &mut replies)).expect("a vector");
+            (panel.service(&mut client, &mut command_queues, &mut replies)).expect("a vector");
         }
         assert_eq!(host.fault(), None);
         (hash, seen.len())

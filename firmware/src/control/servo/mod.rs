@@ -18,6 +18,6 @@ mod pivot;
 mod platform_torque;
 mod presliding;
 
-pub use pivot::{AxisServo, PivotSetpoint, ServoConfig};
+pub use pivot::{PivotServo, PivotSetpoint, ServoConfig};
 pub use platform_torque::{Body, platform_torques};
 pub use presliding::Presliding;

@@ -10,7 +10,7 @@
 //!
 //! Off coasts, so that a stage can be moved by hand; holding, moving and stopping drive; a fault brakes, or coasts where its
 //! [`Reaction`] is that. All faults with their detection, reaction and reason stand in `FAULTS.md`, which is made from
-//! [`ABOUT`](crate::fault::ABOUT).
+//! [`ABOUT`](crate::fault::FAULT_DESCRIPTIONS).
 //!
 //! The measured pose is computed when a command needs it, not at every tick: while the servo is on, every pivot is within the
 //! largest following error of the setpoint, which bounds the measured pose more tightly than any margin of the mechanics. So
@@ -23,8 +23,8 @@ mod pivot_faults;
 mod setpoint_faults;
 mod transitions;
 
-pub(crate) use inspection::{TURN, Turn, Watch};
-pub use transitions::{Event, Outcome, STATES, TABLE};
+pub(crate) use inspection::{INSPECTION_PERIOD_TICKS, Inspection, PivotWatch};
+pub use transitions::{Event, MODES, Outcome, TRANSITIONS};
 
 use super::state::State;
 use crate::control::config::Config;
@@ -44,7 +44,7 @@ impl State {
     }
 
     /// Whether the bridges drive or brake.
-    pub(crate) fn awake(&self) -> bool {
+    pub(crate) fn bridges_awake(&self) -> bool {
         match self.mode {
             Mode::Off => false,
             Mode::Fault => !self.coasts,
@@ -52,18 +52,23 @@ impl State {
         }
     }
 
-    pub(crate) fn obey(&mut self, config: &mut Config, command: &Command, pivots: &[Angle; 3]) {
+    pub(crate) fn handle_command(
+        &mut self,
+        config: &mut Config,
+        command: &Command,
+        pivots: &[Angle; 3],
+    ) {
         let event = event_of(config, command);
         let done = match outcome(self.mode, event) {
             Outcome::Nothing => return,
             Outcome::Refused => false,
             Outcome::To(mode) => {
-                self.carry_out(config, command);
+                self.apply(config, command);
                 self.mode = mode;
                 true
             }
             Outcome::If(mode) => {
-                let done = self.attempt(command, pivots);
+                let done = self.try_apply(command, pivots);
                 if done {
                     self.mode = mode;
                 }
@@ -76,12 +81,12 @@ impl State {
     }
 
     /// What can not fail.
-    fn carry_out(&mut self, config: &mut Config, command: &Command) {
+    fn apply(&mut self, config: &mut Config, command: &Command) {
         match command {
             Command::Acknowledge => {
                 self.fault = None;
-                self.worse = None;
-                self.lost = None;
+                self.stop_ended_by = None;
+                self.lost_pivot = None;
             }
             Command::Configure(wanted) => self.configure(config, wanted),
             Command::Centre(centre) => {
@@ -98,7 +103,7 @@ impl State {
     }
 
     /// What the stage may not be ready for; nothing has changed then.
-    fn attempt(&mut self, command: &Command, pivots: &[Angle; 3]) -> bool {
+    fn try_apply(&mut self, command: &Command, pivots: &[Angle; 3]) -> bool {
         match command {
             Command::Reference if !self.referenced => self.reference(pivots),
             Command::Reference | Command::Servo(_) => self.hold(pivots),
@@ -143,10 +148,10 @@ impl State {
     fn hold_at(&mut self, pose: &Pose<Fixed>) {
         let platform = position(pose);
         self.motion
-            .rest_at(self.motion.centre().of_platform(&platform));
+            .rest_at(self.motion.centre().from_platform(&platform));
         self.settling.start();
-        self.start_at(&platform);
-        self.rest_watches();
+        self.set_radius_limit_from(&platform);
+        self.reset_watches();
         for servo in &mut self.servo {
             servo.restart();
         }
@@ -154,7 +159,7 @@ impl State {
 
     /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that leaves no snapshot.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
-        let moved = [0, 1, 2].map(|i| !config.encoders[i].reads_as(&wanted.encoders[i]));
+        let moved = [0, 1, 2].map(|i| !config.encoders[i].has_same_mounting(&wanted.encoders[i]));
         config.clone_from(wanted);
         for (encoder, moved) in self.encoders.iter_mut().zip(moved) {
             if moved {
@@ -167,7 +172,7 @@ impl State {
 
     /// A motion that has come to rest.
     #[cold]
-    pub(crate) fn come_to_rest(&mut self) {
+    pub(crate) fn finish_motion(&mut self) {
         if let Outcome::To(mode) = outcome(self.mode, Event::AtRest) {
             self.mode = mode;
         }
@@ -177,24 +182,30 @@ impl State {
     ///
     /// The first one stays latched until it is acknowledged; one that ends its controlled stop is kept besides.
     #[cold]
-    pub(crate) fn fail(&mut self, kind: FaultKind, pivot: Option<usize>, value: f32, limit: f32) {
-        self.fail_with(kind.reaction(), kind, pivot, [value, limit]);
+    pub(crate) fn raise_fault(
+        &mut self,
+        kind: FaultKind,
+        pivot: Option<usize>,
+        value: f32,
+        limit: f32,
+    ) {
+        self.raise_fault_with(kind.reaction(), kind, pivot, [value, limit]);
     }
 
-    fn fail_with(
+    fn raise_fault_with(
         &mut self,
         mut reaction: Reaction,
         kind: FaultKind,
         pivot: Option<usize>,
         [value, limit]: [f32; 2],
     ) {
-        if kind.is_of_encoder() {
+        if kind.concerns_encoder() {
             self.referenced = false;
             // One lost pivot is led by its model; two are not.
-            if self.lost.is_some() {
+            if self.lost_pivot.is_some() {
                 reaction = Reaction::Brake;
             }
-            self.lose(pivot);
+            self.mark_pivot_lost(pivot);
         }
         let Outcome::To(mode) = outcome(self.mode, Event::of(reaction)) else {
             return;
@@ -209,10 +220,10 @@ impl State {
         if self.fault.is_none() {
             self.fault = fault;
         } else {
-            self.worse = fault;
+            self.stop_ended_by = fault;
         }
         if mode == Mode::Stopping {
-            self.motion.begin_slowing();
+            self.motion.begin_fault_stop();
         }
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;
@@ -220,10 +231,10 @@ impl State {
     }
 
     /// From here on a pivot's setpoint stands for what its encoder can not tell.
-    fn lose(&mut self, pivot: Option<usize>) {
-        self.lost = pivot;
+    fn mark_pivot_lost(&mut self, pivot: Option<usize>) {
+        self.lost_pivot = pivot;
         if let Some(servo) = pivot.and_then(|i| self.servo.get_mut(i)) {
-            servo.go_blind();
+            servo.run_open_loop();
         }
     }
 }
@@ -237,7 +248,7 @@ fn event_of(config: &Config, command: &Command) -> Event {
         Command::Centre(_) => Event::Centre,
         Command::Configure(wanted) => {
             let same = (config.encoders.iter().zip(&wanted.encoders))
-                .all(|(now, wanted)| now.reads_as(wanted));
+                .all(|(now, wanted)| now.has_same_mounting(wanted));
             if same {
                 Event::Constants
             } else {

@@ -1,7 +1,7 @@
 //! Events as words, for the fault record: number, tick (two), what, three of its own, and the check.
 
 use super::event::{Event, START_CAUSES};
-use crate::fault::{ABOUT, Fault};
+use crate::fault::{FAULT_DESCRIPTIONS, Fault};
 
 /// Stands for no pivot, and for a cause that has no number.
 const NONE: u8 = 0xFF;
@@ -60,7 +60,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
     let event = match code {
         0 => Event::Start(START_CAUSES.get(usize::from(first)).copied()),
         1 => Event::Fault(Fault {
-            kind: ABOUT.get(usize::from(first))?.kind,
+            kind: FAULT_DESCRIPTIONS.get(usize::from(first))?.kind,
             pivot: (second != NONE).then_some(second),
             tick,
             value: f32::from_bits(a),

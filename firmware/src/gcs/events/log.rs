@@ -3,17 +3,17 @@
 use super::encoding::{event, words};
 use super::event::Event;
 use crate::fault::Fault;
-use crate::fault_record::{BlackBox, EVENTS};
+use crate::fault_record::{RETAINED_EVENTS, RetainedMemory};
 use crate::mode::Mode;
 use crate::queues::Snapshot;
 use heapless::Deque;
 
 /// What has happened: the latest events, and how many there were.
 pub(in crate::gcs) struct EventLog {
-    pub(super) entries: Deque<(u64, Event), EVENTS>,
+    pub(super) entries: Deque<(u64, Event), RETAINED_EVENTS>,
     /// How many there were.
     pub(super) count: u32,
-    /// How many of them the black box has; `None` before it was looked at.
+    /// How many of them the retained memory has; `None` before it was looked at.
     retained: Option<u32>,
     last: Observed,
 }
@@ -58,33 +58,35 @@ impl EventLog {
         self.count = self.count.wrapping_add(1);
     }
 
-    /// Writes what is new into the black box; the first time, takes what is in it from before.
-    pub fn retain(&mut self, black_box: &BlackBox) {
+    /// Writes what is new into the retained memory; the first time, takes what is in it from before.
+    pub fn retain(&mut self, retained_memory: &RetainedMemory) {
         let retained = match self.retained {
             Some(retained) => retained,
-            None => self.recall(black_box),
+            None => self.recall(retained_memory),
         };
         let first = self.count - self.entries.len() as u32;
         let events = (first.wrapping_add(1)..).zip(&self.entries);
         for (number, (tick, event)) in events.filter(|(number, _)| *number > retained) {
-            black_box.events.write(number, &words(number, *tick, event));
+            retained_memory
+                .events
+                .write(number, &words(number, *tick, event));
         }
         self.retained = Some(self.count);
     }
 
     /// Puts events from before the start in front of those since; the number of the last of them.
-    fn recall(&mut self, black_box: &BlackBox) -> u32 {
+    fn recall(&mut self, retained_memory: &RetainedMemory) -> u32 {
         let since = core::mem::take(&mut self.entries);
         let read = |number: u32| {
-            let words = black_box.events.read(number)?;
+            let words = retained_memory.events.read(number)?;
             Some((words[0], event(&words)?))
         };
-        let last = (0..EVENTS as u32)
+        let last = (0..RETAINED_EVENTS as u32)
             .filter_map(read)
             .map(|(number, _)| number)
             .max();
         let last = last.unwrap_or(0);
-        let first = last.saturating_sub(EVENTS as u32 - 1).max(1);
+        let first = last.saturating_sub(RETAINED_EVENTS as u32 - 1).max(1);
         self.count = first - 1;
         for number in first..=last {
             match read(number) {
@@ -106,7 +108,7 @@ impl EventLog {
     pub fn update(&mut self, snapshot: &Snapshot) {
         let now = Observed {
             fault: snapshot.fault,
-            worse: snapshot.worse,
+            worse: snapshot.stop_ended_by,
             referenced: snapshot.referenced,
             on: matches!(snapshot.mode, Mode::Holding | Mode::Moving),
             refused: snapshot.refused,

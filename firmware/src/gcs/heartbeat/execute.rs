@@ -8,7 +8,7 @@ use crate::gcs::request::MAX_DELAY_MS;
 use crate::gcs::session::Session;
 use crate::motion::Stop;
 use crate::parameters::MIN_HOST_SILENCE_MS;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Interpreter {
     /// `HBT`: longest silence, or 0 for none. With it a connection promises to be heard; a macro can not.
@@ -59,7 +59,7 @@ impl Interpreter {
     }
 
     /// Stops when the host has been silent for too long.
-    pub(in crate::gcs) fn watch_heartbeat(&mut self, queues: &mut PanelLink<'_>) {
+    pub(in crate::gcs) fn watch_heartbeat(&mut self, queues: &mut CommandQueues<'_>) {
         let Heartbeat {
             last_heard_tick,
             is_silent,

@@ -3,11 +3,11 @@
 use super::state::LINES_PER_TICK;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::Discard;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Interpreter {
     /// Carries on the macro that runs, as far as its lines for this tick go.
-    pub(in crate::gcs) fn run_macro(&mut self, queues: &mut PanelLink<'_>) {
+    pub(in crate::gcs) fn run_macro(&mut self, queues: &mut CommandQueues<'_>) {
         if !self.macros.is_running() {
             return;
         }

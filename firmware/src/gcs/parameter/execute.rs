@@ -13,7 +13,7 @@ use crate::gcs::interpreter::Interpreter;
 use crate::gcs::session::Session;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
 impl Interpreter {
     /// `SPA`: all settings or, with an error, none.
@@ -21,7 +21,7 @@ impl Interpreter {
         &mut self,
         settings: &Settings,
         session: &Session,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let mut wanted = self.parameters.clone();
         for (address, value) in settings.iter().flatten() {
@@ -46,7 +46,7 @@ impl Interpreter {
     pub(in crate::gcs) fn apply_parameters(
         &mut self,
         wanted: Parameters,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let most_rows = self.recorder_state.most_rows(queues.recorder.capacity());
         if wanted.recorder.points > most_rows || !wanted.are_sound() {

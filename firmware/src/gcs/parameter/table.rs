@@ -8,8 +8,8 @@ use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::request::MAX_DELAY_MS;
-use crate::motion::Way;
-use crate::recorder::RECORD_WORDS;
+use crate::motion::TurnDirection;
+use crate::recorder::RECORDER_WORDS;
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -103,11 +103,16 @@ macro_rules! flag {
 const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 
 /// Most points that a record of one word has room for.
-const ROWS: f64 = RECORD_WORDS as f64;
+const ROWS: f64 = RECORDER_WORDS as f64;
 /// By their numbers.
-const WAYS: [Way; 4] = [Way::Literal, Way::Shortest, Way::Positive, Way::Negative];
+const WAYS: [TurnDirection; 4] = [
+    TurnDirection::AsGiven,
+    TurnDirection::Shortest,
+    TurnDirection::Positive,
+    TurnDirection::Negative,
+];
 
-fn way_number(way: Way) -> f64 {
+fn way_number(way: TurnDirection) -> f64 {
     let place = WAYS.iter().position(|&other| other == way);
     place.map_or(0.0, |place| place as f64)
 }
@@ -133,7 +138,7 @@ pub static PARAMETERS: &[Parameter] = &[
     Parameter { level: 1, ..LIMIT.float(0x5450_0108, "how much harder an urgent stop brakes", "", [1.0, 4.0], at!(limits.stop_factor)) },
 
     TARGET.int(0x5450_0110, "way of W to a target: 0 literal, 1 shortest, 2 always positive, 3 always negative", [0.0, 3.0],
-        ValueSource::Settable(|p| way_number(p.targets.way), |p, number| p.targets.way = WAYS[number as usize & 3])),
+        ValueSource::Settable(|p| way_number(p.targets.turn_direction), |p, number| p.targets.turn_direction = WAYS[number as usize & 3])),
 
     GEOMETRY.float(0x5450_0200, "radius of the track", "mm", [20.0, 1_000.0], at!(geometry.radius_mm)),
     GEOMETRY.float(0x5450_0201, "start of a guide", "track radii", [0.05, 0.95], at!(geometry.guide_start)),
@@ -160,7 +165,7 @@ pub static PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
     SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
     SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
-    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.at_end_s)),
+    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.max_saturation_s)),
     SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
     SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
     SUPERVISION.int(0x5450_050B, "late ticks that are allowed, one in 100 ticks forgiven", [0.0, 1_000.0], whole!(u32: supervision.late_ticks)),

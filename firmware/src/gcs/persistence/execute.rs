@@ -5,8 +5,8 @@ use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::parameter::{Addresses, Parameter};
 use crate::gcs::text::Name;
-use crate::parameters::{Parameters, RECORD_ROWS};
-use crate::queues::PanelLink;
+use crate::parameters::{MAX_RECORD_ROWS, Parameters};
+use crate::queues::CommandQueues;
 use crate::settings_store::StoreError;
 
 impl Interpreter {
@@ -29,7 +29,7 @@ impl Interpreter {
     pub(in crate::gcs) fn recall(
         &mut self,
         addresses: &Addresses,
-        queues: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_store()?;
         let wanted = replaced(&self.parameters, &self.persistence.stored, addresses)?;
@@ -90,7 +90,7 @@ impl Interpreter {
     pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
-        recorder.points = recorder.points.min(RECORD_ROWS as u32);
+        recorder.points = recorder.points.min(MAX_RECORD_ROWS as u32);
         recorder.before = recorder.before.min(recorder.points - 1);
         self.rated_limits = parameters.limits;
         self.commander.use_parameters(&parameters);

@@ -3,7 +3,7 @@
 //! Numbers under 200 are those that this family of controllers gives the same things; own ones begin there.
 
 use crate::commander::axis::Axis;
-use crate::recorder::{TABLES, WIDEST, Word};
+use crate::recorder::{MAX_ROW_WORDS, RECORDER_TABLES, RawSignal};
 use core::fmt;
 use heapless::Vec;
 
@@ -34,7 +34,7 @@ pub(super) enum Signal {
     /// A frozen axis.
     Zero,
     /// A word.
-    Word(Word),
+    Word(RawSignal),
     /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
     Measured(u8),
     /// Measured pose minus its setpoint.
@@ -61,35 +61,35 @@ pub(super) const OPTION_OFF: u16 = 0;
 pub(super) const OPTIONS: &[RecordOption] = &[
     option(1, "commanded position", " of axis or pivot, mm or deg", |source| match source {
         SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
-        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotSetpoint(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotSetpoint(i))),
         SignalSource::Controller => None,
     }),
     option(2, "real position", " of axis or pivot, mm or deg", |source| match source {
         SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Measured)),
-        SignalSource::Pivot(i) => Some(Signal::Word(Word::Pivot(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::Pivot(i))),
         SignalSource::Controller => None,
     }),
     option(3, "position error", " of axis or pivot, real minus commanded, mm or deg", |source| match source {
         SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Error)),
-        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotError(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotError(i))),
         SignalSource::Controller => None,
     }),
     option(8, "time since the trigger", ", s", |source| of_controller(source, Signal::Time)),
     option(70, "commanded velocity", " of axis or pivot, mm/s or deg/s", |source| match source {
-        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Velocity(i)))),
-        SignalSource::Pivot(i) => Some(Signal::Word(Word::PivotRate(i))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Velocity(i)))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotRate(i))),
         SignalSource::Controller => None,
     }),
     option(71, "commanded acceleration", " of axis, mm/s^2 or deg/s^2", |source| match source {
-        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(Word::Acceleration(i)))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Acceleration(i)))),
         _ => None,
     }),
-    option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, Word::Duty)),
-    option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, Word::Current)),
-    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(Word::Supply))),
-    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(Word::Mode))),
-    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(Word::Fault))),
-    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(Word::Cost))),
+    option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, RawSignal::Duty)),
+    option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, RawSignal::Current)),
+    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(RawSignal::Supply))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
+    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(RawSignal::Fault))),
+    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(RawSignal::Cost))),
 ];
 
 const fn option(
@@ -110,7 +110,7 @@ fn of_axis(axis: Axis, signal: fn(u8) -> Signal) -> Signal {
     axis.component().map_or(Signal::Zero, |i| signal(i as u8))
 }
 
-fn of_pivot(source: SignalSource, word: fn(u8) -> Word) -> Option<Signal> {
+fn of_pivot(source: SignalSource, word: fn(u8) -> RawSignal) -> Option<Signal> {
     match source {
         SignalSource::Pivot(i) => Some(Signal::Word(word(i))),
         _ => None,
@@ -122,26 +122,26 @@ fn of_controller(source: SignalSource, signal: Signal) -> Option<Signal> {
 }
 
 /// What the tables record before they are told.
-pub(super) const DEFAULT_CHANNELS: [Channel; TABLES] = [
-    commanded_channel(Axis::X, Word::Centre(0)),
+pub(super) const DEFAULT_CHANNELS: [Channel; RECORDER_TABLES] = [
+    commanded_channel(Axis::X, RawSignal::Centre(0)),
     measured_channel(Axis::X, 0),
-    commanded_channel(Axis::Y, Word::Centre(1)),
+    commanded_channel(Axis::Y, RawSignal::Centre(1)),
     measured_channel(Axis::Y, 1),
-    commanded_channel(Axis::W, Word::Theta),
+    commanded_channel(Axis::W, RawSignal::Theta),
     measured_channel(Axis::W, 2),
     Channel {
         option: 73,
         source: SignalSource::Pivot(0),
-        signal: Signal::Word(Word::Duty(0)),
+        signal: Signal::Word(RawSignal::Duty(0)),
     },
     Channel {
         option: 202,
         source: SignalSource::Controller,
-        signal: Signal::Word(Word::Mode),
+        signal: Signal::Word(RawSignal::Mode),
     },
 ];
 
-const fn commanded_channel(axis: Axis, word: Word) -> Channel {
+const fn commanded_channel(axis: Axis, word: RawSignal) -> Channel {
     Channel {
         option: 1,
         source: SignalSource::Axis(axis),
@@ -157,7 +157,11 @@ const fn measured_channel(axis: Axis, component: u8) -> Channel {
     }
 }
 
-pub(super) const PIVOTS: [Word; 3] = [Word::Pivot(0), Word::Pivot(1), Word::Pivot(2)];
+pub(super) const PIVOTS: [RawSignal; 3] = [
+    RawSignal::Pivot(0),
+    RawSignal::Pivot(1),
+    RawSignal::Pivot(2),
+];
 
 impl SignalSource {
     /// The source of a name, in either case.
@@ -192,14 +196,14 @@ impl Channel {
     }
 
     /// The word whose crossing of a value can trigger; none where the value is worked out after the tick.
-    pub(super) fn trigger_word(self) -> Option<Word> {
+    pub(super) fn trigger_word(self) -> Option<RawSignal> {
         match self.signal {
             Signal::Word(word) => Some(word),
             _ => None,
         }
     }
 
-    fn words(self) -> impl Iterator<Item = Word> {
+    fn words(self) -> impl Iterator<Item = RawSignal> {
         let (own, pivots) = match self.signal {
             Signal::Zero | Signal::Time => (None, false),
             Signal::Word(word) => (Some(word), false),
@@ -231,7 +235,7 @@ impl Channel {
     pub(super) const fn is_whole(self) -> bool {
         matches!(
             self.signal,
-            Signal::Word(Word::Mode | Word::Fault | Word::Cost)
+            Signal::Word(RawSignal::Mode | RawSignal::Fault | RawSignal::Cost)
         )
     }
 }
@@ -254,15 +258,17 @@ impl fmt::Display for Channel {
 }
 
 /// The setpoint of a component of the pose.
-pub(super) const fn setpoint(component: u8) -> Word {
+pub(super) const fn setpoint(component: u8) -> RawSignal {
     match component {
-        2 => Word::Theta,
-        i => Word::Centre(i),
+        2 => RawSignal::Theta,
+        i => RawSignal::Centre(i),
     }
 }
 
 /// The words of a row from which all channels can be worked out, each once.
-pub(super) fn words(channels: &[Option<Channel>; TABLES]) -> Vec<Word, WIDEST> {
+pub(super) fn words(
+    channels: &[Option<Channel>; RECORDER_TABLES],
+) -> Vec<RawSignal, MAX_ROW_WORDS> {
     let mut words = Vec::new();
     for word in channels
         .iter()

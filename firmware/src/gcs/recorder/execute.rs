@@ -6,7 +6,7 @@ use super::state::{PendingOrder, RecorderState};
 use super::trigger::Trigger;
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
-use crate::recorder::{MOST_BETWEEN, PanelRecorder, TABLES};
+use crate::recorder::{MAX_ROW_PERIOD_TICKS, RECORDER_TABLES, RecorderReader};
 
 impl RecorderState {
     /// Carries out a change; an error means that nothing has changed. Points that fit no longer are fewer then.
@@ -14,7 +14,7 @@ impl RecorderState {
         &mut self,
         action: &RecordAction,
         parameters: &mut Parameters,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             RecordAction::Channels(changes) => {
@@ -28,7 +28,8 @@ impl RecorderState {
             }
             RecordAction::Triggers(changes) => self.set_triggers(changes, recorder)?,
             RecordAction::Rate(ticks) => {
-                if !(1.0..=f64::from(MOST_BETWEEN)).contains(ticks) || libm::trunc(*ticks) != *ticks
+                if !(1.0..=f64::from(MAX_ROW_PERIOD_TICKS)).contains(ticks)
+                    || libm::trunc(*ticks) != *ticks
                 {
                     return Err(ErrorCode::OutOfRange);
                 }
@@ -50,8 +51,8 @@ impl RecorderState {
 
     fn set_triggers(
         &mut self,
-        changes: &[Option<(u8, Trigger)>; TABLES],
-        recorder: &PanelRecorder<'_>,
+        changes: &[Option<(u8, Trigger)>; RECORDER_TABLES],
+        recorder: &RecorderReader<'_>,
     ) -> Result<(), ErrorCode> {
         let mut tables = self.tables;
         for &(table, trigger) in changes.iter().flatten() {

@@ -4,7 +4,7 @@
 
 use super::readout::MAX_LINE_BYTES;
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
-use crate::fault_record::{BlackBox, Row, Span};
+use crate::fault_record::{FaultRecord, FaultRecordRow, RetainedMemory};
 use crate::gcs::error::ErrorCode;
 use core::fmt::{self, Write as _};
 use heapless::String;
@@ -36,7 +36,7 @@ const DEG: f64 = 360.0 / 4_294_967_296.0;
 
 /// What is left of an answer.
 pub(in crate::gcs) struct FaultRecordReadout {
-    span: Span,
+    span: FaultRecord,
     /// Lines of the head that are written.
     header_lines_written: usize,
     cursor: u32,
@@ -44,12 +44,13 @@ pub(in crate::gcs) struct FaultRecordReadout {
 }
 
 impl FaultRecordReadout {
-    pub(super) fn new(black_box: Option<&BlackBox>) -> Result<Self, ErrorCode> {
-        let span = (black_box.and_then(BlackBox::record)).ok_or(ErrorCode::NotRecorded)?;
+    pub(super) fn new(retained_memory: Option<&RetainedMemory>) -> Result<Self, ErrorCode> {
+        let span = (retained_memory.and_then(RetainedMemory::fault_record))
+            .ok_or(ErrorCode::NotRecorded)?;
         Ok(Self {
             span,
             header_lines_written: 0,
-            cursor: span.begin(),
+            cursor: span.first_row(),
             left: span.rows,
         })
     }
@@ -57,7 +58,7 @@ impl FaultRecordReadout {
     /// The next line, with its end; `None` for a row that is gone.
     pub(super) fn line(
         &mut self,
-        black_box: &BlackBox,
+        retained_memory: &RetainedMemory,
         period_s: f64,
         line: &mut String<MAX_LINE_BYTES>,
     ) -> bool {
@@ -68,8 +69,8 @@ impl FaultRecordReadout {
             self.header_lines_written += 1;
             return true;
         }
-        let is_there = black_box.record() == Some(self.span);
-        let row = black_box.next(&self.span, &mut self.cursor);
+        let is_there = retained_memory.fault_record() == Some(self.span);
+        let row = retained_memory.next(&self.span, &mut self.cursor);
         let row = row.filter(|_| is_there);
         let _ = row_line(row.as_ref(), line);
         self.left = self.left.saturating_sub(1);
@@ -92,7 +93,7 @@ impl FaultRecordReadout {
     }
 }
 
-fn row_line(row: Option<&Row>, line: &mut String<MAX_LINE_BYTES>) -> fmt::Result {
+fn row_line(row: Option<&FaultRecordRow>, line: &mut String<MAX_LINE_BYTES>) -> fmt::Result {
     let Some(row) = row else {
         for _ in 1..COLUMNS.len() {
             line.write_str("NaN ")?;

@@ -10,7 +10,7 @@ use super::state::{PendingOrder, Record, RecorderState};
 use super::trigger::Trigger;
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
-use crate::recorder::{PanelRecorder, Progress, Setup, Watch};
+use crate::recorder::{LevelTrigger, Progress, RecordSetup, RecorderReader};
 
 /// What a command that moves has been announced as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ impl RecorderState {
     pub fn send_pending_order(
         &mut self,
         parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) {
         let done = match self.pending_order {
             PendingOrder::Nothing => return,
@@ -44,7 +44,7 @@ impl RecorderState {
     }
 
     /// A record that waits for its trigger is ordered anew, so that a change counts for it too.
-    pub fn rearm(&mut self, recorder: &PanelRecorder<'_>) {
+    pub fn rearm(&mut self, recorder: &RecorderReader<'_>) {
         if self.is_waiting(recorder) {
             let recorded = self.tables.iter().any(|table| table.channel.is_some());
             self.pending_order = if recorded {
@@ -56,7 +56,7 @@ impl RecorderState {
     }
 
     /// Rows of the record that was ordered last.
-    pub(super) fn progress(&self, recorder: &PanelRecorder<'_>) -> Progress {
+    pub(super) fn progress(&self, recorder: &RecorderReader<'_>) -> Progress {
         let number = self.record.as_ref().map(|record| record.setup.number);
         match (self.pending_order, number) {
             (PendingOrder::Record, _) | (_, None) => Progress::default(),
@@ -65,7 +65,7 @@ impl RecorderState {
     }
 
     /// Whether a record waits for its trigger.
-    pub(super) fn is_waiting(&self, recorder: &PanelRecorder<'_>) -> bool {
+    pub(super) fn is_waiting(&self, recorder: &RecorderReader<'_>) -> bool {
         let armed = self.record.is_some() && !self.stopped;
         match self.pending_order {
             PendingOrder::Record => true,
@@ -85,7 +85,7 @@ impl RecorderState {
         step: bool,
         commands: u32,
         parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) -> Result<Announced, ErrorCode> {
         if step && self.channels().iter().all(Option::is_none) {
             return Err(ErrorCode::TableOff);
@@ -95,7 +95,7 @@ impl RecorderState {
         let complete = (self.record.as_ref())
             .is_some_and(|record| self.progress(recorder).rows == record.setup.rows);
         if step || (every && complete) {
-            let setup = Setup {
+            let setup = RecordSetup {
                 commands: Some(commands),
                 ..self.plain(parameters)
             };
@@ -107,19 +107,19 @@ impl RecorderState {
             };
         }
         let waits = self.is_waiting(recorder) && self.has(Trigger::is_by_command);
-        if waits && recorder.expect(Some(commands)).is_ok() {
+        if waits && recorder.trigger_at(Some(commands)).is_ok() {
             return Ok(Announced::Trigger);
         }
         Ok(Announced::Nothing)
     }
 
     /// The command has been refused: what it was announced as is taken back.
-    pub fn revoke(&mut self, announced: Announced, recorder: &mut PanelRecorder<'_>) {
+    pub fn revoke(&mut self, announced: Announced, recorder: &mut RecorderReader<'_>) {
         match announced {
             Announced::Nothing => {}
             // There is room: the announcement was the last, and at most the second, order in the queue.
             Announced::Trigger => {
-                let _ = recorder.expect(None);
+                let _ = recorder.trigger_at(None);
             }
             Announced::Record => {
                 let _ = recorder.stop();
@@ -134,13 +134,13 @@ impl RecorderState {
         &mut self,
         announced: Announced,
         sent: Option<u32>,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) {
         if announced == Announced::Nothing {
             return;
         }
         if sent.is_some() {
-            let _ = recorder.expect(sent);
+            let _ = recorder.trigger_at(sent);
         }
         for table in &mut self.tables {
             if announced == Announced::Trigger && table.trigger == Trigger::NextMove {
@@ -155,11 +155,11 @@ impl RecorderState {
 
     fn order(
         &mut self,
-        setup: Setup,
+        setup: RecordSetup,
         parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
+        recorder: &mut RecorderReader<'_>,
     ) -> bool {
-        let ordered = recorder.record(&setup).is_ok();
+        let ordered = recorder.start(&setup).is_ok();
         if ordered {
             let record = Record {
                 setup,
@@ -173,20 +173,20 @@ impl RecorderState {
     }
 
     /// The tables' record, without a trigger.
-    fn plain(&self, parameters: &Parameters) -> Setup {
+    fn plain(&self, parameters: &Parameters) -> RecordSetup {
         let last = self.record.as_ref().map_or(0, |record| record.setup.number);
-        Setup {
+        RecordSetup {
             number: last.wrapping_add(1),
-            words: words(&self.channels()),
+            signals: words(&self.channels()),
             every: self.every,
             rows: parameters.recorder.points,
-            ..Setup::default()
+            ..RecordSetup::default()
         }
     }
 
     /// The tables' record, with their triggers.
-    fn triggered(&self, parameters: &Parameters) -> Setup {
-        let mut setup = Setup {
+    fn triggered(&self, parameters: &Parameters) -> RecordSetup {
+        let mut setup = RecordSetup {
             before: parameters.recorder.before,
             now: self.has(|trigger| trigger == Trigger::Now),
             fault: self.has(|trigger| trigger == Trigger::Fault),
@@ -198,8 +198,8 @@ impl RecorderState {
                 && let Some(word) = table.channel.and_then(|channel| channel.trigger_word())
             {
                 // As many fit as there are tables.
-                let watch = Watch::new(word, value / scales.factor(word), rising);
-                let _ = setup.watches.push(watch);
+                let watch = LevelTrigger::new(word, value / scales.factor(word), rising);
+                let _ = setup.level_triggers.push(watch);
             }
         }
         setup

@@ -7,7 +7,7 @@ use crate::gcs::arguments::{ParseError, number};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::{Scanner, Word};
-use crate::recorder::TABLES;
+use crate::recorder::RECORDER_TABLES;
 
 type Parsed = Result<Request, ParseError>;
 
@@ -71,7 +71,7 @@ pub(in crate::gcs) fn set_rate(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// `DRC`: triples of table, source and option.
 pub(in crate::gcs) fn set_channels(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut changes = [None; TABLES];
+    let mut changes = [None; RECORDER_TABLES];
     for change in &mut changes {
         let table = table(scanner.next())?;
         let source = scanner.next();
@@ -103,10 +103,10 @@ pub(in crate::gcs) fn set_channels(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// `DRT`: triples of table (0 for all), trigger and value; the value may be left out at the end.
 pub(in crate::gcs) fn set_triggers(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut changes = [None; TABLES];
-    for place in 0..TABLES {
+    let mut changes = [None; RECORDER_TABLES];
+    for place in 0..RECORDER_TABLES {
         let word = scanner.next();
-        let table = whole(word, 0.0, TABLES as f64, ErrorCode::NoSuchTable)? as u8;
+        let table = whole(word, 0.0, RECORDER_TABLES as f64, ErrorCode::NoSuchTable)? as u8;
         let which = scanner.next();
         let kind = whole(which, 0.0, 65_535.0, ErrorCode::OutOfRange)? as u16;
         let value = if scanner.is_at_end() {
@@ -135,9 +135,9 @@ pub(in crate::gcs) fn set_triggers(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// The tables named up to the end of the line.
 fn tables(scanner: &mut Scanner<'_>) -> Result<TableList, ParseError> {
-    let mut named = [0; TABLES];
+    let mut named = [0; RECORDER_TABLES];
     let mut count = 0;
-    while count < TABLES && !scanner.is_at_end() {
+    while count < RECORDER_TABLES && !scanner.is_at_end() {
         named[count] = table(scanner.next())?;
         count += 1;
     }
@@ -146,7 +146,7 @@ fn tables(scanner: &mut Scanner<'_>) -> Result<TableList, ParseError> {
 
 /// A table, counted from 0.
 fn table(word: Word<'_>) -> Result<u8, ParseError> {
-    Ok(whole(word, 1.0, TABLES as f64, ErrorCode::NoSuchTable)? as u8 - 1)
+    Ok(whole(word, 1.0, RECORDER_TABLES as f64, ErrorCode::NoSuchTable)? as u8 - 1)
 }
 
 /// A whole number from `least` to `most`; `outside` is the error of another one.

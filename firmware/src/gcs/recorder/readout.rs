@@ -10,7 +10,7 @@
 use super::channel::Channel;
 use super::scales::RecordRow;
 use super::state::Record;
-use crate::recorder::{Cursor, PanelRecorder, TABLES};
+use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
 use heapless::String;
 
@@ -23,7 +23,7 @@ pub(super) const LINES_PER_SERVICE: usize = 8;
 pub(in crate::gcs) struct RecordReadout {
     /// The record.
     pub(super) number: u32,
-    pub(super) columns: [Option<Channel>; TABLES],
+    pub(super) columns: [Option<Channel>; RECORDER_TABLES],
     /// Lines of the head that are written.
     pub(super) header_lines_written: usize,
     pub(super) cursor: Cursor,
@@ -38,7 +38,7 @@ impl RecordReadout {
     pub(super) fn line(
         &mut self,
         record: Option<&Record>,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
     ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
@@ -83,11 +83,11 @@ impl RecordReadout {
     fn row_line(
         &mut self,
         record: Option<&Record>,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
         line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
         let mut row = record.map(|record| RecordRow {
-            words: &record.setup.words,
+            words: &record.setup.signals,
             values: recorder.next(&record.setup, &mut self.cursor),
             scales: &record.scales,
             row: self.row,

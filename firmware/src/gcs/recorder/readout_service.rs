@@ -9,8 +9,8 @@ use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::session::Session;
-use crate::queues::PanelLink;
-use crate::recorder::{PanelRecorder, TABLES};
+use crate::queues::CommandQueues;
+use crate::recorder::{RECORDER_TABLES, RecorderReader};
 use heapless::String;
 
 impl Interpreter {
@@ -19,7 +19,7 @@ impl Interpreter {
         &mut self,
         query: RecordQuery,
         session: &mut Session,
-        queues: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let recorder_state = &self.recorder_state;
@@ -31,7 +31,7 @@ impl Interpreter {
                 recorder_state.reply_lengths(&tables, &queues.recorder, out)
             }
             RecordQuery::FaultRecord => {
-                match FaultRecordReadout::new(queues.black_box) {
+                match FaultRecordReadout::new(queues.retained_memory) {
                     Ok(readout) => session.fault_record_readout = Some(readout),
                     Err(code) => session.error = code,
                 }
@@ -53,7 +53,7 @@ impl Interpreter {
     pub(in crate::gcs) fn write_readout(
         &self,
         session: &mut Session,
-        queues: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<bool, WriteFailed> {
         let Some(readout) = &mut session.readout else {
@@ -83,11 +83,11 @@ impl Interpreter {
     pub(in crate::gcs) fn write_fault_record_readout(
         &self,
         session: &mut Session,
-        queues: &PanelLink<'_>,
+        queues: &CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<bool, WriteFailed> {
-        let (Some(readout), Some(black_box)) =
-            (&mut session.fault_record_readout, queues.black_box)
+        let (Some(readout), Some(retained_memory)) =
+            (&mut session.fault_record_readout, queues.retained_memory)
         else {
             return Ok(false);
         };
@@ -96,7 +96,11 @@ impl Interpreter {
                 return Ok(true);
             }
             let mut line = String::new();
-            if !readout.line(black_box, 1.0 / self.parameters.limits.rate_hz, &mut line) {
+            if !readout.line(
+                retained_memory,
+                1.0 / self.parameters.limits.rate_hz,
+                &mut line,
+            ) {
                 session.error = ErrorCode::NotRecorded;
             }
             out.write_all(line.as_bytes())?;
@@ -115,7 +119,7 @@ impl RecorderState {
         &self,
         span: Option<[u32; 2]>,
         tables: &TableList,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
     ) -> Result<RecordReadout, ErrorCode> {
         let progress = self.progress(recorder);
         let [first, rows] = span.unwrap_or([1, progress.rows]);
@@ -125,7 +129,7 @@ impl RecorderState {
         let (true, true, Some(record)) = (rows > 0, enough, &self.record) else {
             return Err(ErrorCode::NotRecorded);
         };
-        let mut columns = [None; TABLES];
+        let mut columns = [None; RECORDER_TABLES];
         let recorded = tables.iter().map(|table| record.channels[table]);
         if tables.is_empty() {
             for (column, channel) in columns.iter_mut().zip(recorded.flatten()) {

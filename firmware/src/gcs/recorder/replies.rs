@@ -5,7 +5,7 @@ use super::trigger::TRIGGERS;
 use super::{RecorderState, TableList};
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply_writer::{ReplyWriter, one_line};
-use crate::recorder::{PanelRecorder, TABLES};
+use crate::recorder::{RECORDER_TABLES, RecorderReader};
 
 impl RecorderState {
     /// `DRC?`
@@ -43,7 +43,7 @@ impl RecorderState {
     pub(super) fn reply_lengths(
         &self,
         tables: &TableList,
-        recorder: &PanelRecorder<'_>,
+        recorder: &RecorderReader<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let rows = self.progress(recorder).rows;
@@ -64,7 +64,7 @@ impl RecorderState {
 
 /// `TNR?`
 pub(super) fn reply_count(out: &mut Output<'_>) -> Result<(), WriteFailed> {
-    one_line(out, format_args!("{TABLES}"))
+    one_line(out, format_args!("{RECORDER_TABLES}"))
 }
 
 /// `HDR?`: in the sections by which clients find their way in it.
@@ -84,7 +84,7 @@ pub(super) fn reply_help(points: u32, out: &mut Output<'_>) -> Result<(), WriteF
     reply.line(format_args!("0x16000201=points of a record"))?;
     reply.line(format_args!("0x54500900=points before the trigger"))?;
     reply.line(format_args!("#Additional information"))?;
-    reply.line(format_args!("{TABLES} record tables"))?;
+    reply.line(format_args!("{RECORDER_TABLES} record tables"))?;
     reply.line(format_args!("{points} datapoints per table"))?;
     reply.line(format_args!(
         "sources: X Y Z U V W axes of the platform in the base frame; 1 2 3 pivots; 0 controller"

@@ -2,12 +2,12 @@
 
 use super::channel::Channel;
 use super::trigger::Trigger;
-use crate::recorder::TABLES;
+use crate::recorder::RECORDER_TABLES;
 
 /// Tables that a line names, counted from 0, in its order; none stands for all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TableList {
-    tables: [u8; TABLES],
+    tables: [u8; RECORDER_TABLES],
     count: u8,
 }
 
@@ -27,7 +27,7 @@ impl TableList {
 
     /// Those named, or all.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> {
-        let all = if self.is_empty() { TABLES } else { 0 };
+        let all = if self.is_empty() { RECORDER_TABLES } else { 0 };
         let named = self.tables.into_iter().take(self.count.into());
         named.map(usize::from).chain(0..all)
     }
@@ -58,9 +58,9 @@ pub enum RecordQuery {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecordAction {
     /// `DRC`: tables, counted from 0, and what they record; `None` switches one off.
-    Channels([Option<(u8, Option<Channel>)>; TABLES]),
+    Channels([Option<(u8, Option<Channel>)>; RECORDER_TABLES]),
     /// `DRT`: tables, counted from 0, and what triggers them.
-    Triggers([Option<(u8, Trigger)>; TABLES]),
+    Triggers([Option<(u8, Trigger)>; RECORDER_TABLES]),
     /// `RTR`: ticks from row to row.
     Rate(f64),
 }

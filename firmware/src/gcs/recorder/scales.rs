@@ -5,7 +5,7 @@ use crate::commander::coordinates::measured;
 use crate::commander::frames::ActiveFrames;
 use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::parameters::Parameters;
-use crate::recorder::{Kind, WIDEST, Word};
+use crate::recorder::{MAX_ROW_WORDS, RawSignal, SignalFormat};
 use kinematics::{Angle, Geometry};
 
 /// What turns words into mm, deg and s, as it was when the record was ordered.
@@ -35,26 +35,28 @@ impl Scales {
     }
 
     /// What a word's number is multiplied by.
-    pub fn factor(&self, word: Word) -> f64 {
+    pub fn factor(&self, word: RawSignal) -> f64 {
         let radius_mm = self.geometry.radius_mm;
-        match (word.kind(), word) {
-            (Kind::Length, _) => LENGTH * radius_mm,
-            (Kind::Angle, _) => ANGLE_DEG,
-            (Kind::AngleError, _) => ERROR_DEG,
-            (Kind::Float, Word::Velocity(0 | 1) | Word::Acceleration(0 | 1)) => radius_mm,
-            (Kind::Float, _) => 180.0 / core::f64::consts::PI,
-            (_, Word::Duty(_)) => 1.0 / self.pwm_counts,
-            (_, Word::Current(_)) => CURRENT_A_PER_COUNT,
-            (_, Word::Supply) => SUPPLY_V_PER_COUNT,
-            (Kind::Count, _) => 1.0,
+        match (word.format(), word) {
+            (SignalFormat::Length, _) => LENGTH * radius_mm,
+            (SignalFormat::Angle, _) => ANGLE_DEG,
+            (SignalFormat::AngleError, _) => ERROR_DEG,
+            (SignalFormat::Float, RawSignal::Velocity(0 | 1) | RawSignal::Acceleration(0 | 1)) => {
+                radius_mm
+            }
+            (SignalFormat::Float, _) => 180.0 / core::f64::consts::PI,
+            (_, RawSignal::Duty(_)) => 1.0 / self.pwm_counts,
+            (_, RawSignal::Current(_)) => CURRENT_A_PER_COUNT,
+            (_, RawSignal::Supply) => SUPPLY_V_PER_COUNT,
+            (SignalFormat::Count, _) => 1.0,
         }
     }
 }
 
 /// A row of a record, as it was read.
 pub(super) struct RecordRow<'a> {
-    pub words: &'a [Word],
-    pub values: [i64; WIDEST],
+    pub words: &'a [RawSignal],
+    pub values: [i64; MAX_ROW_WORDS],
     pub scales: &'a Scales,
     /// The row, counted from that of the trigger.
     pub row: i64,
@@ -76,15 +78,15 @@ impl RecordRow<'_> {
         }
     }
 
-    fn integer(&self, word: Word) -> i64 {
+    fn integer(&self, word: RawSignal) -> i64 {
         let place = self.words.iter().position(|own| *own == word);
         place.map_or(0, |place| self.values[place])
     }
 
-    fn word(&self, word: Word) -> f64 {
+    fn word(&self, word: RawSignal) -> f64 {
         let integer = self.integer(word);
-        let number = match word.kind() {
-            Kind::Float => f64::from(f32::from_bits(integer as u32)),
+        let number = match word.format() {
+            SignalFormat::Float => f64::from(f32::from_bits(integer as u32)),
             _ => integer as f64,
         };
         number * self.scales.factor(word)

@@ -3,7 +3,7 @@
 use super::channel::{self, Channel};
 use super::scales::Scales;
 use super::trigger::Trigger;
-use crate::recorder::{Setup, TABLES};
+use crate::recorder::{RECORDER_TABLES, RecordSetup};
 
 /// A table: what it records, and what triggers it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,8 +15,8 @@ pub(super) struct Table {
 /// A record that was ordered: what it is made of, and how it is to be read.
 #[derive(Clone, Debug)]
 pub(super) struct Record {
-    pub(super) setup: Setup,
-    pub(super) channels: [Option<Channel>; TABLES],
+    pub(super) setup: RecordSetup,
+    pub(super) channels: [Option<Channel>; RECORDER_TABLES],
     pub(super) scales: Scales,
 }
 
@@ -31,7 +31,7 @@ pub(super) enum PendingOrder {
 
 /// What the command side knows of the recorder.
 pub(in crate::gcs) struct RecorderState {
-    pub(super) tables: [Table; TABLES],
+    pub(super) tables: [Table; RECORDER_TABLES],
     pub(super) every: u32,
     /// The record that was ordered last, and the one before, in case that is taken back.
     pub(super) record: Option<Record>,
@@ -63,7 +63,7 @@ impl RecorderState {
         (words / width) as u32
     }
 
-    pub(super) fn channels(&self) -> [Option<Channel>; TABLES] {
+    pub(super) fn channels(&self) -> [Option<Channel>; RECORDER_TABLES] {
         self.tables.map(|table| table.channel)
     }
 }

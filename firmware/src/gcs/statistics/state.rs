@@ -1,6 +1,6 @@
 //! What the loop has counted, snapshot after snapshot.
 
-use crate::control::loop_counters::Interval;
+use crate::control::loop_counters::LoopCounters;
 use crate::queues::Snapshot;
 
 /// Since the start or since `LST`; the peak of the following error since it was told.
@@ -21,14 +21,14 @@ pub(in crate::gcs) struct Statistics {
 impl Statistics {
     /// Takes the next snapshot.
     pub fn update(&mut self, snapshot: &Snapshot) {
-        let Interval {
+        let LoopCounters {
             ticks,
             cycles,
             cycles_sum,
             cycles_worst,
             late,
             peak_error,
-        } = snapshot.interval;
+        } = snapshot.loop_counters;
         self.ticks += u64::from(ticks);
         self.cycles = cycles;
         self.cycles_sum += u64::from(cycles_sum);
