@@ -1,7 +1,7 @@
 //! Every tunable of the controller, in physical units, with the reference stage as default.
 //!
-//! What the tick uses is derived from these once, in [`Config`](crate::control::config::Config). Defaults come from the reference
-//! stage (DESIGN section 4) unless a line says otherwise.
+//! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
+//! unless a line says otherwise.
 
 mod consistency;
 
@@ -92,17 +92,18 @@ pub struct Drive {
     pub viscous_n_m_s: f64,
     /// Coulomb friction at the ring.
     pub coulomb_n_m: f64,
-    /// Way over which friction builds up after a reversal (presliding).
+    /// Distance over which friction builds up after a reversal (presliding).
     pub presliding_rad: f64,
 }
 
 /// Servo gains.
 ///
-/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain Kv crosses
-/// over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600 rad/s, 260 Hz. The
-/// electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and the 1.5 kHz resonance
-/// leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia 20 % under the model. The
-/// position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and 12 deg of phase at crossover.
+/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain
+/// Kv crosses over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600
+/// rad/s, 260 Hz. The electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and
+/// the 1.5 kHz resonance leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia
+/// 20 % under the model. The position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and
+/// 12 deg of phase at crossover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// Velocity setpoint per position error.
@@ -111,12 +112,13 @@ pub struct Gains {
     pub velocity_v_s_rad: f64,
     /// Voltage per integral of the velocity error.
     pub integral_v_rad: f64,
-    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::control::servo`].
+    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see `control/servo`.
     pub learning: f64,
-    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
+    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the
+    /// integral.
     pub friction_learning: f64,
-    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which voltage
-    /// feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
+    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
+    /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
     pub latency_s: f64,
 }
 
@@ -153,11 +155,11 @@ pub struct Supervision {
     pub supply_min_v: f64,
     /// Rate of a pivot that is a fault, over the largest rate of a pivot in motion.
     pub overspeed_factor: f64,
-    /// Way of a pivot's setpoint in which its encoder must show something new.
+    /// Distance of a pivot's setpoint in which its encoder must show something new.
     pub frozen_rad: f64,
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
-    /// Longest time of a bridge at its largest duty.
+    /// Longest time of a bridge at its largest duty (saturated).
     pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,

@@ -69,7 +69,7 @@ impl Bench {
         }
     }
 
-    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the black box.
+    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the retained memory.
     pub fn reset(&mut self, cause: &'static str) {
         let parameters = Parameters::REFERENCE;
         self.host.restart(&parameters, None);

@@ -1,8 +1,9 @@
 //! What the tick computes with, derived once from the parameters.
 
 use crate::control::encoder::EncoderConfig;
+use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::servo::ServoConfig;
-use crate::control::supervisor::INSPECTION_PERIOD_TICKS;
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
@@ -44,26 +45,19 @@ pub struct SupervisionConfig {
     pub guide_range: [f32; 2],
     /// Square of the largest distance of the platform's centre from the track's, track radii.
     pub max_radius_squared: f32,
-    /// Longest time at the largest duty, ticks.
+    /// Longest time at the largest duty (saturated), ticks.
     pub max_saturated_ticks: u32,
     /// Square of the current that a motor bears, ADC counts.
     pub max_mean_square_current: f32,
-    /// Part of the way to a new temperature from one look at a motor to the next.
+    /// Share of the way to a new temperature that a winding goes from one inspection to the next.
     pub winding_smoothing: f32,
-    /// Way of a setpoint in which a reading must change, 2^-32 turns.
+    /// Distance of a setpoint in which a reading must change, 2^-32 turns.
     pub frozen_distance: u64,
     /// Change of a duty that must change a reading, PWM counts.
     pub frozen_duty: u16,
     /// Ticks in a second.
     pub rate_hz: f32,
 }
-
-/// Supply voltage of one count of the 12-bit ADC: 3.3 V full scale behind a divider of 20.
-pub const SUPPLY_V_PER_COUNT: f64 = 66.0 / 4096.0;
-/// Motor current of one count: DRV8874, 450 uA/A into 1 kohm, 3.3 V full scale.
-pub const CURRENT_A_PER_COUNT: f64 = 3.3 / 4096.0 / (450e-6 * 1_000.0);
-
-pub(crate) const UNITS_PER_RAD: f64 = 4_294_967_296.0 / core::f64::consts::TAU;
 
 impl Config {
     /// Derives the tick's constants.

@@ -64,7 +64,7 @@ impl EncoderConfig {
 pub struct Encoder {
     angle: Angle,
     step: i32,
-    /// Good frames in a row, up to [`READY`].
+    /// Good frames in a row, up to [`READY_FRAMES`].
     good_frames: u8,
     /// Bad frames in a row.
     bad_frames: u8,
@@ -88,7 +88,7 @@ impl Default for Encoder {
             bad_frames: 0,
             warning: false,
             fast_path: false,
-            // Until it has told of something else.
+            // Until a frame says otherwise.
             unusable: Some(FaultKind::EncoderSilent),
             reading: 0,
             repeats: 0,
@@ -98,17 +98,17 @@ impl Default for Encoder {
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
 const READY_FRAMES: u8 = 4;
-/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s. To stop
-/// so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
+/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s.
+/// To stop so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
 const FROZEN_STEP: u32 = 16 << ALIGN_SHIFT;
 
 impl Encoder {
     /// Takes the frame of this tick.
     ///
     /// A frame is believed when it decodes and its step differs from the last one's by no more than the plausible
-    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while the pivot
-    /// turns. A frame that is not believed is never used:
-    /// the angle goes on by the last step, up to [`EncoderConfig`]'s count of them in a row.
+    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while
+    /// the pivot turns. A frame that is not believed is never used: the angle goes on by the last step, up to
+    /// [`EncoderConfig`]'s count of them in a row.
     #[inline]
     pub fn update(&mut self, config: &EncoderConfig, frame: &RawFrame) {
         if let (true, Some(counts)) = (
@@ -118,8 +118,8 @@ impl Encoder {
                 .and_then(CheckedFrame::plain_position),
         ) {
             let fraction = config.fraction(counts);
-            let (moved, surprise) = self.moved(fraction);
-            if surprise <= config.max_step_change && !self.is_frozen(fraction) {
+            let (moved, innovation) = self.moved(fraction);
+            if innovation <= config.max_step_change && !self.is_frozen(fraction) {
                 self.count_repeats(fraction);
                 self.advance_by(moved);
                 self.step = moved;
@@ -172,8 +172,8 @@ impl Encoder {
         }
     }
 
-    /// How far a reading is from the angle, and how far that is from the last step. After bridged frames the angle has gone on
-    /// by itself: then it is from where it was expected to be.
+    /// How far a reading is from the angle, and the innovation: how far that is from the last step. After bridged
+    /// frames the angle has gone on by itself: then it is from where it was expected to be.
     #[inline]
     fn moved(&self, fraction: u32) -> (i32, u32) {
         let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
@@ -182,21 +182,21 @@ impl Encoder {
 
     /// Takes a reading that may be one of the first, or after a bad one.
     fn accept_reading(&mut self, config: &EncoderConfig, fraction: u32) {
-        let (moved, surprise) = self.moved(fraction);
+        let (moved, innovation) = self.moved(fraction);
         if self.bad_frames == 0
             && self.good_frames == READY_FRAMES
-            && surprise <= config.max_step_change
+            && innovation <= config.max_step_change
         {
             self.advance_by(moved);
             self.step = moved;
         } else {
-            self.reacquire(config, fraction, moved, surprise);
+            self.reacquire(config, fraction, moved, innovation);
         }
     }
 
     /// Takes a frame after a bad one, or one of the first.
     #[cold]
-    fn reacquire(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, surprise: u32) {
+    fn reacquire(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, innovation: u32) {
         let ticks = u32::from(self.bad_frames) + 1;
         let allowed = config
             .max_step_change
@@ -205,9 +205,10 @@ impl Encoder {
             self.angle = Angle::from_units(i64::from(fraction));
             self.step = 0;
             self.good_frames = 1;
-        } else if surprise <= allowed {
+        } else if innovation <= allowed {
             self.advance_by(moved);
-            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the
+            // rate.
             self.step = self
                 .step
                 .wrapping_add(moved.wrapping_sub(self.step) / ticks as i32);

@@ -1,6 +1,7 @@
 //! Whether the stage has settled, and how far its pivots have been off.
 
-use crate::control::config::{SupervisionConfig, UNITS_PER_RAD};
+use crate::control::config::SupervisionConfig;
+use crate::control::units::UNITS_PER_RAD;
 
 /// Settled means at rest, and every pivot inside the window for the dwell time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! What a tick is given, what it gives, and what the loop remembers between ticks.
 
 use super::encoder::Encoder;
+use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
 use super::servo::PivotServo;
 use super::settling::Settling;
-use super::supervisor::PivotWatch;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
@@ -59,8 +59,9 @@ pub struct State {
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,
-    /// State and commands at the end of the last tick, and whether they are news that no snapshot has been due for yet.
-    pub(super) last_reported: (Mode, u32),
+    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due
+    /// yet.
+    pub(super) last_mode_and_commands: (Mode, u32),
     pub(super) report_due: bool,
     pub(super) loop_counters: LoopCounters,
     /// Late ticks, a hundred each, less those forgiven.
@@ -69,7 +70,7 @@ pub struct State {
     pub(super) low_supply_ticks: u8,
     /// Square of how far out the setpoint may be, track radii.
     pub(super) max_radius_squared: f32,
-    /// The pivot that is watched in this tick; in [`SNAPSHOT_TURN`] none is.
+    /// The pivot that is inspected in this tick; in [`SNAPSHOT_SLOT`](super::inspection::SNAPSHOT_SLOT) none is.
     pub(super) inspection_slot: usize,
     pub(super) pivot_watches: [PivotWatch; 3],
 }
@@ -105,5 +106,19 @@ impl State {
     /// The fault that has ended the controlled stop of that one.
     pub fn stop_ended_by(&self) -> Option<Fault> {
         self.stop_ended_by
+    }
+
+    /// Whether the servo drives the motors.
+    pub(super) fn servo_on(&self) -> bool {
+        matches!(self.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
+    }
+
+    /// Whether the bridges drive or brake.
+    pub(super) fn bridges_awake(&self) -> bool {
+        match self.mode {
+            Mode::Off => false,
+            Mode::Fault => !self.coasts,
+            Mode::Holding | Mode::Moving | Mode::Stopping => true,
+        }
     }
 }

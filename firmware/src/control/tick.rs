@@ -1,31 +1,27 @@
 //! The control loop: one function of state and inputs.
 
+use super::config::Config;
+use super::encoder::Encoder;
+use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
+use super::servo::PivotSetpoint;
 use super::state::{Inputs, Outputs, State};
-use super::supervisor::{INSPECTION_PERIOD_TICKS, Inspection};
-use crate::control::config::Config;
-use crate::control::encoder::Encoder;
-use crate::control::loop_counters::LoopCounters;
-use crate::control::servo::{PivotSetpoint, platform_torques};
+use super::tick_queues::TickQueues;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::FaultKind;
 use crate::mode::Mode;
-use crate::motion::{Position, Setpoint};
-use crate::number::Fixed;
-use crate::queues::{Snapshot, TickQueues};
+use crate::motion::Setpoint;
 use crate::recorder::{Sample, TickObserver};
-use kinematics::{
-    Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
-    pivot_motion_in_platform_axes,
-};
+use kinematics::Angle;
 
 /// One period of the control loop, at 20 kHz by default.
 ///
-/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update interrupt
-/// with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period, 25 us after the
-/// update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No allocation, no blocking,
-/// no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its cost on the chip stands in the
-/// README and is printed by `cargo chip`.
+/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update
+/// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
+/// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
+/// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
+/// cost on the chip stands in the README and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
     config: &mut Config,
@@ -46,10 +42,11 @@ pub fn tick(
     }
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
-    // Obeyed where it lies: a plan is too long to be moved twice.
+    // Handled where it lies: a plan is too long to be moved twice.
     let command = queues.commands.peek();
     let commanded = command.is_some();
-    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next one on.
+    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next
+    // one on.
     let drives = state.servo_on();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
@@ -71,8 +68,8 @@ pub fn tick(
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
-    let turn = state.inspection_slot;
-    state.inspection_slot = (turn + 1) % INSPECTION_PERIOD_TICKS as usize;
+    let slot = state.inspection_slot;
+    state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
     let outputs = Outputs {
         duty,
         awake: state.bridges_awake(),
@@ -93,31 +90,28 @@ pub fn tick(
         commands: state.commands,
     };
     recorder.observe(&sample());
-    if let Some(history) = &mut queues.fault_record {
-        history.observe(&sample());
+    if let Some(fault_record) = &mut queues.fault_record {
+        fault_record.observe(&sample());
     }
     // Made anew, so that a tick that records nothing has it in registers only.
     if queues.recorder.is_active() {
         queues.recorder.observe(&sample());
     }
-    // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is. Where there is
-    // no room then, the next turn serves: so the ticks that can leave one do not depend on when the command side looks.
+    // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
+    // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
+    // on when the command side reads.
     let now = (state.mode, state.commands);
-    state.report_due |= now != state.last_reported;
-    state.last_reported = now;
-    if (turn == SNAPSHOT_SLOT || state.report_due) && !commanded {
+    state.report_due |= now != state.last_mode_and_commands;
+    state.last_mode_and_commands = now;
+    if (slot == SNAPSHOT_SLOT || state.report_due) && !commanded {
         state.report_due = false;
         state.send_snapshot(queues, &point.position, &pivots, &target, duty);
     }
     outputs
 }
 
-/// In turn, a tick each: a look at every pivot, and a snapshot.
-const SNAPSHOT_SLOT: usize = 3;
-const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);
-
-// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
-// each between its symbols.
+// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can
+// count each between its symbols.
 
 /// Encoder frames to pivot angles.
 #[inline(never)]
@@ -143,31 +137,10 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
     motion.setpoint(&config.scale)
 }
 
-/// Setpoints of the three pivots.
-struct PivotSetpoints {
-    angles: [Angle; 3],
-    motion: PivotMotion<f32>,
-    torques: [f32; 3],
-    /// Distances along the guides, track radii: all that is looked at of these later.
-    lengths: [f32; 3],
-}
-
-/// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
-#[inline(never)]
-fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {
-    let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
-    let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
-    let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
-    Some(PivotSetpoints {
-        angles: pivots,
-        motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
-        torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
-        lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
-    })
-}
-
+/// Of the measured supply, from one tick to the next.
 const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
 
+/// Setpoints of the pivots, their rates (rad/s), and the duties.
 type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
 
 impl State {
@@ -181,7 +154,7 @@ impl State {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
         }
-        // Looked at where it lies.
+        // Used where it lies.
         let Some(wanted) = &pivot_setpoints(config, setpoint) else {
             self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
@@ -207,7 +180,7 @@ impl State {
         }
         let i = self.inspection_slot;
         let after = if i < 2 { i + 1 } else { 0 };
-        // All are there, but in the snapshot's turn none.
+        // Each pivot in its slot; in the snapshot's slot none.
         if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
             wanted.lengths.get(i),
             target.get(i),
@@ -215,21 +188,23 @@ impl State {
             pivots.get(after),
             duty.get(i),
         ) {
-            let turn = Inspection {
+            let inspection = Inspection {
                 pivot: i,
                 setpoint,
                 angle,
                 next,
                 duty,
             };
-            if !(self.is_in_guide_range(config, i, length) && self.inspect_pivot(config, &turn)) {
+            if !(self.is_in_guide_range(config, i, length)
+                && self.inspect_pivot(config, &inspection))
+            {
                 return None;
             }
         }
         Some((wanted.angles, wanted.motion.rates, duty))
     }
 
-    /// Duties of the three servos, and the sum of what they asked for. The one whose turn it is learns.
+    /// Duties of the three servos, and the sum of what they asked for. The one that is inspected in this tick learns.
     #[inline(never)]
     fn step_servos(
         &mut self,
@@ -256,112 +231,4 @@ impl State {
         }
         (duty, sum)
     }
-
-    /// Measured minus setpoint, 2^-32 turns, and the largest of the three by its size, if that is allowed.
-    #[inline]
-    fn following_errors(
-        &mut self,
-        config: &Config,
-        pivots: &[Angle; 3],
-        wanted: &PivotSetpoints,
-    ) -> Option<([i32; 3], u32)> {
-        let errors = [0, 1, 2].map(|i| (pivots[i] - wanted.angles[i]).units());
-        let small = errors.map(|error| error as i32);
-        let (mut worst, mut beyond) = (0, 0);
-        for i in 0..3 {
-            worst = small[i].unsigned_abs().max(worst);
-            // Nothing but copies of the sign above 32 bits.
-            beyond |= (errors[i] >> 32) as i32 ^ small[i] >> 31;
-        }
-        // What any rate allows, as a rule; else each is looked at for itself.
-        let least = config.limits.following_error.unsigned_abs();
-        if (beyond != 0 || worst > least) && !self.is_following_allowed(config, pivots, wanted) {
-            return None;
-        }
-        Some((small, worst))
-    }
-
-    /// Whether errors are allowed at these rates.
-    #[cold]
-    fn is_following_allowed(
-        &mut self,
-        config: &Config,
-        pivots: &[Angle; 3],
-        wanted: &PivotSetpoints,
-    ) -> bool {
-        let pivots = pivots.iter().zip(&wanted.angles);
-        for (i, ((&pivot, &target), rate)) in pivots.zip(&wanted.motion.rates).enumerate() {
-            let error = (pivot - target).units();
-            let more = (rate.abs() * config.limits.following_error_per_rate) as i32;
-            let most = config.limits.following_error.saturating_add(more);
-            if error.unsigned_abs() > u64::from(most.unsigned_abs()) {
-                const RAD: f32 = (1.0 / crate::control::config::UNITS_PER_RAD) as f32;
-                let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
-                self.raise_fault(FaultKind::FollowingError, Some(i), value, limit);
-                return false;
-            }
-        }
-        true
-    }
-
-    /// Tells the command side, if there is room.
-    #[inline(never)]
-    fn send_snapshot(
-        &mut self,
-        queues: &mut TickQueues<'_>,
-        setpoint: &Position,
-        pivots: &[Angle; 3],
-        target: &[Angle; 3],
-        duty: [Duty; 3],
-    ) {
-        if queues.has_snapshot_room() {
-            // There is room: only this side fills the queue.
-            let snapshot = self.snapshot(setpoint, pivots, target, duty);
-            let _ = queues.snapshots.enqueue(snapshot);
-            self.loop_counters = LoopCounters::default();
-        }
-    }
-
-    #[inline]
-    fn snapshot(
-        &self,
-        setpoint: &Position,
-        pivots: &[Angle; 3],
-        target: &[Angle; 3],
-        duty: [Duty; 3],
-    ) -> Snapshot {
-        let (plan, plan_tick) = self.motion.progress();
-        Snapshot {
-            tick: self.tick,
-            mode: self.mode,
-            fault: self.fault,
-            stop_ended_by: self.stop_ended_by,
-            referenced: self.referenced,
-            encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
-            encoder_warnings: self.encoders.each_ref().map(Encoder::warning),
-            pivots: *pivots,
-            // A difference that does not fit is a fault, and then the target is what is measured.
-            pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
-            duty,
-            setpoint: *setpoint,
-            centre: self.motion.centre(),
-            plan,
-            plan_tick,
-            settled: self.settling.settled() && self.servo_on(),
-            commands: self.commands,
-            refused: self.refused,
-            peak_following_error_rad: self.settling.peak_error_rad(),
-            loop_counters: self.loop_counters,
-        }
-    }
-}
-
-/// The pose of a position, as far as it is one of the mechanism.
-#[inline]
-fn pose(position: &Position) -> Option<Pose<Fixed>> {
-    Some(Pose {
-        x: Fixed::from_position(position[0])?,
-        y: Fixed::from_position(position[1])?,
-        theta: Angle::from_units(position[2]),
-    })
 }

@@ -6,8 +6,8 @@
 //!      idle  ack   1   0                  low: error, warning
 //! ```
 //!
-//! The acknowledge is as long as the encoder needs, so the frame is aligned on the bits themselves. The CRC (polynomial 0x43,
-//! start value 0, sent inverted) covers position and flags.
+//! The acknowledge is as long as the encoder needs, so the frame is aligned on the bits themselves. The CRC (polynomial
+//! 0x43, start value 0, sent inverted) covers position and flags.
 
 use embedded_hal::spi::SpiBus;
 
@@ -20,8 +20,8 @@ const HEAD_BITS: u32 = 2;
 /// The zero bit, where the start bit is bit 31.
 const ZERO_BIT: u32 = 1 << 30;
 
-/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the CRC,
-/// not inverted, of the seven bits n at bit 7 k.
+/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the
+/// CRC, not inverted, of the seven bits n at bit 7 k.
 static CRC_OF_SEVEN_BITS: [u32; 128] = crc_table();
 const CRC_MASK: u32 = 0x3F;
 const CRC_POLYNOMIAL: u32 = 0x43;
@@ -123,8 +123,8 @@ impl CheckedFrame {
     }
 }
 
-/// Finds a frame in the bits and checks its CRC. One that is whole starts in the first 28 bits, so the chip looks for it in one
-/// register.
+/// Finds a frame in the bits and checks its CRC. One that is whole starts in the first 28 bits, so the chip looks for
+/// it in one register.
 #[inline]
 pub fn check_frame(frame: &RawFrame) -> Result<CheckedFrame, FrameError> {
     let [a, b, c, d, e, f, g, h] = frame.0;

@@ -1,6 +1,6 @@
 //! What is known of each kind of fault, in words: `FAULTS.md` is made of it.
 
-use super::FaultKind;
+use super::kind::FaultKind;
 
 /// A kind of fault, for people.
 #[derive(Clone, Copy, Debug)]

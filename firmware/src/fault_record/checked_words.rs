@@ -18,7 +18,7 @@ impl<const COUNT: usize, const WORDS: usize> CheckedEntries<COUNT, WORDS> {
         Self([const { [const { AtomicU32::new(0) }; WORDS] }; COUNT])
     }
 
-    /// Writes the entry of a number at its place. The last word of `words` is not looked at: the check stands there.
+    /// Writes the entry of a number at its place. The last word of `words` is ignored: the check stands there.
     #[inline]
     pub fn write(&self, number: u32, words: &[u32; WORDS]) {
         let Some(cells) = self.0.get(number as usize % COUNT) else {
@@ -56,7 +56,7 @@ impl<const COUNT: usize, const WORDS: usize> CheckedEntries<COUNT, WORDS> {
     }
 }
 
-/// The turn tells words that have changed places apart.
+/// One word more in the check. Rotated, so that words that have changed places give another check.
 #[inline]
 const fn check_step(check: u32, word: u32) -> u32 {
     check.rotate_left(5) ^ word

@@ -1,7 +1,7 @@
 //! Reading the fault record.
 
+use super::memory::{FAULT_RECORD_ROWS, RetainedMemory};
 use super::row::{FaultRecordRow, row, start_number};
-use super::{FAULT_RECORD_ROWS, RetainedMemory};
 use core::sync::atomic::Ordering;
 
 /// Which rows of the memory are the record.
@@ -36,7 +36,8 @@ impl RetainedMemory {
         Some(span)
     }
 
-    /// The next row of the record that is whole, from a cursor that [`Span::begin`] has made; `None` at its end.
+    /// The next row of the record that is whole, from a cursor that [`FaultRecord::first_row`] has made; `None` at its
+    /// end.
     pub fn next(&self, span: &FaultRecord, cursor: &mut u32) -> Option<FaultRecordRow> {
         while *cursor < FAULT_RECORD_ROWS as u32 {
             let tick = span.first.wrapping_add(*cursor);

@@ -1,8 +1,10 @@
 use super::checked_words::CheckedEntries;
+use super::memory::LAYOUT_MAGIC;
 use super::*;
 use crate::mode::Mode;
 use crate::motion::PlanFollower;
 use crate::recorder::{Sample, TickObserver};
+use core::sync::atomic::Ordering;
 
 fn sample(tick: u64, mode: Mode) -> Sample {
     let setpoint = PlanFollower::default().setpoint(&crate::motion::SetpointScale::new(20_000.0));

@@ -1,13 +1,13 @@
 //! The fault record's end in the tick.
 
+use super::memory::{LAYOUT_MAGIC, ROWS_AFTER_FAULT, RetainedMemory};
 use super::row::words;
-use super::{ROWS_AFTER_FAULT, RetainedMemory};
 use crate::mode::Mode;
 use crate::recorder::{Sample, TickObserver};
 use core::sync::atomic::Ordering;
 
-/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the servo is on
-/// again; the same after a start that finds a record.
+/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the
+/// servo is on again; the same after a start that finds a record.
 pub struct FaultRecordWriter<'a> {
     memory: &'a RetainedMemory,
     start: u32,
@@ -60,6 +60,23 @@ impl<'a> FaultRecordWriter<'a> {
             (State::Running, _) => {}
         }
         true
+    }
+}
+
+impl RetainedMemory {
+    /// The controller starts: what is there from before is kept, as far as it is whole. Gives the end in the tick.
+    pub fn begin(&self) -> FaultRecordWriter<'_> {
+        if self.layout.load(Ordering::Relaxed) != LAYOUT_MAGIC {
+            self.events.clear();
+            self.rows.clear();
+            self.start.store(0, Ordering::Relaxed);
+            self.layout.store(LAYOUT_MAGIC, Ordering::Relaxed);
+        }
+        let start = self.start.load(Ordering::Relaxed).wrapping_add(1);
+        self.start.store(start, Ordering::Relaxed);
+        let is_record = self.newest_row().is_some();
+        self.frozen.store(u32::from(is_record), Ordering::Relaxed);
+        FaultRecordWriter::new(self, start, is_record)
     }
 }
 

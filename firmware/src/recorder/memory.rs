@@ -1,33 +1,17 @@
 //! The memory of a recorder, and its two ends.
 
+use super::published::Published;
 use super::reader::RecorderReader;
-use super::setup::{MAX_ROW_WORDS, Order};
+use super::setup::{MAX_ROW_WORDS, ORDER_SLOTS, Order};
 use super::writer::RecorderWriter;
 use core::sync::atomic::{AtomicI32, AtomicU32};
 use heapless::spsc::Queue;
-
-/// Slots of the queue of orders (one is lost to the ring).
-pub(super) const ORDERS: usize = 4;
 
 /// A recorder of so many words. All zero at first: as a static it costs no flash.
 pub struct Recorder<const WORDS: usize> {
     words: [AtomicU32; WORDS],
     published: Published,
-    orders: Queue<Order, ORDERS>,
-}
-
-/// What the tick tells of the record. It alone writes here.
-pub(super) struct Published {
-    /// The record that the rest is about.
-    pub number: AtomicU32,
-    /// Its complete rows.
-    pub rows: AtomicU32,
-    /// Where in the ring its first row lies.
-    pub first: AtomicU32,
-    /// Its rows before the trigger.
-    pub before: AtomicU32,
-    /// Upper halves of the row of the trigger, from which turns are put back.
-    pub upper: [AtomicI32; MAX_ROW_WORDS],
+    orders: Queue<Order, ORDER_SLOTS>,
 }
 
 impl<const WORDS: usize> Recorder<WORDS> {

@@ -1,9 +1,8 @@
 //! The recorder's end outside the tick: orders, and reading.
 
-use super::memory::Published;
-use super::setup::{MAX_ROW_WORDS, Order, RecordSetup};
+use super::published::Published;
+use super::setup::{MAX_ROW_WORDS, Order, QueueFull, RecordSetup};
 use super::signal::{RawSignal, SignalFormat};
-use crate::queues::QueueFull;
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Producer;
 
@@ -23,7 +22,7 @@ pub struct Progress {
     pub before: u32,
 }
 
-/// A place in a record from which it is read on, with the full value of each word there.
+/// A place in a record from which it is read on, with the full value of each signal there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cursor {
     /// Row, from 0.
@@ -91,7 +90,7 @@ impl<'a> RecorderReader<'a> {
         }
     }
 
-    /// A place in the record, which must have rows: its words' turns are followed from the row of the trigger to there.
+    /// A place in the record, which must have rows: its angles are unwrapped from the row of the trigger to there.
     pub fn seek(&self, setup: &RecordSetup, row: u32) -> Cursor {
         let mut cursor = self.at_trigger(setup);
         while cursor.row < row {
@@ -103,7 +102,7 @@ impl<'a> RecorderReader<'a> {
         cursor
     }
 
-    /// The words at the cursor, which goes on to the next row. Integers as they are, of floats the bits.
+    /// The signals at the cursor, which goes on to the next row. Integers as they are, of floats the bits.
     pub fn next(&self, setup: &RecordSetup, cursor: &mut Cursor) -> [i64; MAX_ROW_WORDS] {
         let values = cursor.values;
         self.step(setup, cursor, 1);
@@ -118,23 +117,23 @@ impl<'a> RecorderReader<'a> {
             *value = upper << 32 | i64::from(self.word(setup, row, i));
         }
         let mut cursor = Cursor { row, values };
-        for (value, word) in cursor.values.iter_mut().zip(&setup.signals) {
-            if word.format() != SignalFormat::Angle {
-                *value = unwrap_value(*word, 0, *value as u32);
+        for (value, signal) in cursor.values.iter_mut().zip(&setup.signals) {
+            if signal.format() != SignalFormat::Angle {
+                *value = unwrap_value(*signal, 0, *value as u32);
             }
         }
         cursor
     }
 
-    fn step(&self, setup: &RecordSetup, cursor: &mut Cursor, way: i32) {
-        cursor.row = cursor.row.wrapping_add_signed(way);
-        for (i, word) in setup.signals.iter().enumerate() {
+    fn step(&self, setup: &RecordSetup, cursor: &mut Cursor, rows: i32) {
+        cursor.row = cursor.row.wrapping_add_signed(rows);
+        for (i, signal) in setup.signals.iter().enumerate() {
             let bits = self.word(setup, cursor.row, i);
-            cursor.values[i] = unwrap_value(*word, cursor.values[i], bits);
+            cursor.values[i] = unwrap_value(*signal, cursor.values[i], bits);
         }
     }
 
-    /// 0 for a row that is not there: one further than the last is looked at and thrown away.
+    /// 0 for a row that is not there: one further than the last is read and thrown away.
     fn word(&self, setup: &RecordSetup, row: u32, i: usize) -> u32 {
         let first = self.published.first.load(Ordering::Relaxed);
         let place = (first.wrapping_add(row) % setup.rows.max(1)) as usize;
@@ -143,9 +142,9 @@ impl<'a> RecorderReader<'a> {
     }
 }
 
-/// The value of a word: that with these low 32 bits which is nearest to the one before, where 32 bits do not hold it.
-fn unwrap_value(word: RawSignal, last: i64, bits: u32) -> i64 {
-    match word.format() {
+/// The value of a signal: that with these low 32 bits which is nearest to the one before, where 32 bits do not hold it.
+fn unwrap_value(signal: RawSignal, last: i64, bits: u32) -> i64 {
+    match signal.format() {
         SignalFormat::Angle => last.wrapping_add(i64::from(bits.wrapping_sub(last as u32) as i32)),
         SignalFormat::Length | SignalFormat::AngleError | SignalFormat::Count => {
             i64::from(bits as i32)

@@ -3,8 +3,8 @@
 use super::sample::{Sample, TickObserver};
 
 /// A running hash over state, setpoints, measured pivots and duties of every tick: two runs that agree in it agreed at
-/// every tick. The words of a tick are turned and added without carry, which no single difference survives unseen, and what
-/// comes of it is multiplied as in FNV-1a: once a tick, since every tick is compared.
+/// every tick. The words of a tick are turned and added without carry, which no single difference survives unseen, and
+/// what comes of it is multiplied as in FNV-1a: once a tick, since every tick is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunningHash(pub u32);
 

@@ -1,6 +1,6 @@
 //! What a record is to be.
 
-use super::signal::RawSignal;
+use super::signal::{RawSignal, SignalFormat, total_order_key};
 use crate::parameters::MAX_RECORD_ROWS;
 use heapless::Vec;
 
@@ -23,7 +23,7 @@ pub struct RecordSetup {
     pub number: u32,
     /// What stands in a row.
     pub signals: Vec<RawSignal, MAX_ROW_WORDS>,
-    /// Ticks from row to row, 1 to [`MOST_BETWEEN`].
+    /// Ticks from row to row, 1 to [`MAX_ROW_PERIOD_TICKS`].
     pub every: u32,
     /// Rows of the record, those before the trigger included.
     pub rows: u32,
@@ -48,24 +48,22 @@ pub struct LevelTrigger {
 }
 
 impl LevelTrigger {
-    /// For a value in the word's own unit. Rising is from below to at or above, falling the other way.
-    pub fn new(word: RawSignal, value: f64, rising: bool) -> Self {
-        let level = match word.format() {
-            super::SignalFormat::Float => {
-                super::signal::total_order_key((value as f32 + 0.0).to_bits())
-            }
+    /// For a value in the signal's own unit. Rising is from below to at or above, falling the other way.
+    pub fn new(signal: RawSignal, value: f64, rising: bool) -> Self {
+        let level = match signal.format() {
+            SignalFormat::Float => total_order_key((value as f32 + 0.0).to_bits()),
             // From here up the integer is at or above the value.
             _ => libm::ceil(value) as i64,
         };
         Self {
-            signal: word,
+            signal,
             level,
             rising,
         }
     }
 }
 
-/// What the panel asks of the tick's end.
+/// What the reader orders of the tick's end.
 #[derive(Clone, Debug, PartialEq)]
 // There are three slots of it, and no heap to box the setup in.
 #[allow(clippy::large_enum_variant)]
@@ -77,3 +75,10 @@ pub(super) enum Order {
     /// Stop waiting for a trigger, or recording. What is recorded stays.
     Stop,
 }
+
+/// The queue to the tick is full: nothing was queued.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueueFull;
+
+/// Slots of the queue of orders (one is lost to the ring).
+pub(super) const ORDER_SLOTS: usize = 4;

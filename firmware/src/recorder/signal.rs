@@ -1,10 +1,10 @@
-//! What can be recorded: a 32-bit word of each signal of the data path, as the tick has it.
+//! What can be recorded: each signal of the data path as a 32-bit word, as the tick has it.
 
 use super::sample::Sample;
 use crate::motion::Position;
 use kinematics::Angle;
 
-/// A signal, as a word. Pivots are counted from 0.
+/// A signal in the units of the tick. Pivots are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawSignal {
     /// Setpoint of the platform's centre, x (0) or y (1).
@@ -37,12 +37,13 @@ pub enum RawSignal {
     Cost,
 }
 
-/// How a word's 32 bits are to be understood.
+/// How a signal's 32 bits are to be understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalFormat {
     /// A length in 2^-29 track radii (0.19 nm on a track of 100 mm).
     Length,
-    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last row's.
+    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last
+    /// row's.
     Angle,
     /// A small angle in 2^-32 turns.
     AngleError,

@@ -1,13 +1,13 @@
 //! The recorder's end in the tick.
 
-use super::memory::{ORDERS, Published};
+use super::published::Published;
 use super::sample::Sample;
-use super::setup::{Order, RecordSetup};
+use super::setup::{ORDER_SLOTS, Order, RecordSetup};
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Consumer;
 
-/// Takes orders, looks for the trigger and writes rows. Costs a look at two flags while there is nothing to do; otherwise, each
-/// tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
+/// Takes orders, looks for the trigger and writes rows. Costs two flags read while there is nothing to do; otherwise,
+/// each tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
 pub struct RecorderWriter<'a> {
     words: &'a [AtomicU32],
     published: &'a Published,
@@ -20,9 +20,9 @@ pub struct RecorderWriter<'a> {
     rows: u32,
     /// Ticks until the next row.
     ticks_left: u32,
-    /// Of each watch, whether its signal was at or above its value; bit i for the i-th.
+    /// Of each level trigger, whether its signal was at or above its value; bit i for the i-th.
     were_above: u8,
-    /// A tick has been looked at: `above` and `faulted` hold.
+    /// There was a tick before: `were_above` and `was_faulted` hold.
     has_previous: bool,
     was_faulted: bool,
 }
@@ -58,7 +58,7 @@ impl<'a> RecorderWriter<'a> {
         }
     }
 
-    /// Whether [`record`](Self::record) would do something: the sample need not be made otherwise.
+    /// Whether [`observe`](Self::observe) would do something: the sample need not be made otherwise.
     #[inline]
     pub fn is_active(&self) -> bool {
         self.state != State::Idle || self.orders.ready()
@@ -68,7 +68,7 @@ impl<'a> RecorderWriter<'a> {
     #[inline(never)]
     pub fn observe(&mut self, sample: &Sample) {
         // As many as fit into the queue.
-        for _ in 1..ORDERS {
+        for _ in 1..ORDER_SLOTS {
             match self.orders.dequeue() {
                 Some(order) => self.take_order(order),
                 None => break,
@@ -125,13 +125,13 @@ impl<'a> RecorderWriter<'a> {
         let faulted = sample.fault.is_some();
         triggered |= setup.fault && self.has_previous && faulted && !self.was_faulted;
         let mut above = 0;
-        for (i, watch) in setup.level_triggers.iter().enumerate() {
+        for (i, trigger) in setup.level_triggers.iter().enumerate() {
             let bit = 1 << i;
-            if watch.signal.level(sample) >= watch.level {
+            if trigger.signal.level(sample) >= trigger.level {
                 above |= bit;
             }
             let crossed = self.has_previous && (above ^ self.were_above) & bit != 0;
-            triggered |= crossed && (above & bit != 0) == watch.rising;
+            triggered |= crossed && (above & bit != 0) == trigger.rising;
         }
         self.were_above = above;
         self.was_faulted = faulted;
@@ -139,14 +139,14 @@ impl<'a> RecorderWriter<'a> {
         triggered
     }
 
-    /// Writes a row; the record's own are told to the reader.
+    /// Writes a row; the record's own are published to the reader.
     fn write_row(&mut self, sample: &Sample) {
         self.ticks_left = self.setup.every.saturating_sub(1);
         let width = self.setup.signals.len();
         let start = self.at as usize * width;
         if let Some(row) = self.words.get(start..start + width) {
-            for (cell, word) in row.iter().zip(&self.setup.signals) {
-                cell.store(word.value(sample) as u32, Ordering::Relaxed);
+            for (cell, signal) in row.iter().zip(&self.setup.signals) {
+                cell.store(signal.value(sample) as u32, Ordering::Relaxed);
             }
         }
         if self.state == State::Triggered {
@@ -175,8 +175,8 @@ impl<'a> RecorderWriter<'a> {
         } else {
             self.at + self.setup.rows - before
         };
-        for (upper, word) in self.published.upper.iter().zip(&self.setup.signals) {
-            upper.store((word.value(sample) >> 32) as i32, Ordering::Relaxed);
+        for (upper, signal) in self.published.upper.iter().zip(&self.setup.signals) {
+            upper.store((signal.value(sample) >> 32) as i32, Ordering::Relaxed);
         }
         self.published.first.store(first, Ordering::Relaxed);
         self.published.before.store(before, Ordering::Relaxed);

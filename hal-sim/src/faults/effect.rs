@@ -3,7 +3,7 @@
 
 use core::f64::consts::TAU;
 
-use firmware::control::config::CURRENT_A_PER_COUNT;
+use firmware::control::units::CURRENT_A_PER_COUNT;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 

@@ -1,12 +1,12 @@
 //! What planning and following cost on this machine, beside rsruckig: `cargo bench -p firmware-cost`.
 //!
-//! Both are given the same random states, those of `cargo cost`, which counts instructions on the chip. They are asked in turn,
-//! some states at a time, again and again, and for each state the fastest counts: what disturbs a timing only ever adds to it.
-//! What matters is the ratio. `STATES=10000` in the environment takes more states, `SEED` others.
+//! Both are given the same random states, those of `cargo cost`, which counts instructions on the chip. They are asked
+//! in turn, some states at a time, again and again, and for each state the fastest counts: what disturbs a timing only
+//! ever adds to it. What matters is the ratio. `STATES=10000` in the environment takes more states, `SEED` others.
 //!
-//! rsruckig takes the axes by themselves: it knows neither the mechanism, whose limits the planners look after along the whole
-//! way, nor a straight line. Under way, what it takes to find the setpoint is timed over many ticks in a row: one is over
-//! before a clock is read.
+//! rsruckig takes the axes by themselves: it knows neither the mechanism, whose limits the planners look after along
+//! the whole way, nor a straight line. Under way, what it takes to find the setpoint is timed over many ticks in a row:
+//! one is over before a clock is read.
 //!
 //! Where a target needs a stop first, ours is the plan of the stop; none where the plan under way is that stop already.
 
@@ -112,7 +112,8 @@ struct Run {
 }
 
 impl Run {
-    /// Times both on the same states, `calls` calls a state, and prints a line. Each says whether it has found anything.
+    /// Times both on the same states, `calls` calls a state, and prints a line. Each says whether it has found
+    /// anything.
     fn compare<S>(
         &self,
         what: &str,

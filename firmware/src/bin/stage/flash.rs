@@ -1,11 +1,11 @@
 //! The flash that settings are kept in: the four sectors of 16 KiB at the beginning of bank 2.
 //!
-//! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task does,
-//! with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered; what
-//! comes in gathers in the receiver's ring of 1 KiB.
+//! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task
+//! does, with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered;
+//! what comes in gathers in the receiver's ring of 2 KiB.
 //!
-//! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a sector
-//! is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
+//! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a
+//! sector is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
 
 use crate::watchdog;
 use embedded_storage::nor_flash::{
@@ -98,7 +98,8 @@ impl ReadNorFlash for SettingsFlash {
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         check_read(self, offset, bytes.len()).map_err(FlashError::Place)?;
         for (at, byte) in (BEGIN + offset as usize..).zip(bytes) {
-            // SAFETY: in the flash, which can be read at any address. Volatile: the compiler does not know who writes it.
+            // SAFETY: in the flash, which can be read at any address. Volatile: the compiler does not know who writes
+            // it.
             *byte = unsafe { (at as *const u8).read_volatile() };
         }
         Ok(())

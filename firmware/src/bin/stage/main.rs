@@ -30,15 +30,15 @@
 //!
 //! From the encoders' latch to the PWM period in which the answer acts: 40 us. A duty takes over with a whole PWM
 //! period. Phase and sleep pins change inside the tick: the enable pulse stands at the beginning of the period, so with
-//! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase does
-//! not matter until the new duty comes.
+//! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase
+//! does not matter until the new duty comes.
 //!
 //! # Priorities
 //!
 //! Latch and tick share the highest priority, 0 in the hardware, which no BASEPRI mask holds back; they never meet. All
-//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides are
-//! lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a full
-//! buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
+//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides
+//! are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a
+//! full buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
 #![no_std]
 #![no_main]
 
@@ -208,7 +208,7 @@ mod app {
         let local = context.local;
         let mut received = 0u32;
         loop {
-            if local.receiver.look() {
+            if local.receiver.poll() {
                 local.session.lose();
             }
             local.receiver.pass_to(|bytes| {

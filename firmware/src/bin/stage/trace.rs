@@ -1,7 +1,8 @@
 //! What a bench or a debugger reads by symbol: `TRACE`, written by the tick, by the command interface and at start.
 //!
-//! What the command interface sends depends on the bytes and the snapshot that it has at hand, and how long it takes depends
-//! on the chip. With a record of both, whoever repeats the run elsewhere can give its own command interface the same.
+//! What the command interface sends depends on the bytes and the snapshot that it has at hand, and how long it takes
+//! depends on the chip. With a record of both, whoever repeats the run elsewhere can give its own command interface the
+//! same.
 
 use crate::reset_cause::ResetCause;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -49,8 +50,8 @@ impl Trace {
         self.reset_cause.store(cause as u32, Ordering::Relaxed);
     }
 
-    /// Keeps a run of the command interface: bytes taken since start, the last ones right before it, and the tick of the
-    /// snapshot it has had. To be called by the command interface alone.
+    /// Keeps a run of the command interface: bytes taken since start, the last ones right before it, and the tick of
+    /// the snapshot it has had. To be called by the command interface alone.
     pub fn record_service(&self, bytes: u32, tick: u32) {
         let served = self.served.load(Ordering::Relaxed);
         let [bytes_place, tick_place] = &self.services[served as usize % SERVICES];

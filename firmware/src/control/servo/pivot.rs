@@ -1,8 +1,9 @@
 //! The servo of one pivot.
 
+use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::platform_torque::Body;
 use super::presliding::Presliding;
-use crate::control::config::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::control::units::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::drivers::bridge::Duty;
 use crate::number;
 use crate::parameters::Parameters;
@@ -23,14 +24,22 @@ pub struct ServoConfig {
     model_weights: [f32; FEATURES],
     /// Back-EMF.
     volt_per_rate: f32,
+    /// Ticks by which torque and friction look ahead: latency and the winding's time constant.
     lead_ticks: f32,
     latency_s: f32,
+    /// Presliding lengths a tick, for a rate of 1 rad/s.
     presliding_per_rate: f32,
+    /// Current over the dead time's knee, for a volt at rest.
     knee_currents_per_volt: f32,
+    /// Share of the way to its final value that the current goes in a tick.
     current_step: f32,
+    /// What the dead time takes of a pulse, PWM counts.
     dead_time_counts: f32,
+    /// Largest duty, PWM counts.
     max_counts: f32,
+    /// PWM counts a volt where the supply reads one ADC count.
     counts_per_volt_at_one_count: f32,
+    /// Anti-windup: largest size of the integral, V.
     integral_limit: f32,
     learnt_weight_limit: [f32; FEATURES],
 }
@@ -38,7 +47,7 @@ pub struct ServoConfig {
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
 const FEATURES: usize = 3;
 
-/// Duty kept back from full: the bridge needs its charge pump refreshed and the current sense its window.
+/// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
 const MAX_DUTY: f64 = 0.98;
 
 impl ServoConfig {
@@ -145,7 +154,8 @@ pub struct PivotServo {
 }
 
 impl PivotServo {
-    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the setpoint.
+    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the
+    /// setpoint.
     pub fn restart(&mut self) {
         *self = Self {
             learnt_weights: self.learnt_weights,
@@ -187,8 +197,8 @@ impl PivotServo {
             .friction
             .advance(setpoint.rate * config.presliding_per_rate);
         let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
-        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
-        // needs a fifth more for the current's change as well.
+        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker
+        // by a fifth needs a fifth more for the current's change as well.
         let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
         let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
         let friction = contact + config.lead_ticks * (contact - last_contact);
@@ -198,8 +208,8 @@ impl PivotServo {
             + (config.model_weights[1] + self.learnt_weights[1]) * torque
             + (config.model_weights[2] + self.learnt_weights[2]) * friction;
 
-        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead time
-        // takes of it is made up for.
+        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead
+        // time takes of it is made up for.
         let over_emf = feedforward + self.integral + config.velocity_gain * r;
         self.current +=
             (over_emf * config.knee_currents_per_volt - self.current) * config.current_step;
@@ -209,7 +219,7 @@ impl PivotServo {
         self.requested_counts = counts;
         let limited = clamp_symmetric(counts, config.max_counts);
 
-        // Collecting stops while the bridge is at its end and the error asks for more.
+        // Anti-windup: collecting stops while the bridge is saturated and the error asks for more.
         if counts == limited || counts * r < 0.0 {
             self.integral = clamp_symmetric(
                 self.integral + config.integral_gain * r,
@@ -219,8 +229,8 @@ impl PivotServo {
         self.quantise(limited)
     }
 
-    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so that the
-    /// pivots can take turns.
+    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
+    /// that the pivots can take turns.
     #[inline]
     pub fn learn(&mut self, config: &ServoConfig) {
         let collected = self.integral - self.integral_when_learnt;
@@ -231,8 +241,8 @@ impl PivotServo {
         }
     }
 
-    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200 is
-    /// coarser than friction forgives.
+    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200
+    /// is coarser than friction forgives.
     #[inline]
     fn quantise(&mut self, counts: f32) -> Duty {
         let wanted = counts + self.rounding_residue;
@@ -242,14 +252,8 @@ impl PivotServo {
     }
 }
 
-/// The share of the dead time that counts: over the knee, where a motor at work is, all of it.
-#[inline]
-fn dead_time_share(current: f32) -> f32 {
-    let share = if current > 1.0 { 1.0 } else { current };
-    if share < -1.0 { -1.0 } else { share }
-}
-
-/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).
+/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their
+/// order).
 #[inline]
 fn clamp_symmetric(value: f32, most: f32) -> f32 {
     if value.abs() <= most {
@@ -269,25 +273,5 @@ fn clamped_end(value: f32, most: f32) -> f32 {
         most
     } else {
         0.0
-    }
-}
-
-/// The duty whose pulses, after the dead time has taken its part, are `wanted`.
-///
-/// Dead time shortens every pulse by `lost` counts, or by all of it if that is less, times the `share` that the current's size
-/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse that comes out no
-/// longer than `lost` is one that loses its share of itself.
-#[inline]
-fn compensate_dead_time(wanted: f32, share: f32, lost: f32) -> f32 {
-    let pulse = wanted + lost * share;
-    let (size, share) = if wanted < 0.0 {
-        (-pulse, -share)
-    } else {
-        (pulse, share)
-    };
-    if size >= lost {
-        pulse
-    } else {
-        wanted / (1.0 - share)
     }
 }

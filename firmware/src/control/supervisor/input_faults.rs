@@ -1,7 +1,8 @@
 //! Faults that the inputs show.
 
-use crate::control::config::{Config, SUPPLY_V_PER_COUNT};
-use crate::control::{Inputs, State};
+use crate::control::config::Config;
+use crate::control::state::{Inputs, State};
+use crate::control::units::SUPPLY_V_PER_COUNT;
 use crate::fault::{FaultKind, Reaction};
 use crate::mode::Mode;
 
@@ -11,15 +12,15 @@ const LOW_SUPPLY_TICKS: u8 = 4;
 const LATE_RECOVERY_TICKS: u32 = 100;
 
 impl State {
-    /// Looks at what the inputs show. In a tick with nothing unusual that is one look at all of it.
+    /// Checks the inputs. In a tick with nothing unusual that is one comparison for all of them.
     #[inline]
     pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
         let [one, two, three] = inputs.bridge_fault;
-        let told = inputs.emergency_stop | inputs.late | one | two | three;
-        let kept = self.lateness | u32::from(self.low_supply_ticks);
+        let reported = inputs.emergency_stop | inputs.late | one | two | three;
+        let pending = self.lateness | u32::from(self.low_supply_ticks);
         let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
         let has_power = inputs.supply_counts >= config.limits.min_supply_counts;
-        if told || kept != 0 || !is_well || !has_power || self.mode == Mode::Fault {
+        if reported || pending != 0 || !is_well || !has_power || self.mode == Mode::Fault {
             self.check_unusual_inputs(config, inputs);
         }
     }
@@ -92,8 +93,9 @@ impl State {
         }
     }
 
-    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so that its
-    /// integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own speed.
+    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so
+    /// that its integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own
+    /// speed.
     #[cold]
     pub(in crate::control) fn fault_frozen_encoder(&mut self, pivot: usize) {
         if let Some(encoder) = self.encoders.get_mut(pivot) {

@@ -1,14 +1,15 @@
-//! Faults of a single pivot: one pivot is looked at in a tick, in turn, and none in each fourth, which leaves a snapshot. So they
-//! are found at most four ticks (200 us) later than they could be, at a third of the cost.
+//! Faults of a single pivot: one pivot is inspected in a tick, one after the other, and none in each fourth tick, which
+//! sends a snapshot. So they are found at most four ticks (200 us) later than they could be, at a third of the cost.
 
-use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
-use crate::control::config::{CURRENT_A_PER_COUNT, Config};
-use crate::control::{Inputs, State};
+use crate::control::config::Config;
+use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
+use crate::control::state::{Inputs, State};
+use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
 use crate::fault::FaultKind;
 use crate::number::sqrt_f32;
 
-/// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the windings' own
-/// time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
+/// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the
+/// windings' own time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
 const REPEATED_READINGS: u16 = 20;
 
 impl State {
@@ -34,11 +35,15 @@ impl State {
         }
     }
 
-    /// Looks at the pivot whose turn it is, while it is driven; whether all is well with it.
-    pub(in crate::control) fn inspect_pivot(&mut self, config: &Config, turn: &Inspection) -> bool {
+    /// Inspects a pivot while it is driven; whether all is well with it.
+    pub(in crate::control) fn inspect_pivot(
+        &mut self,
+        config: &Config,
+        inspection: &Inspection,
+    ) -> bool {
         let limits = &config.limits;
-        let i = turn.pivot;
-        let separation = (turn.next - turn.angle).fraction();
+        let i = inspection.pivot;
+        let separation = (inspection.next - inspection.angle).fraction();
         if separation < limits.min_separation {
             self.raise_angle_fault(
                 FaultKind::PivotsTooClose,
@@ -79,16 +84,16 @@ impl State {
             return false;
         }
         if encoder.repeated_readings() < INSPECTION_PERIOD_TICKS as u16 {
-            watch.duty = turn.duty.0;
+            watch.duty = inspection.duty.0;
             watch.setpoint = None;
             watch.driven_ticks = 0;
             return true;
         }
-        let begun = *watch.setpoint.get_or_insert(turn.setpoint);
-        let gone = (turn.setpoint - begun).units().unsigned_abs() > limits.frozen_distance;
+        let begun = *watch.setpoint.get_or_insert(inspection.setpoint);
+        let gone = (inspection.setpoint - begun).units().unsigned_abs() > limits.frozen_distance;
         if gone && encoder.repeated_readings() >= REPEATED_READINGS {
             self.fault_frozen_encoder(i);
-        } else if drive_exceeds(turn.duty.0, watch.duty, limits.frozen_duty) {
+        } else if drive_exceeds(inspection.duty.0, watch.duty, limits.frozen_duty) {
             // From here on: a reading that has rested for long may go on resting until the drive has had its time.
             watch.driven_ticks += INSPECTION_PERIOD_TICKS as u16;
             if watch.driven_ticks >= REPEATED_READINGS {
@@ -117,12 +122,12 @@ impl State {
 
 /// 2^-32 turns in rad.
 fn radians(units: u32) -> f32 {
-    const RAD: f32 = (1.0 / crate::control::config::UNITS_PER_RAD) as f32;
+    const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
     units as f32 * RAD
 }
 
-/// Whether a duty is over one before by more than a limit, or as far on the other side of zero. Less than what moved a pivot
-/// last need not move it: at the end of a motion friction keeps it where it is.
+/// Whether a duty is over one before by more than a limit, or as far on the other side of zero. Less than what moved a
+/// pivot last need not move it: at the end of a motion friction keeps it where it is.
 fn drive_exceeds(duty: i16, before: i16, limit: u16) -> bool {
     let [duty, before, limit] = [i32::from(duty), i32::from(before), i32::from(limit)];
     duty > before.max(0) + limit || duty < before.min(0) - limit

@@ -1,21 +1,22 @@
 //! Faults that the setpoint shows: out of the disk, or out of a guide's range.
 
-use crate::control::State;
 use crate::control::config::Config;
+use crate::control::state::State;
 use crate::fault::FaultKind;
 use crate::motion::Position;
 use crate::number::sqrt_f32;
 
-/// By how much a way back into the disk may go out again: what rounding does.
+/// By how much the square of the distance (in track radii) may grow on a return into the disk: what rounding does.
 const RETURN_TOLERANCE: f32 = 1e-4;
 
 impl State {
-    /// Notes where the servo is switched on: outside the disk that is no fault as long as it goes no further out.
+    /// Takes the limit from where the servo is switched on: outside the disk that is no fault as long as it goes no
+    /// further out.
     pub(in crate::control) fn set_radius_limit_from(&mut self, platform: &Position) {
         self.max_radius_squared = radius_squared(platform) + RETURN_TOLERANCE;
     }
 
-    /// Whether the platform's centre is in its disk, or on its way back into it.
+    /// Whether the platform's centre is in its disk, or returning into it.
     #[inline]
     pub(in crate::control) fn is_in_disk(&mut self, config: &Config, platform: &Position) -> bool {
         let now = radius_squared(platform);
@@ -38,7 +39,8 @@ impl State {
         false
     }
 
-    /// Whether a pivot at `rho` along its guide is in that guide's range. Outside the disk it need not be: there the way back counts.
+    /// Whether a pivot at `rho` along its guide is in that guide's range. Outside the disk it need not be: there the
+    /// return into the disk counts.
     #[inline]
     pub(in crate::control) fn is_in_guide_range(
         &mut self,

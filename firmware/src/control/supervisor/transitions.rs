@@ -1,9 +1,9 @@
-//! The one table of the supervisor: what every event does in every state.
+//! The one table of the supervisor: what every event does in every mode.
 
 use crate::fault::Reaction;
 use crate::mode::Mode;
 
-/// What the supervisor is told, or finds out.
+/// A command, a fault, or the end of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// Command: take theta and the turns from the encoders, and hold.
@@ -54,7 +54,7 @@ pub const MODES: [Mode; 5] = [
     Mode::Fault,
 ];
 
-/// All events with what they do in each of the [`STATES`].
+/// All events with what they do in each of the [`MODES`].
 #[rustfmt::skip]
 pub const TRANSITIONS: [(Event, [Outcome; 5]); 12] = {
     use Event::{Acknowledge, AtRest, BrakeFault, Centre, CoastFault, Constants, Mounting, Move, Reference, ServoOff, ServoOn, StopFault};
@@ -101,7 +101,7 @@ pub(super) fn outcome(mode: Mode, event: Event) -> Outcome {
 }
 
 impl Mode {
-    /// Its place in [`STATES`].
+    /// Its place in [`MODES`].
     const fn row(self) -> usize {
         match self {
             Self::Off => 0,

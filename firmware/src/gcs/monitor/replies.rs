@@ -1,7 +1,7 @@
 //! What `MON?` answers.
 
 use crate::commander::axis::Axis;
-use crate::control::config::UNITS_PER_RAD;
+use crate::control::units::UNITS_PER_RAD;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply_writer::ReplyWriter;

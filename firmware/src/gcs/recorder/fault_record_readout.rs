@@ -3,7 +3,7 @@
 //! When the servo is switched on meanwhile the record is no more; the rest is answered as not a number, with an error.
 
 use super::readout::MAX_LINE_BYTES;
-use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::fault_record::{FaultRecord, FaultRecordRow, RetainedMemory};
 use crate::gcs::error::ErrorCode;
 use core::fmt::{self, Write as _};

@@ -3,7 +3,7 @@
 use super::channel::{Channel, PIVOTS, Signal, setpoint};
 use crate::commander::coordinates::measured;
 use crate::commander::frames::ActiveFrames;
-use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use crate::parameters::Parameters;
 use crate::recorder::{MAX_ROW_WORDS, RawSignal, SignalFormat};
 use kinematics::{Angle, Geometry};

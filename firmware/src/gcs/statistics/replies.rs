@@ -1,6 +1,6 @@
 //! What the statistics answer.
 
-use crate::control::config::UNITS_PER_RAD;
+use crate::control::units::UNITS_PER_RAD;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply_writer::ReplyWriter;

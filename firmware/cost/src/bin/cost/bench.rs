@@ -20,8 +20,8 @@ impl Bench {
     /// Calls a state, where a call is short.
     pub const SHORT: u32 = 10;
 
-    /// Counts the part `name`, `times` calls for every state asked for: `prepare` makes the arguments of a call, uncounted;
-    /// `call` is counted; `describe` says what came of it, uncounted.
+    /// Counts the part `name`, `times` calls for every state asked for: `prepare` makes the arguments of a call,
+    /// uncounted; `call` is counted; `describe` says what came of it, uncounted.
     pub fn part<A, R>(
         &self,
         name: &'static str,

@@ -20,8 +20,8 @@ impl Meter {
         meter
     }
 
-    /// Counts of one call, and what it returned. Exact to an instruction or two: where the compiler keeps an address over
-    /// the call is not the same in every part.
+    /// Counts of one call, and what it returned. Exact to an instruction or two: where the compiler keeps an address
+    /// over the call is not the same in every part.
     #[inline(always)]
     pub fn count<M, A, R>(
         &self,
@@ -33,8 +33,8 @@ impl Meter {
         let mut arguments: *const A = arguments;
         let counter = DWT::PTR.cast::<u32>().wrapping_add(1);
         let (begin, end): (u32, u32);
-        // SAFETY: reads the counter. The pointers go through it as they are; the compiler does not know that, so that nothing
-        // of the call can come before it.
+        // SAFETY: reads the counter. The pointers go through it as they are; the compiler does not know that, so that
+        // nothing of the call can come before it.
         unsafe {
             asm!(
                 "ldr {begin}, [{counter}]",
@@ -47,8 +47,8 @@ impl Meter {
         }
         // SAFETY: they come from references that outlast the call.
         let result = unsafe { call(&mut *memory, &*arguments) };
-        // SAFETY: reads the counter. The result might be looked at, for all the compiler knows, so that nothing of the call
-        // can come after it.
+        // SAFETY: reads the counter. The result might be looked at, for all the compiler knows, so that nothing of the
+        // call can come after it.
         unsafe {
             asm!(
                 "ldr {end}, [{counter}]",

@@ -1,4 +1,5 @@
-//! What the bench asks for, written into [`ORDER`] before the program looks: how many states, from which seed, which parts.
+//! What the bench asks for, written into [`ORDER`] before the program looks: how many states, from which seed, which
+//! parts.
 
 use core::mem::MaybeUninit;
 

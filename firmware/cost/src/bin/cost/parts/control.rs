@@ -45,7 +45,8 @@ fn decoding(bench: &mut Bench, config: &Config) {
     );
 }
 
-/// The rings under the encoders, which turn at 2 rad/s (over 2.5 an encoder does not become ready), a few counts more or less from tick to tick.
+/// The rings under the encoders, which turn at 2 rad/s (over 2.5 an encoder does not become ready), a few counts more
+/// or less from tick to tick.
 #[derive(Default)]
 struct Rings([Angle; 3]);
 

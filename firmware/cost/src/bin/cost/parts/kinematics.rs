@@ -37,7 +37,7 @@ pub fn run(bench: &mut Bench) {
     bench.part(
         "sine and cosine",
         Bench::SHORT,
-        |random| Angle::from_units(random.next() as i64),
+        |random| Angle::from_units(random.bits() as i64),
         |&angle| <Fixed as kinematics::Scalar>::sin_cos(angle),
         no_result,
     );

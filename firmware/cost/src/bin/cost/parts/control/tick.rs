@@ -1,5 +1,5 @@
-//! The tick as a whole: referenced, then led from target to target, every pivot where it should be but for a little. Now and
-//! then a frame is missing.
+//! The tick as a whole: referenced, then led from target to target, every pivot where it should be but for a little.
+//! Now and then a frame is missing.
 
 use super::SUPPLY_COUNTS;
 use super::frames::frames;

@@ -1,4 +1,4 @@
-//! The black box on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
+//! The retained memory on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
 
 use firmware::fault_record::{FAULT_RECORD_ROWS, ROWS_AFTER_FAULT};
 use firmware::gcs::START_CAUSES;
