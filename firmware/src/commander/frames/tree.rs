@@ -20,7 +20,7 @@ pub struct FrameTree {
 
 impl FrameTree {
     /// Only the base frame.
-    pub const fn new() -> Self {
+    pub(in crate::commander) const fn new() -> Self {
         Self {
             defined: Vec::new(),
             selection: FrameSelection {
