@@ -5,8 +5,9 @@
 
 mod consistency;
 
-use crate::motion::{Limits, TurnDirection};
 pub(crate) use consistency::MIN_HOST_SILENCE_MS;
+
+use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
 
 /// Rows that a record of any signals can have: with all tables 16,384 samples.

@@ -188,6 +188,23 @@ fn another_target_in_motion_is_taken_without_a_stop() {
 }
 
 #[test]
+fn a_plan_that_comes_too_late_is_made_anew() {
+    let mut bench = Bench::ready();
+    bench.move_to(&[(Axis::X, 60.0)]).unwrap();
+    bench.run(3_000);
+    // The tick goes on while the command side does something else: further than a plan looks ahead.
+    for _ in 0..60 {
+        bench.tick.run();
+    }
+    assert_eq!(bench.move_to(&[(Axis::X, 70.0), (Axis::Y, 8.0)]), Ok(()));
+    bench.run_to_rest();
+    assert_eq!(bench.tick.log, ["move", "refused", "move"]);
+    bench.assert_at([70.0, 8.0, 0.0]);
+    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+    assert_eq!(bench.commander.take_late_error(), None);
+}
+
+#[test]
 fn a_target_behind_is_reached_after_a_stop() {
     let mut bench = Bench::ready();
     bench.move_to(&[(Axis::X, 60.0)]).unwrap();

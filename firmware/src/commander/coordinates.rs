@@ -17,7 +17,8 @@ pub(crate) fn max_distance_mm(active_frames: &ActiveFrames, geometry: &Geometry)
     geometry.usable_radius() * geometry.radius_mm + active_frames.arm_mm()
 }
 
-/// What the axes reach, each at some place of the others, as ActiveFrames::travel_coordinates counts it.
+/// What the axes reach, each at some place of the others, as
+/// [`ActiveFrames::travel_coordinates`] counts it.
 pub(crate) fn travel(active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
     let [x, y] = active_frames.zero;
     travel_around([-x, -y, 0.0], active_frames, geometry)

@@ -34,7 +34,7 @@ impl Commander {
                 Ok(self.frames.define(name, kind, planar(&values)?)?)
             }
             FrameChange::Here(name) => self.define_here(name),
-            FrameChange::Queues(child, parent) => Ok(self.frames.link(child, parent)?),
+            FrameChange::Link(child, parent) => Ok(self.frames.link(child, parent)?),
             FrameChange::Remove(name) => Ok(self.frames.remove(name)?),
             FrameChange::Enable(name) => {
                 self.check_at_rest()?;

@@ -73,7 +73,7 @@ impl SentPlan {
         }
     }
 
-    /// The way to another goal that leaves this sent_plan at its tick `at`, by the next of `tries`; what of it is not
+    /// The way to another goal that leaves this plan at its tick `at`, by the next of `tries`; what of it is not
     /// planned yet is left `ahead`.
     pub fn retargeted(
         &self,
@@ -112,7 +112,7 @@ impl SentPlan {
         Ok(next)
     }
 
-    /// What lies `ahead` of this sent_plan, which is its head, from tick `at` on.
+    /// What lies `ahead` of this plan, which is its head, from tick `at` on.
     pub fn continued(
         &self,
         ahead: &Ahead,
@@ -133,7 +133,7 @@ impl SentPlan {
         matches!(self.plan.start, PlanStart::Splice { .. })
     }
 
-    /// The stop that leaves this sent_plan at its tick `at`; `None` when it comes to rest by itself as soon.
+    /// The stop that leaves this plan at its tick `at`; `None` when it comes to rest by itself as soon.
     pub fn with_stop(
         &self,
         id: u32,

@@ -1,7 +1,7 @@
 //! Soft limits of the axes: travel as the user narrows it.
 //!
 //! They hold for the commanded point as
-//! ActiveFrames::travel_coordinates(super::frames::ActiveFrames::travel_coordinates) counts it: in the base frame's
+//! [`ActiveFrames::travel_coordinates`](super::frames::ActiveFrames::travel_coordinates) counts it: in the base frame's
 //! axes, whatever work frame is enabled. One that has not been set is where the travel ends.
 
 use super::axis::{Axis, AxisValues, Coordinates, Travel};

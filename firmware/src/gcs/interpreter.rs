@@ -70,7 +70,7 @@ impl Interpreter {
     }
 
     /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`.
-    /// The black box knows the [`START_CAUSES`](super::START_CAUSES) alone.
+    /// The retained memory knows the [`START_CAUSES`](super::START_CAUSES) alone.
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);

@@ -31,7 +31,7 @@ pub struct Session {
     pub(super) room: Option<usize>,
     /// Bytes have come since it was last looked at.
     pub(super) received_bytes: bool,
-    /// It has promised to be received_bytes (`HBT`), and when: see `heartbeat`.
+    /// It has promised to be heard (`HBT`), and when: see `heartbeat`.
     pub(super) promised_generation: Option<u32>,
     /// The pivots when its position was last asked for.
     pub(super) reported_pivots: Option<[Angle; 3]>,

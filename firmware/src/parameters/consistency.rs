@@ -6,7 +6,7 @@ use kinematics::Geometry;
 /// Least and most of the track's radius that the usable disk may reach out to: closer to the track the pivots' rates
 /// have no bound.
 const USABLE_RADIUS_RANGE: [f64; 2] = [0.05, 0.95];
-/// The tick's 32-bit rates end at 39 track radii or turns a second ([`Scale`](crate::motion::Scale)); a tenth is kept
+/// The tick's 32-bit rates end at 39 track radii or turns a second ([`SetpointScale`](crate::motion::SetpointScale)); a tenth is kept
 /// free.
 const MAX_RATE_1_S: f64 = 35.0;
 /// The same for accelerations, which end at 3,050 a second squared. What an urgent stop makes of the largest

@@ -12,7 +12,7 @@ pub enum FrameChange {
     /// A frame of this name lies where the platform is commanded to be, or is, when nobody commands it.
     Here(FrameName),
     /// The first lies in the second.
-    Queues(FrameName, FrameName),
+    Link(FrameName, FrameName),
     /// In force from now on.
     Enable(FrameName),
     /// Forgotten.

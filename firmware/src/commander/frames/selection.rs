@@ -13,7 +13,7 @@ pub enum EnabledFrames {
     Pair {
         /// `None`: the base frame.
         work: Option<FrameName>,
-        /// `None`: the platform's in_parent.
+        /// `None`: the platform's own.
         tool: Option<FrameName>,
     },
 }

@@ -7,7 +7,7 @@ use super::selection::{EnabledFrames, FrameSelection};
 use super::transform::Transform;
 use heapless::Vec;
 
-/// FrameTree that can be there at a time, besides the base frame.
+/// Frames that can be there at a time, besides the base frame.
 pub const FRAMES: usize = 16;
 
 /// All frames there are.
@@ -20,7 +20,7 @@ pub struct FrameTree {
 
 impl FrameTree {
     /// Only the base frame.
-    pub const fn new() -> Self {
+    pub(in crate::commander) const fn new() -> Self {
         Self {
             defined: Vec::new(),
             selection: FrameSelection {
@@ -79,7 +79,7 @@ impl FrameTree {
         let mut wanted = None;
         if parent != FrameName::ZERO {
             let above = self.find(parent).ok_or(FrameError::Unknown(parent))?;
-            // Its in_parent ancestor, or itself.
+            // Its own ancestor, or itself.
             if self.ancestry(parent).any(|frame| frame.name == child) {
                 return Err(FrameError::Circular);
             }

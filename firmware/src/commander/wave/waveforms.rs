@@ -57,7 +57,7 @@ const DEFAULT_POINT_TICKS: u32 = 20;
 
 impl Waveforms {
     /// Empty tables.
-    pub const fn new() -> Self {
+    pub(in crate::commander) const fn new() -> Self {
         Self {
             tables: [const { Vec::new() }; WAVE_TABLES],
             points: Vec::new(),

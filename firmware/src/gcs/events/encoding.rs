@@ -1,4 +1,4 @@
-//! Events as words, for the fault record: number, tick (two), what, three of its own, and the check.
+//! Events as words, for the retained memory: number, tick (two), what, three of its own, and the check.
 
 use super::event::{Event, START_CAUSES};
 use crate::fault::{FAULT_DESCRIPTIONS, Fault};

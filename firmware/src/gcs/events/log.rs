@@ -13,7 +13,7 @@ pub(in crate::gcs) struct EventLog {
     pub(super) entries: Deque<(u64, Event), RETAINED_EVENTS>,
     /// How many there were.
     pub(super) count: u32,
-    /// How many of them the black box has; `None` before it was looked at.
+    /// How many of them the retained memory has; `None` before it was looked at.
     retained: Option<u32>,
     last: Observed,
 }
@@ -58,7 +58,7 @@ impl EventLog {
         self.count = self.count.wrapping_add(1);
     }
 
-    /// Writes what is new into the black box; the first time, takes what is in it from before.
+    /// Writes what is new into the retained memory; the first time, takes what is in it from before.
     pub fn retain(&mut self, retained_memory: &RetainedMemory) {
         let retained = match self.retained {
             Some(retained) => retained,

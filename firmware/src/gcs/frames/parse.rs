@@ -32,7 +32,7 @@ pub fn here(scanner: &mut Scanner<'_>) -> Parsed {
 
 /// `KLN`
 pub fn link(scanner: &mut Scanner<'_>) -> Parsed {
-    act(FrameChange::Queues(name(scanner)?, name(scanner)?))
+    act(FrameChange::Link(name(scanner)?, name(scanner)?))
 }
 
 /// `KEN`

@@ -1,5 +1,5 @@
-//! The text of all macros: one block of bytes in which each has a text_range, line after line, each ended by LF, as it
-//! was sent. A text_range is all that has to be written to keep a macro somewhere else, and to be sent to have it
+//! The text of all macros: one block of bytes in which each has a range, line after line, each ended by LF, as it
+//! was sent. A range is all that has to be written to store a macro somewhere else, and to be sent to have it
 //! again.
 
 use crate::gcs::error::ErrorCode;

@@ -34,7 +34,7 @@ pub(super) enum Signal {
     /// A frozen axis.
     Zero,
     /// A word.
-    RawSignal(RawSignal),
+    Word(RawSignal),
     /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
     Measured(u8),
     /// Measured pose minus its setpoint.
@@ -60,36 +60,36 @@ pub(super) const OPTION_OFF: u16 = 0;
 #[rustfmt::skip]
 pub(super) const OPTIONS: &[RecordOption] = &[
     option(1, "commanded position", " of axis or pivot, mm or deg", |source| match source {
-        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::RawSignal(setpoint(i)))),
-        SignalSource::Pivot(i) => Some(Signal::RawSignal(RawSignal::PivotSetpoint(i))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(setpoint(i)))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotSetpoint(i))),
         SignalSource::Controller => None,
     }),
     option(2, "real position", " of axis or pivot, mm or deg", |source| match source {
         SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Measured)),
-        SignalSource::Pivot(i) => Some(Signal::RawSignal(RawSignal::Pivot(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::Pivot(i))),
         SignalSource::Controller => None,
     }),
     option(3, "position error", " of axis or pivot, real minus commanded, mm or deg", |source| match source {
         SignalSource::Axis(axis) => Some(of_axis(axis, Signal::Error)),
-        SignalSource::Pivot(i) => Some(Signal::RawSignal(RawSignal::PivotError(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotError(i))),
         SignalSource::Controller => None,
     }),
     option(8, "time since the trigger", ", s", |source| of_controller(source, Signal::Time)),
     option(70, "commanded velocity", " of axis or pivot, mm/s or deg/s", |source| match source {
-        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::RawSignal(RawSignal::Velocity(i)))),
-        SignalSource::Pivot(i) => Some(Signal::RawSignal(RawSignal::PivotRate(i))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Velocity(i)))),
+        SignalSource::Pivot(i) => Some(Signal::Word(RawSignal::PivotRate(i))),
         SignalSource::Controller => None,
     }),
     option(71, "commanded acceleration", " of axis, mm/s^2 or deg/s^2", |source| match source {
-        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::RawSignal(RawSignal::Acceleration(i)))),
+        SignalSource::Axis(axis) => Some(of_axis(axis, |i| Signal::Word(RawSignal::Acceleration(i)))),
         _ => None,
     }),
     option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, RawSignal::Duty)),
     option(200, "motor current", " of pivot, its size, A", |source| of_pivot(source, RawSignal::Current)),
-    option(201, "supply", ", V", |source| of_controller(source, Signal::RawSignal(RawSignal::Supply))),
-    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::RawSignal(RawSignal::Mode))),
-    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::RawSignal(RawSignal::Fault))),
-    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::RawSignal(RawSignal::Cost))),
+    option(201, "supply", ", V", |source| of_controller(source, Signal::Word(RawSignal::Supply))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
+    option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(RawSignal::Fault))),
+    option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(RawSignal::Cost))),
 ];
 
 const fn option(
@@ -112,7 +112,7 @@ fn of_axis(axis: Axis, signal: fn(u8) -> Signal) -> Signal {
 
 fn of_pivot(source: SignalSource, word: fn(u8) -> RawSignal) -> Option<Signal> {
     match source {
-        SignalSource::Pivot(i) => Some(Signal::RawSignal(word(i))),
+        SignalSource::Pivot(i) => Some(Signal::Word(word(i))),
         _ => None,
     }
 }
@@ -132,12 +132,12 @@ pub(super) const DEFAULT_CHANNELS: [Channel; RECORDER_TABLES] = [
     Channel {
         option: 73,
         source: SignalSource::Pivot(0),
-        signal: Signal::RawSignal(RawSignal::Duty(0)),
+        signal: Signal::Word(RawSignal::Duty(0)),
     },
     Channel {
         option: 202,
         source: SignalSource::Controller,
-        signal: Signal::RawSignal(RawSignal::Mode),
+        signal: Signal::Word(RawSignal::Mode),
     },
 ];
 
@@ -145,7 +145,7 @@ const fn commanded_channel(axis: Axis, word: RawSignal) -> Channel {
     Channel {
         option: 1,
         source: SignalSource::Axis(axis),
-        signal: Signal::RawSignal(word),
+        signal: Signal::Word(word),
     }
 }
 
@@ -198,7 +198,7 @@ impl Channel {
     /// The word whose crossing of a value can trigger; none where the value is worked out after the tick.
     pub(super) fn trigger_word(self) -> Option<RawSignal> {
         match self.signal {
-            Signal::RawSignal(word) => Some(word),
+            Signal::Word(word) => Some(word),
             _ => None,
         }
     }
@@ -206,7 +206,7 @@ impl Channel {
     fn words(self) -> impl Iterator<Item = RawSignal> {
         let (own, pivots) = match self.signal {
             Signal::Zero | Signal::Time => (None, false),
-            Signal::RawSignal(word) => (Some(word), false),
+            Signal::Word(word) => (Some(word), false),
             Signal::Measured(_) => (None, true),
             Signal::Error(i) => (Some(setpoint(i)), true),
         };
@@ -235,7 +235,7 @@ impl Channel {
     pub(super) const fn is_whole(self) -> bool {
         matches!(
             self.signal,
-            Signal::RawSignal(RawSignal::Mode | RawSignal::Fault | RawSignal::Cost)
+            Signal::Word(RawSignal::Mode | RawSignal::Fault | RawSignal::Cost)
         )
     }
 }

@@ -40,7 +40,7 @@ impl RecorderState {
         Ok(())
     }
 
-    /// A value that is trigger_word is one of the signal that was there: it goes with it.
+    /// A level that triggers is one of the signal that was there: it goes with it.
     fn set_channel(&mut self, table: usize, channel: Option<Channel>) {
         let table = &mut self.tables[table];
         if table.channel != channel && matches!(table.trigger, Trigger::Crosses { .. }) {

@@ -71,7 +71,7 @@ impl RecordRow<'_> {
     pub fn value(&mut self, channel: Channel) -> f64 {
         match channel.signal {
             Signal::Zero => 0.0,
-            Signal::RawSignal(word) => self.word(word),
+            Signal::Word(word) => self.word(word),
             Signal::Measured(i) => self.pose()[usize::from(i)],
             Signal::Error(i) => self.pose()[usize::from(i)] - self.word(setpoint(i)),
             Signal::Time => self.row as f64 * f64::from(self.every) * self.scales.period_s,

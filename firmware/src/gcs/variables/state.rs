@@ -92,7 +92,7 @@ fn append(line: &mut Vec<u8, LINE_BYTES>, bytes: &[u8]) -> Result<(), ErrorCode>
         .map_err(|_| ErrorCode::LineTooLong)
 }
 
-/// The name rest_of_line a `$`, and what follows it.
+/// The name behind a `$`, and what follows it.
 fn reference(text: &[u8]) -> Result<(Name, &[u8]), ErrorCode> {
     let (name, rest_of_line) = match text.strip_prefix(b"{") {
         Some(inside) => {
