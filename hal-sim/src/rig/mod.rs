@@ -16,4 +16,4 @@ pub mod observer;
 pub mod run;
 pub mod script;
 
-pub use assembly::{IDENTITY, Queues, Rig};
+pub use assembly::{ControllerMemory, IDENTITY, Rig};
