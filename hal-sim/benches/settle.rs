@@ -160,8 +160,8 @@ fn moves(mismatch_percent: f64) -> Rest {
     };
     let parameters: Parameters = controller_parameters(&options);
     let ground = Constraints::new(parameters.limits, parameters.geometry);
-    let mut link = Queues::new();
-    let (tick_queues, commands) = link.split();
+    let mut queues = Queues::new();
+    let (tick_queues, commands) = queues.split();
     let mut bench = Bench {
         host: Host::new(&stage_parameters(&options), &parameters),
         tick_queues,

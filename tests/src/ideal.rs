@@ -46,7 +46,7 @@ pub struct Connection {
 struct Last(Option<Sample>);
 
 impl TickObserver for Last {
-    fn record(&mut self, sample: &Sample) {
+    fn observe(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
 }
@@ -81,7 +81,7 @@ impl Ideal {
         let rig = Rig::new(queues, &parameters, flash, ControlLoop::new);
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
-        let counts = [0, 1, 2].map(|i| rig.front.config.encoders[i].counts_at(third(i)));
+        let counts = [0, 1, 2].map(|i| rig.front.config.encoders[i].ideal_counts_at(third(i)));
         Self {
             rig,
             connections: (0..connections).map(|_| Connection::default()).collect(),
@@ -191,7 +191,7 @@ impl Ideal {
                     now.pivot_setpoints[i] - before.pivot_setpoints[i]
                 });
             self.counts[i] =
-                self.rig.front.config.encoders[i].counts_at(now.pivot_setpoints[i] + step);
+                self.rig.front.config.encoders[i].ideal_counts_at(now.pivot_setpoints[i] + step);
         }
     }
 }

@@ -22,7 +22,8 @@ fn assert_fault(bench: &Bench, kind: FaultKind, pivot: Option<u8>) {
     let fault = bench.fault().unwrap_or_else(|| panic!("no {kind:?}"));
     assert_eq!((fault.kind, fault.pivot), (kind, pivot), "{fault}");
     // In so short a time a controlled stop is not over.
-    let stops = kind.is_of_encoder() || matches!(kind, FaultKind::MotorHot | FaultKind::LoopLate);
+    let stops =
+        kind.concerns_encoder() || matches!(kind, FaultKind::MotorHot | FaultKind::LoopLate);
     if !stops {
         assert_brakes(bench);
     }

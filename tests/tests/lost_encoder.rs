@@ -84,7 +84,10 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         }
     }
     let latched = bench.fault().expect("a fault");
-    assert!(latched.kind.is_of_encoder(), "{line}, {fault:?}: {latched}");
+    assert!(
+        latched.kind.concerns_encoder(),
+        "{line}, {fault:?}: {latched}"
+    );
     assert_eq!(latched.pivot, Some(encoder as u8), "{line}: {latched}");
     worst.ticks = worst.ticks.max(ticks);
     // Braked, with what speed is left.

@@ -1,7 +1,7 @@
 //! The supervisor's table, line by line: every event in every state, through the tick, with the simulated machine behind it.
 
 use firmware::control::config::Config;
-use firmware::control::{Event, Outcome, STATES, TABLE};
+use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
 use firmware::mode::Mode;
 use firmware::motion::{
     AxisState, Constraints, Plan, PlanStart, RotationCentre, Stop, plan_line, plan_stop,
@@ -146,8 +146,8 @@ impl Run {
 
 #[test]
 fn every_event_does_in_every_state_what_the_table_says() {
-    for (event, outcomes) in TABLE {
-        for (state, outcome) in STATES.into_iter().zip(outcomes) {
+    for (event, outcomes) in TRANSITIONS {
+        for (state, outcome) in MODES.into_iter().zip(outcomes) {
             let mut run = Run::in_state(state);
             let (before, fault) = (run.now.refused, run.now.fault);
             run.happens(event);
@@ -174,8 +174,8 @@ fn every_event_does_in_every_state_what_the_table_says() {
 #[test]
 fn what_needs_something_is_refused_without_it() {
     let needs = |state: Mode, event: Event| {
-        TABLE.iter().any(|(each, outcomes)| {
-            let column = STATES.iter().position(|&each| each == state).unwrap();
+        TRANSITIONS.iter().any(|(each, outcomes)| {
+            let column = MODES.iter().position(|&each| each == state).unwrap();
             *each == event && matches!(outcomes[column], Outcome::If(_))
         })
     };

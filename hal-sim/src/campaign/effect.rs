@@ -1,18 +1,16 @@
 //! When what is broken passes the controller's thresholds: judged from the machine and its encoders, in other numbers than the
 //! controller's.
 
-use core::f64::consts::TAU;
-
-use firmware::control::units::CURRENT_A_PER_COUNT;
-use firmware::motion::Position;
-use firmware::parameters::Parameters;
-
 use super::injection::{HEARTBEAT_TICKS, MISSED_EVERY, second};
 use super::scenario::Scenario;
 use super::truth::{setpoint_turns, shown_errors_rad};
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::plant::AXES;
+use core::f64::consts::TAU;
+use firmware::control::units::CURRENT_A_PER_COUNT;
+use firmware::motion::Position;
+use firmware::parameters::Parameters;
 
 /// Ticks in a row in which a low supply is one.
 const LOW_SUPPLY_TICKS: u64 = 4;
@@ -143,7 +141,7 @@ impl<'a> Effects<'a> {
     pub fn has(&mut self, effect: Effect, tick: u64, scenario: &Scenario, now: &Now<'_>) -> bool {
         let supervision = &self.parameters.supervision;
         let bridged = u64::from(supervision.bridged_frames);
-        let longest = (supervision.at_end_s * self.parameters.limits.rate_hz) as u64;
+        let longest = (supervision.max_saturation_s * self.parameters.limits.rate_hz) as u64;
         let bearable = supervision.motor_current_a * supervision.motor_current_a;
         let first = scenario.at + u64::from(scenario.injection.is_of_encoder());
         match effect {

@@ -180,7 +180,7 @@ impl Injection {
             Self::Runaway(_) => supervision.following_error_rad = LARGE_ERROR_RAD,
             Self::Wedged => {
                 supervision.following_error_rad = LARGE_ERROR_RAD;
-                supervision.at_end_s = 0.02;
+                supervision.max_saturation_s = 0.02;
                 // Held as fast, its encoder need not show anything new.
                 supervision.frozen_rad = 1.0;
                 supervision.frozen_v = 60.0;

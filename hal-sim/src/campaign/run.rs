@@ -1,11 +1,5 @@
 //! One run of the campaign.
 
-use firmware::fault::Fault;
-use firmware::gcs::{START_CAUSES, Session};
-use firmware::mode::Mode;
-use firmware::queues::Command;
-use firmware::recorder::{Sample, TickObserver};
-
 use super::injection::Injection;
 use super::scenario::Scenario;
 use super::settings::damaged;
@@ -16,6 +10,11 @@ use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
 use crate::random::Random;
 use crate::rig::{ControllerMemory, Rig};
+use firmware::fault::Fault;
+use firmware::gcs::{START_CAUSES, Session};
+use firmware::mode::Mode;
+use firmware::queues::Command;
+use firmware::recorder::{Sample, TickObserver};
 
 /// Ticks from one sign of life of the host to the next.
 const HEARTBEAT_EVERY: u64 = 200;
@@ -98,7 +97,7 @@ impl Seen {
 }
 
 impl TickObserver for Seen {
-    fn record(&mut self, sample: &Sample) {
+    fn observe(&mut self, sample: &Sample) {
         // A fault leaves no rates: those that were asked for last count.
         let last = self
             .0
@@ -121,7 +120,7 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     } else {
         SettingsFlash::in_memory()
     };
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let mut rig = Rig::simulated(&mut queues, &scenario.stage, &scenario.parameters, flash);
     rig.front.stage.set_pose_at_rest(scenario.start);
     let mut session = Session::new();

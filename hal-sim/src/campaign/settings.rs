@@ -35,7 +35,7 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (StageParameters::REFERENCE, SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut session = Session::new();

@@ -1,5 +1,10 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
+use super::{ControlLoop, Front};
+use crate::machine::devices::{
+    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
+};
+use crate::machine::plant::AXES;
 use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
@@ -7,12 +12,6 @@ use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
 use firmware::queues::TickQueues;
 use firmware::recorder::TickObserver;
-
-use super::{ControlLoop, Front};
-use crate::machine::devices::{
-    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
-};
-use crate::machine::plant::AXES;
 
 type Driver = bridge::Bridge<PwmPin, DirectionPin, SleepPin, FaultPin>;
 
@@ -135,7 +134,7 @@ impl Host {
 
     /// The fault that has ended the controlled stop of that one.
     #[must_use]
-    pub fn worse(&self) -> Option<Fault> {
+    pub fn stop_ended_by(&self) -> Option<Fault> {
         self.control.stop_ended_by()
     }
 
@@ -148,7 +147,7 @@ impl Host {
         let bridge_fault = self
             .drivers
             .each_mut()
-            .map(|driver| driver.faulty().unwrap_or(true));
+            .map(|driver| driver.reports_fault().unwrap_or(true));
         let (current_counts, supply_counts) = self.stage.analog();
         Inputs {
             frames,

@@ -9,6 +9,8 @@
 //!               SettingsFlash
 //! ```
 
+use crate::front::{Front, Host};
+use crate::machine::devices::{SettingsFlash, StageParameters};
 use embedded_io::Write;
 use firmware::control::Outputs;
 use firmware::fault::FaultKind;
@@ -19,9 +21,6 @@ use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::recorder::TickObserver;
 use firmware::settings_store::SettingsStore;
 
-use crate::front::{Front, Host};
-use crate::machine::devices::{SettingsFlash, StageParameters};
-
 /// Who the simulated controller says it is.
 pub const IDENTITY: Identity = Identity {
     serial: "SIM",
@@ -29,9 +28,9 @@ pub const IDENTITY: Identity = Identity {
 };
 
 /// The queues between tick and command side, and what outlives a restart of both. A rig borrows it.
-pub struct Queues {
-    link: Box<Link>,
-    black_box: Box<RetainedMemory>,
+pub struct ControllerMemory {
+    queues: Box<Queues>,
+    retained_memory: Box<RetainedMemory>,
 }
 
 /// See the module.
@@ -49,25 +48,25 @@ pub struct Rig<'a, F = Host> {
     parameters: Parameters,
 }
 
-impl Default for Queues {
+impl Default for ControllerMemory {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Queues {
+impl ControllerMemory {
     /// Empty.
     #[must_use]
     pub fn new() -> Self {
         Self {
-            link: Box::new(Queues::new()),
-            black_box: Box::new(RetainedMemory::new()),
+            queues: Box::new(Queues::new()),
+            retained_memory: Box::new(RetainedMemory::new()),
         }
     }
 
     /// The ends of the tick, and those of the command side.
     pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
-        self.link.split_with_retained(&self.black_box)
+        self.queues.split_with_retained(&self.retained_memory)
     }
 
     /// Queues that live as long as the process: some kilobytes each time.
@@ -81,13 +80,13 @@ impl<'a> Rig<'a> {
     /// A simulated stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
     #[must_use]
     pub fn simulated(
-        queues: &'a mut Queues,
+        memory: &'a mut ControllerMemory,
         stage: &StageParameters,
         parameters: &Parameters,
         flash: SettingsFlash,
     ) -> Self {
         let front = |parameters: &Parameters| Host::new(stage, parameters);
-        Self::new(queues.split(), parameters, flash, front)
+        Self::new(memory.split(), parameters, flash, front)
     }
 }
 
@@ -140,7 +139,7 @@ impl<'a, F: Front> Rig<'a, F> {
 
     /// Goes on keeping settings.
     pub fn keep(&mut self) {
-        self.keeper.store_pending(&mut self.panel);
+        self.keeper.store_pending(&mut *self.panel);
     }
 
     /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
@@ -174,6 +173,6 @@ fn started(
     keeper: &mut SettingsStore<SettingsFlash>,
 ) -> (Box<Interpreter>, Option<FaultKind>) {
     let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
-    let fault = keeper.restore(&mut panel);
+    let fault = keeper.restore(&mut *panel);
     (panel, fault)
 }

@@ -18,5 +18,5 @@ pub mod observer;
 pub mod run;
 pub mod script;
 
-pub use assembly::{IDENTITY, Queues, Rig};
+pub use assembly::{ControllerMemory, IDENTITY, Rig};
 pub use conditions::run_conditions;

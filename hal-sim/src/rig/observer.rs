@@ -1,12 +1,11 @@
 //! Looks at every tick of a run: turns what the controller and the plant know into the report's samples and moves.
 
+use crate::report::{MotionSample, Move, Sample, Trace};
 use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
 use std::f64::consts::{PI, TAU};
-
-use crate::report::{MotionSample, Move, Sample, Trace};
 
 const TURN: f64 = 4_294_967_296.0;
 /// Units of angle in an encoder count.
@@ -22,8 +21,8 @@ pub struct TickRecord {
 }
 
 impl TickObserver for TickRecord {
-    fn record(&mut self, sample: &TickSample) {
-        self.hash.record(sample);
+    fn observe(&mut self, sample: &TickSample) {
+        self.hash.observe(sample);
         self.sample = Some(sample.clone());
     }
 }
@@ -105,7 +104,10 @@ impl Observer {
     }
 
     fn motion(&mut self, tick: &TickSample) -> MotionSample {
-        let (twist, acceleration) = (&tick.point.twist, &tick.point.acceleration);
+        let (twist, acceleration) = (
+            &tick.reference_point.twist,
+            &tick.reference_point.acceleration,
+        );
         let scaled = |x: f32, y: f32, theta: f32| {
             let [x, y] = [x, y].map(|radii| f64::from(radii) * self.radius_mm);
             [x, y, f64::from(theta).to_degrees()]

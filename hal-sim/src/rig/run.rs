@@ -7,7 +7,7 @@ use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
-use super::{Queues, Rig};
+use super::{ControllerMemory, Rig};
 use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::machine::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
@@ -146,7 +146,7 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let mut rig = Rig::simulated(&mut queues, stage, parameters, flash);
     let Parameters {
         geometry, limits, ..

@@ -66,7 +66,7 @@ mod table {
         let done = Arc::new(AtomicBool::new(false));
         thread::scope(|scope| {
             let served = scope.spawn(|| {
-                let mut queues = Queues::new();
+                let mut queues = ControllerMemory::new();
                 let mut stage = Simulated::new(&mut queues, &options, SettingsFlash::in_memory());
                 server
                     .run(&mut stage, &stop, &mut |_| {})

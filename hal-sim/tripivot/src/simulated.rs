@@ -17,7 +17,11 @@ pub struct Simulated<'a> {
 impl<'a> Simulated<'a> {
     /// The stage that these options describe, whose controller keeps its settings in this flash.
     #[must_use]
-    pub fn new(queues: &'a mut Queues, options: &RunOptions, flash: SettingsFlash) -> Self {
+    pub fn new(
+        queues: &'a mut ControllerMemory,
+        options: &RunOptions,
+        flash: SettingsFlash,
+    ) -> Self {
         let parameters = controller_parameters(options);
         Self {
             rig: Rig::simulated(queues, &stage_parameters(options), &parameters, flash),

@@ -1,5 +1,4 @@
 //! Whoever looks at the page changes nothing of the control loop.
-#![cfg(unix)]
 
 use desk::web::questions;
 use firmware::gcs::Session;
@@ -26,7 +25,7 @@ const DRIVEN: &[(u64, &str)] = &[
 fn run(viewers: usize, lines: &str) -> (RunningHash, usize) {
     let options = RunOptions::default();
     let parameters = controller_parameters(&options);
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let mut client = Session::new();

@@ -45,7 +45,7 @@ impl Served {
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
             let mut say = |notice| drop(say.send(notice));
-            let mut queues = Queues::new();
+            let mut queues = ControllerMemory::new();
             let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut say).unwrap()
         });

@@ -42,7 +42,7 @@ impl Stage {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
-            let mut queues = Queues::new();
+            let mut queues = ControllerMemory::new();
             let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut drop).unwrap();
         });

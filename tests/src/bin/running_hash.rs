@@ -50,7 +50,7 @@ fn exercise(lines: &Script) -> u32 {
         ..RunOptions::default()
     };
     let parameters = controller_parameters(&options);
-    let mut queues = Queues::new();
+    let mut queues = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
     let (mut session, mut client) = (Session::new(), Client::new(lines));

@@ -40,7 +40,7 @@ pub fn run(seed: u64) {
     let (again, problem) = started(&mut keeper);
     assert_eq!(problem, None);
     for parameter in PARAMETERS {
-        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_keep()));
+        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_store()));
         assert_eq!(now, before, "{:x}", parameter.id);
     }
     assert!(again.macros().eq(panel.macros()));

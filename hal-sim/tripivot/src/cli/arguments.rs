@@ -1,20 +1,15 @@
 //! The arguments, as clap reads them.
 
-use std::path::PathBuf;
-
-use clap::{Args, Parser, Subcommand};
-use clap_complete::Shell;
-
 use super::number::{whole, within};
 use super::stage::{SimulatedStage, Simulation};
-
-#[cfg(unix)]
-mod controller;
-mod kinematics;
-
-#[cfg(unix)]
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 pub(super) use controller::{Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
+use std::path::PathBuf;
+
+mod controller;
+mod kinematics;
 
 /// Version and commit of this program.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("TRIPIVOT_COMMIT"));
@@ -66,16 +61,12 @@ pub(super) enum Command {
         output: RunOutput,
     },
     /// Run the simulated stage in real time and let GCS clients drive it, over TCP and a pseudo-terminal.
-    #[cfg(unix)]
     Serve(Serve),
     /// Watch and drive a controller that runs already, on a serial line or at a TCP address, in a browser.
-    #[cfg(unix)]
     View(View),
     /// Record signals of a controller that runs already, every tick or less often: a table and a picture.
-    #[cfg(unix)]
     Record(RecordRun),
     /// Write settings of a controller that runs already into a readable file, or bring them back from one.
-    #[cfg(unix)]
     #[command(subcommand)]
     Settings(SettingsCommand),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
@@ -104,7 +95,6 @@ pub(super) enum Command {
 }
 
 /// The simulated stage, served.
-#[cfg(unix)]
 #[derive(Args, Clone, Debug)]
 pub(super) struct Serve {
     /// Address and port to listen at; port 0 takes a free one.
@@ -113,7 +103,7 @@ pub(super) struct Serve {
     /// Simulated seconds in a second.
     #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true, value_parser = within(SPEEDS))]
     pub(super) speed: f64,
-    /// A pseudo-terminal besides, in place of the controller's serial line.
+    /// A pseudo-terminal besides, in place of the controller's serial line; not on Windows.
     #[arg(long)]
     pub(super) pty: bool,
     /// Address and port of the page to watch and drive the stage in a browser; `off` for none [default: 127.0.0.1:8080, or a
@@ -160,5 +150,4 @@ pub(super) struct Faults {
 }
 
 /// Slowest and fastest: 20 ticks a second, and more than any machine computes.
-#[cfg(unix)]
 const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;

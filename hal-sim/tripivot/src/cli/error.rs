@@ -1,13 +1,11 @@
 //! What can stop a command, each in one line.
 
-use std::io;
-use std::path::PathBuf;
-
+use super::{BAD_REQUEST, FAILED};
 use drawing::ReportError;
 use hal_sim::report::SETTLING_S;
 use hal_sim::rig::script::ScriptError;
-
-use super::{BAD_REQUEST, FAILED};
+use std::io;
+use std::path::PathBuf;
 
 /// Why a command ended early.
 #[derive(Debug, thiserror::Error)]
@@ -41,16 +39,12 @@ pub(super) enum CliError {
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),
     #[error(transparent)]
     Script(#[from] ScriptError),
-    #[cfg(unix)]
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
-    #[cfg(unix)]
     #[error(transparent)]
     Record(#[from] desk::record::RecordError),
-    #[cfg(unix)]
     #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
-    #[cfg(unix)]
     #[error(transparent)]
     Page(#[from] desk::web::PageError),
     /// The stage faulted in a run, or refused a line.
@@ -71,10 +65,10 @@ impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) | Self::OutOfReach(_) | Self::NeverSettled { .. } => FAILED,
+
             Self::Row { error, .. } => error.exit_code(),
-            #[cfg(unix)]
+
             Self::Settings(error) if error.is_failure() => FAILED,
-            #[cfg(unix)]
             Self::Record(error) if error.is_failure() => FAILED,
             _ => BAD_REQUEST,
         }

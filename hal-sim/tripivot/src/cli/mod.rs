@@ -11,32 +11,28 @@ mod faults;
 mod inverse;
 mod json;
 mod map;
+
 mod number;
 mod pages;
-#[cfg(unix)]
+
 mod record;
 mod rows;
-#[cfg(unix)]
 mod serve;
-#[cfg(unix)]
 mod settings;
-#[cfg(unix)]
 pub mod signal;
 mod simulate;
 pub mod stage;
 mod units;
+
 mod usage;
-#[cfg(unix)]
+
 mod view;
 
-use std::process::ExitCode;
-
-use clap::Parser;
-
-use arguments::{Arguments, Command};
-use error::CliError;
-
 pub use arguments::VERSION;
+use arguments::{Arguments, Command};
+use clap::Parser;
+use error::CliError;
+use std::process::ExitCode;
 pub use usage::usage;
 
 /// Exit code: something went wrong on the way of a valid request: a fault, a stage that does not settle, a pose out of reach.
@@ -69,14 +65,10 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
             simulation,
             output,
         }) => simulate::script(&file, &simulation, settings.as_deref(), output.json),
-        #[cfg(unix)]
         Some(Command::Serve(arguments)) => serve::run(&arguments),
-        #[cfg(unix)]
         Some(Command::View(arguments)) => view::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),

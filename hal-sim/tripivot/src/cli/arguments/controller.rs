@@ -1,11 +1,9 @@
 //! Options of what talks to a controller that runs already.
 
-use std::path::PathBuf;
-
-use clap::{Args, Subcommand};
-
 use super::super::number::{whole, within};
+use clap::{Args, Subcommand};
 use desk::record::Trigger;
+use std::path::PathBuf;
 
 /// Where a controller is that runs already.
 #[derive(Args, Clone, Debug)]
@@ -18,10 +16,10 @@ pub(in super::super) struct Controller {
         conflicts_with = "port"
     )]
     pub(in super::super) connect: String,
-    /// The serial line that the controller is at, or a pseudo-terminal.
+    /// The serial line that the controller is at (/dev/ttyUSB0, COM3), or a pseudo-terminal.
     #[arg(long, value_name = "DEVICE")]
     pub(in super::super) port: Option<PathBuf>,
-    /// Bits a second on the serial line.
+    /// Bits a second on the serial line. On macOS a pseudo-terminal takes 0 only, which leaves its rate alone.
     #[arg(long, value_name = "N", default_value_t = 921_600, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     pub(in super::super) baud: u32,
 }
