@@ -22,8 +22,7 @@ pub const SECTIONS: &[Section] = &[
         name: "as-modelled",
         title: "The demonstration on a plant as modelled",
         group: Group::Demonstration,
-        about: "The same with the controller's model being right. What is left comes from what no model of the controller \
-                holds: backlash, elasticity, torque ripple, noise.",
+        about: "The same, the machine's numbers being those of the controller's model.",
         command: "cargo run --release -- --mismatch 0",
         short: None,
         kind: Kind::Deterministic,
@@ -102,7 +101,7 @@ pub const SECTIONS: &[Section] = &[
         group: Group::Motion,
         about: "A random velocity commanded at a random tick of a line, or of another velocity: how many can not be reached from there \
                 without stopping.",
-        command: "cargo test --release -p firmware --test motion_jog another -- --nocapture",
+        command: "cargo test --release -p firmware --test motion_jog another_velocity -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
         seconds: 5,
@@ -218,8 +217,8 @@ pub const SECTIONS: &[Section] = &[
         name: "functions",
         title: "Elementary functions of the loop",
         group: Group::Exactness,
-        about: "Largest error against f64 over all of their 2^32 arguments; `cargo test` takes each 1,009th. Relative for the cube \
-                root, rad for the arcsine; no error where only what is exact is allowed.",
+        about: "Largest error against f64 over all of their 2^32 arguments; `cargo test` takes each 1,009th. Of the last ones and the square \
+                root it is how often they are not exact.",
         command: "INPUTS=all cargo test --release -p firmware --test all_inputs -- --nocapture --test-threads 1",
         short: Some(
             "cargo test --release -p firmware --test all_inputs -- --nocapture --test-threads 1",
