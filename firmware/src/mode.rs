@@ -1,4 +1,4 @@
-//! The states of the controller, as the tick, the queues, the recorder and the command side all name them.
+//! The modes of the controller, as the tick, the queues, the recorder and the command side all name them.
 
 /// State of the supervisor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

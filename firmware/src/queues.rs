@@ -1,127 +1,39 @@
 //! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
-//! for one, every fourth tick or when there is news, and not when it took a command: that tick is the longest as it is.
-//! [`PanelLink::snapshot`] throws away a snapshot that has been waiting, so that what it returns is new.
+//! for one, every fourth tick or when mode or commands have changed, and not when it took a command: that tick is the
+//! longest as it is. What goes through is defined in [`crate::control`], which is at the other end.
 
-use crate::control::config::Config;
-use crate::control::loop_counters::Interval;
-use crate::drivers::bridge::Duty;
-use crate::fault::Fault;
-use crate::fault_record::{BlackBox, History};
-use crate::mode::Mode;
-use crate::motion::{Centre, Plan, Position};
-use crate::recorder::{PanelRecorder, RECORD_WORDS, Recorder, TickRecorder};
+pub use crate::control::{Command, Snapshot, TickQueues};
+pub use crate::recorder::QueueFull;
+
+use crate::control::SNAPSHOT_SLOTS;
+use crate::fault_record::RetainedMemory;
+use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
 use heapless::spsc::{Consumer, Producer, Queue};
-use kinematics::Angle;
 
 /// Slots of the command queue (one is lost to the ring).
-pub const COMMANDS: usize = 5;
-/// Slots of the snapshot queue: one snapshot waiting.
-pub const SNAPSHOTS: usize = 2;
-
-/// What the command side asks of the tick.
-#[derive(Clone, Debug, PartialEq)]
-// A plan is by far the largest command and the most frequent; there is no heap to box it in.
-#[allow(clippy::large_enum_variant)]
-pub enum Command {
-    /// Take theta and the pivots' turns from the absolute encoders and hold the pose found there.
-    Reference,
-    /// Hold the measured pose, or switch the drives off (the stage coasts).
-    Servo(bool),
-    /// Execute a plan. Refused by the tick (and counted) when its start is no longer where the motion is.
-    Move(Plan),
-    /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or not;
-    /// the platform does not move.
-    Centre(Centre),
-    /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the encoders'
-    /// readings mean; such a change takes the reference.
-    Configure(Config),
-    /// Acknowledge the latched fault.
-    Acknowledge,
-}
-
-// Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
-const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());
-
-/// What is known at a tick.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Snapshot {
-    /// The tick, counted from start.
-    pub tick: u64,
-    /// State of the supervisor.
-    pub mode: Mode,
-    /// The latched fault.
-    pub fault: Option<Fault>,
-    /// The fault that has ended its controlled stop, if one has.
-    pub worse: Option<Fault>,
-    /// Whether theta and the turns are known.
-    pub referenced: bool,
-    /// Whether all three encoders answer well, and, for those that do not, why (index: pivot).
-    pub encoder_faults: [Option<crate::fault::FaultKind>; 3],
-    /// Whether an encoder warns.
-    pub encoder_warnings: [bool; 3],
-    /// Measured pivot angles; valid once referenced.
-    pub pivots: [Angle; 3],
-    /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.
-    pub pivot_errors: [i32; 3],
-    /// Duties.
-    pub duty: [Duty; 3],
-    /// Setpoint of the point that is moved.
-    pub setpoint: Position,
-    /// That point.
-    pub centre: Centre,
-    /// Identity of the plan under way, or of the last one.
-    pub plan: u32,
-    /// Ticks of it that are done.
-    pub plan_tick: u64,
-    /// Settled: at rest, and every pivot within the window for the dwell time.
-    pub settled: bool,
-    /// Commands taken so far, refused ones included.
-    pub commands: u32,
-    /// Plans refused by the tick so far.
-    pub refused: u32,
-    /// Largest following error of a pivot since the last start of a motion, rad.
-    pub peak_following_error_rad: f32,
-    /// What the loop has counted since the snapshot before.
-    pub interval: Interval,
-}
+pub const COMMAND_SLOTS: usize = 5;
 
 /// Storage of both queues, and of the data recorder.
-pub struct Link {
-    commands: Queue<Command, COMMANDS>,
-    snapshots: Queue<Snapshot, SNAPSHOTS>,
-    recorder: Recorder<RECORD_WORDS>,
-}
-
-/// The tick's ends.
-pub struct TickLink<'a> {
-    /// Commands to take.
-    pub commands: Consumer<'a, Command>,
-    /// Where snapshots are left.
-    pub snapshots: Producer<'a, Snapshot>,
-    /// The data recorder's end in the tick.
-    pub recorder: TickRecorder<'a>,
-    /// The fault record's, where there is memory for one.
-    pub history: Option<History<'a>>,
+pub struct Queues {
+    commands: Queue<Command, COMMAND_SLOTS>,
+    snapshots: Queue<Snapshot, SNAPSHOT_SLOTS>,
+    recorder: Recorder<RECORDER_WORDS>,
 }
 
 /// The command side's ends.
-pub struct PanelLink<'a> {
+pub struct CommandQueues<'a> {
     commands: Producer<'a, Command>,
     snapshots: Consumer<'a, Snapshot>,
     /// The data recorder's end outside the tick.
-    pub recorder: PanelRecorder<'a>,
-    /// The black box, if there is one.
-    pub black_box: Option<&'a BlackBox>,
+    pub recorder: RecorderReader<'a>,
+    /// The memory that outlasts a reset, if there is one.
+    pub retained_memory: Option<&'a RetainedMemory>,
 }
 
-/// The command queue is full: nothing was queued.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct QueueFull;
-
 #[allow(clippy::new_without_default)] // A default of 100 KB is nothing to be made in passing.
-impl Link {
+impl Queues {
     /// Empty queues.
     pub const fn new() -> Self {
         Self {
@@ -131,62 +43,44 @@ impl Link {
         }
     }
 
-    /// The two sides, without a black box.
-    pub fn split(&mut self) -> (TickLink<'_>, PanelLink<'_>) {
+    /// The two sides, without retained memory.
+    pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
         self.split_with(None)
     }
 
-    /// The two sides, with this black box, in which a start is noted.
-    pub fn split_keeping<'a>(
+    /// The two sides, with retained memory, in which a start is counted.
+    pub fn split_with_retained<'a>(
         &'a mut self,
-        black_box: &'a BlackBox,
-    ) -> (TickLink<'a>, PanelLink<'a>) {
-        self.split_with(Some(black_box))
+        retained_memory: &'a RetainedMemory,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
+        self.split_with(Some(retained_memory))
     }
 
     fn split_with<'a>(
         &'a mut self,
-        black_box: Option<&'a BlackBox>,
-    ) -> (TickLink<'a>, PanelLink<'a>) {
+        retained_memory: Option<&'a RetainedMemory>,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
         let (command_in, command_out) = self.commands.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
-        let (tick_recorder, panel_recorder) = self.recorder.split();
+        let (recorder_writer, recorder_reader) = self.recorder.split();
         (
-            TickLink {
+            TickQueues {
                 commands: command_out,
                 snapshots: snapshot_in,
-                recorder: tick_recorder,
-                history: black_box.map(BlackBox::begin),
+                recorder: recorder_writer,
+                fault_record: retained_memory.map(RetainedMemory::begin),
             },
-            PanelLink {
+            CommandQueues {
                 commands: command_in,
                 snapshots: snapshot_out,
-                recorder: panel_recorder,
-                black_box,
+                recorder: recorder_reader,
+                retained_memory,
             },
         )
     }
 }
 
-impl TickLink<'_> {
-    /// Whether there is room for a snapshot.
-    // The queue carries its number of slots with it. To be told it spares the tick a division by what, for all the compiler
-    // knows, could be zero, and the panic behind that.
-    #[inline]
-    pub fn has_room(&self) -> bool {
-        self.snapshots.capacity() == SNAPSHOTS - 1 && self.snapshots.ready()
-    }
-
-    /// Throws away the commands that wait: the controller starts again.
-    pub fn clear(&mut self) {
-        while self.commands.dequeue().is_some() {}
-        if let Some(history) = &mut self.history {
-            history.start_again();
-        }
-    }
-}
-
-impl PanelLink<'_> {
+impl CommandQueues<'_> {
     /// Throws away the snapshots that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.snapshots.dequeue().is_some() {}

@@ -4,12 +4,12 @@
 //! friction with presliding and stiction among them. Times are counted from the tick that takes the command: to the profile's end,
 //! to where every pivot comes to stay within the window of +-2 encoder LSB, and to where the controller says so, a dwell later.
 
-use firmware::motion::{Ground, Position, plan_line};
+use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{RunOptions, controller_parameters, stage_parameters};
+use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
+use hal_sim::front::Host;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 
 const MOVES: usize = 200;
 const UNIT: f64 = 4_294_967_296.0;
@@ -68,15 +68,15 @@ impl Random {
 /// A stage under its controller.
 struct Bench<'a> {
     host: Host,
-    tick_link: TickLink<'a>,
-    commands: PanelLink<'a>,
+    tick_queues: TickQueues<'a>,
+    commands: CommandQueues<'a>,
     record: TickRecord,
     last: Snapshot,
 }
 
 impl Bench<'_> {
     fn tick(&mut self) {
-        self.host.tick(&mut self.tick_link, &mut self.record);
+        self.host.tick(&mut self.tick_queues, &mut self.record);
         if let Some(snapshot) = self.commands.snapshot() {
             self.last = snapshot;
         }
@@ -159,12 +159,12 @@ fn moves(mismatch_percent: f64) -> Rest {
         ..RunOptions::default()
     };
     let parameters: Parameters = controller_parameters(&options);
-    let ground = Ground::new(parameters.limits, parameters.geometry);
-    let mut link = Link::new();
-    let (tick_link, commands) = link.split();
+    let ground = Constraints::new(parameters.limits, parameters.geometry);
+    let mut queues = Queues::new();
+    let (tick_queues, commands) = queues.split();
     let mut bench = Bench {
         host: Host::new(&stage_parameters(&options), &parameters),
-        tick_link,
+        tick_queues,
         commands,
         record: TickRecord::default(),
         last: Snapshot::default(),

@@ -1,33 +1,33 @@
 //! A centre of rotation beside the platform's centre: the machine turns about that point.
 
 use firmware::mode::Mode;
-use firmware::motion::{Centre, Ground, plan_line};
+use firmware::motion::{Constraints, RotationCentre, plan_line};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Link, Snapshot};
+use firmware::queues::{Command, Queues, Snapshot};
 use firmware::recorder::Sample;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
 
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
 
-/// A host, its link, and the last tick.
+/// A host, its queues, and the last tick.
 struct Run {
     host: Host,
-    link: Link,
+    queues: Queues,
     record: TickRecord,
 }
 
 impl Run {
     fn ticks(&mut self, command: Option<Command>, ticks: u32) -> Snapshot {
-        let (mut tick_link, mut commands) = self.link.split();
+        let (mut tick_queues, mut commands) = self.queues.split();
         if let Some(command) = command {
             commands.send(command).expect("room");
         }
         let mut last = None;
         for _ in 0..ticks {
-            self.host.tick(&mut tick_link, &mut self.record);
+            self.host.tick(&mut tick_queues, &mut self.record);
             last = commands.snapshot().or(last);
         }
         last.expect("a snapshot")
@@ -51,12 +51,12 @@ fn the_machine_turns_about_the_chosen_point() {
     let parameters = Parameters::REFERENCE;
     let mut run = Run {
         host: Host::new(&StageParameters::REFERENCE, &parameters),
-        link: Link::new(),
+        queues: Queues::new(),
         record: TickRecord::default(),
     };
     run.ticks(None, 10);
     let point = [0.25, -0.1];
-    let centre = Centre::new(point).expect("near enough");
+    let centre = RotationCentre::new(point).expect("near enough");
 
     // Off, the point is taken, and told where it is once the stage holds.
     let off = run.ticks(Some(Command::Centre(centre)), 10);
@@ -71,7 +71,7 @@ fn the_machine_turns_about_the_chosen_point() {
     }
 
     // Holding, another point moves nothing; and back.
-    let other = run.ticks(Some(Command::Centre(Centre::PLATFORM)), 10);
+    let other = run.ticks(Some(Command::Centre(RotationCentre::PLATFORM)), 10);
     assert_ne!(other.setpoint, held.setpoint);
     assert_eq!(run.sample().pivot_setpoints, pivots);
     let back = run.ticks(Some(Command::Centre(centre)), 10);
@@ -79,9 +79,9 @@ fn the_machine_turns_about_the_chosen_point() {
     assert_eq!(run.sample().pivot_setpoints, pivots);
 
     // Two thirds of a turn: the point stays where it is, the platform's centre goes round it.
-    let ground = Ground {
-        centre: centre.point(),
-        ..Ground::new(parameters.limits, parameters.geometry)
+    let ground = Constraints {
+        rotation_centre: centre.point(),
+        ..Constraints::new(parameters.limits, parameters.geometry)
     };
     let mut to = held.setpoint;
     to[2] += (TURN * 2.0 / 3.0) as i64;
@@ -91,7 +91,7 @@ fn the_machine_turns_about_the_chosen_point() {
     let mut worst_um = 0.0_f64;
     let mut furthest_mm = 0.0_f64;
     for tick in 0..ticks {
-        let refused = (tick == 100).then_some(Command::Centre(Centre::PLATFORM));
+        let refused = (tick == 100).then_some(Command::Centre(RotationCentre::PLATFORM));
         // There is a snapshot in four ticks.
         let now = run.ticks(refused, 4);
         assert_eq!(now.centre, centre, "in motion the point stays");
@@ -108,6 +108,6 @@ fn the_machine_turns_about_the_chosen_point() {
     println!("the point strayed {worst_um} um");
     assert!(worst_um < 2.0, "{worst_um} um");
     assert!(furthest_mm > 40.0, "the platform's centre went round");
-    assert_eq!(run.sample().point.position, to);
+    assert_eq!(run.sample().reference_point.position, to);
     assert_eq!(run.sample().setpoint.position, centre.to_platform(&to));
 }

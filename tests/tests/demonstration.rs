@@ -1,7 +1,7 @@
 //! The demonstration, whole, at the numbers the project promises.
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
 
 #[test]
 fn the_demonstration_keeps_its_promises() {

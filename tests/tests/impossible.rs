@@ -2,11 +2,11 @@
 
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
-use firmware::motion::{Ground, Plan, plan_line};
+use firmware::motion::{Constraints, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
-use firmware::queues::{Command, Link, Snapshot};
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
+use firmware::queues::{Command, Queues, Snapshot};
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
 use tests::Bench;
 
 const HALF_TURN_COUNTS: u32 = 1 << 25;
@@ -55,14 +55,14 @@ fn line(parameters: &Parameters, at: &Snapshot, way_mm: f64) -> Plan {
         at.plan + 1,
         [0; 3],
         half,
-        &Ground::new(parameters.limits, parameters.geometry),
+        &Constraints::new(parameters.limits, parameters.geometry),
     )
     .expect("inside the disk");
     for piece in &mut plan.pieces {
         piece.jerk = piece.jerk.map(|jerk| 2 * jerk);
     }
     plan.nudge = plan.nudge.map(|nudge| 2 * nudge);
-    plan.start = firmware::motion::Start::Rest(from);
+    plan.start = firmware::motion::PlanStart::Rest(from);
     plan.end = [from[0] + 2 * half[0], from[1], from[2]];
     plan
 }
@@ -76,15 +76,15 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
     let mut host = Host::new(&StageParameters::REFERENCE, parameters);
     let start_m = places_mm[0] / 1e3;
     (host.stage).set_pose_at_rest([start_m, 0.0, theta_deg.to_radians()]);
-    let mut link = Link::new();
-    let (mut tick_link, mut commands) = link.split();
+    let mut queues = Queues::new();
+    let (mut tick_queues, mut commands) = queues.split();
     for _ in 0..10 {
-        host.tick(&mut tick_link, &mut ());
+        host.tick(&mut tick_queues, &mut ());
     }
     commands.send(Command::Reference).expect("room");
     let mut at = None;
     for _ in 0..10 {
-        host.tick(&mut tick_link, &mut ());
+        host.tick(&mut tick_queues, &mut ());
         at = commands.snapshot();
     }
     let at = at.expect("a snapshot");
@@ -99,7 +99,7 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
             commands.send(Command::Move(plan)).expect("room");
             now = None;
         }
-        let outputs = host.tick(&mut tick_link, &mut ());
+        let outputs = host.tick(&mut tick_queues, &mut ());
         now = commands.snapshot().or(now);
         if let Some(fault) = host.fault() {
             assert!(outputs.awake, "{fault}: it brakes");
@@ -163,15 +163,15 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
         let mut parameters = Parameters::REFERENCE;
         parameters.servo.velocity_v_s_rad = velocity_v_s_rad;
         let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-        let mut link = Link::new();
-        let (mut tick_link, mut commands) = link.split();
+        let mut queues = Queues::new();
+        let (mut tick_queues, mut commands) = queues.split();
         for _ in 0..10 {
-            host.tick(&mut tick_link, &mut ());
+            host.tick(&mut tick_queues, &mut ());
         }
         commands.send(Command::Reference).expect("room");
         let mut last = None;
         for _ in 0..100 {
-            let outputs = host.tick(&mut tick_link, &mut ());
+            let outputs = host.tick(&mut tick_queues, &mut ());
             let largest = outputs.duty.iter().map(|duty| duty.0.abs()).max();
             assert!(largest < Some(500), "{largest:?}");
             last = commands
@@ -194,15 +194,15 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
 fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
     let parameters = Parameters::REFERENCE;
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-    let mut link = Link::new();
-    let (mut tick_link, mut commands) = link.split();
+    let mut queues = Queues::new();
+    let (mut tick_queues, mut commands) = queues.split();
     let mut after = |host: &mut Host, command: Option<Command>| {
         if let Some(command) = command {
             commands.send(command).expect("room");
         }
         let mut last = None;
         for _ in 0..10 {
-            host.tick(&mut tick_link, &mut ());
+            host.tick(&mut tick_queues, &mut ());
             last = commands.snapshot().or(last);
         }
         last.expect("a snapshot")

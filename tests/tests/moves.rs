@@ -34,7 +34,7 @@ fn a_move_ends_where_it_was_sent() {
         let off = (bench.value(query) - target).abs();
         assert!(off < 6e-5, "{query}: off by {off}");
     }
-    let truth = bench.host.stage.plant.pose();
+    let truth = bench.rig.front.stage.plant.pose();
     assert!(
         (truth[0] - 0.030).abs() < 1e-7 && (truth[1] + 0.020).abs() < 1e-7,
         "{truth:?}"

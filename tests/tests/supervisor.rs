@@ -1,13 +1,15 @@
 //! The supervisor's table, line by line: every event in every state, through the tick, with the simulated machine behind it.
 
 use firmware::control::config::Config;
-use firmware::control::{Event, Outcome, STATES, TABLE};
+use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
 use firmware::mode::Mode;
-use firmware::motion::{Axis, Centre, Ground, Plan, Start, Stop, plan_line, plan_stop};
+use firmware::motion::{
+    AxisState, Constraints, Plan, PlanStart, RotationCentre, Stop, plan_line, plan_stop,
+};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Link, PanelLink, Snapshot, TickLink};
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::host::Host;
+use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
+use hal_sim::front::Host;
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
 
 /// Ticks in which a command is taken and told.
 const SOON: u32 = 4;
@@ -16,18 +18,18 @@ const LONG: u32 = 20_000;
 
 struct Run {
     host: Host,
-    tick_link: TickLink<'static>,
-    commands: PanelLink<'static>,
+    tick_queues: TickQueues<'static>,
+    commands: CommandQueues<'static>,
     plan: Option<Plan>,
     now: Snapshot,
 }
 
 impl Run {
     fn new() -> Self {
-        let (tick_link, commands) = Box::leak(Box::new(Link::new())).split();
+        let (tick_queues, commands) = Box::leak(Box::new(Queues::new())).split();
         let mut run = Self {
             host: Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE),
-            tick_link,
+            tick_queues,
             commands,
             plan: None,
             now: Snapshot::default(),
@@ -38,7 +40,7 @@ impl Run {
 
     fn ticks(&mut self, ticks: u32) {
         for _ in 0..ticks {
-            self.host.tick(&mut self.tick_link, &mut ());
+            self.host.tick(&mut self.tick_queues, &mut ());
             if let Some(now) = self.commands.snapshot() {
                 self.now = now;
             }
@@ -53,7 +55,7 @@ impl Run {
     /// A line of 60 mm from where it stands.
     fn line(&self) -> Plan {
         let parameters = Parameters::REFERENCE;
-        let ground = Ground::new(parameters.limits, parameters.geometry);
+        let ground = Constraints::new(parameters.limits, parameters.geometry);
         let from = self.now.setpoint;
         let to = [from[0] + (6 << 32) / 10, from[1], from[2]];
         plan_line(self.now.plan + 1, from, to, &ground).expect("inside the disk")
@@ -93,11 +95,11 @@ impl Run {
             return self.line();
         };
         let parameters = Parameters::REFERENCE;
-        let ground = Ground::new(parameters.limits, parameters.geometry);
-        let Start::Rest(from) = plan.start else {
+        let ground = Constraints::new(parameters.limits, parameters.geometry);
+        let PlanStart::Rest(from) = plan.start else {
             panic!("a line starts at rest")
         };
-        let axes = from.map(Axis::at_rest);
+        let axes = from.map(AxisState::at_rest);
         let at = self.now.plan_tick + 20;
         plan_stop(plan.id + 1, plan, &axes, at, &ground, Stop::Urgent).expect("there is a stop")
     }
@@ -110,7 +112,7 @@ impl Run {
             Event::ServoOff => self.command(Command::Servo(false)),
             Event::Move => self.command(Command::Move(self.next_plan())),
             Event::Centre => {
-                let centre = Centre::new([0.2, 0.1]).expect("near enough");
+                let centre = RotationCentre::new([0.2, 0.1]).expect("near enough");
                 self.command(Command::Centre(centre));
             }
             Event::Constants => {
@@ -144,8 +146,8 @@ impl Run {
 
 #[test]
 fn every_event_does_in_every_state_what_the_table_says() {
-    for (event, outcomes) in TABLE {
-        for (state, outcome) in STATES.into_iter().zip(outcomes) {
+    for (event, outcomes) in TRANSITIONS {
+        for (state, outcome) in MODES.into_iter().zip(outcomes) {
             let mut run = Run::in_state(state);
             let (before, fault) = (run.now.refused, run.now.fault);
             run.happens(event);
@@ -172,8 +174,8 @@ fn every_event_does_in_every_state_what_the_table_says() {
 #[test]
 fn what_needs_something_is_refused_without_it() {
     let needs = |state: Mode, event: Event| {
-        TABLE.iter().any(|(each, outcomes)| {
-            let column = STATES.iter().position(|&each| each == state).unwrap();
+        TRANSITIONS.iter().any(|(each, outcomes)| {
+            let column = MODES.iter().position(|&each| each == state).unwrap();
             *each == event && matches!(outcomes[column], Outcome::If(_))
         })
     };

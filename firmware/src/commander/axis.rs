@@ -20,6 +20,17 @@ pub enum Axis {
 /// A value for each axis that was named, in the order of [`Axis::ALL`]; mm and deg.
 pub type AxisValues = [Option<f64>; 6];
 
+/// Coordinates in the order of [`Axis::ALL`], mm and deg.
+pub type Coordinates = [f64; 6];
+
+/// Lowest and highest coordinate of each axis, mm and deg.
+pub type Travel = [[f64; 2]; 6];
+
+/// The coordinates with those replaced that have a value.
+pub fn replaced(coordinates: &Coordinates, values: &AxisValues) -> Coordinates {
+    core::array::from_fn(|i| values[i].unwrap_or(coordinates[i]))
+}
+
 impl Axis {
     /// All of them, in the order in which they are listed.
     pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::U, Self::V, Self::W];
@@ -67,7 +78,7 @@ impl Axis {
     }
 }
 
-/// A set of axes: bit i is [`Axis::ALL`]`[i]`, which makes it the mask that `#5` answers.
+/// A set of axes: bit i is [`Axis::ALL`]`[i]`, counted from the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisSet(u8);
 

@@ -1,55 +1,45 @@
 //! Between mm and deg of the interface and the [`Position`]s of the motion layer, through the frames in force.
 
-use super::axis::{Axis, AxisValues};
-use super::frames::{Transform, View};
-use crate::gcs::error::ErrorCode;
-use crate::motion::{Ground, Position, check_target};
+use super::axis::{Axis, Coordinates, Travel};
+use super::error::CommandError;
+use super::frames::{ActiveFrames, Transform};
+use crate::motion::{Constraints, Position, check_target};
 use kinematics::{Angle, Geometry, direct};
-
-/// Coordinates in the order of [`Axis::ALL`], mm and deg.
-pub(crate) type Coordinates = [f64; 6];
-
-/// Lowest and highest coordinate of each axis, mm and deg.
-pub(crate) type Travel = [[f64; 2]; 6];
-
-/// The coordinates with those replaced that have a value.
-pub(crate) fn replaced(coordinates: &Coordinates, values: &AxisValues) -> Coordinates {
-    core::array::from_fn(|i| values[i].unwrap_or(coordinates[i]))
-}
 
 /// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
 const W_TRAVEL_DEG: f64 = 3_600_000.0;
 
 /// 2^32: units of a [`Position`] in a track radius.
-pub(crate) const UNITS: f64 = 4_294_967_296.0;
+pub(crate) const UNITS_PER_RADIUS: f64 = 4_294_967_296.0;
 
 /// How far the commanded point gets from the track's centre, at whatever orientation, mm.
-pub(crate) fn furthest_mm(view: &View, geometry: &Geometry) -> f64 {
-    geometry.usable_radius() * geometry.radius_mm + view.arm_mm()
+pub(crate) fn max_distance_mm(active_frames: &ActiveFrames, geometry: &Geometry) -> f64 {
+    geometry.usable_radius() * geometry.radius_mm + active_frames.arm_mm()
 }
 
-/// What the axes reach, each at some place of the others, as [`View::limited`] counts it.
-pub(crate) fn travel(view: &View, geometry: &Geometry) -> Travel {
-    let [x, y] = view.zero;
-    around([-x, -y, 0.0], view, geometry)
+/// What the axes reach, each at some place of the others, as
+/// [`ActiveFrames::travel_coordinates`] counts it.
+pub(crate) fn travel(active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let [x, y] = active_frames.zero;
+    travel_around([-x, -y, 0.0], active_frames, geometry)
 }
 
 /// The same as targets.
-pub(crate) fn travel_of_targets(view: &View, geometry: &Geometry) -> Travel {
-    let at = view.target_of(&Transform::IDENTITY);
-    around(
+pub(crate) fn target_travel(active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let at = active_frames.target_of(&Transform::IDENTITY);
+    travel_around(
         [
             at[Axis::X.index()],
             at[Axis::Y.index()],
             at[Axis::W.index()],
         ],
-        view,
+        active_frames,
         geometry,
     )
 }
 
-fn around(middle: [f64; 3], view: &View, geometry: &Geometry) -> Travel {
-    let far = furthest_mm(view, geometry);
+fn travel_around(middle: [f64; 3], active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let far = max_distance_mm(active_frames, geometry);
     Axis::ALL.map(|axis| match axis.component() {
         // Adding 0 turns -0 into 0.
         Some(i) => {
@@ -60,34 +50,43 @@ fn around(middle: [f64; 3], view: &View, geometry: &Geometry) -> Travel {
     })
 }
 
-/// The position of a target, if the motion layer can go there: frozen axes at 0, the platform centre inside the usable disk,
-/// theta inside the travel of W (but for a target that keeps the theta of `last`, which a jog may have taken further).
+/// The position of a target, if the motion layer can go there: frozen axes at 0, the platform centre inside the usable
+/// disk, theta inside the travel of W (but for a target that keeps the theta of `last`, which a jog may have taken
+/// further).
 pub(crate) fn position(
     target: &Coordinates,
     last: &Coordinates,
-    view: &View,
-    ground: &Ground,
-) -> Result<Position, ErrorCode> {
+    active_frames: &ActiveFrames,
+    constraints: &Constraints,
+) -> Result<Position, CommandError> {
     let frozen = |axis: Axis| axis.component().is_none() && target[axis.index()] != 0.0;
-    let point = view.point_of(target);
+    let point = active_frames.point_of(target);
     let turned = target[Axis::W.index()] != last[Axis::W.index()];
     let far = turned && point.w_deg.abs() > W_TRAVEL_DEG;
     // Sums of huge numbers may be none.
     let numbers = point.x_mm.is_finite() && point.y_mm.is_finite();
-    if far || !numbers || Axis::ALL.into_iter().any(frozen) {
-        return Err(ErrorCode::PositionLimit);
+    if let Some(axis) = Axis::ALL.into_iter().find(|&axis| frozen(axis)) {
+        return Err(CommandError::FrozenAxis(axis));
     }
-    let length = |mm: f64| libm::rint(mm / ground.geometry.radius_mm * UNITS) as i64;
-    let theta = Angle::from_degrees(point.w_deg).ok_or(ErrorCode::PositionLimit)?;
+    if far || !numbers {
+        return Err(CommandError::OutsideTravel);
+    }
+    let length =
+        |mm: f64| libm::rint(mm / constraints.geometry.radius_mm * UNITS_PER_RADIUS) as i64;
+    let theta = Angle::from_degrees(point.w_deg).ok_or(CommandError::OutsideTravel)?;
     let position = [length(point.x_mm), length(point.y_mm), theta.units()];
-    check_target(&position, ground).map_err(|_| ErrorCode::PositionLimit)?;
+    check_target(&position, constraints)?;
     Ok(position)
 }
 
 /// The target at a position: one that [`position`] turns into the same.
-pub(crate) fn coordinates(position: &Position, view: &View, geometry: &Geometry) -> Coordinates {
-    let mm = |units: i64| units as f64 / UNITS * geometry.radius_mm;
-    view.target_of(&Transform {
+pub(crate) fn coordinates(
+    position: &Position,
+    active_frames: &ActiveFrames,
+    geometry: &Geometry,
+) -> Coordinates {
+    let mm = |units: i64| units as f64 / UNITS_PER_RADIUS * geometry.radius_mm;
+    active_frames.target_of(&Transform {
         x_mm: mm(position[0]),
         y_mm: mm(position[1]),
         w_deg: Angle::from_units(position[2]).degrees(),
@@ -97,7 +96,7 @@ pub(crate) fn coordinates(position: &Position, view: &View, geometry: &Geometry)
 /// The target at the pose that the pivots set; `None` when they are no pose of the mechanism.
 pub(crate) fn measured(
     pivots: &[Angle; 3],
-    view: &View,
+    active_frames: &ActiveFrames,
     geometry: &Geometry,
 ) -> Option<Coordinates> {
     // Whole turns go around the floating point: they would cost it digits.
@@ -105,7 +104,7 @@ pub(crate) fn measured(
     let whole = Angle::from_units(i64::from(turns) << 32);
     let pose = direct::<f64>(&pivots.map(|pivot| (pivot - whole).radians())).ok()?;
     let mm = |radii: f64| radii * geometry.radius_mm;
-    Some(view.target_at(&Transform {
+    Some(active_frames.target_at(&Transform {
         x_mm: mm(pose.x),
         y_mm: mm(pose.y),
         w_deg: pose.theta.to_degrees() + f64::from(turns) * 360.0,

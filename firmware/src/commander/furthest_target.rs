@@ -1,18 +1,18 @@
 //! How far a target can go in a direction.
 
 use super::axis::Axis;
-use super::coordinates::Coordinates;
-use super::frames::View;
+use super::axis::Coordinates;
+use super::frames::ActiveFrames;
 
 /// Halvings of the way on which the end is looked for: as many as a number has bits.
 const HALVINGS: u32 = 53;
 
 /// The furthest target from `from` along `direction` (mm and deg, any length) up to which everything is `allowed`: no
 /// further than `most_mm` from the track's centre and inside `range`. `None` when `direction` is zero.
-pub(crate) fn furthest(
+pub(crate) fn furthest_target(
     from: &Coordinates,
     direction: &Coordinates,
-    view: &View,
+    active_frames: &ActiveFrames,
     most_mm: f64,
     range: impl Fn(Axis) -> [f64; 2],
     allowed: impl Fn(&Coordinates) -> bool,
@@ -29,7 +29,7 @@ pub(crate) fn furthest(
             }
         })
     };
-    let mut way = upper_bound(from, direction, view, most_mm, range).max(0.0);
+    let mut way = upper_bound(from, direction, active_frames, most_mm, range).max(0.0);
     if !allowed(&target(way)) {
         let (mut good, mut bad) = (0.0, way);
         for _ in 0..HALVINGS {
@@ -49,15 +49,15 @@ pub(crate) fn furthest(
 fn upper_bound(
     from: &Coordinates,
     direction: &Coordinates,
-    view: &View,
+    active_frames: &ActiveFrames,
     most_mm: f64,
     range: impl Fn(Axis) -> [f64; 2],
 ) -> f64 {
     let (x, y) = (Axis::X.index(), Axis::Y.index());
-    let at = view.limited(from);
+    let at = active_frames.travel_coordinates(from);
     let mut along = *direction;
-    [along[x], along[y]] = view.work.turned([direction[x], direction[y]]);
-    let point = [at[x] + view.zero[0], at[y] + view.zero[1]];
+    [along[x], along[y]] = active_frames.work.turned([direction[x], direction[y]]);
+    let point = [at[x] + active_frames.zero[0], at[y] + active_frames.zero[1]];
     let mut way = to_circle(point, [along[x], along[y]], most_mm);
     for axis in Axis::ALL {
         let (at, part, [lowest, highest]) = (at[axis.index()], along[axis.index()], range(axis));
@@ -69,7 +69,8 @@ fn upper_bound(
     way
 }
 
-/// The multiple of `d` at which the ray from `p` leaves the circle; infinite when it does not move, 0 when it never is inside.
+/// The multiple of `d` at which the ray from `p` leaves the circle; infinite when it does not move, 0 when it never is
+/// inside.
 fn to_circle(p: [f64; 2], d: [f64; 2], radius: f64) -> f64 {
     let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
     let (a, b, c) = (dot(d, d), dot(p, d), dot(p, p) - radius * radius);

@@ -1,187 +1,226 @@
-//! Wishes whose time has come: a stop or another target for the motion under way, a move for the stage at rest.
+//! What is asked of the stage and not handed over to the tick yet: the command side's state machine.
+//!
+//! A request for motion is carried out at once where that can be. What has to wait, because the stage moves or because
+//! the planning takes several slices, waits here as one of the variants of [`Pending`]. There is room for one thing to
+//! do and one to follow it; what is asked later takes the place of what was asked before.
+//!
+//! | state | what happens next, as soon as nothing is in flight |
+//! |---|---|
+//! | `Nothing` | nothing |
+//! | `Goal` | at rest: a plan from rest; in motion: a plan that leaves the one under way, unless the goal needs rest first |
+//! | `HeadSent` | the rest of that plan, of which the head is with the tick already |
+//! | `Stop` | a stop for the plan under way |
+//! | `StopThenGoal` | the same, and the goal stays |
+//! | `Stream` | plans of the stream, one after the other, until it is over |
+//! | `GoalThenStream` | a plan from rest to where the waveforms begin |
+//! | `StopThenStream` | a plan of the stream, and then its stop: see there |
+//!
+//! | event | `Nothing` | `Goal`, `HeadSent` | `Stop` | `StopThenGoal` | `Stream` |
+//! |---|---|---|---|---|---|
+//! | a goal, at rest | sent: `Nothing` | sent: `Nothing` | sent: `Stop` | | refused |
+//! | a goal, in motion | as `Goal` below | the new one's | `StopThenGoal` | `StopThenGoal`, the new goal | refused |
+//! | a stop | `Stop` | `Stop` | `Stop`, the more urgent | `Stop`, the more urgent | `Stop` |
+//! | planned: the whole way | | sent: `Nothing` | | | |
+//! | planned: a head | | sent: `HeadSent` | | | |
+//! | planned: too fast, or not without rest | | `StopThenGoal`; `Goal` if a stop or a head is under way | | | |
+//! | planned: refused | | `Nothing`, and an error | | | |
+//! | the tick takes a plan | the same | the same | the same | the same | the same |
+//! | the tick takes the stop | | | `Nothing` | `Goal` | |
+//! | the tick refuses a plan | `Goal` again | | | | `GoalThenStream`; of the stream: `Nothing`, and an error |
+//! | the tick refuses the stop | | | the same | the same | |
+//! | the stage holds | | | `Nothing` | `Goal` | |
+//! | the stage is off or at fault | | `Nothing` | `Nothing` | `Nothing` | `Nothing` |
+//!
+//! What is in flight ([`InFlight`](super::in_flight::InFlight)) and what is under way (the plans that the tick has
+//! taken) are apart from this: a stop, a goal or a servo switched off may come at any moment of either, so every
+//! combination with the states above occurs. While something is in flight nothing is decided; only requests and
+//! acknowledgements change the state.
 
-use super::axis::Axis;
-use super::coordinates::UNITS;
-use super::sent_plan::{Course, Goal, code};
-use super::{Flight, Stage};
-use crate::gcs::error::ErrorCode;
-use crate::mode::Mode;
-use crate::motion::{Ground, NoTransition, Stop, Tries};
-use crate::queues::{Command, PanelLink};
+use super::sent_plan::Goal;
+use super::stream_source::Streaming;
+use crate::motion::{Ahead, Stop, Tries};
 
-const DEGREES_A_TURN: f64 = 360.0;
+/// A goal for a stage in motion, and how far the planning of the way to it has come.
+#[derive(Clone, Copy)]
+pub(super) struct Retarget {
+    pub goal: Goal,
+    /// There is no way to it without coming to rest before.
+    pub needs_rest: bool,
+    /// What has been tried.
+    pub tries: Tries,
+}
 
-impl Stage {
-    /// Takes the next step of what is still wanted, if its time has come.
-    pub fn carry_on(&mut self, link: &mut PanelLink<'_>) {
-        if self.present().is_none() {
-            return;
+impl Retarget {
+    /// Nothing has been tried yet.
+    pub const fn new(goal: Goal) -> Self {
+        Self {
+            goal,
+            needs_rest: false,
+            tries: Tries::NONE,
         }
-        self.carry_flow_on(link);
-        let result = match (self.mode(), self.stop_wanted, self.wanted) {
-            (Mode::Moving, Some(stop), _) => {
-                self.send_stop(stop, link);
-                return;
+    }
+}
+
+/// See the module.
+// There is no heap to box a stream or the rest of a plan in, and there is one of these.
+#[allow(clippy::large_enum_variant)]
+pub(super) enum Pending {
+    /// Nothing is asked.
+    Nothing,
+    /// To get to a goal, or to keep a velocity.
+    Goal(Retarget),
+    /// The same; the head of the way is sent, this is what follows it.
+    HeadSent(Retarget, Ahead),
+    /// To come to rest.
+    Stop(Stop),
+    /// To stop, and to get to a goal from there: from the stop as soon as there is a way, from rest at the latest.
+    StopThenGoal(Stop, Retarget),
+    /// To follow targets.
+    Stream(Streaming),
+    /// The tick has refused the way to where waveforms begin: once more, then the waveforms.
+    GoalThenStream(Retarget, Streaming),
+    /// A stop came while the stage held, and stays pending until the next snapshot shows that there is nothing to stop.
+    /// A stream that begins before that snapshot and sends a plan at once is stopped by it. (A goal that is sent then
+    /// is stopped too: its state is `Stop`.)
+    StopThenStream(Stop, Streaming),
+}
+
+impl Pending {
+    /// The stop that is pending.
+    pub const fn stop(&self) -> Option<Stop> {
+        match self {
+            Self::Stop(stop) | Self::StopThenGoal(stop, _) | Self::StopThenStream(stop, _) => {
+                Some(*stop)
             }
-            (Mode::Moving, None, Some(goal)) if !self.rest_first => self.leave_for(goal, link),
-            (Mode::Holding, _, Some(goal)) => self.start(goal, link),
-            _ => return,
-        };
-        match result {
-            // A full queue: again at the next snapshot.
-            Ok(()) | Err(ErrorCode::Busy) => {}
-            // Every connection is told: the one that asked has had its silence, which means yes, long since.
-            Err(code) => {
-                self.wanted = None;
-                self.flow = None;
-                self.target_is_rest = true;
-                self.tell(code);
-            }
+            _ => None,
         }
     }
 
-    /// Makes `goal` what is wanted, at once as far as that can be; with an error everything is as it was.
-    pub(super) fn want(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        let before = (self.wanted, self.rest_first, self.stop_wanted, self.tries);
-        (self.wanted, self.rest_first, self.tries) = (Some(goal), false, Tries::NONE);
-        let ahead = self.ahead.take();
-        let result = match (self.mode(), self.stop_wanted) {
-            (Mode::Holding, _) => self.start(goal, link),
-            (Mode::Moving, None) => self.leave_for(goal, link),
-            _ => Ok(()),
-        };
-        if result.is_err() {
-            (self.wanted, self.rest_first, self.stop_wanted, self.tries) = before;
-            self.ahead = ahead;
+    /// The goal that is pending.
+    pub const fn goal(&self) -> Option<&Retarget> {
+        match self {
+            Self::Goal(retarget)
+            | Self::HeadSent(retarget, _)
+            | Self::StopThenGoal(_, retarget)
+            | Self::GoalThenStream(retarget, _) => Some(retarget),
+            _ => None,
         }
-        result
     }
 
-    /// Sends the motion from rest; nothing is sent when there is none to be made.
-    fn start(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        let from = self.setpoint();
-        let ground = match goal {
-            Goal::Place(to) => self.ground_of_line(&from, &to),
-            _ => self.ground(),
-        };
-        let id = self.next_id();
-        let course = Course::from_rest(id, from, goal, &ground)?;
-        if course.plan.ticks() > 0 {
-            self.send_course(course, link)?;
+    /// The stream that is under way, or about to be.
+    pub const fn stream(&self) -> Option<&Streaming> {
+        match self {
+            Self::Stream(streaming)
+            | Self::GoalThenStream(_, streaming)
+            | Self::StopThenStream(_, streaming) => Some(streaming),
+            _ => None,
         }
-        self.wanted = None;
-        Ok(())
     }
 
-    /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while it is to be
-    /// tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing comes of it.
-    fn leave_for(&mut self, goal: Goal, link: &mut PanelLink<'_>) -> Result<(), ErrorCode> {
-        let ground = match goal {
-            Goal::Place(_) => self.ground_of_curve(),
-            _ => self.ground(),
+    /// The same, to be changed.
+    pub const fn stream_mut(&mut self) -> Option<&mut Streaming> {
+        match self {
+            Self::Stream(streaming)
+            | Self::GoalThenStream(_, streaming)
+            | Self::StopThenStream(_, streaming) => Some(streaming),
+            _ => None,
+        }
+    }
+
+    /// Whether a motion is asked for.
+    pub const fn is_motion(&self) -> bool {
+        !matches!(self, Self::Nothing | Self::Stop(_))
+    }
+
+    /// A stop is asked for: whatever else was is over. An urgent one stays urgent.
+    pub fn request_stop(&mut self, stop: Stop) {
+        let stop = match self.stop() {
+            Some(Stop::Urgent) => Stop::Urgent,
+            _ => stop,
         };
-        let id = self.next_id();
-        // What takes over soon is what will be left, and is not known to be under way yet.
-        let Some((course, at)) = self.under_way().filter(|_| self.next.is_none()) else {
-            return Ok(());
+        *self = Self::Stop(stop);
+    }
+
+    /// The stream, if its next plan can be asked for; a stop stays. Waveforms wait until the stage stands where they
+    /// begin.
+    pub fn take_stream(&mut self) -> Option<Streaming> {
+        if !matches!(self, Self::Stream(_) | Self::StopThenStream(..)) {
+            return None;
+        }
+        let stop = self.stop().map_or(Self::Nothing, Self::Stop);
+        match core::mem::replace(self, stop) {
+            Self::Stream(streaming) | Self::StopThenStream(_, streaming) => Some(streaming),
+            _ => None,
+        }
+    }
+
+    /// The goal, a stop before it if that is pending already.
+    pub const fn with_goal(stop: Option<Stop>, retarget: Retarget) -> Self {
+        match stop {
+            None => Self::Goal(retarget),
+            Some(stop) => Self::StopThenGoal(stop, retarget),
+        }
+    }
+
+    /// A stream begins; a stop that is still pending stays.
+    pub fn begin_stream(&mut self, streaming: Streaming) {
+        *self = match self.stop() {
+            None => Self::Stream(streaming),
+            Some(stop) => Self::StopThenStream(stop, streaming),
         };
-        let (mut tries, mut ahead) = (self.tries, None);
-        let before = (self.ahead.as_ref()).filter(|ahead| ahead.follows(course.plan.id, at));
-        // A stop that has begun, and a head, come to rest by themselves.
-        let stops = course.stop.is_some() || before.is_some();
-        let left = match before {
-            Some(before) => course.gone_on(before, id, at, &ground, &mut tries),
-            None => course.left_for(goal, id, at, &ground, &mut tries, &mut ahead),
-        };
-        self.ahead = ahead;
-        match left {
-            Ok(left) => {
-                self.send_course(left, link)?;
-                self.wanted = self.wanted.filter(|_| self.ahead.is_some());
-            }
-            Err(NoTransition::Refused(refusal)) => return Err(code(&refusal)),
-            Err(no) => {
-                self.rest_first = no == NoTransition::NeedsStop;
-                if !stops {
-                    self.stop_wanted = Some(Stop::Smooth);
+    }
+
+    /// The goal is reached, or sent, or given up.
+    pub fn drop_goal(&mut self) {
+        match self {
+            Self::Goal(_) | Self::HeadSent(..) => *self = Self::Nothing,
+            Self::StopThenGoal(stop, _) => *self = Self::Stop(*stop),
+            Self::GoalThenStream(..) => {
+                if let Self::GoalThenStream(_, streaming) = self.take() {
+                    *self = Self::Stream(streaming);
                 }
             }
-        }
-        self.tries = tries;
-        Ok(())
-    }
-
-    fn send_stop(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
-        let id = self.next_id();
-        let ground = self.ground();
-        let Some((course, at)) = self.under_way() else {
-            return;
-        };
-        match course.stopped(id, at, &ground, stop) {
-            // A full queue: again at the next snapshot.
-            Some(stopped) => {
-                let _ = self.send_course(stopped, link);
-            }
-            // Not by itself, when another target takes over before: that motion is what has to be stopped.
-            None if self.next.is_some() => {}
-            // It comes to rest as soon by itself.
-            None => {
-                let end = course.plan.end;
-                self.stop_wanted = None;
-                self.will_rest_at(&end);
-            }
+            Self::Nothing | Self::Stop(_) | Self::Stream(_) | Self::StopThenStream(..) => {}
         }
     }
 
-    /// The course under way, and the tick of it at which another one can take over. A plan that is not the one sent last is
-    /// about to be: `next`, or what the next snapshot tells.
-    pub(super) fn under_way(&self) -> Option<(&Course, u64)> {
-        let snapshot = self.snapshot()?;
-        let course = self.course.as_ref()?;
-        (course.plan.id == snapshot.plan).then_some((course, snapshot.plan_tick + self.look_ahead))
-    }
-
-    /// Tells every connection.
-    pub(super) const fn tell(&mut self, code: ErrorCode) {
-        self.news = (self.news.0.wrapping_add(1), code);
-    }
-
-    pub(super) fn send_course(
-        &mut self,
-        course: Course,
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
-        let command = Command::Move(course.plan.clone());
-        self.send(command, Flight::Move(course), link)
-    }
-
-    /// What plans keep to now.
-    pub(super) fn ground(&self) -> Ground {
-        let radius_mm = self.base.geometry.radius_mm;
-        let mut ground = self.base;
-        ground.centre = self.radii(self.view.tool.origin());
-        let [x, y] = self.view.zero;
-        for (bounds, (axis, zero, per_unit)) in (ground.bounds.iter_mut()).zip([
-            (Axis::X, x, radius_mm),
-            (Axis::Y, y, radius_mm),
-            (Axis::W, 0.0, DEGREES_A_TURN),
-        ]) {
-            for (bound, set) in bounds.iter_mut().zip(self.soft.set_range(axis)) {
-                if let Some(value) = set {
-                    *bound = libm::rint((value + zero) / per_unit * UNITS) as i64;
+    /// There is nothing to stop any more, or it is being stopped.
+    pub fn drop_stop(&mut self) {
+        match self {
+            Self::Stop(_) => *self = Self::Nothing,
+            Self::StopThenGoal(_, retarget) => *self = Self::Goal(*retarget),
+            Self::StopThenStream(..) => {
+                if let Self::StopThenStream(_, streaming) = self.take() {
+                    *self = Self::Stream(streaming);
                 }
             }
+            _ => {}
         }
-        ground
     }
 
-    /// mm to track radii.
-    pub(super) fn radii(&self, mm: [f64; 2]) -> [f64; 2] {
-        mm.map(|mm| mm / self.base.geometry.radius_mm)
+    /// The tick has taken a stop: a more urgent one that has been asked for meanwhile is still to come.
+    pub fn stop_taken(&mut self, stop: Stop) {
+        if (self.stop(), stop) != (Some(Stop::Urgent), Stop::Smooth) {
+            self.drop_stop();
+        }
     }
 
-    pub(super) const fn next_id(&mut self) -> u32 {
-        self.ids = self.ids.wrapping_add(1);
-        self.ids
+    /// The tick has refused the plan to a goal, which is not where the setpoint was: once more from where it is, unless
+    /// something else has been asked for meanwhile.
+    pub fn plan_refused(&mut self, retarget: Retarget) {
+        match self {
+            Self::Nothing => *self = Self::Goal(retarget),
+            Self::Stream(_) => {
+                if let Self::Stream(streaming) = self.take() {
+                    *self = Self::GoalThenStream(retarget, streaming);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// What is pending; nothing is from now on.
+    pub const fn take(&mut self) -> Self {
+        core::mem::replace(self, Self::Nothing)
     }
 }

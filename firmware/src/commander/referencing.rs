@@ -1,60 +1,67 @@
 //! Referencing: absolute encoders are given a moment to answer, then the tick takes theta and the turns from them.
 
-use super::{Flight, Stage};
-use crate::gcs::error::ErrorCode;
+use super::error::CommandError;
+use super::in_flight::InFlight;
+use super::state::Commander;
 use crate::mode::Mode;
-use crate::queues::{Command, PanelLink};
+use crate::queues::{Command, CommandQueues};
 
 /// Ticks that referencing waits for encoders that do not answer yet: they need some good frames in a row.
-const REFERENCE_PATIENCE: u64 = 40;
+const REFERENCING_TIMEOUT_TICKS: u64 = 40;
 
 /// How far referencing has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Referencing {
+    /// Not at its end yet.
     Waiting,
+    /// Theta and the turns are known.
     Done,
-    Failed(ErrorCode),
+    /// They are not.
+    Failed(CommandError),
 }
 
-impl Stage {
-    /// `FRF` begins: whether there is something to wait for.
-    pub fn begin_reference(&mut self, link: &mut PanelLink<'_>) -> Result<bool, ErrorCode> {
-        let Some(snapshot) = self.present() else {
-            return Err(ErrorCode::Busy);
+impl Commander {
+    /// Begins to reference: whether there is something to wait for.
+    pub fn begin_referencing(
+        &mut self,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<bool, CommandError> {
+        let Some(snapshot) = self.current_snapshot() else {
+            return Err(CommandError::Busy);
         };
         if self.is_faulted() {
-            return Err(ErrorCode::MotionError);
+            return Err(CommandError::Faulted);
         }
         if snapshot.referenced {
-            self.set_servo(true, link)?;
+            self.set_servo(true, queues)?;
             return Ok(false);
         }
         if self.is_referencing() {
-            return Err(ErrorCode::Busy);
+            return Err(CommandError::Busy);
         }
-        self.reference_until = self.tick() + REFERENCE_PATIENCE;
+        self.referencing_deadline = self.tick() + REFERENCING_TIMEOUT_TICKS;
         Ok(true)
     }
 
-    /// `FRF` goes on: encoders are given a moment to answer, then the tick references.
-    pub fn reference(&mut self, link: &mut PanelLink<'_>) -> Referencing {
-        let Some(snapshot) = self.present() else {
+    /// Goes on with it: encoders are given a moment to answer, then the tick references.
+    pub fn poll_referencing(&mut self, queues: &mut CommandQueues<'_>) -> Referencing {
+        let Some(snapshot) = self.current_snapshot() else {
             return Referencing::Waiting;
         };
         let result = if matches!(snapshot.mode, Mode::Fault | Mode::Stopping) {
-            Referencing::Failed(ErrorCode::MotionError)
+            Referencing::Failed(CommandError::Faulted)
         } else if snapshot.referenced {
             Referencing::Done
-        } else if snapshot.tick >= self.reference_until {
-            Referencing::Failed(ErrorCode::ReferencingFailed)
+        } else if snapshot.tick >= self.referencing_deadline {
+            Referencing::Failed(CommandError::ReferencingFailed)
         } else {
             Referencing::Waiting
         };
         if result != Referencing::Waiting {
-            self.reference_until = 0;
+            self.referencing_deadline = 0;
         } else if snapshot.encoder_faults == [None; 3] {
             // A full queue, or pivots that are no pose yet: again at the next snapshot.
-            let _ = self.send(Command::Reference, Flight::Reference, link);
+            let _ = self.send(Command::Reference, InFlight::Reference, queues);
         }
         result
     }

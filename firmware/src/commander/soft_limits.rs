@@ -1,11 +1,22 @@
 //! Soft limits of the axes: travel as the user narrows it.
 //!
-//! They hold for the commanded point as [`View::limited`](super::frames::View::limited) counts it: in the base frame's axes,
-//! whatever work frame is enabled. One that has not been set is where the travel ends.
+//! They hold for the commanded point as
+//! [`ActiveFrames::travel_coordinates`](super::frames::ActiveFrames::travel_coordinates) counts it: in the base frame's
+//! axes, whatever work frame is enabled. One that has not been set is where the travel ends.
 
-use super::axis::{Axis, AxisValues};
-use super::coordinates::{Coordinates, Travel};
-use crate::gcs::error::ErrorCode;
+use super::axis::{Axis, AxisValues, Coordinates, Travel};
+use super::error::CommandError;
+
+/// A change of the soft limits: axes without a value keep what they have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SoftLimitChange {
+    /// Lowest coordinates, mm and deg.
+    Lowest(AxisValues),
+    /// Highest coordinates, mm and deg.
+    Highest(AxisValues),
+    /// Whether the limits count.
+    Active([Option<bool>; 6]),
+}
 
 /// Lowest and highest targets, mm and deg, and whether they count.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,18 +37,18 @@ impl SoftLimits {
     }
 
     /// The same with another travel, which narrows them. `None` when it leaves nothing between them.
-    pub fn fitted(&self, travel: &Travel) -> Option<Self> {
-        let mut fitted = *self;
+    pub fn narrowed_to(&self, travel: &Travel) -> Option<Self> {
+        let mut narrowed_to = *self;
         for (i, [least, most]) in travel.iter().enumerate() {
             let outside = self.lowest[i].is_some_and(|lowest| lowest > *most)
                 || self.highest[i].is_some_and(|highest| highest < *least);
             if outside {
                 return None;
             }
-            fitted.lowest[i] = self.lowest[i].map(|lowest| lowest.max(*least));
-            fitted.highest[i] = self.highest[i].map(|highest| highest.min(*most));
+            narrowed_to.lowest[i] = self.lowest[i].map(|lowest| lowest.max(*least));
+            narrowed_to.highest[i] = self.highest[i].map(|highest| highest.min(*most));
         }
-        Some(fitted)
+        Some(narrowed_to)
     }
 
     /// Lowest and highest target of an axis.
@@ -50,7 +61,7 @@ impl SoftLimits {
     }
 
     /// What has been set for an axis and counts.
-    pub const fn set_range(&self, axis: Axis) -> [Option<f64>; 2] {
+    pub const fn active_range(&self, axis: Axis) -> [Option<f64>; 2] {
         let i = axis.index();
         if self.active[i] {
             [self.lowest[i], self.highest[i]]
@@ -59,73 +70,52 @@ impl SoftLimits {
         }
     }
 
-    /// Whether every axis of `limited` is inside.
-    pub fn allow(&self, limited: &Coordinates) -> bool {
+    /// Whether every axis of `target` is inside.
+    pub fn contain(&self, target: &Coordinates) -> bool {
         Axis::ALL.into_iter().all(|axis| {
-            let [lowest, highest] = self.set_range(axis);
-            let value = limited[axis.index()];
+            let [lowest, highest] = self.active_range(axis);
+            let value = target[axis.index()];
             lowest.is_none_or(|lowest| lowest <= value)
                 && highest.is_none_or(|highest| value <= highest)
         })
     }
 
-    /// `NLM`, with the target that must stay inside.
-    pub fn set_lowest(
+    /// Carries out a change, with the target that must stay inside, as [`ActiveFrames::travel_coordinates`] counts it.
+    ///
+    /// [`ActiveFrames::travel_coordinates`]: super::frames::ActiveFrames::travel_coordinates
+    pub(super) fn apply(
         &mut self,
-        values: &AxisValues,
-        limited: &Coordinates,
+        change: &SoftLimitChange,
+        target: &Coordinates,
         travel: &Travel,
-    ) -> Result<(), ErrorCode> {
+    ) -> Result<(), CommandError> {
         let mut wanted = *self;
-        wanted.lowest = replaced(&wanted.lowest, values);
-        self.change(wanted, limited, travel)
-    }
-
-    /// `PLM`.
-    pub fn set_highest(
-        &mut self,
-        values: &AxisValues,
-        limited: &Coordinates,
-        travel: &Travel,
-    ) -> Result<(), ErrorCode> {
-        let mut wanted = *self;
-        wanted.highest = replaced(&wanted.highest, values);
-        self.change(wanted, limited, travel)
-    }
-
-    /// `SSL`: 0 or 1.
-    pub fn activate(
-        &mut self,
-        values: &AxisValues,
-        limited: &Coordinates,
-        travel: &Travel,
-    ) -> Result<(), ErrorCode> {
-        let mut wanted = *self;
-        for (active, value) in wanted.active.iter_mut().zip(values) {
-            *active = match *value {
-                None => *active,
-                Some(0.0) => false,
-                Some(1.0) => true,
-                Some(_) => return Err(ErrorCode::OutOfRange),
-            };
+        match change {
+            SoftLimitChange::Lowest(values) => wanted.lowest = replaced(&wanted.lowest, values),
+            SoftLimitChange::Highest(values) => wanted.highest = replaced(&wanted.highest, values),
+            SoftLimitChange::Active(values) => {
+                for (active, value) in wanted.active.iter_mut().zip(values) {
+                    *active = value.unwrap_or(*active);
+                }
+            }
         }
-        self.change(wanted, limited, travel)
+        self.change(wanted, target, travel)
     }
 
     /// Limits beyond the travel, that cross, or that leave out where the stage is, are refused as a whole.
     fn change(
         &mut self,
         wanted: Self,
-        limited: &Coordinates,
+        target: &Coordinates,
         travel: &Travel,
-    ) -> Result<(), ErrorCode> {
+    ) -> Result<(), CommandError> {
         let good = Axis::ALL.into_iter().all(|axis| {
             let [least, most] = travel[axis.index()];
             let [lowest, highest] = wanted.range(axis, travel);
             least <= lowest && lowest <= highest && highest <= most
         });
-        if !good || !wanted.allow(limited) {
-            return Err(ErrorCode::SoftLimit);
+        if !good || !wanted.contain(target) {
+            return Err(CommandError::SoftLimitsInvalid);
         }
         *self = wanted;
         Ok(())

@@ -1,88 +1,79 @@
-//! Targets that follow one another in time: streamed by `MOV` (parameter 0x19001900), or made by wave generators.
+//! Targets that follow one another in time: streamed by moves (as the parameters ask for), or made by wave
+//! generators.
 
-use super::Stage;
-use super::coordinates::Coordinates;
-use super::sent_plan::{Course, Goal, code};
-use super::wave::Run;
-use crate::gcs::error::ErrorCode;
+use super::axis::Coordinates;
+use super::error::CommandError;
+use super::pending::Pending;
+use super::sent_plan::{Goal, SentPlan};
+use super::state::Commander;
+use super::stream_source::Streaming;
+use super::wave::GeneratorRun;
 use crate::mode::Mode;
-use crate::motion::{Clock, End, Next, NotTaken, PERIODS, Position, Progress, Stream};
-use crate::queues::PanelLink;
-
-/// `SCT` at first.
-pub(super) const CYCLE_MS: f64 = 10.0;
+use crate::motion::{
+    Clock, PERIOD_RANGE, PlanProgress, Position, PushError, Stream, StreamEnd, StreamStep,
+};
+use crate::queues::CommandQueues;
 
 /// How far a stream may end from its last target and have come to rest there, 2^-32 track radii or turns: below what an
 /// encoder tells apart.
-const THERE: u64 = 32;
+const REST_TOLERANCE: u64 = 32;
 
-/// A stream under way, or about to be.
-pub(super) struct Flow {
-    /// `None` until the stage stands where the waves begin.
-    stream: Option<Stream>,
-    /// The generators that make its targets; none: `MOV` brings them.
-    run: Option<Run>,
-    /// The last target, and the tick when it came.
-    last: (Position, u64),
-    started: bool,
-}
-
-impl Stage {
-    /// `SCT`: ms between streamed targets.
-    pub fn set_cycle_time(&mut self, ms: f64) -> Result<(), ErrorCode> {
-        if self.flow.is_some() {
-            return Err(ErrorCode::InMotion);
+impl Commander {
+    /// Sets the ms between streamed targets.
+    pub fn set_cycle_time(&mut self, ms: f64) -> Result<(), CommandError> {
+        if self.pending.stream().is_some() {
+            return Err(CommandError::InMotion);
         }
-        if !PERIODS.contains(&self.period(ms)) {
-            return Err(ErrorCode::OutOfRange);
+        if !PERIOD_RANGE.contains(&self.period(ms)) {
+            return Err(CommandError::PeriodOutOfRange);
         }
         self.cycle_ms = ms;
         Ok(())
     }
 
-    /// `SCT?`
+    /// The time between streamed targets, ms.
     pub const fn cycle_time_ms(&self) -> f64 {
         self.cycle_ms
     }
 
     /// Ticks in so many ms.
     fn period(&self, ms: f64) -> f64 {
-        ms * 1e-3 * self.base.limits.rate_hz
+        ms * 1e-3 * self.base_constraints.limits.rate_hz
     }
 
     /// Which generators run, or are about to.
-    pub fn generators_going(&self) -> [bool; 6] {
-        let run = self.flow.as_ref().and_then(|flow| flow.run.as_ref());
-        run.map_or([false; 6], Run::going)
+    pub fn running_generators(&self) -> [bool; 6] {
+        let run = (self.pending.stream()).and_then(|streaming| streaming.run.as_ref());
+        run.map_or([false; 6], GeneratorRun::running)
     }
 
     /// A streamed target.
-    pub(super) fn stream(&mut self, target: Coordinates, to: Position) -> Result<(), ErrorCode> {
-        let ground = self.ground();
-        if self.flow.is_none() {
-            if self.mode() != Mode::Holding || self.motion_is_due() {
-                return Err(ErrorCode::NotAllowed);
+    pub(super) fn stream(&mut self, target: Coordinates, to: Position) -> Result<(), CommandError> {
+        let constraints = self.constraints();
+        if self.pending.stream().is_none() {
+            if self.mode() != Mode::Holding || self.is_motion_pending() {
+                return Err(CommandError::StreamNotAtRest);
             }
             let period = self.period(self.cycle_ms);
             let stream = Stream::new(self.setpoint(), period, Clock::Sender);
-            self.flow = Some(Flow {
-                stream: Some(stream.ok_or(ErrorCode::OutOfRange)?),
+            self.pending.begin_stream(Streaming {
+                stream: Some(stream.ok_or(CommandError::PeriodOutOfRange)?),
                 run: None,
                 last: (to, 0),
                 started: false,
             });
         }
         let now = self.tick();
-        if let Some(flow) = &mut self.flow
-            && let Some(stream) = &mut flow.stream
+        if let Some(streaming) = self.pending.stream_mut()
+            && let Some(stream) = &mut streaming.stream
         {
-            match stream.push(to, &ground) {
+            match stream.push(to, &constraints) {
                 Ok(()) => {}
-                Err(NotTaken::Full) => return Err(ErrorCode::StreamFull),
-                Err(NotTaken::Over) => return Err(ErrorCode::Busy),
-                Err(NotTaken::Refused(refusal)) => return Err(code(&refusal)),
+                Err(PushError::Full) => return Err(CommandError::StreamFull),
+                Err(PushError::Over) => return Err(CommandError::Busy),
+                Err(PushError::Refused(refusal)) => return Err(refusal.into()),
             }
-            flow.last = (to, now);
+            streaming.last = (to, now);
         }
         self.target = target;
         self.target_is_rest = false;
@@ -90,20 +81,25 @@ impl Stage {
     }
 
     /// Sends the axes of `starting` through their tables, after a move to where these begin.
-    pub(super) fn run_waves(
+    pub(super) fn start_generators(
         &mut self,
         starting: &[bool; 6],
-        link: &mut PanelLink<'_>,
-    ) -> Result<(), ErrorCode> {
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
         self.check_ready()?;
-        if self.mode() != Mode::Holding || self.motion_is_due() {
-            return Err(ErrorCode::InMotion);
+        if self.mode() != Mode::Holding || self.is_motion_pending() {
+            return Err(CommandError::InMotion);
         }
-        let run = Run::new(&self.waves, starting, self.target, self.base.limits.rate_hz);
-        let start = self.place_of(&run.start(&self.waves))?;
-        self.want(Goal::Place(start), link)?;
+        let run = GeneratorRun::new(
+            &self.waves,
+            starting,
+            self.target,
+            self.base_constraints.limits.rate_hz,
+        );
+        let start = self.position_of(&run.start(&self.waves))?;
+        self.request_goal(Goal::Position(start), queues)?;
         self.target_is_rest = true;
-        self.flow = Some(Flow {
+        self.pending.begin_stream(Streaming {
             stream: None,
             run: Some(run),
             last: (start, 0),
@@ -113,105 +109,108 @@ impl Stage {
     }
 
     /// Takes the next step of the stream.
-    pub(super) fn carry_flow_on(&mut self, link: &mut PanelLink<'_>) {
-        let Some(mut flow) = self.flow.take() else {
+    pub(super) fn advance_streaming(&mut self, queues: &mut CommandQueues<'_>) {
+        let Some(mut streaming) = self.pending.take_stream() else {
             return;
         };
-        match self.next_of(&mut flow) {
-            Ok(Next::Wait) => self.flow = Some(flow),
-            Ok(Next::Send(plan, start)) => {
-                // A queue that is full would be a plan that is lost.
-                match self.send_course(Course::streamed(plan, start), link) {
+        match self.next_step(&mut streaming) {
+            Ok(StreamStep::Wait) => self.pending.begin_stream(streaming),
+            Ok(StreamStep::Send(plan, start)) => {
+                match self.send_plan(SentPlan::streamed(plan, start), None, queues) {
                     Ok(()) => {
-                        flow.started = true;
-                        self.flow = Some(flow);
+                        streaming.started = true;
+                        self.pending.begin_stream(streaming);
                     }
-                    Err(_) => self.lose_flow(),
+                    // The plan is lost.
+                    Err(error) => self.report_stream_lost(error),
                 }
             }
-            Ok(Next::Over(end)) => self.end_flow(&flow, end),
-            Err(code) => {
-                self.target_is_rest = true;
-                self.tell(code);
-            }
+            Ok(StreamStep::Over(end)) => self.finish_streaming(&streaming, end),
+            Err(error) => self.report_stream_lost(error),
         }
     }
 
     /// Brings targets where generators make them, and asks the stream what is to be done.
-    fn next_of(&mut self, flow: &mut Flow) -> Result<Next, ErrorCode> {
-        let ground = self.ground();
+    fn next_step(&mut self, streaming: &mut Streaming) -> Result<StreamStep, CommandError> {
+        let constraints = self.constraints();
         let (now, period) = (self.tick(), self.period(self.cycle_ms));
-        if flow.stream.is_none() {
-            let there = self.mode() == Mode::Holding && self.wanted.is_none();
+        if streaming.stream.is_none() {
+            let there = self.mode() == Mode::Holding;
             if !there {
-                return Ok(Next::Wait);
+                return Ok(StreamStep::Wait);
             }
             let period = f64::from(self.waves.ticks);
-            flow.stream = Stream::new(self.setpoint(), period, Clock::Own);
+            streaming.stream = Stream::new(self.setpoint(), period, Clock::Own);
         }
-        let id = self.next_id();
-        let (Some(stream), run) = (&mut flow.stream, &mut flow.run) else {
-            return Err(ErrorCode::OutOfRange);
+        let id = self.next_plan_id();
+        let (Some(stream), run) = (&mut streaming.stream, &mut streaming.run) else {
+            return Err(CommandError::PeriodOutOfRange);
         };
         if let Some(run) = run {
-            while stream.room() > SPARE {
+            while stream.free_places() > RESERVED_KNOTS {
                 let Some(target) = run.next(&self.waves) else {
                     stream.finish();
                     break;
                 };
-                let place = self.place_of(&target)?;
-                if let Err(NotTaken::Refused(refusal)) = stream.push(place, &ground) {
-                    return Err(code(&refusal));
+                let place = self.position_of(&target)?;
+                if let Err(PushError::Refused(refusal)) = stream.push(place, &constraints) {
+                    return Err(refusal.into());
                 }
-                flow.last.0 = place;
+                streaming.last.0 = place;
             }
-        } else if !flow.started && now > flow.last.1 + patience(stream, period) {
+        } else if !streaming.started && now > streaming.last.1 + start_timeout(stream, period) {
             // Too few for a stream: they are all that come.
             stream.finish();
         }
         let Some(snapshot) = &self.snapshot else {
-            return Ok(Next::Wait);
+            return Ok(StreamStep::Wait);
         };
-        let progress = Progress {
+        let progress = PlanProgress {
             plan: snapshot.plan,
             tick: snapshot.plan_tick,
             moving: snapshot.mode == Mode::Moving,
         };
-        Ok(stream.next(id, &progress, &ground))
+        Ok(stream.next(id, &progress, &constraints))
     }
 
     /// A stream is over. What dries up at rest, at its last target, has come to a good end.
-    fn end_flow(&mut self, flow: &Flow, end: End) {
-        let rest = match self.under_way() {
-            Some((course, _)) if self.mode() == Mode::Moving => course.plan.end,
+    fn finish_streaming(&mut self, streaming: &Streaming, end: StreamEnd) {
+        let rest = match self.active_plan() {
+            Some((sent_plan, _)) if self.mode() == Mode::Moving => sent_plan.plan.end,
             _ => self.setpoint(),
         };
-        let mut pairs = rest.into_iter().zip(flow.last.0);
-        let there = pairs.all(|(rest, last)| rest.abs_diff(last) <= THERE);
-        if flow.run.is_some() || !there {
+        let mut pairs = rest.into_iter().zip(streaming.last.0);
+        let there = pairs.all(|(rest, last)| rest.abs_diff(last) <= REST_TOLERANCE);
+        if streaming.run.is_some() || !there {
             self.target_is_rest = true;
         }
         match end {
-            End::Done => {}
-            End::Dry if there && flow.run.is_none() => {}
-            End::Dry => self.tell(ErrorCode::StreamDry),
-            End::Refused(refusal) => self.tell(code(&refusal)),
+            StreamEnd::Done => {}
+            StreamEnd::Starved if there && streaming.run.is_none() => {}
+            StreamEnd::Starved => self.report_late(CommandError::StreamDry),
+            StreamEnd::Refused(refusal) => self.report_late(refusal.into()),
         }
     }
 
     /// A plan of the stream has not been taken in time: it ends by itself.
-    pub(super) fn lose_flow(&mut self) {
-        if self.flow.take().is_some() {
-            self.target_is_rest = true;
-            self.tell(ErrorCode::StreamDry);
+    pub(super) fn abort_streaming(&mut self) {
+        if self.pending.stream().is_some() {
+            self.pending = self.pending.stop().map_or(Pending::Nothing, Pending::Stop);
+            self.report_stream_lost(CommandError::StreamDry);
         }
+    }
+
+    /// There is no stream any more, and the target is where the stage comes to rest.
+    const fn report_stream_lost(&mut self, error: CommandError) {
+        self.target_is_rest = true;
+        self.report_late(error);
     }
 }
 
 /// Ticks without a target after which none is waited for any more.
-fn patience(stream: &Stream, period: f64) -> u64 {
-    stream.start_at() as u64 * period as u64
+fn start_timeout(stream: &Stream, period: f64) -> u64 {
+    stream.targets_to_start() as u64 * period as u64
 }
 
 /// Room that is left in a stream that generators fill: they make targets as these are used, not long before.
-const SPARE: usize = 4;
+const RESERVED_KNOTS: usize = 4;

@@ -1,9 +1,10 @@
 //! What the tick computes with, derived once from the parameters.
 
 use crate::control::encoder::EncoderConfig;
+use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::servo::ServoConfig;
-use crate::control::supervisor::TURN;
-use crate::motion::{Scale, Slowdown};
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
 /// The tick's constants.
@@ -12,13 +13,13 @@ pub struct Config {
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderConfig; 3],
     /// Setpoint integers to rates.
-    pub scale: Scale,
+    pub scale: SetpointScale,
     /// Servo.
     pub servo: ServoConfig,
     /// Supervision.
     pub limits: SupervisionConfig,
     /// The controlled stop of a fault.
-    pub slowdown: Slowdown,
+    pub fault_stop: FaultStop,
 }
 
 /// Thresholds in the tick's units.
@@ -27,43 +28,36 @@ pub struct SupervisionConfig {
     /// Largest following error at rest, 2^-32 turns.
     pub following_error: i32,
     /// What is allowed besides for each rad/s of the setpoint, 2^-32 turns.
-    pub following_per_rate: f32,
+    pub following_error_per_rate: f32,
     /// Window of a settled pivot, 2^-32 turns.
-    pub window: i32,
+    pub settling_window: i32,
     /// Ticks inside the window that count as settled.
-    pub dwell: u32,
+    pub settling_ticks: u32,
     /// Lowest supply in ADC counts.
-    pub supply_min: u16,
+    pub min_supply_counts: u16,
     /// Ticks that may be late, one in a hundred forgiven.
     pub late_ticks: u32,
     /// Largest step of a pivot in a tick, 2^-32 turns.
-    pub overspeed: u32,
+    pub max_step: u32,
     /// Smallest angle between two pivots, 2^-32 turns.
-    pub separation: u32,
+    pub min_separation: u32,
     /// Range of a pivot's place on its guide, track radii.
-    pub guide: [f32; 2],
+    pub guide_range: [f32; 2],
     /// Square of the largest distance of the platform's centre from the track's, track radii.
-    pub reach_square: f32,
-    /// Longest time at the largest duty, ticks.
-    pub at_end: u32,
+    pub max_radius_squared: f32,
+    /// Longest time at the largest duty (saturated), ticks.
+    pub max_saturated_ticks: u32,
     /// Square of the current that a motor bears, ADC counts.
-    pub heat: f32,
-    /// Part of the way to a new temperature from one look at a motor to the next.
-    pub heating: f32,
-    /// Way of a setpoint in which a reading must change, 2^-32 turns.
-    pub frozen_way: u64,
+    pub max_mean_square_current: f32,
+    /// Share of the way to a new temperature that a winding goes from one inspection to the next.
+    pub winding_smoothing: f32,
+    /// Distance of a setpoint in which a reading must change, 2^-32 turns.
+    pub frozen_distance: u64,
     /// Change of a duty that must change a reading, PWM counts.
     pub frozen_duty: u16,
     /// Ticks in a second.
-    pub hz: f32,
+    pub rate_hz: f32,
 }
-
-/// Supply voltage of one count of the 12-bit ADC: 3.3 V full scale behind a divider of 20.
-pub const SUPPLY_V_PER_COUNT: f64 = 66.0 / 4096.0;
-/// Motor current of one count: DRV8874, 450 uA/A into 1 kohm, 3.3 V full scale.
-pub const CURRENT_A_PER_COUNT: f64 = 3.3 / 4096.0 / (450e-6 * 1_000.0);
-
-pub(crate) const UNITS_PER_RAD: f64 = 4_294_967_296.0 / core::f64::consts::TAU;
 
 impl Config {
     /// Derives the tick's constants.
@@ -81,35 +75,37 @@ impl Config {
             encoders: parameters
                 .encoders
                 .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),
-            scale: Scale::new(rate_hz),
+            scale: SetpointScale::new(rate_hz),
             servo: ServoConfig::new(parameters),
             limits: SupervisionConfig {
                 following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,
                 // A count is 64 units; the half lets a setpoint between two counts be met.
-                window: ((window.counts + 0.5) * 64.0) as i32,
-                dwell: libm::ceil(window.dwell_s * rate_hz) as u32,
-                following_per_rate: (supervision.following_error_s * UNITS_PER_RAD) as f32,
-                supply_min: (supervision.supply_min_v / SUPPLY_V_PER_COUNT) as u16,
+                settling_window: ((window.counts + 0.5) * 64.0) as i32,
+                settling_ticks: libm::ceil(window.dwell_s * rate_hz) as u32,
+                following_error_per_rate: (supervision.following_error_s * UNITS_PER_RAD) as f32,
+                min_supply_counts: (supervision.supply_min_v / SUPPLY_V_PER_COUNT) as u16,
                 late_ticks: supervision.late_ticks,
-                overspeed: (fastest * period_s * UNITS_PER_RAD) as u32,
-                separation: ((geometry.separation_rad - supervision.separation_margin_rad)
+                max_step: (fastest * period_s * UNITS_PER_RAD) as u32,
+                min_separation: ((geometry.separation_rad - supervision.separation_margin_rad)
                     * UNITS_PER_RAD) as u32,
-                guide: [
+                guide_range: [
                     (geometry.guide_start - margin) as f32,
                     (geometry.guide_start + geometry.guide_length + margin) as f32,
                 ],
-                reach_square: (reach * reach) as f32,
-                at_end: libm::ceil(supervision.at_end_s * rate_hz) as u32,
-                heat: (bearable * bearable) as f32,
-                heating: (1.0
-                    - libm::exp(-f64::from(TURN) * period_s / supervision.motor_heating_s))
-                    as f32,
-                frozen_way: (supervision.frozen_rad * UNITS_PER_RAD) as u64,
+                max_radius_squared: (reach * reach) as f32,
+                max_saturated_ticks: libm::ceil(supervision.max_saturation_s * rate_hz) as u32,
+                max_mean_square_current: (bearable * bearable) as f32,
+                winding_smoothing: (1.0
+                    - libm::exp(
+                        -f64::from(INSPECTION_PERIOD_TICKS) * period_s
+                            / supervision.motor_heating_s,
+                    )) as f32,
+                frozen_distance: (supervision.frozen_rad * UNITS_PER_RAD) as u64,
                 frozen_duty: (supervision.frozen_v / drive.supply_v * f64::from(drive.pwm_counts))
                     as u16,
-                hz: rate_hz as f32,
+                rate_hz: rate_hz as f32,
             },
-            slowdown: Slowdown::new(supervision.stop_s, rate_hz),
+            fault_stop: FaultStop::new(supervision.stop_s, rate_hz),
         }
     }
 }

@@ -1,59 +1,61 @@
 //! From encoder frames to a multi-turn pivot angle: which frame is believed, what bridges one that is not.
 
-use crate::drivers::biss::{FrameError, POSITION_BITS, RawFrame, Whole, decode, whole};
+use crate::drivers::biss::{
+    CheckedFrame, FrameError, POSITION_BITS, RawFrame, check_frame, decode,
+};
 use crate::fault::FaultKind;
-use crate::parameters::{EncoderSetup, Supervision};
+use crate::parameters::{EncoderMounting, Supervision};
 use kinematics::Angle;
 
 /// Bits by which an encoder count is left-aligned in a 32-bit fraction of a turn.
-const ALIGN: u32 = 32 - POSITION_BITS;
+const ALIGN_SHIFT: u32 = 32 - POSITION_BITS;
 
 /// How one encoder is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
     zero: u32,
     /// 1, or -1 where the encoder counts against the pivot's direction.
-    sense: i32,
-    bridged: u8,
+    direction: i32,
+    max_bridged_frames: u8,
     /// Largest believable change of the step from tick to tick, 2^-32 turns.
-    change: u32,
+    max_step_change: u32,
 }
 
 impl EncoderConfig {
     /// For a tick of `period_s`.
-    pub fn new(setup: &EncoderSetup, supervision: &Supervision, period_s: f64) -> Self {
+    pub fn new(setup: &EncoderMounting, supervision: &Supervision, period_s: f64) -> Self {
         let radians = supervision.plausible_acceleration_rad_s2 * period_s * period_s;
         Self {
-            zero: setup.zero_counts << ALIGN,
-            sense: if setup.reversed { -1 } else { 1 },
-            bridged: supervision.bridged_frames,
-            change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
+            zero: setup.zero_counts << ALIGN_SHIFT,
+            direction: if setup.reversed { -1 } else { 1 },
+            max_bridged_frames: supervision.bridged_frames,
+            max_step_change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
         }
     }
 }
 
 impl EncoderConfig {
     /// Whether a reading means the same angle to both.
-    pub fn reads_as(&self, other: &Self) -> bool {
-        self.zero == other.zero && self.sense == other.sense
+    pub fn has_same_mounting(&self, other: &Self) -> bool {
+        self.zero == other.zero && self.direction == other.direction
     }
 
     /// What an ideal encoder shows at a pivot angle: for machines that are simulated.
-    pub fn counts_at(&self, angle: Angle) -> u32 {
+    pub fn ideal_counts_at(&self, angle: Angle) -> u32 {
         // To the nearest count.
         (angle.fraction())
-            .wrapping_mul(self.sense as u32)
+            .wrapping_mul(self.direction as u32)
             .wrapping_add(self.zero)
-            .wrapping_add(1 << (ALIGN - 1))
-            >> ALIGN
+            .wrapping_add(1 << (ALIGN_SHIFT - 1))
+            >> ALIGN_SHIFT
     }
 
     /// The fraction of a turn that a reading means, 2^-32 turns.
     #[inline]
     fn fraction(&self, counts: u32) -> u32 {
-        (counts << ALIGN)
+        (counts << ALIGN_SHIFT)
             .wrapping_sub(self.zero)
-            .wrapping_mul(self.sense as u32)
+            .wrapping_mul(self.direction as u32)
     }
 }
 
@@ -62,19 +64,19 @@ impl EncoderConfig {
 pub struct Encoder {
     angle: Angle,
     step: i32,
-    /// Good frames in a row, up to [`READY`].
-    good: u8,
+    /// Good frames in a row, up to [`READY_FRAMES`].
+    good_frames: u8,
     /// Bad frames in a row.
-    bad: u8,
+    bad_frames: u8,
     warning: bool,
     /// Ready, with no bad frame to make up for and no warning: the next frame need only be plausible.
-    usual: bool,
+    fast_path: bool,
     /// Why it is not ready, if it is not.
     unusable: Option<FaultKind>,
     /// The last reading that decoded.
     reading: u32,
     /// Frames since then that have repeated it, and were believed.
-    same: u16,
+    repeats: u16,
 }
 
 impl Default for Encoder {
@@ -82,62 +84,67 @@ impl Default for Encoder {
         Self {
             angle: Angle::ZERO,
             step: 0,
-            good: 0,
-            bad: 0,
+            good_frames: 0,
+            bad_frames: 0,
             warning: false,
-            usual: false,
-            // Until it has told of something else.
+            fast_path: false,
+            // Until a frame says otherwise.
             unusable: Some(FaultKind::EncoderSilent),
             reading: 0,
-            same: 0,
+            repeats: 0,
         }
     }
 }
 
 /// Good frames in a row, each plausible after the one before, that make an encoder ready.
-const READY: u8 = 4;
-/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s. To stop
-/// so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
-const STILL: u32 = 16 << ALIGN;
+const READY_FRAMES: u8 = 4;
+/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s.
+/// To stop so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
+const FROZEN_STEP: u32 = 16 << ALIGN_SHIFT;
 
 impl Encoder {
     /// Takes the frame of this tick.
     ///
     /// A frame is believed when it decodes and its step differs from the last one's by no more than the plausible
-    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while the pivot
-    /// turns. A frame that is not believed is never used:
-    /// the angle goes on by the last step, up to [`EncoderConfig`]'s count of them in a row.
+    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while
+    /// the pivot turns. A frame that is not believed is never used: the angle goes on by the last step, up to
+    /// [`EncoderConfig`]'s count of them in a row.
     #[inline]
-    pub fn take(&mut self, config: &EncoderConfig, frame: &RawFrame) {
-        if let (true, Some(counts)) = (self.usual, whole(frame).ok().and_then(Whole::plain)) {
+    pub fn update(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+        if let (true, Some(counts)) = (
+            self.fast_path,
+            check_frame(frame)
+                .ok()
+                .and_then(CheckedFrame::plain_position),
+        ) {
             let fraction = config.fraction(counts);
-            let (moved, surprise) = self.moved(fraction);
-            if surprise <= config.change && !self.is_frozen(fraction) {
-                self.note(fraction);
-                self.go_on(moved);
+            let (moved, innovation) = self.moved(fraction);
+            if innovation <= config.max_step_change && !self.is_frozen(fraction) {
+                self.count_repeats(fraction);
+                self.advance_by(moved);
                 self.step = moved;
                 return;
             }
         }
-        self.look_at(config, frame);
+        self.update_checked(config, frame);
     }
 
     /// Takes a frame of any kind.
     #[cold]
     #[inline(never)]
-    fn look_at(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+    fn update_checked(&mut self, config: &EncoderConfig, frame: &RawFrame) {
         match decode(frame) {
             Ok(reading) => {
                 self.warning = reading.warning;
                 let fraction = config.fraction(reading.counts);
                 if self.is_frozen(fraction) {
-                    self.miss(config, FaultKind::EncoderFrozen);
+                    self.bridge_missing(config, FaultKind::EncoderFrozen);
                 } else {
-                    self.note(fraction);
-                    self.take_fraction(config, fraction);
+                    self.count_repeats(fraction);
+                    self.accept_reading(config, fraction);
                 }
             }
-            Err(error) => self.miss(
+            Err(error) => self.bridge_missing(
                 config,
                 match error {
                     FrameError::Silent => FaultKind::EncoderSilent,
@@ -146,27 +153,27 @@ impl Encoder {
                 },
             ),
         }
-        self.usual = self.good == READY && self.bad == 0 && !self.warning;
+        self.fast_path = self.good_frames == READY_FRAMES && self.bad_frames == 0 && !self.warning;
     }
 
     /// Whether a reading repeats the last one while the pivot turns.
     #[inline]
     fn is_frozen(&self, fraction: u32) -> bool {
-        fraction == self.reading && self.step.unsigned_abs() > STILL
+        fraction == self.reading && self.step.unsigned_abs() > FROZEN_STEP
     }
 
     #[inline]
-    fn note(&mut self, fraction: u32) {
+    fn count_repeats(&mut self, fraction: u32) {
         if fraction == self.reading {
-            self.same = self.same.saturating_add(1);
+            self.repeats = self.repeats.saturating_add(1);
         } else {
-            self.same = 0;
+            self.repeats = 0;
             self.reading = fraction;
         }
     }
 
-    /// How far a reading is from the angle, and how far that is from the last step. After bridged frames the angle has gone on
-    /// by itself: then it is from where it was expected to be.
+    /// How far a reading is from the angle, and the innovation: how far that is from the last step. After bridged
+    /// frames the angle has gone on by itself: then it is from where it was expected to be.
     #[inline]
     fn moved(&self, fraction: u32) -> (i32, u32) {
         let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
@@ -174,55 +181,61 @@ impl Encoder {
     }
 
     /// Takes a reading that may be one of the first, or after a bad one.
-    fn take_fraction(&mut self, config: &EncoderConfig, fraction: u32) {
-        let (moved, surprise) = self.moved(fraction);
-        if self.bad == 0 && self.good == READY && surprise <= config.change {
-            self.go_on(moved);
+    fn accept_reading(&mut self, config: &EncoderConfig, fraction: u32) {
+        let (moved, innovation) = self.moved(fraction);
+        if self.bad_frames == 0
+            && self.good_frames == READY_FRAMES
+            && innovation <= config.max_step_change
+        {
+            self.advance_by(moved);
             self.step = moved;
         } else {
-            self.regain(config, fraction, moved, surprise);
+            self.reacquire(config, fraction, moved, innovation);
         }
     }
 
     /// Takes a frame after a bad one, or one of the first.
     #[cold]
-    fn regain(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, surprise: u32) {
-        let ticks = u32::from(self.bad) + 1;
-        let allowed = config.change.saturating_mul(ticks.saturating_mul(ticks));
-        if self.good == 0 {
+    fn reacquire(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, innovation: u32) {
+        let ticks = u32::from(self.bad_frames) + 1;
+        let allowed = config
+            .max_step_change
+            .saturating_mul(ticks.saturating_mul(ticks));
+        if self.good_frames == 0 {
             self.angle = Angle::from_units(i64::from(fraction));
             self.step = 0;
-            self.good = 1;
-        } else if surprise <= allowed {
-            self.go_on(moved);
-            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the rate.
+            self.good_frames = 1;
+        } else if innovation <= allowed {
+            self.advance_by(moved);
+            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the
+            // rate.
             self.step = self
                 .step
                 .wrapping_add(moved.wrapping_sub(self.step) / ticks as i32);
-            self.good = (self.good + 1).min(READY);
+            self.good_frames = (self.good_frames + 1).min(READY_FRAMES);
         } else {
-            self.miss(config, FaultKind::EncoderJump);
+            self.bridge_missing(config, FaultKind::EncoderJump);
             return;
         }
-        self.bad = 0;
-        if self.good == READY {
+        self.bad_frames = 0;
+        if self.good_frames == READY_FRAMES {
             self.unusable = None;
         }
     }
 
     #[inline]
-    fn go_on(&mut self, step: i32) {
+    fn advance_by(&mut self, step: i32) {
         self.angle = Angle::from_units(self.angle.units().wrapping_add(i64::from(step)));
     }
 
     #[cold]
-    fn miss(&mut self, config: &EncoderConfig, reason: FaultKind) {
-        self.bad = self.bad.saturating_add(1);
-        if self.bad > config.bridged || self.good < READY {
-            self.good = 0;
+    fn bridge_missing(&mut self, config: &EncoderConfig, reason: FaultKind) {
+        self.bad_frames = self.bad_frames.saturating_add(1);
+        if self.bad_frames > config.max_bridged_frames || self.good_frames < READY_FRAMES {
+            self.good_frames = 0;
             self.unusable = Some(reason);
         } else {
-            self.go_on(self.step);
+            self.advance_by(self.step);
         }
     }
 
@@ -233,17 +246,17 @@ impl Encoder {
     }
 
     /// Takes it for lost, whatever its frames say, until it has been ready anew.
-    pub fn give_up(&mut self, reason: FaultKind) {
+    pub fn mark_unusable(&mut self, reason: FaultKind) {
         self.unusable = Some(reason);
-        self.good = 0;
-        self.same = 0;
-        self.usual = false;
+        self.good_frames = 0;
+        self.repeats = 0;
+        self.fast_path = false;
     }
 
     /// How often in a row it has repeated one reading to the bit, and was believed: it may be at rest.
     #[inline]
-    pub fn same_readings(&self) -> u16 {
-        self.same
+    pub fn repeated_readings(&self) -> u16 {
+        self.repeats
     }
 
     /// What the pivot has moved in the last tick, 2^-32 turns.

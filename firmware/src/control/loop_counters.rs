@@ -2,7 +2,7 @@
 
 /// Since the snapshot before. Sums and worst values of longer times are the command side's to make.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Interval {
+pub struct LoopCounters {
     /// Ticks.
     pub ticks: u32,
     /// Cost of the last tick but one, processor cycles; 0 where nobody counts them.
@@ -17,10 +17,10 @@ pub struct Interval {
     pub peak_error: u32,
 }
 
-impl Interval {
+impl LoopCounters {
     /// Takes what is known of the tick before.
     #[inline]
-    pub fn count(&mut self, cycles: u32, late: bool) {
+    pub fn count_tick(&mut self, cycles: u32, late: bool) {
         self.ticks = self.ticks.wrapping_add(1);
         self.cycles = cycles;
         self.cycles_sum = self.cycles_sum.wrapping_add(cycles);
@@ -30,7 +30,7 @@ impl Interval {
 
     /// Takes the largest following error of a tick.
     #[inline]
-    pub fn look(&mut self, error: u32) {
+    pub fn observe_error(&mut self, error: u32) {
         self.peak_error = self.peak_error.max(error);
     }
 }

@@ -1,13 +1,14 @@
 //! Whether the stage has settled, and how far its pivots have been off.
 
-use crate::control::config::{SupervisionConfig, UNITS_PER_RAD};
+use crate::control::config::SupervisionConfig;
+use crate::control::units::UNITS_PER_RAD;
 
 /// Settled means at rest, and every pivot inside the window for the dwell time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settling {
-    inside: u32,
+    ticks_inside: u32,
     settled: bool,
-    peak: u32,
+    peak_error: u32,
 }
 
 impl Settling {
@@ -18,14 +19,14 @@ impl Settling {
 
     /// Takes the largest following error of a tick, 2^-32 turns.
     #[inline]
-    pub fn look(&mut self, limits: &SupervisionConfig, worst: u32, moving: bool) {
-        self.peak = self.peak.max(worst);
-        if moving || worst > limits.window.unsigned_abs() {
-            self.inside = 0;
-        } else if self.inside < limits.dwell {
-            self.inside += 1;
+    pub fn update(&mut self, limits: &SupervisionConfig, worst: u32, moving: bool) {
+        self.peak_error = self.peak_error.max(worst);
+        if moving || worst > limits.settling_window.unsigned_abs() {
+            self.ticks_inside = 0;
+        } else if self.ticks_inside < limits.settling_ticks {
+            self.ticks_inside += 1;
         }
-        self.settled = self.inside >= limits.dwell;
+        self.settled = self.ticks_inside >= limits.settling_ticks;
     }
 
     /// Settled at the last tick.
@@ -34,7 +35,7 @@ impl Settling {
     }
 
     /// Largest following error of a pivot since [`start`](Self::start), rad.
-    pub fn peak_rad(&self) -> f32 {
-        self.peak as f32 * (1.0 / UNITS_PER_RAD) as f32
+    pub fn peak_error_rad(&self) -> f32 {
+        self.peak_error as f32 * (1.0 / UNITS_PER_RAD) as f32
     }
 }

@@ -1,15 +1,15 @@
 //! What a tick is given, what it gives, and what the loop remembers between ticks.
 
 use super::encoder::Encoder;
-use super::loop_counters::Interval;
-use super::servo::AxisServo;
+use super::inspection::PivotWatch;
+use super::loop_counters::LoopCounters;
+use super::servo::PivotServo;
 use super::settling::Settling;
-use super::supervisor::Watch;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
 use crate::mode::Mode;
-use crate::motion::Motion;
+use crate::motion::PlanFollower;
 
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
@@ -46,32 +46,33 @@ pub struct State {
     pub(super) mode: Mode,
     pub(super) fault: Option<Fault>,
     /// The fault that has ended the controlled stop of the one before.
-    pub(super) worse: Option<Fault>,
+    pub(super) stop_ended_by: Option<Fault>,
     /// A latched fault lets the motors coast.
     pub(super) coasts: bool,
     /// The pivot that has lost its encoder, until the fault is acknowledged.
-    pub(super) lost: Option<usize>,
+    pub(super) lost_pivot: Option<usize>,
     pub(super) referenced: bool,
     pub(super) encoders: [Encoder; 3],
-    pub(super) motion: Motion,
-    pub(super) servo: [AxisServo; 3],
+    pub(super) motion: PlanFollower,
+    pub(super) servo: [PivotServo; 3],
     pub(super) settling: Settling,
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,
-    /// State and commands at the end of the last tick, and whether they are news that no snapshot has been due for yet.
-    pub(super) known: (Mode, u32),
-    pub(super) news: bool,
-    pub(super) interval: Interval,
+    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due
+    /// yet.
+    pub(super) last_mode_and_commands: (Mode, u32),
+    pub(super) report_due: bool,
+    pub(super) loop_counters: LoopCounters,
     /// Late ticks, a hundred each, less those forgiven.
     pub(super) lateness: u32,
     /// Ticks in a row with a low supply.
-    pub(super) low_supply: u8,
+    pub(super) low_supply_ticks: u8,
     /// Square of how far out the setpoint may be, track radii.
-    pub(super) reach_square: f32,
-    /// The pivot that is watched in this tick; in [`SNAPSHOT_TURN`] none is.
-    pub(super) turn: usize,
-    pub(super) watch: [Watch; 3],
+    pub(super) max_radius_squared: f32,
+    /// The pivot that is inspected in this tick; in [`SNAPSHOT_SLOT`](super::inspection::SNAPSHOT_SLOT) none is.
+    pub(super) inspection_slot: usize,
+    pub(super) pivot_watches: [PivotWatch; 3],
 }
 
 impl State {
@@ -103,7 +104,21 @@ impl State {
     }
 
     /// The fault that has ended the controlled stop of that one.
-    pub fn worse(&self) -> Option<Fault> {
-        self.worse
+    pub fn stop_ended_by(&self) -> Option<Fault> {
+        self.stop_ended_by
+    }
+
+    /// Whether the servo drives the motors.
+    pub(super) fn servo_on(&self) -> bool {
+        matches!(self.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
+    }
+
+    /// Whether the bridges drive or brake.
+    pub(super) fn bridges_awake(&self) -> bool {
+        match self.mode {
+            Mode::Off => false,
+            Mode::Fault => !self.coasts,
+            Mode::Holding | Mode::Moving | Mode::Stopping => true,
+        }
     }
 }

@@ -1,41 +1,39 @@
 //! The control loop: one function of state and inputs.
 
+use super::config::Config;
+use super::encoder::Encoder;
+use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
+use super::servo::PivotSetpoint;
 use super::state::{Inputs, Outputs, State};
-use super::supervisor::{TURN, Turn};
-use crate::control::config::Config;
-use crate::control::encoder::Encoder;
-use crate::control::loop_counters::Interval;
-use crate::control::servo::{PivotSetpoint, platform_torques};
+use super::tick_queues::TickQueues;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::FaultKind;
 use crate::mode::Mode;
-use crate::motion::{Position, Setpoint};
-use crate::number::Fixed;
-use crate::queues::{Snapshot, TickLink};
-use crate::recorder::{Record, Sample};
-use kinematics::{
-    Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
-    pivot_motion_in_platform_axes,
-};
+use crate::motion::Setpoint;
+use crate::recorder::{Sample, TickObserver};
+use kinematics::Angle;
 
 /// One period of the control loop, at 20 kHz by default.
 ///
-/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update interrupt
-/// with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period, 25 us after the
-/// update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No allocation, no blocking,
-/// no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its cost on the chip stands in the
-/// README and is printed by `cargo chip`.
+/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update
+/// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
+/// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
+/// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
+/// cost on the chip stands in the README and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
     config: &mut Config,
     state: &mut State,
     inputs: &Inputs,
-    link: &mut TickLink<'_>,
-    recorder: &mut impl Record,
+    queues: &mut TickQueues<'_>,
+    recorder: &mut impl TickObserver,
 ) -> Outputs {
     state.tick = state.tick.wrapping_add(1);
-    state.interval.count(inputs.tick_cycles, inputs.late);
+    state
+        .loop_counters
+        .count_tick(inputs.tick_cycles, inputs.late);
     let mut pivots = decode(config, &mut state.encoders, inputs.frames);
     // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
@@ -44,23 +42,24 @@ pub fn tick(
     }
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
-    // Obeyed where it lies: a plan is too long to be moved twice.
-    let command = link.commands.peek();
+    // Handled where it lies: a plan is too long to be moved twice.
+    let command = queues.commands.peek();
     let commanded = command.is_some();
-    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next one on.
+    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next
+    // one on.
     let drives = state.servo_on();
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
-        state.obey(config, command, &pivots);
-        let _ = link.commands.dequeue();
+        state.handle_command(config, command, &pivots);
+        let _ = queues.commands.dequeue();
         // Once more: referencing gives the pivots their turns.
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
     state.check_inputs(config, inputs);
-    state.watch_heat(config, inputs);
+    state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);
-    let setpoint = state.motion.centre().platform(&point);
+    let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
         state.drive(config, &setpoint, &mut pivots)
     } else {
@@ -69,18 +68,18 @@ pub fn tick(
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
-    let turn = state.turn;
-    state.turn = (turn + 1) % TURN as usize;
+    let slot = state.inspection_slot;
+    state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
     let outputs = Outputs {
         duty,
-        awake: state.awake(),
+        awake: state.bridges_awake(),
     };
     let sample = || Sample {
         tick: state.tick,
         mode: state.mode,
         fault: state.fault.map(|fault| fault.kind),
         setpoint,
-        point,
+        reference_point: point,
         pivot_setpoints: target,
         pivot_rates: rates,
         pivots,
@@ -90,38 +89,35 @@ pub fn tick(
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,
     };
-    recorder.record(&sample());
-    if let Some(history) = &mut link.history {
-        history.record(&sample());
+    recorder.observe(&sample());
+    if let Some(fault_record) = &mut queues.fault_record {
+        fault_record.observe(&sample());
     }
     // Made anew, so that a tick that records nothing has it in registers only.
-    if link.recorder.is_wanted() {
-        link.recorder.record(&sample());
+    if queues.recorder.is_active() {
+        queues.recorder.observe(&sample());
     }
-    // In its turn, and when there is news; not in a tick that has taken a command, which is the longest as it is. Where there is
-    // no room then, the next turn serves: so the ticks that can leave one do not depend on when the command side looks.
+    // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
+    // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
+    // on when the command side reads.
     let now = (state.mode, state.commands);
-    state.news |= now != state.known;
-    state.known = now;
-    if (turn == SNAPSHOT_TURN || state.news) && !commanded {
-        state.news = false;
-        state.leave_snapshot(link, &point.position, &pivots, &target, duty);
+    state.report_due |= now != state.last_mode_and_commands;
+    state.last_mode_and_commands = now;
+    if (slot == SNAPSHOT_SLOT || state.report_due) && !commanded {
+        state.report_due = false;
+        state.send_snapshot(queues, &point.position, &pivots, &target, duty);
     }
     outputs
 }
 
-/// In turn, a tick each: a look at every pivot, and a snapshot.
-const SNAPSHOT_TURN: usize = 3;
-const _: () = assert!(TURN as usize == SNAPSHOT_TURN + 1);
-
-// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can count
-// each between its symbols.
+// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can
+// count each between its symbols.
 
 /// Encoder frames to pivot angles.
 #[inline(never)]
 fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -> [Angle; 3] {
     for i in 0..3 {
-        encoders[i].take(&config.encoders[i], &frames[i]);
+        encoders[i].update(&config.encoders[i], &frames[i]);
     }
     encoders.each_ref().map(Encoder::angle)
 }
@@ -131,8 +127,8 @@ fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -
 fn advance(config: &Config, state: &mut State) -> Setpoint {
     let motion = &mut state.motion;
     if state.mode == Mode::Stopping {
-        motion.advance_slower(&config.slowdown);
-        return motion.slowed_setpoint(&config.scale);
+        motion.advance_fault_stop(&config.fault_stop);
+        return motion.fault_stop_setpoint(&config.scale);
     }
     // With the servo off there is nothing under way.
     if matches!(state.mode, Mode::Holding | Mode::Moving) {
@@ -141,32 +137,11 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
     motion.setpoint(&config.scale)
 }
 
-/// Setpoints of the three pivots.
-struct Pivots {
-    angles: [Angle; 3],
-    motion: PivotMotion<f32>,
-    torques: [f32; 3],
-    /// Distances along the guides, track radii: all that is looked at of these later.
-    lengths: [f32; 3],
-}
-
-/// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
-#[inline(never)]
-fn pivots_of(config: &Config, setpoint: &Setpoint) -> Option<Pivots> {
-    let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
-    let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
-    let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
-    Some(Pivots {
-        angles: pivots,
-        motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
-        torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
-        lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
-    })
-}
-
+/// Of the measured supply, from one tick to the next.
 const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
 
-type Driven = ([Angle; 3], [f32; 3], [Duty; 3]);
+/// Setpoints of the pivots, their rates (rad/s), and the duties.
+type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
 
 impl State {
     /// Setpoint to duties; `None` when a fault came of it.
@@ -175,37 +150,37 @@ impl State {
         config: &Config,
         setpoint: &Setpoint,
         pivots: &mut [Angle; 3],
-    ) -> Option<Driven> {
+    ) -> Option<DriveOutputs> {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
         }
-        // Looked at where it lies.
-        let Some(wanted) = &pivots_of(config, setpoint) else {
-            self.fail(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
+        // Used where it lies.
+        let Some(wanted) = &pivot_setpoints(config, setpoint) else {
+            self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };
         let target = &wanted.angles;
-        if let Some(lost) = self.lost
+        if let Some(lost) = self.lost_pivot
             && let (Some(pivot), Some(target)) = (pivots.get_mut(lost), target.get(lost))
         {
             // All that is known of it.
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, wanted)?;
-        (self.settling).look(&config.limits, worst, self.motion.moving());
-        self.interval.look(worst);
-        if self.mode != Mode::Holding && !self.motion.moving() {
-            self.come_to_rest();
+        (self.settling).update(&config.limits, worst, self.motion.is_moving());
+        self.loop_counters.observe_error(worst);
+        if self.mode != Mode::Holding && !self.motion.is_moving() {
+            self.finish_motion();
         }
-        let (duty, sum) = self.servos(config, &errors, wanted);
+        let (duty, sum) = self.step_servos(config, &errors, wanted);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
-            self.fail(FaultKind::NotFinite, None, 0.0, 0.0);
+            self.raise_fault(FaultKind::NotFinite, None, 0.0, 0.0);
             return None;
         }
-        let i = self.turn;
+        let i = self.inspection_slot;
         let after = if i < 2 { i + 1 } else { 0 };
-        // All are there, but in the snapshot's turn none.
+        // Each pivot in its slot; in the snapshot's slot none.
         if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
             wanted.lengths.get(i),
             target.get(i),
@@ -213,23 +188,30 @@ impl State {
             pivots.get(after),
             duty.get(i),
         ) {
-            let turn = Turn {
+            let inspection = Inspection {
                 pivot: i,
                 setpoint,
                 angle,
                 next,
                 duty,
             };
-            if !(self.is_in_range(config, i, length) && self.watch_pivot(config, &turn)) {
+            if !(self.is_in_guide_range(config, i, length)
+                && self.inspect_pivot(config, &inspection))
+            {
                 return None;
             }
         }
         Some((wanted.angles, wanted.motion.rates, duty))
     }
 
-    /// Duties of the three servos, and the sum of what they asked for. The one whose turn it is learns.
+    /// Duties of the three servos, and the sum of what they asked for. The one that is inspected in this tick learns.
     #[inline(never)]
-    fn servos(&mut self, config: &Config, errors: &[i32; 3], wanted: &Pivots) -> ([Duty; 3], f32) {
+    fn step_servos(
+        &mut self,
+        config: &Config,
+        errors: &[i32; 3],
+        wanted: &PivotSetpoints,
+    ) -> ([Duty; 3], f32) {
         let counts_per_volt = config.servo.counts_per_volt(self.supply);
         let mut duty = [Duty(0); 3];
         let mut sum = 0.0;
@@ -242,114 +224,11 @@ impl State {
             };
             let servo = &mut self.servo[i];
             duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
-            if i == self.turn {
+            if i == self.inspection_slot {
                 servo.learn(&config.servo);
             }
-            sum += servo.wanted();
+            sum += servo.requested_counts();
         }
         (duty, sum)
     }
-
-    /// Measured minus setpoint, 2^-32 turns, and the largest of the three by its size, if that is allowed.
-    #[inline]
-    fn following_errors(
-        &mut self,
-        config: &Config,
-        pivots: &[Angle; 3],
-        wanted: &Pivots,
-    ) -> Option<([i32; 3], u32)> {
-        let errors = [0, 1, 2].map(|i| (pivots[i] - wanted.angles[i]).units());
-        let small = errors.map(|error| error as i32);
-        let (mut worst, mut beyond) = (0, 0);
-        for i in 0..3 {
-            worst = small[i].unsigned_abs().max(worst);
-            // Nothing but copies of the sign above 32 bits.
-            beyond |= (errors[i] >> 32) as i32 ^ small[i] >> 31;
-        }
-        // What any rate allows, as a rule; else each is looked at for itself.
-        let least = config.limits.following_error.unsigned_abs();
-        if (beyond != 0 || worst > least) && !self.may_follow_so(config, pivots, wanted) {
-            return None;
-        }
-        Some((small, worst))
-    }
-
-    /// Whether errors are allowed at these rates.
-    #[cold]
-    fn may_follow_so(&mut self, config: &Config, pivots: &[Angle; 3], wanted: &Pivots) -> bool {
-        let pivots = pivots.iter().zip(&wanted.angles);
-        for (i, ((&pivot, &target), rate)) in pivots.zip(&wanted.motion.rates).enumerate() {
-            let error = (pivot - target).units();
-            let more = (rate.abs() * config.limits.following_per_rate) as i32;
-            let most = config.limits.following_error.saturating_add(more);
-            if error.unsigned_abs() > u64::from(most.unsigned_abs()) {
-                const RAD: f32 = (1.0 / crate::control::config::UNITS_PER_RAD) as f32;
-                let (value, limit) = (error as f32 * RAD, most as f32 * RAD);
-                self.fail(FaultKind::FollowingError, Some(i), value, limit);
-                return false;
-            }
-        }
-        true
-    }
-
-    /// Tells the command side, if there is room.
-    #[inline(never)]
-    fn leave_snapshot(
-        &mut self,
-        link: &mut TickLink<'_>,
-        setpoint: &Position,
-        pivots: &[Angle; 3],
-        target: &[Angle; 3],
-        duty: [Duty; 3],
-    ) {
-        if link.has_room() {
-            // There is room: only this side fills the queue.
-            let snapshot = self.snapshot(setpoint, pivots, target, duty);
-            let _ = link.snapshots.enqueue(snapshot);
-            self.interval = Interval::default();
-        }
-    }
-
-    #[inline]
-    fn snapshot(
-        &self,
-        setpoint: &Position,
-        pivots: &[Angle; 3],
-        target: &[Angle; 3],
-        duty: [Duty; 3],
-    ) -> Snapshot {
-        let (plan, plan_tick) = self.motion.progress();
-        Snapshot {
-            tick: self.tick,
-            mode: self.mode,
-            fault: self.fault,
-            worse: self.worse,
-            referenced: self.referenced,
-            encoder_faults: self.encoders.each_ref().map(Encoder::unusable),
-            encoder_warnings: self.encoders.each_ref().map(Encoder::warning),
-            pivots: *pivots,
-            // A difference that does not fit is a fault, and then the target is what is measured.
-            pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
-            duty,
-            setpoint: *setpoint,
-            centre: self.motion.centre(),
-            plan,
-            plan_tick,
-            settled: self.settling.settled() && self.servo_on(),
-            commands: self.commands,
-            refused: self.refused,
-            peak_following_error_rad: self.settling.peak_rad(),
-            interval: self.interval,
-        }
-    }
-}
-
-/// The pose of a position, as far as it is one of the mechanism.
-#[inline]
-fn pose(position: &Position) -> Option<Pose<Fixed>> {
-    Some(Pose {
-        x: Fixed::from_position(position[0])?,
-        y: Fixed::from_position(position[1])?,
-        theta: Angle::from_units(position[2]),
-    })
 }

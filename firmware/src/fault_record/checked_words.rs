@@ -9,14 +9,16 @@ pub(crate) const EVENT_WORDS: usize = 8;
 const SEED: u32 = 0xB0C5_1AC7;
 
 /// So many entries of so many words, the check included.
-pub(crate) struct Entries<const COUNT: usize, const WORDS: usize>([[AtomicU32; WORDS]; COUNT]);
+pub(crate) struct CheckedEntries<const COUNT: usize, const WORDS: usize>(
+    [[AtomicU32; WORDS]; COUNT],
+);
 
-impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
+impl<const COUNT: usize, const WORDS: usize> CheckedEntries<COUNT, WORDS> {
     pub const fn new() -> Self {
         Self([const { [const { AtomicU32::new(0) }; WORDS] }; COUNT])
     }
 
-    /// Writes the entry of a number at its place. The last word of `words` is not looked at: the check stands there.
+    /// Writes the entry of a number at its place. The last word of `words` is ignored: the check stands there.
     #[inline]
     pub fn write(&self, number: u32, words: &[u32; WORDS]) {
         let Some(cells) = self.0.get(number as usize % COUNT) else {
@@ -26,7 +28,7 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
         let last = WORDS - 1;
         for (cell, word) in cells.iter().zip(words).take(last) {
             cell.store(*word, Ordering::Relaxed);
-            check = mixed(check, *word);
+            check = check_step(check, *word);
         }
         if let Some(cell) = cells.last() {
             cell.store(check, Ordering::Relaxed);
@@ -38,7 +40,7 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
         let cells = self.0.get(number as usize % COUNT)?;
         let words: [u32; WORDS] = from_fn(|i| cells[i].load(Ordering::Relaxed));
         let (check, covered) = words.split_last()?;
-        let sum = (covered.iter()).fold(SEED, |sum, word| mixed(sum, *word));
+        let sum = (covered.iter()).fold(SEED, |sum, word| check_step(sum, *word));
         (sum == *check).then_some(words)
     }
 
@@ -54,8 +56,8 @@ impl<const COUNT: usize, const WORDS: usize> Entries<COUNT, WORDS> {
     }
 }
 
-/// The turn tells words that have changed places apart.
+/// One word more in the check. Rotated, so that words that have changed places give another check.
 #[inline]
-const fn mixed(check: u32, word: u32) -> u32 {
+const fn check_step(check: u32, word: u32) -> u32 {
     check.rotate_left(5) ^ word
 }

@@ -1,12 +1,12 @@
 //! Reading the fault record.
 
-use super::row::{Row, row, start_of};
-use super::{BlackBox, ROWS};
+use super::memory::{FAULT_RECORD_ROWS, RetainedMemory};
+use super::row::{FaultRecordRow, row, start_number};
 use core::sync::atomic::Ordering;
 
 /// Which rows of the memory are the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Span {
+pub struct FaultRecord {
     start: u8,
     /// Ticks of the first and the last row, low 32 bits.
     first: u32,
@@ -15,35 +15,36 @@ pub struct Span {
     pub rows: u32,
 }
 
-impl BlackBox {
+impl RetainedMemory {
     /// The fault record, if there is one: not while the loop still writes it.
-    pub fn record(&self) -> Option<Span> {
+    pub fn fault_record(&self) -> Option<FaultRecord> {
         if self.frozen.load(Ordering::Acquire) == 0 {
             return None;
         }
-        let (start, last) = self.newest()?;
-        let first = last.wrapping_sub(ROWS as u32 - 1);
-        let mut span = Span {
+        let (start, last) = self.newest_row()?;
+        let first = last.wrapping_sub(FAULT_RECORD_ROWS as u32 - 1);
+        let mut span = FaultRecord {
             start,
             first,
             last,
             rows: 0,
         };
-        let mut at = span.begin();
+        let mut at = span.first_row();
         while self.next(&span, &mut at).is_some() {
             span.rows += 1;
         }
         Some(span)
     }
 
-    /// The next row of the record that is whole, from a cursor that [`Span::begin`] has made; `None` at its end.
-    pub fn next(&self, span: &Span, cursor: &mut u32) -> Option<Row> {
-        while *cursor < ROWS as u32 {
+    /// The next row of the record that is whole, from a cursor that [`FaultRecord::first_row`] has made; `None` at its
+    /// end.
+    pub fn next(&self, span: &FaultRecord, cursor: &mut u32) -> Option<FaultRecordRow> {
+        while *cursor < FAULT_RECORD_ROWS as u32 {
             let tick = span.first.wrapping_add(*cursor);
             *cursor += 1;
             if let Some(words) = self.rows.read(tick)
                 && words[0] == tick
-                && start_of(&words) == span.start
+                && start_number(&words) == span.start
             {
                 return Some(row(&words));
             }
@@ -52,11 +53,11 @@ impl BlackBox {
     }
 
     /// The last row that was written, by start and tick: that of the latest start that has any.
-    pub(super) fn newest(&self) -> Option<(u8, u32)> {
+    pub(super) fn newest_row(&self) -> Option<(u8, u32)> {
         let now = self.start.load(Ordering::Relaxed) as u8;
         let mut newest: Option<(u8, u32)> = None;
-        for words in (0..ROWS as u32).filter_map(|place| self.rows.read(place)) {
-            let (start, tick) = (start_of(&words), words[0]);
+        for words in (0..FAULT_RECORD_ROWS as u32).filter_map(|place| self.rows.read(place)) {
+            let (start, tick) = (start_number(&words), words[0]);
             let is_newer = newest.is_none_or(|(latest, last)| {
                 let (age, least) = (now.wrapping_sub(start), now.wrapping_sub(latest));
                 age < least || (age == least && tick.wrapping_sub(last) as i32 > 0)
@@ -69,9 +70,9 @@ impl BlackBox {
     }
 }
 
-impl Span {
+impl FaultRecord {
     /// A cursor at its first row.
-    pub const fn begin(&self) -> u32 {
+    pub const fn first_row(&self) -> u32 {
         0
     }
 }

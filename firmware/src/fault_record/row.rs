@@ -9,7 +9,7 @@ const CURRENT_CUT: u32 = 2;
 
 /// A tick of the fault record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct FaultRecordRow {
     /// The tick, its low 32 bits.
     pub tick: u32,
     /// The supervisor's [`Mode`](crate::mode::Mode), as a number.
@@ -56,14 +56,14 @@ pub(super) fn words(sample: &Sample, start: u32) -> [u32; WORDS] {
 }
 
 /// The low byte of the start that a row belongs to.
-pub(super) const fn start_of(words: &[u32; WORDS]) -> u8 {
+pub(super) const fn start_number(words: &[u32; WORDS]) -> u8 {
     (words[1] >> 24) as u8
 }
 
 /// The row in its words.
-pub(super) fn row(words: &[u32; WORDS]) -> Row {
+pub(super) fn row(words: &[u32; WORDS]) -> FaultRecordRow {
     let counts = |shift: u32| ((words[10] >> shift & 0x3FF) << CURRENT_CUT) as u16;
-    Row {
+    FaultRecordRow {
         tick: words[0],
         mode: (words[1] >> 20 & 0xF) as u8,
         fault: (words[1] >> 12) as u8,

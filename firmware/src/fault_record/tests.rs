@@ -1,17 +1,19 @@
-use super::checked_words::Entries;
+use super::checked_words::CheckedEntries;
+use super::memory::LAYOUT_MAGIC;
 use super::*;
 use crate::mode::Mode;
-use crate::motion::Motion;
-use crate::recorder::{Record, Sample};
+use crate::motion::PlanFollower;
+use crate::recorder::{Sample, TickObserver};
+use core::sync::atomic::Ordering;
 
 fn sample(tick: u64, mode: Mode) -> Sample {
-    let setpoint = Motion::default().setpoint(&crate::motion::Scale::new(20_000.0));
+    let setpoint = PlanFollower::default().setpoint(&crate::motion::SetpointScale::new(20_000.0));
     Sample {
         tick,
         mode,
         fault: None,
         setpoint,
-        point: setpoint,
+        reference_point: setpoint,
         pivot_setpoints: Default::default(),
         pivot_rates: [0.0; 3],
         pivots: Default::default(),
@@ -23,17 +25,17 @@ fn sample(tick: u64, mode: Mode) -> Sample {
     }
 }
 
-fn run(history: &mut History<'_>, ticks: core::ops::Range<u64>, mode: Mode) {
+fn run(history: &mut FaultRecordWriter<'_>, ticks: core::ops::Range<u64>, mode: Mode) {
     for tick in ticks {
-        history.record(&sample(tick, mode));
+        history.observe(&sample(tick, mode));
     }
 }
 
-fn ticks(memory: &BlackBox) -> Vec<u32> {
-    let Some(span) = memory.record() else {
+fn ticks(memory: &RetainedMemory) -> Vec<u32> {
+    let Some(span) = memory.fault_record() else {
         return Vec::new();
     };
-    let mut cursor = span.begin();
+    let mut cursor = span.first_row();
     let rows: Vec<u32> = core::iter::from_fn(|| memory.next(&span, &mut cursor))
         .map(|row| row.tick)
         .collect();
@@ -43,12 +45,13 @@ fn ticks(memory: &BlackBox) -> Vec<u32> {
 
 #[test]
 fn a_fault_freezes_the_ticks_around_it() {
-    let memory = BlackBox::new();
+    let memory = RetainedMemory::new();
     let mut history = memory.begin();
     run(&mut history, 1..1_000, Mode::Moving);
     assert_eq!(ticks(&memory), [], "it is being written");
     run(&mut history, 1_000..5_000, Mode::Fault);
-    let expected: Vec<u32> = (1_000 + AFTER - ROWS as u32..1_000 + AFTER).collect();
+    let expected: Vec<u32> =
+        (1_000 + ROWS_AFTER_FAULT - FAULT_RECORD_ROWS as u32..1_000 + ROWS_AFTER_FAULT).collect();
     assert_eq!(ticks(&memory), expected);
     // Acknowledged, and still there until the servo is on.
     run(&mut history, 5_000..5_100, Mode::Off);
@@ -59,7 +62,7 @@ fn a_fault_freezes_the_ticks_around_it() {
 
 #[test]
 fn a_reset_freezes_what_was_written_and_a_torn_row_is_left_out() {
-    let memory = BlackBox::new();
+    let memory = RetainedMemory::new();
     run(&mut memory.begin(), 1..1_000, Mode::Moving);
     // The row of tick 744, in the middle of which the reset came.
     memory.rows.write(744, &[7; row::WORDS]);
@@ -70,23 +73,23 @@ fn a_reset_freezes_what_was_written_and_a_torn_row_is_left_out() {
 
 #[test]
 fn rows_of_an_earlier_start_do_not_mix_with_later_ones() {
-    let memory = BlackBox::new();
+    let memory = RetainedMemory::new();
     run(&mut memory.begin(), 1..300, Mode::Moving);
     let mut history = memory.begin();
     run(&mut history, 1..50, Mode::Holding);
     run(&mut history, 50..200, Mode::Fault);
-    let expected: Vec<u32> = (1..50 + AFTER).collect();
+    let expected: Vec<u32> = (1..50 + ROWS_AFTER_FAULT).collect();
     assert_eq!(ticks(&memory), expected);
 }
 
 #[test]
 fn any_content_is_a_valid_one() {
     // As after a power-up: the mark by chance, and everything else too.
-    let memory = BlackBox::new();
-    memory.mark.store(MARK, Ordering::Relaxed);
+    let memory = RetainedMemory::new();
+    memory.layout.store(LAYOUT_MAGIC, Ordering::Relaxed);
     let mut word = 1u32;
     for _ in 0..200 {
-        for number in 0..ROWS as u32 {
+        for number in 0..FAULT_RECORD_ROWS as u32 {
             let words = core::array::from_fn(|_| {
                 word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 word
@@ -94,13 +97,13 @@ fn any_content_is_a_valid_one() {
             memory.rows.write(number, &words);
         }
         let _ = memory.begin();
-        assert!(ticks(&memory).len() <= ROWS);
+        assert!(ticks(&memory).len() <= FAULT_RECORD_ROWS);
     }
 }
 
 #[test]
 fn a_flipped_bit_is_no_entry() {
-    let entries: Entries<2, 4> = Entries::new();
+    let entries: CheckedEntries<2, 4> = CheckedEntries::new();
     assert_eq!(entries.read(0), None, "never written");
     entries.write(1, &[1, 2, 3, 0]);
     let good = entries.read(1).unwrap();
@@ -117,7 +120,7 @@ fn a_flipped_bit_is_no_entry() {
 
 #[test]
 fn words_that_have_changed_places_are_no_entry() {
-    let entries: Entries<2, 4> = Entries::new();
+    let entries: CheckedEntries<2, 4> = CheckedEntries::new();
     entries.write(1, &[1, 2, 3, 0]);
     // The same words in another order, with the check of the first.
     for bit in 0..2 {
@@ -129,9 +132,9 @@ fn words_that_have_changed_places_are_no_entry() {
 
 #[test]
 fn memory_that_is_marked_otherwise_is_empty() {
-    let memory = BlackBox::new();
+    let memory = RetainedMemory::new();
     run(&mut memory.begin(), 1..1_000, Mode::Moving);
-    memory.mark.store(MARK ^ 1, Ordering::Relaxed);
+    memory.layout.store(LAYOUT_MAGIC ^ 1, Ordering::Relaxed);
     memory.begin();
     assert_eq!(ticks(&memory), []);
     assert_eq!(memory.start.load(Ordering::Relaxed), 1);
@@ -140,8 +143,8 @@ fn memory_that_is_marked_otherwise_is_empty() {
 /// A row whose writing failed leaves an older one in its place.
 #[test]
 fn a_row_of_another_tick_or_start_is_left_out() {
-    for (tick, start) in [(900 - ROWS as u64, 1), (900, 0)] {
-        let memory = BlackBox::new();
+    for (tick, start) in [(900 - FAULT_RECORD_ROWS as u64, 1), (900, 0)] {
+        let memory = RetainedMemory::new();
         run(&mut memory.begin(), 1..1_000, Mode::Moving);
         let words = row::words(&sample(tick, Mode::Moving), start);
         memory.rows.write(900, &words);

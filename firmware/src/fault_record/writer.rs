@@ -1,15 +1,15 @@
 //! The fault record's end in the tick.
 
+use super::memory::{LAYOUT_MAGIC, ROWS_AFTER_FAULT, RetainedMemory};
 use super::row::words;
-use super::{AFTER, BlackBox};
 use crate::mode::Mode;
-use crate::recorder::{Record, Sample};
+use crate::recorder::{Sample, TickObserver};
 use core::sync::atomic::Ordering;
 
-/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the servo is on
-/// again; the same after a start that finds a record.
-pub struct History<'a> {
-    memory: &'a BlackBox,
+/// Writes every tick into the fault record, until some ticks after a fault. From then on the record rests until the
+/// servo is on again; the same after a start that finds a record.
+pub struct FaultRecordWriter<'a> {
+    memory: &'a RetainedMemory,
     start: u32,
     state: State,
 }
@@ -22,8 +22,8 @@ enum State {
     Frozen,
 }
 
-impl<'a> History<'a> {
-    pub(super) fn new(memory: &'a BlackBox, start: u32, is_frozen: bool) -> Self {
+impl<'a> FaultRecordWriter<'a> {
+    pub(super) fn new(memory: &'a RetainedMemory, start: u32, is_frozen: bool) -> Self {
         let state = if is_frozen {
             State::Frozen
         } else {
@@ -37,11 +37,11 @@ impl<'a> History<'a> {
     }
 
     /// The controller starts again, without a reset.
-    pub fn start_again(&mut self) {
+    pub fn restart(&mut self) {
         *self = self.memory.begin();
     }
 
-    fn go_on(&mut self, mode: Mode) -> bool {
+    fn advance(&mut self, mode: Mode) -> bool {
         match (self.state, mode) {
             (State::Frozen, Mode::Holding | Mode::Moving) => {
                 self.memory.frozen.store(0, Ordering::Relaxed);
@@ -54,17 +54,36 @@ impl<'a> History<'a> {
                 return false;
             }
             (State::Ending(left), _) => self.state = State::Ending(left - 1),
-            (State::Running, Mode::Fault | Mode::Stopping) => self.state = State::Ending(AFTER - 1),
+            (State::Running, Mode::Fault | Mode::Stopping) => {
+                self.state = State::Ending(ROWS_AFTER_FAULT - 1)
+            }
             (State::Running, _) => {}
         }
         true
     }
 }
 
-impl Record for History<'_> {
+impl RetainedMemory {
+    /// The controller starts: what is there from before is kept, as far as it is whole. Gives the end in the tick.
+    pub fn begin(&self) -> FaultRecordWriter<'_> {
+        if self.layout.load(Ordering::Relaxed) != LAYOUT_MAGIC {
+            self.events.clear();
+            self.rows.clear();
+            self.start.store(0, Ordering::Relaxed);
+            self.layout.store(LAYOUT_MAGIC, Ordering::Relaxed);
+        }
+        let start = self.start.load(Ordering::Relaxed).wrapping_add(1);
+        self.start.store(start, Ordering::Relaxed);
+        let is_record = self.newest_row().is_some();
+        self.frozen.store(u32::from(is_record), Ordering::Relaxed);
+        FaultRecordWriter::new(self, start, is_record)
+    }
+}
+
+impl TickObserver for FaultRecordWriter<'_> {
     #[inline]
-    fn record(&mut self, sample: &Sample) {
-        if self.go_on(sample.mode) {
+    fn observe(&mut self, sample: &Sample) {
+        if self.advance(sample.mode) {
             let words = words(sample, self.start);
             self.memory.rows.write(sample.tick as u32, &words);
         }

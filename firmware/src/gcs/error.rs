@@ -1,6 +1,11 @@
 //! GCS error numbers: those this controller can set.
 
+use crate::commander::CommandError;
+use crate::commander::frames::FrameError;
+use crate::commander::wave::WaveError;
 use crate::fault::FaultKind;
+use crate::motion::Refusal;
+use crate::settings_store::StoreError;
 
 /// The error of a connection, read and cleared by `ERR?`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +27,7 @@ pub enum ErrorCode {
     /// The velocity is out of its limits.
     VelocityLimit = 8,
     /// The centre of rotation can not be set: W is not a multiple of 360 deg, or a tool frame gives the centre.
-    PivotNotSettable = 9,
+    CentreNotSettable = 9,
     /// Stopped by command.
     Stopped = 10,
     /// No such axis.
@@ -99,7 +104,7 @@ pub enum ErrorCode {
     MacroRunning = 1008,
     /// A fault is latched, the motors are off.
     MotionError = 1024,
-    /// The flash does not take the settings that are to be kept.
+    /// The flash does not take the settings that are to be stored.
     FlashFailed = 4001,
 }
 
@@ -115,5 +120,84 @@ impl ErrorCode {
     /// The number that `ERR?` answers.
     pub const fn number(self) -> u16 {
         self as u16
+    }
+}
+
+/// The error numbers for when the stage does not do what was asked.
+impl From<CommandError> for ErrorCode {
+    fn from(error: CommandError) -> Self {
+        match error {
+            CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
+            CommandError::NotReady => Self::NotReady,
+            CommandError::Faulted => Self::MotionError,
+            CommandError::InMotion => Self::InMotion,
+            CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,
+            CommandError::GeneratorsRunning => Self::GeneratorActive,
+            CommandError::ReferencingFailed => Self::ReferencingFailed,
+            CommandError::FrozenAxis(_)
+            | CommandError::OutsideTravel
+            | CommandError::OutsideSoftLimits
+            | CommandError::NoMotion => Self::PositionLimit,
+            CommandError::VelocityOutOfRange { .. } => Self::VelocityLimit,
+            CommandError::PeriodOutOfRange => Self::OutOfRange,
+            CommandError::SoftLimitsInvalid => Self::SoftLimit,
+            CommandError::RadiusWithToolFrame => Self::NotForStage,
+            CommandError::StreamDry => Self::StreamDry,
+            CommandError::StreamFull => Self::StreamFull,
+            CommandError::Refused(refusal) => Self::of_refusal(&refusal),
+            CommandError::Frame(error) => Self::of_frames(error),
+            CommandError::Wave(error) => Self::of_waves(error),
+        }
+    }
+}
+
+impl From<StoreError> for ErrorCode {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::TooLong => Self::NoMemory,
+            StoreError::Flash => Self::FlashFailed,
+        }
+    }
+}
+
+impl ErrorCode {
+    const fn of_refusal(refusal: &Refusal) -> Self {
+        match refusal {
+            Refusal::Velocity
+            | Refusal::PivotRate { .. }
+            | Refusal::InvalidLimits
+            | Refusal::Acceleration
+            | Refusal::Jerk
+            | Refusal::Pivots => Self::VelocityLimit,
+            _ => Self::PositionLimit,
+        }
+    }
+
+    const fn of_frames(error: FrameError) -> Self {
+        match error {
+            FrameError::InUse(_)
+            | FrameError::HasChildren(_)
+            | FrameError::KindsDoNotMix
+            | FrameError::NotPlanar => Self::NotForStage,
+            FrameError::Unknown(_)
+            | FrameError::Full
+            | FrameError::Circular
+            | FrameError::CentreNotPlanar
+            | FrameError::TooFar => Self::OutOfRange,
+            FrameError::CentreWhileTurned | FrameError::CentreGivenByTool => {
+                Self::CentreNotSettable
+            }
+            FrameError::OutsideSoftLimits => Self::SoftLimit,
+            FrameError::InMotion => Self::WhileMoving,
+        }
+    }
+
+    const fn of_waves(error: WaveError) -> Self {
+        match error {
+            WaveError::NoCurve | WaveError::TableTooLong => Self::OutOfRange,
+            WaveError::NoMemory => Self::WaveTooLarge,
+            WaveError::FrozenAxis(_) => Self::NotForStage,
+            WaveError::NoTable(_) => Self::NoWave,
+        }
     }
 }

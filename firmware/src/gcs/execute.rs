@@ -2,69 +2,77 @@
 
 use super::error::ErrorCode;
 use super::events::Event;
+use super::interpreter::Interpreter;
 use super::request::Action;
+use super::request::MAX_DELAY_MS;
 use super::session::{Awaited, Session, Wait};
-use super::{LONGEST_MS, Panel};
+use crate::commander::SoftLimitChange;
 use crate::commander::axis::{Axis, AxisValues};
-use crate::commander::soft_limits::SoftLimits;
 use crate::motion::Stop;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
-impl Panel {
+impl Interpreter {
     /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
     /// [`ErrorCode::Stopped`].
-    pub(super) fn act(
+    pub(super) fn perform(
         &mut self,
         action: Action,
         session: &mut Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
-                Some(on) => self.stage.set_servo(on, link),
+                Some(on) => Ok(self.commander.set_servo(on, queues)?),
                 None => Ok(()),
             },
             // Whichever axes are named: the encoders give all of them at once.
             Action::Reference(_) => {
-                if self.stage.begin_reference(link)? {
+                if self.commander.begin_referencing(queues)? {
                     self.wait(session, Awaited::Reference);
                 }
                 Ok(())
             }
-            Action::Move(values) => self.stage.move_to(&values, link),
+            Action::Move(values) => Ok(self.commander.move_to(&values, queues)?),
             Action::MoveRelative(values) | Action::Step(values) => {
-                self.stage.move_by(&values, link)
+                Ok(self.commander.move_by(&values, queues)?)
             }
             Action::Record(action) => {
-                (self.desk).change(&action, &mut self.parameters, &link.recorder)
+                (self.recorder_state).change(&action, &mut self.parameters, &queues.recorder)
             }
-            Action::MoveInTool(values) => self.stage.move_in_tool(&values, link),
-            Action::CycleTime(ms) => self.stage.set_cycle_time(ms),
-            Action::Jog(values) => self.stage.jog(&values, link),
-            Action::AxisVelocity(values) => self.stage.set_axis_velocity(&values),
-            Action::Wave(action) => self.stage.change_waves(&action, link),
-            Action::Frame(action) => self.stage.change_frames(&action, link),
-            Action::SoftLowest(values) => self.stage.set_soft(SoftLimits::set_lowest, &values),
-            Action::SoftHighest(values) => self.stage.set_soft(SoftLimits::set_highest, &values),
-            Action::SoftActive(values) => self.stage.set_soft(SoftLimits::activate, &values),
-            Action::Set(settings) => self.set(&settings, session, link),
-            Action::Keep(addresses) => {
-                self.keep(&addresses)?;
-                self.wait(session, Awaited::Kept);
+            Action::MoveInTool(values) => Ok(self.commander.move_in_tool(&values, queues)?),
+            Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
+            Action::Jog(values) => Ok(self.commander.jog(&values, queues)?),
+            Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
+            Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
+            Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
+            Action::SoftLowest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
+            }
+            Action::SoftHighest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Highest(values))?)
+            }
+            Action::SoftActive(values) => {
+                let change = SoftLimitChange::Active(flags(&values)?);
+                Ok(self.commander.set_soft_limits(&change)?)
+            }
+            Action::Set(settings) => self.set(&settings, session, queues),
+            Action::Store(addresses) => {
+                self.store_parameters(&addresses)?;
+                self.wait(session, Awaited::Stored);
                 Ok(())
             }
-            Action::Recall(addresses) => self.recall(&addresses, link),
+            Action::Recall(addresses) => self.recall(&addresses, queues),
             Action::Level(level, password) => Self::set_level(session, level, password),
-            Action::Velocity(mm_s) => self.stage.set_velocity(mm_s),
+            Action::Velocity(mm_s) => Ok(self.commander.set_velocity(mm_s)?),
             Action::Stop => {
-                self.events.add(self.stage.tick(), Event::Stop);
-                self.stop_all(Stop::Urgent, link);
+                self.events.add(self.commander.tick(), Event::Stop);
+                self.stop_all(Stop::Urgent, queues);
                 Err(ErrorCode::Stopped)
             }
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => {
-                self.events.add(self.stage.tick(), Event::Halt);
-                self.stage.stop(Stop::Smooth, link);
+                self.events.add(self.commander.tick(), Event::Halt);
+                self.commander.stop(Stop::Smooth, queues);
                 Err(ErrorCode::Stopped)
             }
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
@@ -73,12 +81,12 @@ impl Panel {
                 Ok(())
             }
             Action::Restart => self.restart(),
-            Action::Acknowledge => self.stage.acknowledge(link),
+            Action::Acknowledge => Ok(self.commander.acknowledge_fault(queues)?),
             Action::Delay(ms) => {
-                if !(0.0..=LONGEST_MS).contains(&ms) {
+                if !(0.0..=MAX_DELAY_MS).contains(&ms) {
                     return Err(ErrorCode::OutOfRange);
                 }
-                let until = self.stage.tick() + self.stage.ticks(ms);
+                let until = self.commander.tick() + self.commander.ticks(ms);
                 self.wait(session, Awaited::Tick(until));
                 Ok(())
             }
@@ -92,15 +100,15 @@ impl Panel {
     }
 
     /// Stops the motion, and with it every macro and every wait.
-    pub(super) fn stop_all(&mut self, stop: Stop, link: &mut PanelLink<'_>) {
+    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         self.stops = self.stops.wrapping_add(1);
         self.macros.stop();
-        self.stage.stop(stop, link);
+        self.commander.stop(stop, queues);
     }
 
     /// `RBT`: a stage in motion would be let go.
     fn restart(&mut self) -> Result<(), ErrorCode> {
-        if self.stage.is_under_way() {
+        if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
         }
         self.wants_restart = true;
@@ -115,20 +123,30 @@ impl Panel {
     }
 }
 
-/// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on. The
-/// frozen axes have none to switch.
+/// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on.
+/// The frozen axes have none to switch.
 fn servo(values: &AxisValues) -> Result<Option<bool>, ErrorCode> {
     let mut wanted = None;
-    for (axis, value) in Axis::ALL.into_iter().zip(values) {
-        let on = match *value {
-            None => continue,
-            Some(0.0) => false,
-            Some(1.0) => true,
-            Some(_) => return Err(ErrorCode::OutOfRange),
-        };
-        if axis.component().is_some() {
+    for (axis, on) in Axis::ALL.into_iter().zip(flags(values)?) {
+        if let Some(on) = on
+            && axis.component().is_some()
+        {
             wanted = Some(on && wanted != Some(false));
         }
     }
     Ok(wanted)
+}
+
+/// Values that are 0 or 1.
+fn flags(values: &AxisValues) -> Result<[Option<bool>; 6], ErrorCode> {
+    let mut flags = [None; 6];
+    for (flag, value) in flags.iter_mut().zip(values) {
+        *flag = match *value {
+            None => None,
+            Some(0.0) => Some(false),
+            Some(1.0) => Some(true),
+            Some(_) => return Err(ErrorCode::OutOfRange),
+        };
+    }
+    Ok(flags)
 }

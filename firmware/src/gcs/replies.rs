@@ -1,14 +1,14 @@
 //! Answering queries.
 
-use super::Panel;
-use super::parameter::{Address, Addresses, PARAMETERS, Parameter};
-use super::reply::{Reply, one_line};
-use super::request::{Property, Quantity, Query};
+use super::interpreter::Interpreter;
+use super::output::{Output, WriteFailed};
+use super::parameter::parameter_help;
+use super::reply_writer::{ReplyWriter, one_line};
+use super::request::{Property, Query};
 use super::session::Session;
 use super::table::COMMANDS;
-use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::coordinates::Coordinates;
-use embedded_io::Write;
+use crate::commander::Quantity;
+use crate::commander::axis::{Axis, AxisSet, AxisValues, Coordinates};
 
 /// What `CST?` answers.
 const STAGE_TYPE: &str = "XYT-1";
@@ -16,14 +16,14 @@ const STAGE_TYPE: &str = "XYT-1";
 /// Bit 16 of `#4`: referenced.
 const STATUS_REFERENCED: u32 = 1 << 16;
 
-impl Panel {
+impl Interpreter {
     /// Answers a query about the controller as a whole.
-    pub(super) fn answer<W: Write>(
+    pub(super) fn reply_query(
         &mut self,
         query: Query,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         match query {
             Query::Identity => one_line(
                 out,
@@ -41,42 +41,45 @@ impl Panel {
                 let error = core::mem::take(&mut session.error);
                 one_line(out, format_args!("{}", error.number()))
             }
-            Query::CycleTime => one_line(out, format_args!("T={}", self.stage.cycle_time_ms())),
-            Query::Velocity => one_line(out, format_args!("{}", self.stage.velocity_mm_s())),
+            Query::CycleTime => one_line(out, format_args!("T={}", self.commander.cycle_time_ms())),
+            Query::Velocity => one_line(out, format_args!("{}", self.commander.velocity_mm_s())),
             Query::ParameterHelp => parameter_help(out),
             Query::Level => one_line(out, format_args!("{}", session.level)),
             Query::Heartbeat => {
                 let ms = self.parameters.supervision.host_silence_ms;
                 one_line(out, format_args!("{ms}"))
             }
-            Query::Events => self.tell_events(out),
-            Query::Statistics => self.tell_statistics(out),
-            Query::Fault => self.fault(out),
-            Query::Monitor => self.monitor(session, out),
+            Query::Events => self.reply_events(out),
+            Query::Statistics => self.reply_statistics(out),
+            Query::Fault => self.reply_fault(out),
+            Query::Monitor => self.reply_monitor(session, out),
             Query::Status => one_line(out, format_args!("{}", self.status())),
-            Query::Moving => one_line(out, format_args!("{:x}", self.stage.moving().mask())),
+            Query::Moving => one_line(
+                out,
+                format_args!("{:x}", self.commander.moving_axes().mask()),
+            ),
             Query::Changed => {
-                let changed = self.stage.changed_since(session.told);
+                let changed = self.commander.changed_since(session.reported_pivots);
                 one_line(out, format_args!("{:x}", changed.mask()))
             }
             Query::Ready => {
-                let ready = session.wait.is_none() && !self.stage.is_referencing();
+                let ready = session.wait.is_none() && !self.commander.is_referencing();
                 out.write_all(&[if ready { 0xB1 } else { 0xB0 }, b'\n'])
             }
         }
     }
 
     /// Answers a query about axes, a line each.
-    pub(super) fn read<W: Write>(
+    pub(super) fn reply_quantity(
         &self,
         quantity: Quantity,
         axes: AxisSet,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
         if quantity == Quantity::Position {
             // The direct kinematics once for all axes.
-            let measured = self.stage.measured();
+            let measured = self.commander.measured();
             for axis in axes.iter() {
                 let value = without_minus_zero(measured[axis.index()]);
                 reply.line(format_args!("{}={value:.9}", axis.letter()))?;
@@ -84,7 +87,7 @@ impl Panel {
         } else {
             for axis in axes.iter() {
                 // As many digits as tell the number from its neighbours: what was commanded comes back the same.
-                let value = self.stage.value(quantity, axis);
+                let value = self.commander.value(quantity, axis);
                 reply.line(format_args!("{}={value}", axis.letter()))?;
             }
         }
@@ -92,13 +95,13 @@ impl Panel {
     }
 
     /// Answers a query about axes in words.
-    pub(super) fn tell<W: Write>(
+    pub(super) fn reply_property(
         &self,
         property: Property,
         axes: AxisSet,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
         for axis in axes.iter() {
             let text = match property {
                 Property::Stage => STAGE_TYPE,
@@ -109,44 +112,20 @@ impl Panel {
         reply.end()
     }
 
-    /// Answers `SPA?`.
-    pub(super) fn tell_parameters<W: Write>(
-        &self,
-        addresses: &Addresses,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
-        for &Address { item, id } in addresses.iter().flatten() {
-            if let Some(parameter) = Parameter::find(id) {
-                let value = parameter.value(item, &self.parameters);
-                reply.line(format_args!("{item} 0x{id:X}={value}"))?;
-            }
-        }
-        if addresses[0].is_none() {
-            for parameter in PARAMETERS {
-                for item in parameter.items() {
-                    let (id, value) = (parameter.id, parameter.value(item, &self.parameters));
-                    reply.line(format_args!("{item} 0x{id:X}={value}"))?;
-                }
-            }
-        }
-        reply.end()
-    }
-
     /// Answers `VMO?`.
-    pub(super) fn tell_reachable<W: Write>(
+    pub(super) fn reply_reachable(
         &self,
         values: &AxisValues,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         one_line(
             out,
-            format_args!("{}", u8::from(self.stage.is_reachable(values))),
+            format_args!("{}", u8::from(self.commander.is_reachable(values))),
         )
     }
 
     fn status(&self) -> u32 {
-        if self.stage.value(Quantity::Referenced, Axis::X) == 1.0 {
+        if self.commander.value(Quantity::Referenced, Axis::X) == 1.0 {
             STATUS_REFERENCED
         } else {
             0
@@ -154,21 +133,21 @@ impl Panel {
     }
 
     /// The latched fault; without one the encoders that cannot be used, which will be the next question.
-    fn fault<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
-        let Some(snapshot) = self.stage.snapshot() else {
+    fn reply_fault(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+        let Some(snapshot) = self.commander.snapshot() else {
             return one_line(out, format_args!("0 no fault"));
         };
         if let Some(fault) = snapshot.fault {
-            let mut reply = Reply::new(out);
+            let mut reply = ReplyWriter::new(out);
             reply.line(format_args!("{fault}"))?;
-            if let Some(worse) = snapshot.worse {
+            if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
             return reply.end();
         }
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         if snapshot.encoder_faults == [None; 3] {
-            match self.start {
+            match self.start_cause {
                 None => reply.line(format_args!("0 no fault"))?,
                 Some(cause) => reply.line(format_args!("0 no fault, started by {cause}"))?,
             }
@@ -183,12 +162,12 @@ impl Panel {
 }
 
 /// Answers `TRA?`: where the axes that were named come to.
-pub(super) fn tell_reach<W: Write>(
+pub(super) fn reply_furthest_target(
     values: &AxisValues,
     end: &Coordinates,
-    out: &mut W,
-) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
+    out: &mut Output<'_>,
+) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     for axis in Axis::ALL {
         if values[axis.index()].is_some() {
             reply.line(format_args!("{}={}", axis.letter(), end[axis.index()]))?;
@@ -197,18 +176,8 @@ pub(super) fn tell_reach<W: Write>(
     reply.end()
 }
 
-fn parameter_help<W: Write>(out: &mut W) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
-    reply.line(format_args!("The following parameters are there:"))?;
-    for parameter in PARAMETERS {
-        reply.line(format_args!("{parameter}"))?;
-    }
-    reply.line(format_args!("end of help"))?;
-    reply.end()
-}
-
-fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
+fn help(out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     reply.line(format_args!("The following commands are available:"))?;
     for entry in COMMANDS {
         reply.line(format_args!("{} {}", entry.name, entry.help))?;
@@ -217,8 +186,8 @@ fn help<W: Write>(out: &mut W) -> Result<(), W::Error> {
     reply.end()
 }
 
-fn axes<W: Write>(out: &mut W) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
+fn axes(out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     for axis in Axis::ALL {
         reply.line(format_args!("{}", axis.letter()))?;
     }

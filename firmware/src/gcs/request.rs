@@ -1,13 +1,19 @@
 //! What a line or a single byte asks for.
 
+use super::frames::FrameQuery;
 use super::macros::MacroRequest;
 use super::parameter::{Addresses, Settings};
 use super::recorder::{RecordAction, RecordQuery};
 use super::text::Name;
 use super::variables::VariableRequest;
+use super::wave::WaveQuery;
+use crate::commander::Quantity;
 use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::frames::{FrameAction, FrameQuery};
-use crate::commander::wave::{WaveAction, WaveQuery};
+use crate::commander::frames::FrameChange;
+use crate::commander::wave::WaveChange;
+
+/// Longest time that a line can ask for: a day.
+pub(super) const MAX_DELAY_MS: f64 = 86_400_000.0;
 
 /// A command, understood but not yet carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,17 +21,17 @@ pub enum Request {
     /// An empty line.
     Nothing,
     /// A question about the controller as a whole.
-    Ask(Query),
+    Query(Query),
     /// A question about axes, answered in a line each.
-    Read(Quantity, AxisSet),
+    Quantity(Quantity, AxisSet),
     /// A question about axes that is answered in words.
-    Tell(Property, AxisSet),
+    Property(Property, AxisSet),
     /// `SPA?`
     Parameters(Addresses),
     /// `VMO?`: whether this target can be moved to.
     Reachable(AxisValues),
     /// `TRA?`: how far one can go in this direction.
-    Reach(AxisValues),
+    FurthestTarget(AxisValues),
     /// Something about macros.
     Macro(MacroRequest),
     /// Something about variables.
@@ -35,7 +41,7 @@ pub enum Request {
     /// A question about frames.
     Frames(FrameQuery),
     /// A question about waveforms.
-    Waves(WaveQuery),
+    Waveforms(WaveQuery),
     /// Something to be done; no answer.
     Act(Action),
 }
@@ -85,39 +91,6 @@ pub enum Query {
     Ready,
 }
 
-/// What can be read of each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// `POS?`: measured, mm and deg.
-    Position,
-    /// `MOV?`: commanded, mm and deg.
-    Target,
-    /// `ONT?`: 1 when settled.
-    OnTarget,
-    /// `SVO?`: 1 when on.
-    Servo,
-    /// `FRF?`: 1 when referenced.
-    Referenced,
-    /// `TMN?`: mm and deg.
-    Lowest,
-    /// `TMX?`: mm and deg.
-    Highest,
-    /// `NLM?`: mm and deg.
-    SoftLowest,
-    /// `PLM?`: mm and deg.
-    SoftHighest,
-    /// `JOG?`: velocities that are kept, mm/s and deg/s.
-    Jog,
-    /// `VEL?`: mm/s and deg/s.
-    Velocity,
-    /// `SSL?`: 1 when soft limits count.
-    SoftActive,
-    /// `LIM?`: 0, there are no limit switches.
-    LimitSwitch,
-    /// `TRS?`: 0, there are no reference switches; the encoders are absolute.
-    ReferenceSwitch,
-}
-
 /// What is told of each axis in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Property {
@@ -151,9 +124,9 @@ pub enum Action {
     /// `VEL`: mm/s and deg/s.
     AxisVelocity(AxisValues),
     /// Tables and generators of waveforms.
-    Wave(WaveAction),
+    Wave(WaveChange),
     /// Frames and the centre of rotation.
-    Frame(FrameAction),
+    Frame(FrameChange),
     /// `NLM`: mm and deg.
     SoftLowest(AxisValues),
     /// `PLM`: mm and deg.
@@ -163,7 +136,7 @@ pub enum Action {
     /// `SPA`
     Set(Settings),
     /// `WPA`: these parameters, or all.
-    Keep(Addresses),
+    Store(Addresses),
     /// `RPA`: these parameters, or all.
     Recall(Addresses),
     /// `CCL`: level, and whether the password is right.
@@ -258,7 +231,7 @@ impl Operator {
 
 impl Action {
     /// Whether it begins a motion, or another one: what the recorder's triggers mean by a command that moves.
-    pub(super) const fn moves(&self) -> bool {
+    pub(super) const fn starts_motion(&self) -> bool {
         matches!(
             self,
             Self::Move(_)
@@ -266,7 +239,7 @@ impl Action {
                 | Self::MoveInTool(_)
                 | Self::Step(_)
                 | Self::Jog(_)
-                | Self::Wave(WaveAction::Go(_))
+                | Self::Wave(WaveChange::Switch(_))
         )
     }
 }
@@ -274,14 +247,14 @@ impl Action {
 impl Request {
     /// Whether carrying it out needs to know what became of the command that the tick has not taken yet. Stopping never
     /// does, and what is constant does not either.
-    pub(super) const fn needs_present(&self) -> bool {
+    pub(super) const fn needs_current_snapshot(&self) -> bool {
         match self {
-            Self::Nothing | Self::Tell(..) | Self::Parameters(_) => false,
+            Self::Nothing | Self::Property(..) | Self::Parameters(_) => false,
             Self::Macro(_) | Self::Variables(_) | Self::Record(_) => false,
-            Self::Waves(query) => matches!(query, WaveQuery::Going(_) | WaveQuery::Mask),
+            Self::Waveforms(query) => matches!(query, WaveQuery::Running(_) | WaveQuery::Mask),
             Self::Frames(_) => true,
-            Self::Read(..) | Self::Reachable(_) | Self::Reach(_) => true,
-            Self::Ask(query) => matches!(query, Query::Error | Query::Fault | Query::Monitor),
+            Self::Quantity(..) | Self::Reachable(_) | Self::FurthestTarget(_) => true,
+            Self::Query(query) => matches!(query, Query::Error | Query::Fault | Query::Monitor),
             Self::Act(action) => {
                 !matches!(action, Action::Stop | Action::Halt(_) | Action::Velocity(_))
             }

@@ -24,13 +24,13 @@ impl<'a> Scanner<'a> {
     }
 
     /// What [`word`](Self::word) comes to next.
-    pub fn word_ahead(&self) -> Word<'a> {
+    pub fn peek_word(&self) -> Word<'a> {
         let Self { line, at } = *self;
         Self { line, at }.word()
     }
 
-    /// The next name, operator or number. They need no space between them (`X1`, `W>=2.5`) where one can tell them apart,
-    /// and one can: a name starts with a letter, a number never does. Empty at the end of the line.
+    /// The next name, operator or number. They need no space between them (`X1`, `W>=2.5`) where one can tell them
+    /// apart, and one can: a name starts with a letter, a number never does. Empty at the end of the line.
     pub fn next(&mut self) -> Word<'a> {
         self.skip_spaces();
         match self.line.get(self.at) {

@@ -2,20 +2,20 @@
 
 use super::error::ErrorCode;
 use super::monitor::Monitor;
-use super::recorder::{Dump, HistoryDump};
+use super::recorder::{FaultRecordReadout, RecordReadout};
 use super::request::Condition;
+use super::text::LINE_BYTES;
 use heapless::{Deque, Vec};
 use kinematics::Angle;
 
-/// Longest line, without its LF.
-pub const LINE_BYTES: usize = 256;
 /// Bytes that may wait to be handled.
 const INPUT_BYTES: usize = 512;
 
 /// `#24`.
 const STOP: u8 = 24;
 
-/// One connection. What it sends goes into [`receive`](Self::receive); [`Panel::service`](super::Panel::service) does the rest.
+/// One connection. What it sends goes into [`receive`](Self::receive);
+/// [`Interpreter::service`](super::Interpreter::service) does the rest.
 #[derive(Default)]
 pub struct Session {
     input: Deque<u8, INPUT_BYTES>,
@@ -24,29 +24,29 @@ pub struct Session {
     pub(super) error: ErrorCode,
     pub(super) wait: Option<Wait>,
     /// An answer that is written as the output has room.
-    pub(super) dump: Option<Dump>,
+    pub(super) readout: Option<RecordReadout>,
     /// The same for the fault record.
-    pub(super) history: Option<HistoryDump>,
+    pub(super) fault_record_readout: Option<FaultRecordReadout>,
     /// Bytes of it that the output takes now; any number where nobody has said.
     pub(super) room: Option<usize>,
     /// Bytes have come since it was last looked at.
-    pub(super) heard: bool,
+    pub(super) received_bytes: bool,
     /// It has promised to be heard (`HBT`), and when: see `heartbeat`.
-    pub(super) promise: Option<u32>,
+    pub(super) promised_generation: Option<u32>,
     /// The pivots when its position was last asked for.
-    pub(super) told: Option<[Angle; 3]>,
+    pub(super) reported_pivots: Option<[Angle; 3]>,
     /// Command level, `CCL`.
     pub(super) level: u8,
     /// The recording of a macro that its lines belong to.
     pub(super) recording: Option<u32>,
     /// Its lines are those of a macro that runs.
     pub(super) is_macro: bool,
-    /// The tick of the last fault this connection was told of.
+    /// The tick of the last fault that was reported to this connection.
     pub(super) fault_tick: Option<u64>,
     /// What `MON?` has to tell it.
     pub(super) monitor: Monitor,
-    /// How much bad news this connection has been told; `None` before its first service.
-    pub(super) news: Option<u32>,
+    /// How many errors have been reported to this connection; `None` before its first service.
+    pub(super) errors_reported: Option<u32>,
 }
 
 /// State of the line being gathered.
@@ -78,17 +78,17 @@ pub(super) enum Awaited {
     /// `FRF`: its end.
     Reference,
     /// `WPA`: its end.
-    Kept,
+    Stored,
 }
 
 /// What comes next in the input.
-pub(super) enum Event {
+pub(super) enum InputItem {
     /// A single-byte command.
     Byte(u8),
     /// A line is complete: [`Session::line`].
     Line,
     /// A line has been thrown away.
-    Thrown(ErrorCode),
+    Discarded(ErrorCode),
 }
 
 /// Stands in the input where bytes are missing. No text has it: on a serial line it is what noise looks like.
@@ -105,8 +105,8 @@ impl Session {
         Self::default()
     }
 
-    /// Says how many bytes of a long answer (`DRR?`) the output takes at the next services without keeping anybody waiting; any
-    /// number of them before this is called. Other answers are short and are written whatever the room.
+    /// Says how many bytes of a long answer (`DRR?`) the output takes at the next services without keeping anybody
+    /// waiting; any number of them before this is called. Other answers are short and are written whatever the room.
     pub const fn set_room(&mut self, bytes: usize) {
         self.room = Some(bytes);
     }
@@ -131,11 +131,11 @@ impl Session {
     }
 
     /// Takes bytes as far as there is room and says how many; the rest is to be offered again after a
-    /// [`service`](super::Panel::service). A line has to be handled before the bytes far behind it can be taken, so while
-    /// a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only by another
-    /// connection.
+    /// [`service`](super::Interpreter::service). A line has to be handled before the bytes far behind it can be taken,
+    /// so while a `WAC` or `DEL` holds up more than [`LINE_BYTES`] of lines, a stop behind them reaches the stage only
+    /// by another connection.
     pub fn receive(&mut self, bytes: &[u8]) -> usize {
-        self.heard |= !bytes.is_empty();
+        self.received_bytes |= !bytes.is_empty();
         for (taken, &byte) in bytes.iter().enumerate() {
             if self.input.push_back(byte).is_err() {
                 return taken;
@@ -144,8 +144,8 @@ impl Session {
         bytes.len()
     }
 
-    /// Bytes have been lost behind those received so far. The line that is cut off there, and what comes up to the next LF, are
-    /// thrown away with error 304: pieces of two lines must never make up a third.
+    /// Bytes have been lost behind those received so far. The line that is cut off there, and what comes up to the next
+    /// LF, are thrown away with error 304: pieces of two lines must never make up a third.
     pub fn lose(&mut self) {
         if self.input.is_full() {
             self.input.pop_back();
@@ -159,8 +159,8 @@ impl Session {
         self.input.is_empty()
             && self.line.is_empty()
             && self.wait.is_none()
-            && self.dump.is_none()
-            && self.history.is_none()
+            && self.readout.is_none()
+            && self.fault_record_readout.is_none()
     }
 
     /// The error that `ERR?` would answer.
@@ -169,13 +169,13 @@ impl Session {
     }
 
     /// The next event; a complete line comes again until [`finish_line`](Self::finish_line).
-    pub(super) fn next_event(&mut self) -> Option<Event> {
+    pub(super) fn next_item(&mut self) -> Option<InputItem> {
         if self.state == LineState::Complete {
-            return Some(Event::Line);
+            return Some(InputItem::Line);
         }
         while let Some(byte) = self.input.pop_front() {
             if is_single(byte) {
-                return Some(Event::Byte(byte));
+                return Some(InputItem::Byte(byte));
             }
             if byte == GAP {
                 self.skip(ErrorCode::ReceiveOverflow);
@@ -212,22 +212,22 @@ impl Session {
         self.state = LineState::Skipping(error);
     }
 
-    fn end_line(&mut self) -> Option<Event> {
+    fn end_line(&mut self) -> Option<InputItem> {
         match self.state {
             LineState::Skipping(error) => {
                 self.state = LineState::Gathering;
-                (error != ErrorCode::None).then_some(Event::Thrown(error))
+                (error != ErrorCode::None).then_some(InputItem::Discarded(error))
             }
             _ if self.line.is_empty() => None,
             _ => {
                 self.state = LineState::Complete;
-                Some(Event::Line)
+                Some(InputItem::Line)
             }
         }
     }
 
-    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and ends
-    /// the wait.
+    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and
+    /// ends the wait.
     pub(super) fn take_single(&mut self) -> Option<u8> {
         let before = self.input.iter().position(|&byte| is_single(byte))?;
         self.rotate(before);
@@ -256,8 +256,8 @@ impl Session {
         self.discard(self.input.len());
     }
 
-    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line must
-    /// never be taken for a command.
+    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line
+    /// must never be taken for a command.
     fn discard(&mut self, count: usize) {
         let mut last = b'\n';
         for _ in 0..count {

@@ -1,110 +1,39 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
-use super::macros::{MacroRequest, MacroSyntax};
-use super::parameter::Settings;
-use super::parse::{self, ParseError};
-use super::recorder;
-use super::request::{Action, Condition, Property, Quantity, Query, Request};
-use super::scan::Scanner;
-use crate::commander::axis::{AxisSet, AxisValues};
-use crate::commander::frames;
-use crate::commander::frames::Kind;
-use crate::commander::wave;
-use crate::commander::wave::WaveQuery;
+use super::arguments::axis_identifiers;
+use super::frames::parse as frames;
+use super::macros::{MacroRequest, parse as macros};
+use super::parameter::parse as parameter;
+use super::recorder::parse as recorder;
+use super::request::{Action, Property, Query, Request};
+use super::streaming;
+use super::syntax::{Entry, Syntax, ask, byte, entry, own, read};
+use super::variables::parse as variables;
+use super::wave::{WaveQuery, parse as wave};
+use crate::commander::Quantity;
+use crate::commander::axis::AxisSet;
+use crate::commander::frames::FrameKind;
 
-/// A command.
-pub(super) struct Entry {
-    /// As `HLP?` lists it.
-    pub name: &'static str,
-    /// What follows the name, and what the whole then asks for.
-    pub syntax: Syntax,
-    /// Its parameters and its meaning, for `HLP?`.
-    pub help: &'static str,
-}
-
-/// What follows a command's name.
-pub(super) enum Syntax {
-    /// Not a line at all: this byte alone.
-    Byte(u8, Request),
-    /// Nothing.
-    Plain(Request),
-    /// Nothing or `ALL`.
-    All(Request),
-    /// As this function understands it.
-    Own(fn(&mut Scanner<'_>) -> Result<Request, ParseError>),
-    /// Axes; none stands for all.
-    Read(Quantity),
-    /// Axes; none stands for all.
-    Axes(fn(AxisSet) -> Action),
-    /// Axes; none stands for all.
-    Tell(Property),
-    /// Pairs of axis and number.
-    Values(fn(AxisValues) -> Action),
-    /// Pairs of axis and number.
-    AskValues(fn(AxisValues) -> Request),
-    /// Pairs of item and parameter; none stands for all.
-    Parameters,
-    /// Triples of item, parameter and number.
-    Settings(fn(Settings) -> Action),
-    /// About macros.
-    Macro(MacroSyntax),
-    /// Name and value of a variable.
-    SetVariable,
-    /// Name of a variable, two numbers.
-    AddVariable,
-    /// Names of variables; none stands for all.
-    Variables,
-    /// A number of lines, and a condition.
-    Jump,
-    /// Level and password.
-    Level,
-    /// A number.
-    Number(fn(f64) -> Action),
-    /// Query, axis, operator, number.
-    Condition(fn(Condition) -> Action),
-}
-
-const fn entry(name: &'static str, syntax: Syntax, help: &'static str) -> Entry {
-    Entry { name, syntax, help }
-}
-
-const fn ask(name: &'static str, query: Query, help: &'static str) -> Entry {
-    entry(name, Syntax::Plain(Request::Ask(query)), help)
-}
-
-const fn read(name: &'static str, quantity: Quantity, help: &'static str) -> Entry {
-    entry(name, Syntax::Read(quantity), help)
-}
-
-const fn own(
-    name: &'static str,
-    parse: fn(&mut Scanner<'_>) -> Result<Request, ParseError>,
-    help: &'static str,
-) -> Entry {
-    entry(name, Syntax::Own(parse), help)
-}
-
-const fn byte(name: &'static str, byte: u8, request: Request, help: &'static str) -> Entry {
-    entry(name, Syntax::Byte(byte, request), help)
-}
+/// The query of variables, which conditions can ask too.
+pub(super) const VARIABLE_QUERY: &str = "VAR?";
 
 /// Every command there is, in the order of `HLP?`. A static: a constant would stand in the image once for each use.
 pub(super) static COMMANDS: &[Entry] = &[
     byte(
         "#3",
         3,
-        Request::Read(Quantity::Position, AxisSet::ALL),
+        Request::Quantity(Quantity::Position, AxisSet::ALL),
         "get real position",
     ),
-    byte("#4", 4, Request::Ask(Query::Status), "get status"),
-    byte("#5", 5, Request::Ask(Query::Moving), "get motion status"),
+    byte("#4", 4, Request::Query(Query::Status), "get status"),
+    byte("#5", 5, Request::Query(Query::Moving), "get motion status"),
     byte(
         "#6",
         6,
-        Request::Ask(Query::Changed),
+        Request::Query(Query::Changed),
         "get axes whose position has changed since it was asked for",
     ),
-    byte("#7", 7, Request::Ask(Query::Ready), "is controller ready"),
+    byte("#7", 7, Request::Query(Query::Ready), "is controller ready"),
     byte(
         "#8",
         8,
@@ -114,25 +43,25 @@ pub(super) static COMMANDS: &[Entry] = &[
     byte(
         "#9",
         9,
-        Request::Waves(WaveQuery::Mask),
+        Request::Waveforms(WaveQuery::Mask),
         "get wave generator status",
     ),
     byte("#24", 24, Request::Act(Action::Stop), "stop all axes"),
     ask("*IDN?", Query::Identity, "get device identification"),
-    entry(
+    own(
         "ADD",
-        Syntax::AddVariable,
+        variables::add,
         "<variable> <number> <number> set variable to the sum",
     ),
-    entry(
+    own(
         "CCL",
-        Syntax::Level,
+        parameter::level,
         "<level> [<password>] set command level",
     ),
     ask("CCL?", Query::Level, "get command level"),
     entry(
         "CST?",
-        Syntax::Tell(Property::Stage),
+        Syntax::Property(Property::Stage),
         "[{<axis>}] get stage type",
     ),
     ask("CSV?", Query::Syntax, "get syntax version"),
@@ -220,7 +149,10 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     entry(
         "JRC",
-        Syntax::Jump,
+        Syntax::Condition {
+            after_lines: true,
+            action: Action::Jump,
+        },
         "<lines> <query> <operator> <value> jump in the macro on condition",
     ),
     own("KEN", frames::enable, "<name> enable frame"),
@@ -249,7 +181,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("KRM", frames::remove, "<name> remove frame"),
     own(
         "KSD",
-        |scanner| frames::define(Kind::Directed, scanner),
+        |scanner| frames::define(FrameKind::Directed, scanner),
         "<name> {<axis> <value>} define directed frame",
     ),
     own(
@@ -259,12 +191,12 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "KST",
-        |scanner| frames::define(Kind::Tool, scanner),
+        |scanner| frames::define(FrameKind::Tool, scanner),
         "<name> {<axis> <value>} define tool frame",
     ),
     own(
         "KSW",
-        |scanner| frames::define(Kind::Work, scanner),
+        |scanner| frames::define(FrameKind::Work, scanner),
         "<name> {<axis> <value>} define work frame",
     ),
     read(
@@ -282,16 +214,12 @@ pub(super) static COMMANDS: &[Entry] = &[
         Query::Statistics,
         "get loop statistics, and the peak following error since they were last asked for",
     ),
-    entry(
+    own(
         "MAC BEG",
-        Syntax::Macro(MacroSyntax::Begin),
+        macros::begin,
         "<macro> record the lines that follow",
     ),
-    entry(
-        "MAC DEL",
-        Syntax::Macro(MacroSyntax::Delete),
-        "<macro> forget it",
-    ),
+    own("MAC DEL", macros::delete, "<macro> forget it"),
     entry(
         "MAC END",
         Syntax::Plain(Request::Macro(MacroRequest::End)),
@@ -307,29 +235,24 @@ pub(super) static COMMANDS: &[Entry] = &[
         Syntax::Plain(Request::Macro(MacroRequest::Free)),
         "get bytes left",
     ),
-    entry(
+    own(
         "MAC NSTART",
-        Syntax::Macro(MacroSyntax::StartTimes),
+        macros::start_times,
         "<macro> <times> [<argument> [<argument>]] run it repeatedly",
     ),
-    entry(
+    own(
         "MAC START",
-        Syntax::Macro(MacroSyntax::Start),
+        macros::start,
         "<macro> [<argument> [<argument>]] run it",
     ),
-    entry(
-        "MAC STOP",
-        Syntax::Macro(MacroSyntax::Stop),
-        "[<macro>] stop it",
-    ),
-    entry(
-        "MAC?",
-        Syntax::Macro(MacroSyntax::List),
-        "[<macro>] get macros or lines of one",
-    ),
+    own("MAC STOP", macros::stop, "[<macro>] stop it"),
+    own("MAC?", macros::list, "[<macro>] get macros or lines of one"),
     entry(
         "MEX",
-        Syntax::Condition(Action::Leave),
+        Syntax::Condition {
+            after_lines: false,
+            action: |_, condition| Action::Leave(condition),
+        },
         "<query> <operator> <value> end the macro on condition",
     ),
     ask(
@@ -382,7 +305,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     read("POS?", Quantity::Position, "[{<axis>}] get real position"),
     entry(
         "PUN?",
-        Syntax::Tell(Property::Unit),
+        Syntax::Property(Property::Unit),
         "[{<axis>}] get unit of position",
     ),
     entry(
@@ -397,42 +320,42 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "RPA",
-        parse::recall,
+        parameter::recall,
         "[{<item> <parameter>}] get parameters back as they are kept",
     ),
     own("RTR", recorder::set_rate, "<ticks> set ticks a point"),
     own("RTR?", recorder::rate, "get ticks a point"),
-    entry(
-        "SAI?",
-        Syntax::All(Request::Ask(Query::Axes)),
-        "[ALL] get axis identifiers",
-    ),
+    own("SAI?", axis_identifiers, "[ALL] get axis identifiers"),
     own(
         "SCT",
-        parse::cycle_time,
+        streaming::cycle_time,
         "T <milliseconds> set time between streamed targets",
     ),
     own(
         "SCT?",
-        parse::cycle_time_query,
+        streaming::cycle_time_query,
         "[T] get time between streamed targets",
     ),
-    entry(
+    own(
         "SPA",
-        Syntax::Settings(Action::Set),
+        parameter::set,
         "{<item> <parameter> <value>} set parameter",
     ),
-    entry(
+    own(
         "SPA?",
-        Syntax::Parameters,
+        parameter::query,
         "[{<item> <parameter>}] get parameter",
     ),
     own(
         "SPI",
-        frames::pivot,
+        frames::rotation_centre,
         "{<R|S|T> <position>} set centre of rotation",
     ),
-    own("SPI?", frames::pivots, "[{<R|S|T>}] get centre of rotation"),
+    own(
+        "SPI?",
+        frames::rotation_centre_query,
+        "[{<R|S|T>}] get centre of rotation",
+    ),
     entry(
         "SSL",
         Syntax::Values(Action::SoftActive),
@@ -465,7 +388,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     own("TNR?", recorder::count, "get number of record tables"),
     entry(
         "TRA?",
-        Syntax::AskValues(Request::Reach),
+        Syntax::QueryValues(Request::FurthestTarget),
         "{<axis> <direction>} get the furthest target in this direction",
     ),
     read(
@@ -474,12 +397,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         "[{<axis>}] get whether there are reference switches",
     ),
     own("TWG?", wave::count, "get number of wave generators"),
-    entry(
+    own(
         "VAR",
-        Syntax::SetVariable,
+        variables::set,
         "<variable> [<value>] set or forget variable",
     ),
-    entry("VAR?", Syntax::Variables, "[{<variable>}] get variable"),
+    own(
+        VARIABLE_QUERY,
+        variables::query,
+        "[{<variable>}] get variable",
+    ),
     entry(
         "VEL",
         Syntax::Values(Action::AxisVelocity),
@@ -499,12 +426,15 @@ pub(super) static COMMANDS: &[Entry] = &[
     ask("VLS?", Query::Velocity, "get system velocity"),
     entry(
         "VMO?",
-        Syntax::AskValues(Request::Reachable),
+        Syntax::QueryValues(Request::Reachable),
         "{<axis> <position>} get whether a target can be moved to",
     ),
     entry(
         "WAC",
-        Syntax::Condition(Action::Wait),
+        Syntax::Condition {
+            after_lines: false,
+            action: |_, condition| Action::Wait(condition),
+        },
         "<query> <axis> <operator> <value> wait for condition",
     ),
     own(
@@ -535,12 +465,12 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own(
         "WGO?",
-        |scanner| wave::generators(WaveQuery::Going, scanner),
+        |scanner| wave::generators(WaveQuery::Running, scanner),
         "[{<generator>}] get whether wave generators run",
     ),
     own(
         "WPA",
-        parse::keep,
+        parameter::store,
         "<password> [{<item> <parameter>}] keep parameters over a restart",
     ),
     own(

@@ -8,29 +8,29 @@ pub type Bounds = [[i64; 2]; 3];
 
 /// See the module. The same for all plans until somebody changes a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
+pub struct Constraints {
     /// Limits of motion.
     pub limits: Limits,
     /// Mechanism, and with it the usable disk, which the platform centre never leaves.
     pub geometry: Geometry,
     /// Radius of that disk, track radii: [`Geometry::usable_radius`], which takes long to compute.
-    pub usable: f64,
+    pub usable_radius: f64,
     /// Where the point that is moved may go.
     pub bounds: Bounds,
-    /// The point that is moved and about which the platform turns (the centre of rotation): x and y in the platform's own
-    /// axes, track radii. x and y of every [`Position`](super::Position) are those of this point in the base frame.
-    pub centre: [f64; 2],
+    /// The point that is moved and about which the platform turns (the centre of rotation): x and y in the platform's
+    /// own axes, track radii. x and y of every [`Position`](super::Position) are those of this point in the base frame.
+    pub rotation_centre: [f64; 2],
 }
 
-impl Ground {
+impl Constraints {
     /// The platform centre is moved, and may go wherever the mechanism lets it.
     pub const fn new(limits: Limits, geometry: Geometry) -> Self {
         Self {
             limits,
             geometry,
-            usable: geometry.usable_radius(),
+            usable_radius: geometry.usable_radius(),
             bounds: ANYWHERE,
-            centre: [0.0; 2],
+            rotation_centre: [0.0; 2],
         }
     }
 }

@@ -4,10 +4,10 @@ use kinematics::Angle;
 
 /// How a target of theta is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Way {
+pub enum TurnDirection {
     /// With its turns: from 0 to 720 deg are two turns.
     #[default]
-    Literal,
+    AsGiven,
     /// The orientation only, the shortest way. Of half a turn either way the negative one.
     Shortest,
     /// The orientation only, turning to positive angles: less than a turn, or not at all.
@@ -16,11 +16,11 @@ pub enum Way {
     Negative,
 }
 
-impl Way {
+impl TurnDirection {
     /// Where theta (2^-32 turns) has to go from `now` for what is meant by `target`. Exact at any number of turns.
-    pub const fn target(self, now: i64, target: i64) -> i64 {
+    pub const fn resolve(self, now: i64, target: i64) -> i64 {
         match self {
-            Self::Literal => target,
+            Self::AsGiven => target,
             Self::Shortest => Angle::from_units(target)
                 .near(Angle::from_units(now))
                 .units(),
@@ -62,18 +62,21 @@ mod tests {
     }
 
     #[test]
-    fn every_way_but_the_literal_keeps_the_orientation_and_its_own_range() {
+    fn every_direction_but_as_given_keeps_the_orientation_and_its_own_range() {
         for now in angles() {
             for target in angles() {
-                assert_eq!(Way::Literal.target(now, target), target);
-                for (way, range) in [
-                    (Way::Shortest, -TURN / 2..TURN / 2),
-                    (Way::Positive, 0..TURN),
-                    (Way::Negative, 1 - TURN..1),
+                assert_eq!(TurnDirection::AsGiven.resolve(now, target), target);
+                for (turn_direction, range) in [
+                    (TurnDirection::Shortest, -TURN / 2..TURN / 2),
+                    (TurnDirection::Positive, 0..TURN),
+                    (TurnDirection::Negative, 1 - TURN..1),
                 ] {
-                    let to = way.target(now, target);
-                    assert_eq!((to - target) % TURN, 0, "{way:?} {now} {target}");
-                    assert!(range.contains(&(to - now)), "{way:?} {now} {target}");
+                    let to = turn_direction.resolve(now, target);
+                    assert_eq!((to - target) % TURN, 0, "{turn_direction:?} {now} {target}");
+                    assert!(
+                        range.contains(&(to - now)),
+                        "{turn_direction:?} {now} {target}"
+                    );
                 }
             }
         }
@@ -90,10 +93,18 @@ mod tests {
             (90.0, 90.0, [90.0; 4]),
             (90.0, 450.0, [450.0, 90.0, 90.0, 90.0]),
         ] {
-            let ways = [Way::Literal, Way::Shortest, Way::Positive, Way::Negative];
-            for (way, expected) in ways.into_iter().zip(expected) {
-                let to = degrees(way.target(units(now), units(target)));
-                assert!((to - expected).abs() < 1e-6, "{way:?} {now} {target}: {to}");
+            let ways = [
+                TurnDirection::AsGiven,
+                TurnDirection::Shortest,
+                TurnDirection::Positive,
+                TurnDirection::Negative,
+            ];
+            for (turn_direction, expected) in ways.into_iter().zip(expected) {
+                let to = degrees(turn_direction.resolve(units(now), units(target)));
+                assert!(
+                    (to - expected).abs() < 1e-6,
+                    "{turn_direction:?} {now} {target}: {to}"
+                );
             }
         }
     }

@@ -1,10 +1,11 @@
-//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with references.
+//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with
+//! references.
 
-use crate::number::sqrt_f32;
+use super::root::sqrt_f32;
 use kinematics::Real;
 
-/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same integer
-/// arithmetic everywhere: the chip and a desktop get the same bits.
+/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same
+/// integer arithmetic everywhere: the chip and a desktop get the same bits.
 pub trait Float: Real + Default {
     /// Whether differences of large numbers are worth more digits than this float has.
     const COARSE: bool;
@@ -13,7 +14,7 @@ pub trait Float: Real + Default {
     fn root(self) -> Self;
 
     /// Cube root of a number that is not negative, right to some percent at least: a first guess.
-    fn rough_cbrt(self) -> Self;
+    fn cbrt_estimate(self) -> Self;
 
     /// Size.
     fn abs(self) -> Self {
@@ -46,7 +47,7 @@ impl Float for f32 {
 
     /// A third of the exponent, and so of the logarithm (off by 3.5 %), and one step of Newton's method.
     #[inline]
-    fn rough_cbrt(self) -> Self {
+    fn cbrt_estimate(self) -> Self {
         let guess = Self::from_bits(self.to_bits() / 3 + 0x2A51_37A0);
         (2.0 * guess + self / (guess * guess)) / 3.0
     }
@@ -59,7 +60,7 @@ impl Float for f64 {
         libm::sqrt(self)
     }
 
-    fn rough_cbrt(self) -> Self {
+    fn cbrt_estimate(self) -> Self {
         libm::cbrt(self)
     }
 }
@@ -69,17 +70,17 @@ const UPPER: f32 = 4_294_967_296.0;
 
 /// A count of ticks as a float: hardware, unless it is longer than 32 bits.
 #[inline]
-pub(crate) fn float(ticks: u64) -> f32 {
+pub(crate) fn ticks_to_f32(ticks: u64) -> f32 {
     match u32::try_from(ticks) {
         Ok(ticks) => ticks as f32,
-        Err(_) => float_of_long(ticks),
+        Err(_) => long_ticks_to_f32(ticks),
     }
 }
 
-/// A whole number as a float, 1.5 units in the last place off at most: two conversions in hardware, where the correctly rounded
-/// one is a call.
+/// A whole number as a float, 1.5 units in the last place off at most: two conversions in hardware, where the correctly
+/// rounded one is a call.
 #[inline]
-pub(crate) fn rough(value: i64) -> f32 {
+pub(crate) fn i64_to_f32_fast(value: i64) -> f32 {
     let (high, low) = ((value >> 32) as i32, value as i32);
     // Small numbers are small whatever their sign: what is negative below is one more above.
     let carry = low as u32 >> 31;
@@ -88,35 +89,35 @@ pub(crate) fn rough(value: i64) -> f32 {
 
 /// The same of one of up to 103 bits, a thousand million turns; beyond 63 the last forty do not count.
 #[inline(never)]
-pub(crate) fn rough_long(value: i128) -> f32 {
+pub(crate) fn i128_to_f32_fast(value: i128) -> f32 {
     const CUT: u32 = 40;
     match i64::try_from(value) {
-        Ok(value) => rough(value),
-        Err(_) => rough((value >> CUT) as i64) * (1_u64 << CUT) as f32,
+        Ok(value) => i64_to_f32_fast(value),
+        Err(_) => i64_to_f32_fast((value >> CUT) as i64) * (1_u64 << CUT) as f32,
     }
 }
 
 /// A float rounded up to a count of ticks; zero for what is not positive.
 #[inline]
-pub(crate) fn ticks_up(duration: f32) -> u64 {
+pub(crate) fn ceil_ticks(duration: f32) -> u64 {
     if duration < UPPER {
         let down = duration as u32;
         u64::from(down) + u64::from(duration > down as f32)
     } else {
-        ticks_of_long(duration)
+        long_f32_to_ticks(duration)
     }
 }
 
 /// A duration rounded up to a whole one; zero for what is not positive.
 #[inline]
-pub(crate) fn up(duration: f32) -> f32 {
-    let whole = down(duration);
+pub(crate) fn ceil(duration: f32) -> f32 {
+    let whole = floor(duration);
     if duration > whole { whole + 1.0 } else { whole }
 }
 
 /// The same rounded down.
 #[inline]
-pub(crate) fn down(duration: f32) -> f32 {
+pub(crate) fn floor(duration: f32) -> f32 {
     // Beyond 2^23 there are whole numbers only.
     if duration < UPPER {
         (duration as u32) as f32
@@ -128,19 +129,19 @@ pub(crate) fn down(duration: f32) -> f32 {
 /// The same beyond 32 bits, days long, where the chip has no instruction for it.
 #[cold]
 #[inline(never)]
-fn float_of_long(ticks: u64) -> f32 {
+fn long_ticks_to_f32(ticks: u64) -> f32 {
     ticks as f32
 }
 
 #[cold]
 #[inline(never)]
-fn ticks_of_long(duration: f32) -> u64 {
+fn long_f32_to_ticks(duration: f32) -> u64 {
     duration as u64
 }
 
 /// A float without its fraction; it has to be within 63 bits.
 #[inline]
-pub(crate) fn cut(value: f32) -> i64 {
+pub(crate) fn truncate(value: f32) -> i64 {
     const MOST: f32 = UPPER / 2.0;
     if Float::abs(value) < MOST {
         i64::from(value as i32)
@@ -151,7 +152,7 @@ pub(crate) fn cut(value: f32) -> i64 {
 
 /// A float rounded to nearest; it has to be within 63 bits.
 #[inline]
-pub(crate) fn nearest(value: f32) -> i64 {
+pub(crate) fn round_i64(value: f32) -> i64 {
     let size = Float::abs(value);
     if size < 8_388_608.0 {
         // Half is a number here.
@@ -164,7 +165,7 @@ pub(crate) fn nearest(value: f32) -> i64 {
 
 /// The same within 31 bits, which is hardware.
 #[inline]
-pub(crate) fn nearest_short(value: f32) -> i32 {
+pub(crate) fn round_i32(value: f32) -> i32 {
     if Float::abs(value) < 8_388_608.0 {
         (value + if value < 0.0 { -0.5 } else { 0.5 }) as i32
     } else {
@@ -174,26 +175,27 @@ pub(crate) fn nearest_short(value: f32) -> i32 {
 
 /// A float rounded up, within 31 bits.
 #[inline]
-pub(crate) fn up_short(value: f32) -> i32 {
+pub(crate) fn ceil_i32(value: f32) -> i32 {
     let down = value as i32;
     down + i32::from(value > down as f32)
 }
 
-/// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no instruction for
-/// what the standard asks of it. What is not a number stays what it is on the left, and counts for nothing on the right.
-pub(crate) trait Order: PartialOrd + Sized {
+/// The greater and the smaller of two numbers in four instructions: `f32::max` is a call on the chip, which has no
+/// instruction for what the standard asks of it. What is not a number stays what it is on the left, and counts for
+/// nothing on the right.
+pub(crate) trait FloatMinMax: PartialOrd + Sized {
     #[inline]
-    fn larger(self, other: Self) -> Self {
+    fn fmax(self, other: Self) -> Self {
         if self < other { other } else { self }
     }
 
     #[inline]
-    fn smaller(self, other: Self) -> Self {
+    fn fmin(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 }
 
-impl Order for f32 {}
+impl FloatMinMax for f32 {}
 
 /// Length of a vector.
 #[inline]
@@ -206,7 +208,7 @@ mod tests {
     use crate::number::float::*;
 
     #[test]
-    fn rough_numbers_are_near_the_right_ones() {
+    fn fast_conversions_are_near_the_right_ones() {
         for bits in 0..64 {
             for value in [
                 1_i64 << bits,
@@ -215,13 +217,13 @@ mod tests {
                 0x5A5A_5A5A_5A5A_5A5A >> bits,
             ] {
                 for value in [value, -value.wrapping_add(3), i64::MAX, i64::MIN] {
-                    let (near, right) = (f64::from(rough(value)), value as f64);
+                    let (near, right) = (f64::from(i64_to_f32_fast(value)), value as f64);
                     assert!(
                         (near - right).abs() <= right.abs() * 1.0e-7,
                         "{value} {near}"
                     );
                     let long = i128::from(value) << 38;
-                    let (near, right) = (f64::from(rough_long(long)), long as f64);
+                    let (near, right) = (f64::from(i128_to_f32_fast(long)), long as f64);
                     assert!(
                         (near - right).abs() <= right.abs() * 1.0e-7,
                         "{long} {near}"
@@ -235,15 +237,15 @@ mod tests {
     fn short_numbers_are_rounded_as_they_say() {
         for value in [0.0_f32, 0.25, 0.75, 1.0, 2.6, 4_194_303.4, 8_388_609.0, 2e9] {
             for value in [value, -value] {
-                let near = nearest_short(value);
+                let near = round_i32(value);
                 assert_eq!(f64::from(near), f64::from(value).round(), "{value}");
                 assert_eq!(
-                    f64::from(up_short(value)),
+                    f64::from(ceil_i32(value)),
                     f64::from(value).ceil(),
                     "{value}"
                 );
             }
         }
-        assert_eq!(up_short(f32::NAN), 0);
+        assert_eq!(ceil_i32(f32::NAN), 0);
     }
 }

@@ -1,16 +1,15 @@
 //! The recorder's end outside the tick: orders, and reading.
 
-use super::memory::Head;
-use super::setup::{Order, Setup, WIDEST};
-use super::signal::{Kind, Word};
-use crate::queues::QueueFull;
+use super::published::Published;
+use super::setup::{MAX_ROW_WORDS, Order, QueueFull, RecordSetup};
+use super::signal::{RawSignal, SignalFormat};
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Producer;
 
 /// Orders records and reads them.
-pub struct PanelRecorder<'a> {
+pub struct RecorderReader<'a> {
     words: &'a [AtomicU32],
-    head: &'a Head,
+    published: &'a Published,
     orders: Producer<'a, Order>,
 }
 
@@ -23,19 +22,23 @@ pub struct Progress {
     pub before: u32,
 }
 
-/// A place in a record from which it is read on, with the full value of each word there.
+/// A place in a record from which it is read on, with the full value of each signal there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cursor {
     /// Row, from 0.
     row: u32,
-    values: [i64; WIDEST],
+    values: [i64; MAX_ROW_WORDS],
 }
 
-impl<'a> PanelRecorder<'a> {
-    pub(super) fn new(words: &'a [AtomicU32], head: &'a Head, orders: Producer<'a, Order>) -> Self {
+impl<'a> RecorderReader<'a> {
+    pub(super) fn new(
+        words: &'a [AtomicU32],
+        head: &'a Published,
+        orders: Producer<'a, Order>,
+    ) -> Self {
         Self {
             words,
-            head,
+            published: head,
             orders,
         }
     }
@@ -50,16 +53,16 @@ impl<'a> PanelRecorder<'a> {
     ///
     /// # Errors
     /// [`QueueFull`]: the tick has not taken the last orders yet. Nothing was ordered.
-    pub fn record(&mut self, setup: &Setup) -> Result<(), QueueFull> {
-        self.order(Order::Record(setup.clone()))
+    pub fn start(&mut self, setup: &RecordSetup) -> Result<(), QueueFull> {
+        self.order(Order::Start(setup.clone()))
     }
 
     /// Triggers the record when the tick has taken so many commands; `None` takes that back.
     ///
     /// # Errors
     /// [`QueueFull`].
-    pub fn expect(&mut self, commands: Option<u32>) -> Result<(), QueueFull> {
-        self.order(Order::Expect(commands))
+    pub fn trigger_at(&mut self, commands: Option<u32>) -> Result<(), QueueFull> {
+        self.order(Order::TriggerAt(commands))
     }
 
     /// Ends waiting for a trigger, or recording. What is recorded stays.
@@ -76,19 +79,19 @@ impl<'a> PanelRecorder<'a> {
 
     /// How far the record of this number is.
     pub fn progress(&self, number: u32) -> Progress {
-        if self.head.number.load(Ordering::Acquire) != number {
+        if self.published.number.load(Ordering::Acquire) != number {
             return Progress::default();
         }
         // The rows first: what they come with was written before them.
-        let rows = self.head.rows.load(Ordering::Acquire);
+        let rows = self.published.rows.load(Ordering::Acquire);
         Progress {
             rows,
-            before: self.head.before.load(Ordering::Relaxed),
+            before: self.published.before.load(Ordering::Relaxed),
         }
     }
 
-    /// A place in the record, which must have rows: its words' turns are followed from the row of the trigger to there.
-    pub fn seek(&self, setup: &Setup, row: u32) -> Cursor {
+    /// A place in the record, which must have rows: its angles are unwrapped from the row of the trigger to there.
+    pub fn seek(&self, setup: &RecordSetup, row: u32) -> Cursor {
         let mut cursor = self.at_trigger(setup);
         while cursor.row < row {
             self.step(setup, &mut cursor, 1);
@@ -99,51 +102,53 @@ impl<'a> PanelRecorder<'a> {
         cursor
     }
 
-    /// The words at the cursor, which goes on to the next row. Integers as they are, of floats the bits.
-    pub fn next(&self, setup: &Setup, cursor: &mut Cursor) -> [i64; WIDEST] {
+    /// The signals at the cursor, which goes on to the next row. Integers as they are, of floats the bits.
+    pub fn next(&self, setup: &RecordSetup, cursor: &mut Cursor) -> [i64; MAX_ROW_WORDS] {
         let values = cursor.values;
         self.step(setup, cursor, 1);
         values
     }
 
-    fn at_trigger(&self, setup: &Setup) -> Cursor {
-        let row = self.head.before.load(Ordering::Relaxed);
-        let mut values = [0; WIDEST];
-        for (i, value) in values.iter_mut().enumerate().take(setup.words.len()) {
-            let upper = i64::from(self.head.upper[i].load(Ordering::Relaxed));
+    fn at_trigger(&self, setup: &RecordSetup) -> Cursor {
+        let row = self.published.before.load(Ordering::Relaxed);
+        let mut values = [0; MAX_ROW_WORDS];
+        for (i, value) in values.iter_mut().enumerate().take(setup.signals.len()) {
+            let upper = i64::from(self.published.upper[i].load(Ordering::Relaxed));
             *value = upper << 32 | i64::from(self.word(setup, row, i));
         }
         let mut cursor = Cursor { row, values };
-        for (value, word) in cursor.values.iter_mut().zip(&setup.words) {
-            if word.kind() != Kind::Angle {
-                *value = near(*word, 0, *value as u32);
+        for (value, signal) in cursor.values.iter_mut().zip(&setup.signals) {
+            if signal.format() != SignalFormat::Angle {
+                *value = unwrap_value(*signal, 0, *value as u32);
             }
         }
         cursor
     }
 
-    fn step(&self, setup: &Setup, cursor: &mut Cursor, way: i32) {
-        cursor.row = cursor.row.wrapping_add_signed(way);
-        for (i, word) in setup.words.iter().enumerate() {
+    fn step(&self, setup: &RecordSetup, cursor: &mut Cursor, rows: i32) {
+        cursor.row = cursor.row.wrapping_add_signed(rows);
+        for (i, signal) in setup.signals.iter().enumerate() {
             let bits = self.word(setup, cursor.row, i);
-            cursor.values[i] = near(*word, cursor.values[i], bits);
+            cursor.values[i] = unwrap_value(*signal, cursor.values[i], bits);
         }
     }
 
-    /// 0 for a row that is not there: one further than the last is looked at and thrown away.
-    fn word(&self, setup: &Setup, row: u32, i: usize) -> u32 {
-        let first = self.head.first.load(Ordering::Relaxed);
+    /// 0 for a row that is not there: one further than the last is read and thrown away.
+    fn word(&self, setup: &RecordSetup, row: u32, i: usize) -> u32 {
+        let first = self.published.first.load(Ordering::Relaxed);
         let place = (first.wrapping_add(row) % setup.rows.max(1)) as usize;
-        let cell = self.words.get(place * setup.words.len() + i);
+        let cell = self.words.get(place * setup.signals.len() + i);
         cell.map_or(0, |cell| cell.load(Ordering::Relaxed))
     }
 }
 
-/// The value of a word: that with these low 32 bits which is nearest to the one before, where 32 bits do not hold it.
-fn near(word: Word, last: i64, bits: u32) -> i64 {
-    match word.kind() {
-        Kind::Angle => last.wrapping_add(i64::from(bits.wrapping_sub(last as u32) as i32)),
-        Kind::Length | Kind::AngleError | Kind::Count => i64::from(bits as i32),
-        Kind::Float => i64::from(bits),
+/// The value of a signal: that with these low 32 bits which is nearest to the one before, where 32 bits do not hold it.
+fn unwrap_value(signal: RawSignal, last: i64, bits: u32) -> i64 {
+    match signal.format() {
+        SignalFormat::Angle => last.wrapping_add(i64::from(bits.wrapping_sub(last as u32) as i32)),
+        SignalFormat::Length | SignalFormat::AngleError | SignalFormat::Count => {
+            i64::from(bits as i32)
+        }
+        SignalFormat::Float => i64::from(bits),
     }
 }

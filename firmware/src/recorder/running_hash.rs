@@ -1,10 +1,10 @@
 //! A running hash over every tick.
 
-use super::sample::{Record, Sample};
+use super::sample::{Sample, TickObserver};
 
 /// A running hash over state, setpoints, measured pivots and duties of every tick: two runs that agree in it agreed at
-/// every tick. The words of a tick are turned and added without carry, which no single difference survives unseen, and what
-/// comes of it is multiplied as in FNV-1a: once a tick, since every tick is compared.
+/// every tick. The words of a tick are turned and added without carry, which no single difference survives unseen, and
+/// what comes of it is multiplied as in FNV-1a: once a tick, since every tick is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunningHash(pub u32);
 
@@ -21,9 +21,9 @@ impl RunningHash {
     }
 }
 
-impl Record for RunningHash {
+impl TickObserver for RunningHash {
     #[inline]
-    fn record(&mut self, sample: &Sample) {
+    fn observe(&mut self, sample: &Sample) {
         self.word(sample.tick as u32);
         self.word(sample.mode as u32);
         for position in sample.setpoint.position {

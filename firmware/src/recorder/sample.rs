@@ -18,7 +18,7 @@ pub struct Sample {
     /// Setpoint of the platform.
     pub setpoint: Setpoint,
     /// Setpoint of the point that is moved: the platform's unless a centre of rotation has been chosen.
-    pub point: Setpoint,
+    pub reference_point: Setpoint,
     /// Setpoint of the pivots; the measured angles while the servo is off.
     pub pivot_setpoints: [Angle; 3],
     /// Their rates, rad/s.
@@ -37,13 +37,13 @@ pub struct Sample {
     pub commands: u32,
 }
 
-/// Somebody who looks at every tick. Runs inside it: no allocation, no blocking, no unbounded work.
-pub trait Record {
+/// Observes every tick. Runs inside it: no allocation, no blocking, no unbounded work.
+pub trait TickObserver {
     /// Takes the sample of one tick.
-    fn record(&mut self, sample: &Sample);
+    fn observe(&mut self, sample: &Sample);
 }
 
-impl Record for () {
+impl TickObserver for () {
     #[inline]
-    fn record(&mut self, _: &Sample) {}
+    fn observe(&mut self, _: &Sample) {}
 }

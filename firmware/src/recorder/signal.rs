@@ -1,12 +1,12 @@
-//! What can be recorded: a 32-bit word of each signal of the data path, as the tick has it.
+//! What can be recorded: each signal of the data path as a 32-bit word, as the tick has it.
 
 use super::sample::Sample;
 use crate::motion::Position;
 use kinematics::Angle;
 
-/// A signal, as a word. Pivots are counted from 0.
+/// A signal in the units of the tick. Pivots are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Word {
+pub enum RawSignal {
     /// Setpoint of the platform's centre, x (0) or y (1).
     Centre(u8),
     /// Setpoint of theta.
@@ -37,12 +37,13 @@ pub enum Word {
     Cost,
 }
 
-/// How a word's 32 bits are to be understood.
+/// How a signal's 32 bits are to be understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SignalFormat {
     /// A length in 2^-29 track radii (0.19 nm on a track of 100 mm).
     Length,
-    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last row's.
+    /// An angle in 2^-28 turns (23 nrad, a quarter of an encoder count): 32 bits hold the 16 turns around the last
+    /// row's.
     Angle,
     /// A small angle in 2^-32 turns.
     AngleError,
@@ -52,44 +53,44 @@ pub enum Kind {
     Count,
 }
 
-impl Word {
+impl RawSignal {
     /// How its bits are to be understood.
-    pub const fn kind(self) -> Kind {
+    pub const fn format(self) -> SignalFormat {
         match self {
-            Self::Centre(_) => Kind::Length,
-            Self::Theta | Self::PivotSetpoint(_) | Self::Pivot(_) => Kind::Angle,
-            Self::PivotError(_) => Kind::AngleError,
-            Self::Velocity(_) | Self::Acceleration(_) | Self::PivotRate(_) => Kind::Float,
+            Self::Centre(_) => SignalFormat::Length,
+            Self::Theta | Self::PivotSetpoint(_) | Self::Pivot(_) => SignalFormat::Angle,
+            Self::PivotError(_) => SignalFormat::AngleError,
+            Self::Velocity(_) | Self::Acceleration(_) | Self::PivotRate(_) => SignalFormat::Float,
             Self::Duty(_)
             | Self::Current(_)
             | Self::Supply
             | Self::Mode
             | Self::Fault
-            | Self::Cost => Kind::Count,
+            | Self::Cost => SignalFormat::Count,
         }
     }
 
     /// Its value in a tick; the low 32 bits are what is stored. The bits of a float stand in the low 32.
     #[inline]
-    pub(super) fn take(self, sample: &Sample) -> i64 {
+    pub(super) fn value(self, sample: &Sample) -> i64 {
         let setpoint = &sample.setpoint;
         let (twist, acceleration) = (&setpoint.twist, &setpoint.acceleration);
         match self {
             Self::Centre(i) => length(&setpoint.position, i),
             Self::Theta => angle(Angle::from_units(setpoint.position[2])),
-            Self::Velocity(i) => float(pick(&[twist.x, twist.y, twist.theta], i)),
-            Self::Acceleration(i) => float(pick(
+            Self::Velocity(i) => float(component(&[twist.x, twist.y, twist.theta], i)),
+            Self::Acceleration(i) => float(component(
                 &[acceleration.x, acceleration.y, acceleration.theta],
                 i,
             )),
-            Self::PivotSetpoint(i) => angle(pick(&sample.pivot_setpoints, i)),
-            Self::Pivot(i) => angle(pick(&sample.pivots, i)),
+            Self::PivotSetpoint(i) => angle(component(&sample.pivot_setpoints, i)),
+            Self::Pivot(i) => angle(component(&sample.pivots, i)),
             Self::PivotError(i) => {
-                (pick(&sample.pivots, i) - pick(&sample.pivot_setpoints, i)).units()
+                (component(&sample.pivots, i) - component(&sample.pivot_setpoints, i)).units()
             }
-            Self::PivotRate(i) => float(pick(&sample.pivot_rates, i)),
-            Self::Duty(i) => i64::from(pick(&sample.duty, i).0),
-            Self::Current(i) => i64::from(pick(&sample.current_counts, i)),
+            Self::PivotRate(i) => float(component(&sample.pivot_rates, i)),
+            Self::Duty(i) => i64::from(component(&sample.duty, i).0),
+            Self::Current(i) => i64::from(component(&sample.current_counts, i)),
             Self::Supply => i64::from(sample.supply_counts),
             Self::Mode => sample.mode as i64,
             Self::Fault => sample.fault.map_or(0, |kind| kind as i64 + 1),
@@ -100,23 +101,23 @@ impl Word {
     /// Its value in a tick as a number that orders as the signal does: what triggers compare.
     #[inline]
     pub(super) fn level(self, sample: &Sample) -> i64 {
-        let value = self.take(sample);
-        match self.kind() {
-            Kind::Float => ordered(value as u32),
+        let value = self.value(sample);
+        match self.format() {
+            SignalFormat::Float => total_order_key(value as u32),
             _ => value,
         }
     }
 }
 
 /// The place of a float, given by its bits, in the order of all floats.
-pub(super) const fn ordered(bits: u32) -> i64 {
+pub(super) const fn total_order_key(bits: u32) -> i64 {
     let signed = bits as i32;
     (signed ^ ((signed >> 31) & i32::MAX)) as i64
 }
 
 /// One of three; the last for whatever is too many, so that there is nothing to panic about.
 #[inline]
-fn pick<T: Copy>(three: &[T; 3], i: u8) -> T {
+fn component<T: Copy>(three: &[T; 3], i: u8) -> T {
     match i {
         0 => three[0],
         1 => three[1],
@@ -138,5 +139,5 @@ fn angle(angle: Angle) -> i64 {
 /// From 2^-32 track radii to 2^-29, rounded to nearest.
 #[inline]
 fn length(position: &Position, i: u8) -> i64 {
-    pick(position, i).wrapping_add(4) >> 3
+    component(position, i).wrapping_add(4) >> 3
 }

@@ -1,30 +1,30 @@
 //! The recorder's end in the tick.
 
-use super::memory::{Head, ORDERS};
+use super::published::Published;
 use super::sample::Sample;
-use super::setup::{Order, Setup};
+use super::setup::{ORDER_SLOTS, Order, RecordSetup};
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Consumer;
 
-/// Takes orders, looks for the trigger and writes rows. Costs a look at two flags while there is nothing to do; otherwise, each
-/// tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
-pub struct TickRecorder<'a> {
+/// Takes orders, looks for the trigger and writes rows. Costs two flags read while there is nothing to do; otherwise,
+/// each tick, a comparison for each value that is watched, and each row a few instructions for each word in it.
+pub struct RecorderWriter<'a> {
     words: &'a [AtomicU32],
-    head: &'a Head,
+    published: &'a Published,
     orders: Consumer<'a, Order>,
-    setup: Setup,
+    setup: RecordSetup,
     state: State,
     /// Row of the ring that is written next.
     at: u32,
     /// Rows that the ring holds from before the trigger, or of the record.
     rows: u32,
     /// Ticks until the next row.
-    left: u32,
-    /// Of each watch, whether its signal was at or above its value; bit i for the i-th.
-    above: u8,
-    /// A tick has been looked at: `above` and `faulted` hold.
-    looked: bool,
-    faulted: bool,
+    ticks_left: u32,
+    /// Of each level trigger, whether its signal was at or above its value; bit i for the i-th.
+    were_above: u8,
+    /// There was a tick before: `were_above` and `was_faulted` hold.
+    has_previous: bool,
+    was_faulted: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,36 +37,40 @@ enum State {
     Recording,
 }
 
-impl<'a> TickRecorder<'a> {
-    pub(super) fn new(words: &'a [AtomicU32], head: &'a Head, orders: Consumer<'a, Order>) -> Self {
+impl<'a> RecorderWriter<'a> {
+    pub(super) fn new(
+        words: &'a [AtomicU32],
+        head: &'a Published,
+        orders: Consumer<'a, Order>,
+    ) -> Self {
         Self {
             words,
-            head,
+            published: head,
             orders,
-            setup: Setup::default(),
+            setup: RecordSetup::default(),
             state: State::Idle,
             at: 0,
             rows: 0,
-            left: 0,
-            above: 0,
-            looked: false,
-            faulted: false,
+            ticks_left: 0,
+            were_above: 0,
+            has_previous: false,
+            was_faulted: false,
         }
     }
 
-    /// Whether [`record`](Self::record) would do something: the sample need not be made otherwise.
+    /// Whether [`observe`](Self::observe) would do something: the sample need not be made otherwise.
     #[inline]
-    pub fn is_wanted(&self) -> bool {
+    pub fn is_active(&self) -> bool {
         self.state != State::Idle || self.orders.ready()
     }
 
     /// Takes the sample of a tick.
     #[inline(never)]
-    pub fn record(&mut self, sample: &Sample) {
+    pub fn observe(&mut self, sample: &Sample) {
         // As many as fit into the queue.
-        for _ in 1..ORDERS {
+        for _ in 1..ORDER_SLOTS {
             match self.orders.dequeue() {
-                Some(order) => self.obey(order),
+                Some(order) => self.take_order(order),
                 None => break,
             }
         }
@@ -74,42 +78,44 @@ impl<'a> TickRecorder<'a> {
             self.state = State::Triggered;
             if self.setup.before == 0 {
                 // The record begins at the trigger, not at the next row of a ring that nobody asked for.
-                self.left = 0;
+                self.ticks_left = 0;
                 self.publish();
             }
         }
         match self.state {
             State::Idle => {}
             State::Waiting if self.setup.before == 0 => {}
-            _ if self.left > 0 => self.left -= 1,
-            _ => self.keep(sample),
+            _ if self.ticks_left > 0 => self.ticks_left -= 1,
+            _ => self.write_row(sample),
         }
     }
 
-    fn obey(&mut self, order: Order) {
+    fn take_order(&mut self, order: Order) {
         match order {
-            Order::Record(setup) => {
+            Order::Start(setup) => {
                 self.setup = setup;
                 self.state = State::Waiting;
                 self.at = 0;
                 self.rows = 0;
-                self.left = 0;
-                self.looked = false;
+                self.ticks_left = 0;
+                self.has_previous = false;
                 if self.setup.before > 0 {
                     // The ring overwrites what was there.
                     self.publish();
                 }
             }
-            Order::Expect(commands) => self.setup.commands = commands,
+            Order::TriggerAt(commands) => self.setup.commands = commands,
             Order::Stop => self.state = State::Idle,
         }
     }
 
     /// From here on the memory is this record's.
     fn publish(&self) {
-        self.head.rows.store(0, Ordering::Relaxed);
+        self.published.rows.store(0, Ordering::Relaxed);
         // Whoever sees the number sees no rows of the record before it.
-        self.head.number.store(self.setup.number, Ordering::Release);
+        self.published
+            .number
+            .store(self.setup.number, Ordering::Release);
     }
 
     fn is_triggered(&mut self, sample: &Sample) -> bool {
@@ -117,34 +123,34 @@ impl<'a> TickRecorder<'a> {
         let taken = |commands: u32| sample.commands.wrapping_sub(commands) as i32 >= 0;
         let mut triggered = setup.now || setup.commands.is_some_and(taken);
         let faulted = sample.fault.is_some();
-        triggered |= setup.fault && self.looked && faulted && !self.faulted;
+        triggered |= setup.fault && self.has_previous && faulted && !self.was_faulted;
         let mut above = 0;
-        for (i, watch) in setup.watches.iter().enumerate() {
+        for (i, trigger) in setup.level_triggers.iter().enumerate() {
             let bit = 1 << i;
-            if watch.word.level(sample) >= watch.level {
+            if trigger.signal.level(sample) >= trigger.level {
                 above |= bit;
             }
-            let crossed = self.looked && (above ^ self.above) & bit != 0;
-            triggered |= crossed && (above & bit != 0) == watch.rising;
+            let crossed = self.has_previous && (above ^ self.were_above) & bit != 0;
+            triggered |= crossed && (above & bit != 0) == trigger.rising;
         }
-        self.above = above;
-        self.faulted = faulted;
-        self.looked = true;
+        self.were_above = above;
+        self.was_faulted = faulted;
+        self.has_previous = true;
         triggered
     }
 
-    /// Writes a row; the record's own are told to the reader.
-    fn keep(&mut self, sample: &Sample) {
-        self.left = self.setup.every.saturating_sub(1);
-        let width = self.setup.words.len();
+    /// Writes a row; the record's own are published to the reader.
+    fn write_row(&mut self, sample: &Sample) {
+        self.ticks_left = self.setup.every.saturating_sub(1);
+        let width = self.setup.signals.len();
         let start = self.at as usize * width;
         if let Some(row) = self.words.get(start..start + width) {
-            for (cell, word) in row.iter().zip(&self.setup.words) {
-                cell.store(word.take(sample) as u32, Ordering::Relaxed);
+            for (cell, signal) in row.iter().zip(&self.setup.signals) {
+                cell.store(signal.value(sample) as u32, Ordering::Relaxed);
             }
         }
         if self.state == State::Triggered {
-            self.begin(sample);
+            self.begin_at_trigger(sample);
         }
         self.at += 1;
         if self.at >= self.setup.rows {
@@ -152,7 +158,7 @@ impl<'a> TickRecorder<'a> {
         }
         if self.state == State::Recording {
             self.rows += 1;
-            self.head.rows.store(self.rows, Ordering::Release);
+            self.published.rows.store(self.rows, Ordering::Release);
             if self.rows >= self.setup.rows {
                 self.state = State::Idle;
             }
@@ -162,18 +168,18 @@ impl<'a> TickRecorder<'a> {
     }
 
     /// The row just written is the trigger's.
-    fn begin(&mut self, sample: &Sample) {
+    fn begin_at_trigger(&mut self, sample: &Sample) {
         let before = self.rows;
         let first = if self.at >= before {
             self.at - before
         } else {
             self.at + self.setup.rows - before
         };
-        for (upper, word) in self.head.upper.iter().zip(&self.setup.words) {
-            upper.store((word.take(sample) >> 32) as i32, Ordering::Relaxed);
+        for (upper, signal) in self.published.upper.iter().zip(&self.setup.signals) {
+            upper.store((signal.value(sample) >> 32) as i32, Ordering::Relaxed);
         }
-        self.head.first.store(first, Ordering::Relaxed);
-        self.head.before.store(before, Ordering::Relaxed);
+        self.published.first.store(first, Ordering::Relaxed);
+        self.published.before.store(before, Ordering::Relaxed);
         self.state = State::Recording;
     }
 }

@@ -1,13 +1,13 @@
-//! A record: an image in its envelope.
+//! Contents in their envelope.
 //!
 //! ```text
-//! | head 16 | the same again | image, padded to words | CRC 4 | end 4 |
-//!   magic, generation, length, CRC of these           of head and image
+//! | header 16 | the same again | contents, padded to words | CRC 4 | end 4 |
+//!   magic, generation, length, CRC of these           of header and contents
 //! ```
 //!
-//! Written from left to right, the end when the image has been read back and found right. So a wrong CRC is a power cut as
-//! long as the end is still erased, and damage when it is not. The head stands there twice, so that damage to one of
-//! them hides nothing. All CRCs are the 32-bit one of Ethernet and zip.
+//! Written from left to right, the end when the contents have been read back and found right. So a wrong CRC is a power
+//! cut as long as the end is still erased, and damage when it is not. The header stands there twice, so that damage to
+//! one of them hides nothing. All CRCs are the 32-bit one of Ethernet and zip.
 
 use core::ops::Range;
 use crc::{CRC_32_ISO_HDLC, Crc, Digest};
@@ -15,31 +15,36 @@ use embedded_storage::nor_flash::NorFlash;
 
 /// Bytes of a word, the least that is written.
 pub(super) const WORD: u32 = 4;
-const HEAD_BYTES: u32 = 16;
-/// Bytes before the image.
-const FRONT_BYTES: u32 = 2 * HEAD_BYTES;
+const HEADER_BYTES: u32 = 16;
+/// Bytes before the contents.
+const HEADERS_BYTES: u32 = 2 * HEADER_BYTES;
 /// "TPS1"
 const MAGIC: u32 = 0x3153_5054;
 /// What an end is, once written.
 const END: [u8; 4] = [0; 4];
 const ERASED: u8 = 0xFF;
 /// Bytes read or written at a time.
-const PIECE: usize = 64;
+const CHUNK_BYTES: usize = 64;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// What stands before an image.
+/// Bytes that contents of so many bytes take in the flash.
+pub const fn envelope_bytes(contents: u32) -> u32 {
+    HEADERS_BYTES + contents.next_multiple_of(WORD) + 2 * WORD
+}
+
+/// What stands before the contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Head {
+pub(super) struct Header {
     /// One more than that of the record before. No flash lives to see half of them.
     pub generation: u32,
-    /// Bytes of the image.
+    /// Bytes of the contents.
     pub length: u32,
 }
 
-/// What a record with a head is.
+/// What an envelope with a header is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wholeness {
+pub(super) enum EnvelopeState {
     Whole,
     /// A power cut ended it.
     Unfinished,
@@ -47,14 +52,14 @@ pub(super) enum Wholeness {
     Broken,
 }
 
-impl Head {
-    /// Bytes of the whole record.
-    pub const fn record_bytes(&self) -> u32 {
-        FRONT_BYTES + self.length.next_multiple_of(WORD) + 2 * WORD
+impl Header {
+    /// Bytes of the whole envelope.
+    pub const fn envelope_bytes(&self) -> u32 {
+        envelope_bytes(self.length)
     }
 
-    fn bytes(&self) -> [u8; HEAD_BYTES as usize] {
-        let mut bytes = [0; HEAD_BYTES as usize];
+    fn bytes(&self) -> [u8; HEADER_BYTES as usize] {
+        let mut bytes = [0; HEADER_BYTES as usize];
         let words = [MAGIC, self.generation, self.length];
         for (place, word) in bytes.chunks_exact_mut(4).zip(words) {
             place.copy_from_slice(&word.to_le_bytes());
@@ -75,39 +80,39 @@ impl Head {
         good.then_some(Self { generation, length })
     }
 
-    /// The head at `at`, if there is one whose record ends before `end`.
+    /// The header at `at`, if there is one whose record ends before `end`.
     pub fn read<F: NorFlash>(flash: &mut F, at: u32, end: u32) -> Result<Option<Self>, F::Error> {
-        if end.saturating_sub(at) < FRONT_BYTES {
+        if end.saturating_sub(at) < HEADERS_BYTES {
             return Ok(None);
         }
-        let mut front = [0; FRONT_BYTES as usize];
+        let mut front = [0; HEADERS_BYTES as usize];
         flash.read(at, &mut front)?;
-        let (first, second) = front.split_at(HEAD_BYTES as usize);
-        let head = Self::from_bytes(first).or_else(|| Self::from_bytes(second));
-        let fits = |head: &Self| head.length < end && head.record_bytes() <= end - at;
-        Ok(head.filter(fits))
+        let (first, second) = front.split_at(HEADER_BYTES as usize);
+        let header = Self::from_bytes(first).or_else(|| Self::from_bytes(second));
+        let fits = |header: &Self| header.length < end && header.envelope_bytes() <= end - at;
+        Ok(header.filter(fits))
     }
 
-    /// What has become of the record at `at`, of which this is the head.
-    pub fn look<F: NorFlash>(&self, flash: &mut F, at: u32) -> Result<Wholeness, F::Error> {
+    /// What has become of the record at `at`, of which this is the header.
+    pub fn verify<F: NorFlash>(&self, flash: &mut F, at: u32) -> Result<EnvelopeState, F::Error> {
         let mut reader = self.reader(flash, at);
         let mut digest = CRC.digest();
         digest.update(&self.bytes());
-        let mut piece = [0; PIECE];
+        let mut piece = [0; CHUNK_BYTES];
         while reader.left > 0 {
-            let length = PIECE.min(reader.left as usize);
+            let length = CHUNK_BYTES.min(reader.left as usize);
             reader.read(&mut piece[..length])?;
             digest.update(&piece[..length]);
         }
         let mut tail = [0; 2 * WORD as usize];
-        flash.read(at + self.record_bytes() - 2 * WORD, &mut tail)?;
+        flash.read(at + self.envelope_bytes() - 2 * WORD, &mut tail)?;
         let (crc, end) = tail.split_at(WORD as usize);
         Ok(if crc == digest.finalize().to_le_bytes() {
-            Wholeness::Whole
+            EnvelopeState::Whole
         } else if end.iter().all(|&byte| byte == ERASED) {
-            Wholeness::Unfinished
+            EnvelopeState::Unfinished
         } else {
-            Wholeness::Broken
+            EnvelopeState::Broken
         })
     }
 
@@ -115,7 +120,7 @@ impl Head {
     pub const fn reader<'f, F>(&self, flash: &'f mut F, at: u32) -> Reader<'f, F> {
         Reader {
             flash,
-            at: at + FRONT_BYTES,
+            at: at + HEADERS_BYTES,
             left: self.length,
         }
     }
@@ -126,15 +131,15 @@ impl Head {
         flash: &'f mut F,
         at: u32,
     ) -> Result<Writer<'f, F>, F::Error> {
-        let head = self.bytes();
-        flash.write(at, &head)?;
-        flash.write(at + HEAD_BYTES, &head)?;
+        let header = self.bytes();
+        flash.write(at, &header)?;
+        flash.write(at + HEADER_BYTES, &header)?;
         let mut digest = CRC.digest();
-        digest.update(&head);
+        digest.update(&header);
         Ok(Writer {
             flash,
-            at: at + FRONT_BYTES,
-            piece: [0; PIECE],
+            at: at + HEADERS_BYTES,
+            piece: [0; CHUNK_BYTES],
             filled: 0,
             digest,
         })
@@ -142,16 +147,16 @@ impl Head {
 
     /// Ends the record at `at`, which is whole.
     pub fn end<F: NorFlash>(&self, flash: &mut F, at: u32) -> Result<(), F::Error> {
-        flash.write(at + self.record_bytes() - WORD, &END)
+        flash.write(at + self.envelope_bytes() - WORD, &END)
     }
 }
 
 /// Whether these bytes of the flash are erased.
 pub(super) fn is_erased<F: NorFlash>(flash: &mut F, range: Range<u32>) -> Result<bool, F::Error> {
-    let mut piece = [0; PIECE];
+    let mut piece = [0; CHUNK_BYTES];
     let mut at = range.start;
     while at < range.end {
-        let length = PIECE.min((range.end - at) as usize);
+        let length = CHUNK_BYTES.min((range.end - at) as usize);
         flash.read(at, &mut piece[..length])?;
         if piece[..length].iter().any(|&byte| byte != ERASED) {
             return Ok(false);
@@ -162,7 +167,7 @@ pub(super) fn is_erased<F: NorFlash>(flash: &mut F, range: Range<u32>) -> Result
 }
 
 /// An image, from its beginning.
-pub(super) struct Reader<'f, F> {
+pub struct Reader<'f, F> {
     flash: &'f mut F,
     at: u32,
     left: u32,
@@ -199,13 +204,13 @@ impl<F: NorFlash> Reader<'_, F> {
 pub(super) struct Writer<'f, F> {
     flash: &'f mut F,
     at: u32,
-    piece: [u8; PIECE],
+    piece: [u8; CHUNK_BYTES],
     filled: usize,
     digest: Digest<'static, u32>,
 }
 
 /// Where an image goes.
-pub(super) trait Sink {
+pub trait Sink {
     /// Why it may not.
     type Error;
     /// More of it.
@@ -223,7 +228,7 @@ impl<F: NorFlash> Sink for Writer<'_, F> {
             room[..length].copy_from_slice(&bytes[..length]);
             bytes = &bytes[length..];
             self.filled += length;
-            if self.filled == PIECE {
+            if self.filled == CHUNK_BYTES {
                 self.flush()?;
             }
         }
@@ -236,7 +241,7 @@ impl<F: NorFlash> Writer<'_, F> {
         let length = self.filled.next_multiple_of(WORD as usize);
         self.flash.write(self.at, &self.piece[..length])?;
         self.at += length as u32;
-        self.piece = [0; PIECE];
+        self.piece = [0; CHUNK_BYTES];
         self.filled = 0;
         Ok(())
     }

@@ -1,18 +1,18 @@
 //! Where images lie: records one behind the other, from sector to sector round the flash.
 //!
 //! The newest whole record counts. The next one goes behind it, or, where there is no erased room for it, into the next
-//! sector, which is erased before. A sector that is erased holds older records only, so it does not matter what an erase
-//! that is cut off leaves behind.
+//! sector, which is erased before. A sector that is erased holds older records only, so it does not matter what an
+//! erase that is cut off leaves behind.
 
-use super::envelope::{Head, Reader, WORD, Wholeness, Writer, is_erased};
-use crate::gcs::StoreError;
+use super::envelope::{EnvelopeState, Header, Reader, WORD, Writer, is_erased};
+use super::error::StoreError;
 use core::ops::Range;
 use embedded_storage::nor_flash::NorFlash;
 
 /// What a flash holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Condition {
-    /// Nothing was ever kept.
+pub(super) enum FlashState {
+    /// Nothing was ever stored.
     Empty,
     /// There is a newest record.
     Good,
@@ -24,7 +24,7 @@ pub(super) enum Condition {
 pub(super) struct Journal<F> {
     flash: F,
     /// The newest whole record, and where it is.
-    newest: Option<(Head, u32)>,
+    newest: Option<(Header, u32)>,
     /// The highest generation seen.
     generation: u32,
 }
@@ -49,57 +49,57 @@ impl<F: NorFlash> Journal<F> {
     }
 
     /// Looks through the whole flash.
-    pub fn open(&mut self) -> Condition {
+    pub fn open(&mut self) -> FlashState {
         self.newest = None;
         self.generation = 0;
-        self.scan().unwrap_or(Condition::Damaged)
+        self.scan().unwrap_or(FlashState::Damaged)
     }
 
     /// The newest image.
     pub fn newest(&mut self) -> Option<Reader<'_, F>> {
-        let (head, at) = self.newest?;
-        Some(head.reader(&mut self.flash, at))
+        let (header, at) = self.newest?;
+        Some(header.reader(&mut self.flash, at))
     }
 
     fn sectors(&self) -> u32 {
         self.flash.capacity() as u32 / Self::SECTOR
     }
 
-    fn scan(&mut self) -> Result<Condition, F::Error> {
-        let (mut broken, mut strange) = (0, false);
+    fn scan(&mut self) -> Result<FlashState, F::Error> {
+        let (mut broken, mut has_foreign_data) = (0, false);
         for sector in 0..self.sectors() {
             let (mut at, end) = (sector * Self::SECTOR, (sector + 1) * Self::SECTOR);
-            while let Some(head) = Head::read(&mut self.flash, at, end)? {
-                self.generation = self.generation.max(head.generation);
-                match head.look(&mut self.flash, at)? {
-                    Wholeness::Whole => self.note(head, at),
-                    Wholeness::Unfinished => {}
-                    Wholeness::Broken => broken = broken.max(head.generation),
+            while let Some(header) = Header::read(&mut self.flash, at, end)? {
+                self.generation = self.generation.max(header.generation);
+                match header.verify(&mut self.flash, at)? {
+                    EnvelopeState::Whole => self.track_newest(header, at),
+                    EnvelopeState::Unfinished => {}
+                    EnvelopeState::Broken => broken = broken.max(header.generation),
                 }
-                at += head.record_bytes();
+                at += header.envelope_bytes();
             }
-            // A head that was cut off may stand there.
-            let begun = Head {
+            // A header that was cut off may stand there.
+            let begun = Header {
                 generation: 0,
                 length: 0,
             }
-            .record_bytes();
-            strange |= !is_erased(&mut self.flash, (at + begun).min(end)..end)?;
+            .envelope_bytes();
+            has_foreign_data |= !is_erased(&mut self.flash, (at + begun).min(end)..end)?;
         }
         Ok(match self.newest {
-            Some((newest, _)) if broken > newest.generation => Condition::Damaged,
-            Some(_) => Condition::Good,
-            None if broken > 0 || strange => Condition::Damaged,
-            None => Condition::Empty,
+            Some((newest, _)) if broken > newest.generation => FlashState::Damaged,
+            Some(_) => FlashState::Good,
+            None if broken > 0 || has_foreign_data => FlashState::Damaged,
+            None => FlashState::Empty,
         })
     }
 
-    fn note(&mut self, head: Head, at: u32) {
+    fn track_newest(&mut self, header: Header, at: u32) {
         if self
             .newest
-            .is_none_or(|(newest, _)| newest.generation < head.generation)
+            .is_none_or(|(newest, _)| newest.generation < header.generation)
         {
-            self.newest = Some((head, at));
+            self.newest = Some((header, at));
         }
     }
 
@@ -112,11 +112,11 @@ impl<F: NorFlash> Journal<F> {
         length: u32,
         fill: impl Fn(&mut Writer<'_, F>) -> Result<(), F::Error>,
     ) -> Result<(), StoreError> {
-        let head = Head {
+        let header = Header {
             generation: self.generation + 1,
             length,
         };
-        if length > Self::SECTOR || head.record_bytes() > Self::SECTOR {
+        if length > Self::SECTOR || header.envelope_bytes() > Self::SECTOR {
             return Err(StoreError::TooLong);
         }
         let sectors = self.sectors();
@@ -125,13 +125,13 @@ impl<F: NorFlash> Journal<F> {
             return Err(StoreError::Flash);
         }
         // Whatever becomes of it, the generation is used up.
-        self.generation = head.generation;
-        let behind = self.behind(&head);
+        self.generation = header.generation;
+        let behind = self.place_after_newest(&header);
         let last = self.newest.map_or(sectors - 1, |(_, at)| at / Self::SECTOR);
         let others = (1..sectors).map(|step| (last + step) % sectors * Self::SECTOR);
         for at in behind.into_iter().chain(others) {
-            if let Ok(true) = self.write(&head, at, &fill) {
-                self.newest = Some((head, at));
+            if let Ok(true) = self.write(&header, at, &fill) {
+                self.newest = Some((header, at));
                 return Ok(());
             }
         }
@@ -139,11 +139,11 @@ impl<F: NorFlash> Journal<F> {
     }
 
     /// The place behind the newest record, if it has room for another one.
-    fn behind(&mut self, head: &Head) -> Option<u32> {
+    fn place_after_newest(&mut self, header: &Header) -> Option<u32> {
         let (newest, at) = self.newest?;
         let sector_end = (at / Self::SECTOR + 1) * Self::SECTOR;
-        let next = at + newest.record_bytes();
-        let range = next..next.checked_add(head.record_bytes())?;
+        let next = at + newest.envelope_bytes();
+        let range = next..next.checked_add(header.envelope_bytes())?;
         let free = range.end <= sector_end && is_erased(&mut self.flash, range).unwrap_or(false);
         free.then_some(next)
     }
@@ -151,25 +151,26 @@ impl<F: NorFlash> Journal<F> {
     /// Writes a record; whether it is there then.
     fn write(
         &mut self,
-        head: &Head,
+        header: &Header,
         at: u32,
         fill: &impl Fn(&mut Writer<'_, F>) -> Result<(), F::Error>,
     ) -> Result<bool, F::Error> {
-        if at.is_multiple_of(Self::SECTOR) && !self.make_erased(at..at + Self::SECTOR)? {
+        if at.is_multiple_of(Self::SECTOR) && !self.ensure_erased(at..at + Self::SECTOR)? {
             return Ok(false);
         }
-        let mut writer = head.begin(&mut self.flash, at)?;
+        let mut writer = header.begin(&mut self.flash, at)?;
         fill(&mut writer)?;
         writer.finish()?;
-        let whole = Head::read(&mut self.flash, at, at + head.record_bytes())? == Some(*head)
-            && head.look(&mut self.flash, at)? == Wholeness::Whole;
+        let whole = Header::read(&mut self.flash, at, at + header.envelope_bytes())?
+            == Some(*header)
+            && header.verify(&mut self.flash, at)? == EnvelopeState::Whole;
         if whole {
-            head.end(&mut self.flash, at)?;
+            header.end(&mut self.flash, at)?;
         }
         Ok(whole)
     }
 
-    fn make_erased(&mut self, sector: Range<u32>) -> Result<bool, F::Error> {
+    fn ensure_erased(&mut self, sector: Range<u32>) -> Result<bool, F::Error> {
         if is_erased(&mut self.flash, sector.clone())? {
             return Ok(true);
         }

@@ -7,9 +7,9 @@ use kinematics::Geometry;
 use serde::Serialize;
 
 use super::Run;
-use super::envelope::Bin;
 use super::sample::Move;
-use crate::assets::{bundle, text};
+use drawing::assets::{bundle, text};
+use drawing::envelope::Bin;
 
 /// What the live page and the document have in common, in the order of their dependence.
 const SHARED: &[&str] = &[
@@ -19,14 +19,15 @@ const SHARED: &[&str] = &[
     "/js/view.js",
     "/js/ticks.js",
     "/js/envelope.js",
+    "/js/sizes.js",
     "/js/mechanism.js",
     "/js/zoom.js",
     "/js/plot.js",
 ];
 
-const TEMPLATE: &str = include_str!("../../page/report.html");
-const SCRIPT: &str = include_str!("../../page/js/report.js");
-const STYLE: &str = include_str!("../../page/css/report.css");
+const TEMPLATE: &str = include_str!("document/report.html");
+const SCRIPT: &str = include_str!("document/report.js");
+const STYLE: &str = include_str!("document/report.css");
 
 /// What the document's script gets besides the channels.
 #[derive(Serialize)]
@@ -63,7 +64,8 @@ struct Leg {
 
 /// The document.
 pub(super) fn write(run: &Run) -> String {
-    let style = [text("/css/theme.css"), text("/css/controls.css"), STYLE].concat();
+    let shared = ["/css/colours.css", "/css/theme.css", "/css/controls.css"];
+    let style = [&shared.map(text).concat(), STYLE].concat();
     let script = [&bundle(SHARED), SCRIPT].concat();
     let title = run.name.replace('&', "&amp;").replace('<', "&lt;");
     let data = serde_json::to_string(&facts(run)).unwrap_or_default();

@@ -2,12 +2,12 @@
 //! beside the limits that hold for them.
 
 use super::Run;
-use super::chart::{Chart, Series, TimeAxis, draw_time_labels};
-use super::colour;
 use super::picture::{COLUMNS, series, time_axis};
-use super::scale::Steps;
-use super::svg::{Anchor, Font, Rect, Svg};
 use super::trace::Plots;
+use drawing::chart::{Chart, Series, TimeAxis, draw_time_labels};
+use drawing::colour;
+use drawing::scale::Steps;
+use drawing::svg::{Anchor, Font, Rect, Svg};
 
 const WIDTH: f64 = 1600.0;
 const HEIGHT: f64 = 1270.0;

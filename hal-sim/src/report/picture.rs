@@ -1,14 +1,14 @@
 //! The picture of a run: its path, its last pose, and what it did over time.
 
 use super::Run;
-use super::chart::{Chart, Series, TimeAxis, draw_time_labels};
-use super::colour;
 use super::mechanism::{Plane, draw_mechanism, draw_track};
 use super::sample::Move;
-use super::scale::{Scale, Steps, Ticks};
 use super::statistics::Spread;
-use super::svg::{Anchor, Font, Rect, Stroke, Svg};
 use super::trace::Plots;
+use drawing::chart::{Chart, Series, TimeAxis, draw_time_labels};
+use drawing::colour;
+use drawing::scale::{Scale, Steps, Ticks};
+use drawing::svg::{Anchor, Font, Rect, Stroke, Svg};
 
 const WIDTH: f64 = 1600.0;
 const HEIGHT: f64 = 1000.0;

@@ -2,88 +2,49 @@
 //!
 //! The semantics are those of a hexapod controller's coordinate systems, in the plane (x, y and w; z, u and v are 0):
 //!
-//! | command | what lies at the values | enabled, coordinates are those of |
+//! | kind | what lies at the values | enabled, coordinates are those of |
 //! |---|---|---|
-//! | `KSW` | a work frame, in the base frame | the tool in the work frame |
-//! | `KST` | a tool frame, in the platform | the tool in the work frame |
-//! | `KSD` | both: a directed frame, in the base frame and, at the zero pose, in the platform | the frame in its own place at zero |
-//! | `KSF` | a work frame where the platform is now: x, y and w become 0 | the platform in that frame |
+//! | work | a work frame, in the base frame | the tool in the work frame |
+//! | tool | a tool frame, in the platform | the tool in the work frame |
+//! | directed | both: in the base frame and, at the zero pose, in the platform | the frame in its own place at zero |
+//! | here | a work frame where the platform is now: x, y and w become 0 | the platform in that frame |
 //!
-//! One `KSD`, one `KSF` or a pair of `KSW` and `KST` is enabled at a time; enabling one of the former disables the pair and
-//! the other way round. `ZERO` is the base frame, always there; enabling it disables all others. A frame can be linked to a
-//! parent (`KLN`): its values then are those in the parent, and a change to the parent moves it along. What is enabled, and
-//! what it is linked to, cannot be changed, linked or removed.
+//! One directed frame, one made here, or a pair of work and tool frame is enabled at a time; enabling one of the former
+//! disables the pair and the other way round. [`FrameName::ZERO`] is the base frame, always there; enabling it disables
+//! all others. A frame can be linked to a parent: its values then are those in the parent, and a change to the parent
+//! moves it along. What is enabled, and what it is linked to, cannot be changed, linked or removed.
 //!
-//! The centre of rotation (`SPI`) is a directed frame that is only moved, on top of `ZERO`, a `KSD` or a `KSF`: at w = 0 it
-//! changes no coordinate. With a tool frame the tool's origin is the centre, and `SPI` does not count.
+//! The centre of rotation is a directed frame that is only moved, on top of the base frame, a directed frame or one
+//! made here: at w = 0 it changes no coordinate. With a tool frame the tool's origin is the centre, and the other does
+//! not count.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `store` | the frames there are |
-//! | `choice` | which of them are in force |
-//! | `transform` | where one frame lies in another |
-//! | `view` | targets as poses of the platform, through the frames in force |
 //! | `name` | names |
-//! | `parse` | what lines mean |
-//! | `tell` | what queries answer |
+//! | `frame` | what a frame is for, and where it lies |
+//! | `tree` | the frames there are |
+//! | `selection` | which of them are in force |
+//! | `resolve` | from a selection to the transforms it means |
+//! | `transform` | where one frame lies in another |
+//! | `active_frames` | targets as poses of the platform, through the frames in force |
+//! | `change` | what can be changed |
+//! | `error` | what can not be done |
 
-mod in_force;
+mod active_frames;
+mod change;
+mod error;
+mod frame;
 mod name;
-mod store;
+mod resolve;
+mod selection;
 mod transform;
-mod view;
+mod tree;
 
-pub use crate::gcs::frames::parse::{FrameAction, FrameQuery, ListItem};
-pub(crate) use crate::gcs::frames::parse::{
-    chains, define, enable, enabled, here, link, list, pivot, pivots, remove, totals, types,
-};
-pub use in_force::{Choice, Enabled};
-pub use name::{FrameName, NAME_BYTES};
-pub use store::Frames;
+pub use active_frames::ActiveFrames;
+pub use change::FrameChange;
+pub use error::FrameError;
+pub use frame::{Frame, FrameKind};
+pub use name::{FRAME_NAME_BYTES, FrameName};
+pub use selection::{EnabledFrames, FrameSelection};
 pub use transform::Transform;
-pub use view::View;
-
-/// What a frame is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// `KSD`
-    Directed,
-    /// `KSF`
-    Here,
-    /// `KST`
-    Tool,
-    /// `KSW`
-    Work,
-}
-
-impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Directed, Self::Here, Self::Tool, Self::Work];
-
-    /// The command that makes one, which is also the type's name.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Directed => "KSD",
-            Self::Here => "KSF",
-            Self::Tool => "KST",
-            Self::Work => "KSW",
-        }
-    }
-
-    /// Tools lie in the platform, all others in the base frame: no chain goes through both. A directed frame lies in both.
-    const fn can_be_child_of(self, parent: Self) -> bool {
-        matches!(parent, Self::Directed)
-            || matches!(self, Self::Tool) == matches!(parent, Self::Tool)
-    }
-}
-
-/// A frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frame {
-    pub(crate) name: FrameName,
-    pub(crate) kind: Kind,
-    /// In its parent.
-    pub(crate) own: Transform,
-    /// `None`: `ZERO`.
-    pub(crate) parent: Option<FrameName>,
-}
+pub use tree::{FRAMES, FrameTree};

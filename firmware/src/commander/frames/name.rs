@@ -3,12 +3,13 @@
 use core::fmt;
 
 /// Longest name.
-pub const NAME_BYTES: usize = 16;
+pub const FRAME_NAME_BYTES: usize = 16;
 
-/// A name: a letter, then letters, digits and underscores, at most [`NAME_BYTES`] of them. Either case is the same name.
+/// A name: a letter, then letters, digits and underscores, at most [`FRAME_NAME_BYTES`] of them. Either case is the
+/// same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameName {
-    letters: [u8; NAME_BYTES],
+    letters: [u8; FRAME_NAME_BYTES],
     length: u8,
 }
 
@@ -26,10 +27,10 @@ impl FrameName {
         }
         let belongs = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
         let good = word.first().is_some_and(u8::is_ascii_alphabetic) && word.iter().all(belongs);
-        if !good || word.len() > NAME_BYTES {
+        if !good || word.len() > FRAME_NAME_BYTES {
             return None;
         }
-        let mut letters = [0; NAME_BYTES];
+        let mut letters = [0; FRAME_NAME_BYTES];
         for (letter, byte) in letters.iter_mut().zip(word) {
             *letter = byte.to_ascii_uppercase();
         }

@@ -1,225 +1,27 @@
 //! Waveforms: tables of curves, and generators that send an axis through one of them.
 //!
-//! | command | meaning |
-//! |---|---|
-//! | `WAV` | a segment of a table: calculated (`LIN`, `RAMP`, `SIN_P`) or point by point (`PNT`); `X` begins the table anew, `&` appends, `+` adds to what is there |
-//! | `WCL`, `WAV?`, `GWD?` | clears a table, its length, its points |
-//! | `WSL`, `WGC`, `WTR` | table of a generator, cycles (0: without end), ticks a point |
-//! | `WGO` | starts (1) and stops (0) generators |
-//!
-//! Generators 1 to 6 are the axes X to W; Z, U and V stay at 0 and take no table. Values are targets, mm and deg, in the
-//! frames in force. A calculated segment is stored as what it is calculated from, however long it is: only points given one
-//! by one take memory, of which all tables share [`POINTS`].
+//! The generators are those of the axes; Z, U and V stay at 0 and take no table. Values are targets, mm and deg, in the
+//! frames in force. A calculated segment is stored as what it is calculated from, however long it is: only points given
+//! one by one take memory, of which all tables share [`WAVE_POINTS`].
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | tables and generators |
+//! | `waveforms` | tables and generators |
 //! | `shape` | curves |
-//! | `run` | tables as samples of a motion |
-//! | `parse` | what lines mean |
-//! | `tell` | what queries answer |
+//! | `generator_run` | tables as samples of a motion |
+//! | `change` | what can be changed |
+//! | `error` | what can not be done |
 
-mod run;
+mod change;
+mod error;
+mod generator_run;
 mod shape;
+mod waveforms;
 
-pub use crate::gcs::wave::parse::{WaveAction, WavePoints, WaveQuery};
-pub(crate) use crate::gcs::wave::parse::{
-    clear, count, cycles, define, generators, go, lengths, rate, select,
-};
-pub use run::Run;
+pub use change::{LINE_POINTS, WaveChange, WavePoints};
+pub use error::WaveError;
+pub use generator_run::GeneratorRun;
 pub use shape::{Curve, Shape};
-
-use super::axis::Axis;
-use crate::gcs::error::ErrorCode;
-use heapless::Vec;
-
-/// Wave tables there are.
-pub const TABLES: usize = 8;
-/// Segments of a table.
-pub const SEGMENTS: usize = 8;
-/// Points, given one by one, of all tables together.
-pub const POINTS: usize = 1024;
-/// Longest table, points: at the fastest rate of points more than a day.
-pub(crate) const LONGEST: u32 = 1 << 28;
-
-/// Where a segment stands in its table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Segment {
-    first: u32,
-    length: u32,
-    shape: Shape,
-}
-
-/// How a segment joins a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Join {
-    /// `X`: the table begins anew.
-    Anew,
-    /// `&`: behind the last point.
-    Append,
-    /// `+`: added to what is there, from the first point.
-    Add,
-}
-
-/// A generator, as it has been set.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Generator {
-    /// Its table, counted from 1; 0: none.
-    pub table: u8,
-    /// How often it runs through; 0: without end.
-    pub cycles: u32,
-}
-
-/// All tables and generators.
-pub struct Waves {
-    tables: [Vec<Segment, SEGMENTS>; TABLES],
-    points: Vec<f64, POINTS>,
-    /// By [`Axis::index`].
-    pub generators: [Generator; 6],
-    /// Ticks of a point, for all generators.
-    pub ticks: u32,
-}
-
-/// Ticks of a point at first: 1 ms.
-const TICKS: u32 = 20;
-
-impl Waves {
-    /// Empty tables.
-    pub const fn new() -> Self {
-        Self {
-            tables: [const { Vec::new() }; TABLES],
-            points: Vec::new(),
-            generators: [Generator {
-                table: 0,
-                cycles: 0,
-            }; 6],
-            ticks: TICKS,
-        }
-    }
-
-    /// Points of a table (counted from 0).
-    pub fn length(&self, table: usize) -> u32 {
-        let segments = self.tables[table].iter();
-        segments.map(|s| s.first + s.length).max().unwrap_or(0)
-    }
-
-    /// A point of a table, both counted from 0.
-    pub fn value(&self, table: usize, point: u32) -> f64 {
-        self.tables[table]
-            .iter()
-            .filter(|s| (s.first..s.first + s.length).contains(&point))
-            .map(|s| s.shape.value(point - s.first, &self.points))
-            .sum()
-    }
-
-    /// A calculated segment.
-    pub fn define(
-        &mut self,
-        table: usize,
-        join: Join,
-        length: u32,
-        shape: Shape,
-    ) -> Result<(), ErrorCode> {
-        if length == 0 || !shape.is_good() {
-            return Err(ErrorCode::OutOfRange);
-        }
-        self.join(table, join, length, shape)
-    }
-
-    /// A segment of points.
-    pub fn define_points(
-        &mut self,
-        table: usize,
-        join: Join,
-        values: &[f64],
-    ) -> Result<(), ErrorCode> {
-        let freed = if join == Join::Anew {
-            self.points_of(table)
-        } else {
-            0
-        };
-        if self.points.len() - freed + values.len() > POINTS {
-            return Err(ErrorCode::WaveTooLarge);
-        }
-        if join == Join::Anew {
-            self.clear(table);
-        }
-        let at = self.points.len();
-        // The points of a table that grows by lines belong together, if nothing has come between.
-        let length = self.length(table);
-        if join == Join::Append
-            && let Some(last) = self.tables[table].last_mut()
-            && let Shape::Points { at: first } = last.shape
-            && usize::from(first) + last.length as usize == at
-            && last.first + last.length == length
-        {
-            last.length += values.len() as u32;
-        } else {
-            let shape = Shape::Points { at: at as u16 };
-            self.join(table, join, values.len() as u32, shape)?;
-        }
-        // There is room.
-        let _ = self.points.extend_from_slice(values);
-        Ok(())
-    }
-
-    fn join(
-        &mut self,
-        table: usize,
-        join: Join,
-        length: u32,
-        shape: Shape,
-    ) -> Result<(), ErrorCode> {
-        let first = match join {
-            Join::Anew | Join::Add => 0,
-            Join::Append => self.length(table),
-        };
-        if length > LONGEST - first {
-            return Err(ErrorCode::OutOfRange);
-        }
-        if join == Join::Anew {
-            self.clear(table);
-        }
-        let segment = Segment {
-            first,
-            length,
-            shape,
-        };
-        self.tables[table]
-            .push(segment)
-            .map_err(|_| ErrorCode::WaveTooLarge)
-    }
-
-    fn points_of(&self, table: usize) -> usize {
-        let segments = self.tables[table].iter();
-        segments
-            .filter(|s| matches!(s.shape, Shape::Points { .. }))
-            .map(|s| s.length as usize)
-            .sum()
-    }
-
-    /// Empties a table, and closes the gaps that its points leave.
-    pub fn clear(&mut self, table: usize) {
-        while let Some(segment) = self.tables[table].pop() {
-            let Shape::Points { at } = segment.shape else {
-                continue;
-            };
-            let (gap, length) = (usize::from(at), segment.length as usize);
-            self.points.copy_within(gap + length.., gap);
-            self.points.truncate(self.points.len() - length);
-            for other in self.tables.iter_mut().flatten() {
-                if let Shape::Points { at } = &mut other.shape
-                    && usize::from(*at) > gap
-                {
-                    *at -= length as u16;
-                }
-            }
-        }
-    }
-
-    /// The table of an axis' generator (counted from 0), if it has one with points.
-    pub fn table_of(&self, axis: Axis) -> Option<usize> {
-        let table = usize::from(self.generators[axis.index()].table).checked_sub(1)?;
-        (self.length(table) > 0).then_some(table)
-    }
-}
+pub use waveforms::{
+    Generator, Join, MAX_TABLE_POINTS, WAVE_POINTS, WAVE_SEGMENTS, WAVE_TABLES, Waveforms,
+};

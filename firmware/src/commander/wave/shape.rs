@@ -1,7 +1,7 @@
 //! Curves of waveforms, point by point.
 //!
 //! ```text
-//!   LIN                     RAMP                     SIN_P
+//!   line                    ramp                     sine
 //!   |            ____ amp   |       .                |       _-_
 //!   |          .'           |     .' '.              |     .'   '.
 //!   |        .'             |   .'     '.            |    .       .
@@ -9,8 +9,8 @@
 //!     start  |<- length       start  center            start  center
 //! ```
 //!
-//! `LIN` holds its ends outside of the curve. `RAMP` and `SIN_P` are cyclic: `start` shifts them inside their length; behind
-//! the end of that they hold their first value.
+//! The line holds its ends outside of the curve. Ramp and sine are cyclic: `start` shifts them inside their length;
+//! behind the end of that they hold their first value.
 
 use core::f64::consts::PI;
 
@@ -62,7 +62,7 @@ pub struct Curve {
 
 impl Shape {
     /// Whether the curve is one: its parts fit into its length.
-    pub fn is_good(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         match *self {
             Self::Line {
                 curve,
@@ -90,7 +90,7 @@ impl Shape {
                 speed_points,
             } => {
                 let way = point.saturating_sub(curve.start);
-                curve.raised(rounded_line(way, curve.length - 1, speed_points))
+                curve.scaled(rounded_line(way, curve.length - 1, speed_points))
             }
             Self::Ramp {
                 curve,
@@ -116,7 +116,7 @@ impl Curve {
     }
 
     /// `part` of the height.
-    fn raised(&self, part: f64) -> f64 {
+    fn scaled(&self, part: f64) -> f64 {
         self.offset + self.amplitude * part
     }
 
@@ -126,7 +126,7 @@ impl Curve {
             Some(way) => way.min(self.length),
             None => point + self.length - self.start,
         };
-        self.raised(if way < centre {
+        self.scaled(if way < centre {
             rise(way, centre)
         } else {
             rise(self.length - way, self.length - centre)
@@ -134,7 +134,8 @@ impl Curve {
     }
 }
 
-/// From 0 to 1 on a way of `length` points, the first and last `rounding` of them at constant acceleration; 1 behind it.
+/// From 0 to 1 on a way of `length` points, the first and last `rounding` of them at constant acceleration; 1 behind
+/// it.
 fn rounded_line(way: u32, length: u32, rounding: u32) -> f64 {
     if way >= length {
         return 1.0;

@@ -1,8 +1,9 @@
 //! The servo of one pivot.
 
+use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::platform_torque::Body;
 use super::presliding::Presliding;
-use crate::control::config::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::control::units::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::drivers::bridge::Duty;
 use crate::number;
 use crate::parameters::Parameters;
@@ -13,33 +14,41 @@ pub struct ServoConfig {
     /// What the pivots carry.
     pub body: Body,
     /// Of the following error's change in a tick and of the error itself (2^-32 turns, measured minus setpoint) to r.
-    drift: f32,
-    position: f32,
-    velocity: f32,
-    integral: f32,
-    learning: [f32; FEATURES],
+    rate_gain: f32,
+    position_gain: f32,
+    velocity_gain: f32,
+    integral_gain: f32,
+    learning_gains: [f32; FEATURES],
     inertia: f32,
     /// Volts a signal asks for by the model: viscous friction's per rad/s, per torque, Coulomb friction's.
-    volts: [f32; FEATURES],
+    model_weights: [f32; FEATURES],
     /// Back-EMF.
     volt_per_rate: f32,
+    /// Ticks by which torque and friction look ahead: latency and the winding's time constant.
     lead_ticks: f32,
     latency_s: f32,
-    way_s: f32,
-    share_per_volt: f32,
+    /// Presliding lengths a tick, for a rate of 1 rad/s.
+    presliding_per_rate: f32,
+    /// Current over the dead time's knee, for a volt at rest.
+    knee_currents_per_volt: f32,
+    /// Share of the way to its final value that the current goes in a tick.
     current_step: f32,
-    lost_counts: f32,
-    full: f32,
-    full_per_supply_count: f32,
+    /// What the dead time takes of a pulse, PWM counts.
+    dead_time_counts: f32,
+    /// Largest duty, PWM counts.
+    max_counts: f32,
+    /// PWM counts a volt where the supply reads one ADC count.
+    counts_per_volt_at_one_count: f32,
+    /// Anti-windup: largest size of the integral, V.
     integral_limit: f32,
-    learnt_limit: [f32; FEATURES],
+    learnt_weight_limit: [f32; FEATURES],
 }
 
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
 const FEATURES: usize = 3;
 
-/// Duty kept back from full: the bridge needs its charge pump refreshed and the current sense its window.
-const FULL: f64 = 0.98;
+/// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
+const MAX_DUTY: f64 = 0.98;
 
 impl ServoConfig {
     /// Derives the constants.
@@ -75,26 +84,27 @@ impl ServoConfig {
                     as f32,
                 moment: [x_m, y_m].map(|m| (platform.payload_kg * m * radius_m) as f32),
             },
-            drift: (-limits.rate_hz * rad_per_unit) as f32,
-            position: (-servo.position_1_s * rad_per_unit) as f32,
-            velocity: servo.velocity_v_s_rad as f32,
-            integral: (servo.integral_v_rad * period_s) as f32,
-            learning: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
+            rate_gain: (-limits.rate_hz * rad_per_unit) as f32,
+            position_gain: (-servo.position_1_s * rad_per_unit) as f32,
+            velocity_gain: servo.velocity_v_s_rad as f32,
+            integral_gain: (servo.integral_v_rad * period_s) as f32,
+            learning_gains: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
             inertia: drive.inertia_kg_m2 as f32,
-            volts: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
+            model_weights: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
                 .map(|torque| (volt_per_torque * torque) as f32),
             volt_per_rate: torque_per_ampere as f32,
             lead_ticks: (torque_lead_s * limits.rate_hz) as f32,
             latency_s: servo.latency_s as f32,
-            way_s: (period_s / drive.presliding_rad) as f32,
-            share_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
+            presliding_per_rate: (period_s / drive.presliding_rad) as f32,
+            knee_currents_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
             current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
                 as f32,
-            lost_counts: (drive.dead_time_s * drive.pwm_hz) as f32 * f32::from(drive.pwm_counts),
-            full: (FULL * f64::from(drive.pwm_counts)) as f32,
-            full_per_supply_count: (f64::from(drive.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
+            dead_time_counts: (drive.dead_time_s * drive.pwm_hz) as f32
+                * f32::from(drive.pwm_counts),
+            max_counts: (MAX_DUTY * f64::from(drive.pwm_counts)) as f32,
+            counts_per_volt_at_one_count: (f64::from(drive.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
             integral_limit: (drive.supply_v * 0.5) as f32,
-            learnt_limit: scale.map(|scale| (drive.supply_v * 0.25 * scale) as f32),
+            learnt_weight_limit: scale.map(|scale| (drive.supply_v * 0.25 * scale) as f32),
         }
     }
 }
@@ -106,7 +116,7 @@ impl ServoConfig {
         if supply_counts < 1.0 {
             0.0
         } else {
-            self.full_per_supply_count / supply_counts
+            self.counts_per_volt_at_one_count / supply_counts
         }
     }
 }
@@ -126,7 +136,7 @@ pub struct PivotSetpoint {
 
 /// State of one pivot's servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AxisServo {
+pub struct PivotServo {
     integral: f32,
     last_error: f32,
     last_inertial: f32,
@@ -134,39 +144,40 @@ pub struct AxisServo {
     signals: [f32; FEATURES],
     friction: Presliding,
     /// Weights of the signals, volts per unit, and the integral when they were learnt last.
-    learnt: [f32; FEATURES],
-    learnt_from: f32,
+    learnt_weights: [f32; FEATURES],
+    integral_when_learnt: f32,
     /// Motor current over the dead time's knee.
     current: f32,
-    carry: f32,
+    rounding_residue: f32,
     /// What it asked for last, PWM counts.
-    wanted: f32,
+    requested_counts: f32,
 }
 
-impl AxisServo {
-    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the setpoint.
+impl PivotServo {
+    /// Forgets everything but what was learnt: for servo on at rest, where the error is zero by the choice of the
+    /// setpoint.
     pub fn restart(&mut self) {
         *self = Self {
-            learnt: self.learnt,
+            learnt_weights: self.learnt_weights,
             ..Self::default()
         };
     }
 
     /// From here on the setpoint is given as what is measured: feedforward and what was learnt drive alone.
-    pub fn go_blind(&mut self) {
+    pub fn run_open_loop(&mut self) {
         self.last_error = 0.0;
     }
 
     /// What it asked for last, PWM counts: not a number where anything that it is made of is none.
     #[inline]
-    pub fn wanted(&self) -> f32 {
-        self.wanted
+    pub fn requested_counts(&self) -> f32 {
+        self.requested_counts
     }
 
     /// Whether it asked for as much as the bridge can give, or more.
     #[inline]
-    pub fn is_at_end(&self, config: &ServoConfig) -> bool {
-        self.wanted.abs() > config.full
+    pub fn is_saturated(&self, config: &ServoConfig) -> bool {
+        self.requested_counts.abs() > config.max_counts
     }
 
     /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
@@ -178,109 +189,89 @@ impl AxisServo {
         counts_per_volt: f32,
     ) -> Duty {
         let error = setpoint.error as f32;
-        let r = config.drift * (error - self.last_error) + config.position * error;
+        let r = config.rate_gain * (error - self.last_error) + config.position_gain * error;
         self.last_error = error;
 
         let last_contact = self.friction.deflection();
-        let contact = self.friction.advance(setpoint.rate * config.way_s);
+        let contact = self
+            .friction
+            .advance(setpoint.rate * config.presliding_per_rate);
         let inertial = setpoint.platform_torque + config.inertia * setpoint.acceleration;
-        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker by a fifth
-        // needs a fifth more for the current's change as well.
+        // The signals as they will be when what is asked for acts. What was learnt holds for that, too: a motor weaker
+        // by a fifth needs a fifth more for the current's change as well.
         let rate = setpoint.rate + config.latency_s * setpoint.acceleration;
         let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
         let friction = contact + config.lead_ticks * (contact - last_contact);
         self.last_inertial = inertial;
         self.signals = [rate, torque, friction];
-        let feedforward = (config.volts[0] + self.learnt[0]) * rate
-            + (config.volts[1] + self.learnt[1]) * torque
-            + (config.volts[2] + self.learnt[2]) * friction;
+        let feedforward = (config.model_weights[0] + self.learnt_weights[0]) * rate
+            + (config.model_weights[1] + self.learnt_weights[1]) * torque
+            + (config.model_weights[2] + self.learnt_weights[2]) * friction;
 
-        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead time
-        // takes of it is made up for.
-        let over_emf = feedforward + self.integral + config.velocity * r;
-        self.current += (over_emf * config.share_per_volt - self.current) * config.current_step;
+        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead
+        // time takes of it is made up for.
+        let over_emf = feedforward + self.integral + config.velocity_gain * r;
+        self.current +=
+            (over_emf * config.knee_currents_per_volt - self.current) * config.current_step;
         let volts = over_emf + config.volt_per_rate * rate;
-        let share = share(self.current);
-        let counts = make_up(volts * counts_per_volt, share, config.lost_counts);
-        self.wanted = counts;
-        let limited = limit(counts, config.full);
+        let share = dead_time_share(self.current);
+        let counts = compensate_dead_time(volts * counts_per_volt, share, config.dead_time_counts);
+        self.requested_counts = counts;
+        let limited = clamp_symmetric(counts, config.max_counts);
 
-        // Collecting stops while the bridge is at its end and the error asks for more.
+        // Anti-windup: collecting stops while the bridge is saturated and the error asks for more.
         if counts == limited || counts * r < 0.0 {
-            self.integral = limit(self.integral + config.integral * r, config.integral_limit);
+            self.integral = clamp_symmetric(
+                self.integral + config.integral_gain * r,
+                config.integral_limit,
+            );
         }
-        self.shape(limited)
+        self.quantise(limited)
     }
 
-    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so that the
-    /// pivots can take turns.
+    /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
+    /// that the pivots can take turns.
     #[inline]
     pub fn learn(&mut self, config: &ServoConfig) {
-        let collected = self.integral - self.learnt_from;
-        self.learnt_from = self.integral;
+        let collected = self.integral - self.integral_when_learnt;
+        self.integral_when_learnt = self.integral;
         for (k, signal) in self.signals.into_iter().enumerate() {
-            let weight = self.learnt[k] + config.learning[k] * collected * signal;
-            self.learnt[k] = limit(weight, config.learnt_limit[k]);
+            let weight = self.learnt_weights[k] + config.learning_gains[k] * collected * signal;
+            self.learnt_weights[k] = clamp_symmetric(weight, config.learnt_weight_limit[k]);
         }
     }
 
-    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200 is
-    /// coarser than friction forgives.
+    /// Rounds to whole counts and carries the rest over, so that the duty is right on average: at rest a count of 4,200
+    /// is coarser than friction forgives.
     #[inline]
-    fn shape(&mut self, counts: f32) -> Duty {
-        let wanted = counts + self.carry;
-        let (whole, rounded) = number::round(wanted);
-        self.carry = wanted - rounded;
+    fn quantise(&mut self, counts: f32) -> Duty {
+        let wanted = counts + self.rounding_residue;
+        let (whole, rounded) = number::round_ties_even(wanted);
+        self.rounding_residue = wanted - rounded;
         Duty(whole as i16)
     }
 }
 
-/// The share of the dead time that counts: over the knee, where a motor at work is, all of it.
+/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their
+/// order).
 #[inline]
-fn share(current: f32) -> f32 {
-    let share = if current > 1.0 { 1.0 } else { current };
-    if share < -1.0 { -1.0 } else { share }
-}
-
-/// `value`, or what lies nearest to it within +-`most`: cheaper than `clamp`, which looks at both ends (and at their order).
-#[inline]
-fn limit(value: f32, most: f32) -> f32 {
+fn clamp_symmetric(value: f32, most: f32) -> f32 {
     if value.abs() <= most {
         value
     } else {
-        end(value, most)
+        clamped_end(value, most)
     }
 }
 
 /// What is no number asks for nothing: not for full drive.
 #[cold]
 #[inline(never)]
-fn end(value: f32, most: f32) -> f32 {
+fn clamped_end(value: f32, most: f32) -> f32 {
     if value < 0.0 {
         -most
     } else if value > 0.0 {
         most
     } else {
         0.0
-    }
-}
-
-/// The duty whose pulses, after the dead time has taken its part, are `wanted`.
-///
-/// Dead time shortens every pulse by `lost` counts, or by all of it if that is less, times the `share` that the current's size
-/// and sign decide (-1 to 1; it lengthens the pulse when the current flows against the voltage). A pulse that comes out no
-/// longer than `lost` is one that loses its share of itself.
-#[inline]
-fn make_up(wanted: f32, share: f32, lost: f32) -> f32 {
-    let pulse = wanted + lost * share;
-    let (size, share) = if wanted < 0.0 {
-        (-pulse, -share)
-    } else {
-        (pulse, share)
-    };
-    if size >= lost {
-        pulse
-    } else {
-        wanted / (1.0 - share)
     }
 }

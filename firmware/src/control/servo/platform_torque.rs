@@ -14,11 +14,12 @@ pub struct Body {
 }
 
 /// Pivot torques (N m) for the body's acceleration: `tau = J^-T M x''`, velocity-dependent terms included. Twist and
-/// acceleration are those along the platform's axes (`kinematics::in_platform_axes`), in which the body does not change.
+/// acceleration are those along the platform's axes (`kinematics::in_platform_axes`), in which the body does not
+/// change.
 ///
-/// J^T tau = F reads, with f_i = tau_i / c_i the force across guide i and n_i the guides' left normals, `sum f_i n_i = F`,
-/// `sum f_i rho_i = M_z`. The n_i stand 120 deg apart, so `f_i = 2/3 n_i F + g` solves the first whatever g is, and the second
-/// gives g.
+/// J^T tau = F reads, with f_i = tau_i / c_i the force across guide i and n_i the guides' left normals, `sum f_i n_i =
+/// F`, `sum f_i rho_i = M_z`. The n_i stand 120 deg apart, so `f_i = 2/3 n_i F + g` solves the first whatever g is, and
+/// the second gives g.
 #[inline]
 pub fn platform_torques(
     body: &Body,

@@ -13,12 +13,12 @@ impl Presliding {
         self.deflection
     }
 
-    /// The deflection after the setpoint has moved by `way` (in presliding lengths).
+    /// The deflection after the setpoint has moved by `distance` (in presliding lengths).
     ///
-    /// Dahl's `dz/ds = 1 - z sign(ds)`, one implicit step: stable and within +-1 for any way.
+    /// Dahl's `dz/ds = 1 - z sign(ds)`, one implicit step: stable and within +-1 for any distance.
     #[inline]
-    pub fn advance(&mut self, way: f32) -> f32 {
-        self.deflection = (self.deflection + way) / (1.0 + way.abs());
+    pub fn advance(&mut self, distance: f32) -> f32 {
+        self.deflection = (self.deflection + distance) / (1.0 + distance.abs());
         self.deflection
     }
 }

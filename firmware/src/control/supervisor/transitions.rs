@@ -1,9 +1,9 @@
-//! The one table of the supervisor: what every event does in every state.
+//! The one table of the supervisor: what every event does in every mode.
 
 use crate::fault::Reaction;
 use crate::mode::Mode;
 
-/// What the supervisor is told, or finds out.
+/// A command, a fault, or the end of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// Command: take theta and the turns from the encoders, and hold.
@@ -46,7 +46,7 @@ pub enum Outcome {
 }
 
 /// All states, in the order of the table.
-pub const STATES: [Mode; 5] = [
+pub const MODES: [Mode; 5] = [
     Mode::Off,
     Mode::Holding,
     Mode::Moving,
@@ -54,9 +54,9 @@ pub const STATES: [Mode; 5] = [
     Mode::Fault,
 ];
 
-/// All events with what they do in each of the [`STATES`].
+/// All events with what they do in each of the [`MODES`].
 #[rustfmt::skip]
-pub const TABLE: [(Event, [Outcome; 5]); 12] = {
+pub const TRANSITIONS: [(Event, [Outcome; 5]); 12] = {
     use Event::{Acknowledge, AtRest, BrakeFault, Centre, CoastFault, Constants, Mounting, Move, Reference, ServoOff, ServoOn, StopFault};
     use Mode::{Fault, Holding, Moving, Off, Stopping};
     use Outcome::{If, Nothing, Refused, To};
@@ -93,7 +93,7 @@ impl Event {
 #[inline]
 pub(super) fn outcome(mode: Mode, event: Event) -> Outcome {
     // Both enumerations are in the table's order, which the tests hold.
-    TABLE
+    TRANSITIONS
         .get(event as usize)
         .and_then(|(_, outcomes)| outcomes.get(mode.row()))
         .copied()
@@ -101,7 +101,7 @@ pub(super) fn outcome(mode: Mode, event: Event) -> Outcome {
 }
 
 impl Mode {
-    /// Its place in [`STATES`].
+    /// Its place in [`MODES`].
     const fn row(self) -> usize {
         match self {
             Self::Off => 0,
@@ -119,17 +119,17 @@ mod tests {
 
     #[test]
     fn events_and_states_stand_where_they_are_looked_up() {
-        for (row, (event, _)) in TABLE.iter().enumerate() {
+        for (row, (event, _)) in TRANSITIONS.iter().enumerate() {
             assert_eq!(*event as usize, row);
         }
-        for (column, mode) in STATES.iter().enumerate() {
+        for (column, mode) in MODES.iter().enumerate() {
             assert_eq!(mode.row(), column);
         }
     }
 
     #[test]
     fn a_fault_is_left_by_its_acknowledgement_alone() {
-        for (event, outcomes) in TABLE {
+        for (event, outcomes) in TRANSITIONS {
             let left = !matches!(
                 outcomes[Mode::Fault.row()],
                 Outcome::To(Mode::Fault) | Outcome::Refused | Outcome::Nothing

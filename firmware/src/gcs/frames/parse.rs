@@ -1,58 +1,13 @@
 //! From lines to what they ask of the frames.
 
-use crate::commander::axis::{Axis, AxisSet, AxisValues};
-use crate::commander::frames::{FrameName, Kind};
+use super::keyword::{KINDS, keyword};
+use super::request::{FrameQuery, ListItem};
+use crate::commander::axis::{AxisSet, AxisValues};
+use crate::commander::frames::{FrameChange, FrameKind, FrameName};
+use crate::gcs::arguments::{ParseError, axis, number, values};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, axis, number, values};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::Scanner;
-
-/// What is to be done with frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FrameAction {
-    /// `KSD`, `KST`, `KSW`
-    Define(Kind, FrameName, AxisValues),
-    /// `KSF`
-    Here(FrameName),
-    /// `KLN`: child and parent.
-    Link(FrameName, FrameName),
-    /// `KEN`
-    Enable(FrameName),
-    /// `KRM`
-    Remove(FrameName),
-    /// `SPI`: R, S and T, mm.
-    Pivot([Option<f64>; 3]),
-}
-
-/// A question about frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameQuery {
-    /// `KEN?`: types of the enabled frames.
-    Enabled(Option<FrameName>),
-    /// `KET?`: enabled frames of the types.
-    Types(Option<Kind>),
-    /// `KLN?`
-    Chains(Option<FrameName>),
-    /// `KLS?`
-    List(Option<FrameName>, Option<ListItem>),
-    /// `KLT?`: start and end of the chain.
-    Totals(Option<FrameName>, Option<FrameName>),
-    /// `SPI?`: which of R, S and T; none stands for all.
-    Pivot([bool; 3]),
-}
-
-/// A property that `KLS?` tells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ListItem {
-    /// The type.
-    Type,
-    /// The frame it is in.
-    Parent,
-    /// Whether it is enabled.
-    Enabled,
-    /// Where it lies: along one axis, or all.
-    Position(Option<Axis>),
-}
 
 /// What follows the name of a command about frames.
 type Parsed = Result<Request, ParseError>;
@@ -60,62 +15,62 @@ type Parsed = Result<Request, ParseError>;
 const A_NAME: &str = "a frame's name: a letter, then letters, digits or _, 16 at most";
 
 /// `KSD`, `KST` or `KSW`: a name, then pairs of axis and number; an axis that is not named is 0.
-pub fn define(kind: Kind, scanner: &mut Scanner<'_>) -> Parsed {
+pub fn define(kind: FrameKind, scanner: &mut Scanner<'_>) -> Parsed {
     let name = name(scanner)?;
     let values = if scanner.is_at_end() {
         AxisValues::default()
     } else {
         values(scanner)?
     };
-    act(FrameAction::Define(kind, name, values))
+    act(FrameChange::Define(kind, name, values))
 }
 
 /// `KSF`
 pub fn here(scanner: &mut Scanner<'_>) -> Parsed {
-    act(FrameAction::Here(name(scanner)?))
+    act(FrameChange::Here(name(scanner)?))
 }
 
 /// `KLN`
 pub fn link(scanner: &mut Scanner<'_>) -> Parsed {
-    act(FrameAction::Link(name(scanner)?, name(scanner)?))
+    act(FrameChange::Link(name(scanner)?, name(scanner)?))
 }
 
 /// `KEN`
 pub fn enable(scanner: &mut Scanner<'_>) -> Parsed {
-    act(FrameAction::Enable(name(scanner)?))
+    act(FrameChange::Enable(name(scanner)?))
 }
 
 /// `KRM`
 pub fn remove(scanner: &mut Scanner<'_>) -> Parsed {
-    act(FrameAction::Remove(name(scanner)?))
+    act(FrameChange::Remove(name(scanner)?))
 }
 
 /// `SPI`: pairs of R, S or T and number.
-pub fn pivot(scanner: &mut Scanner<'_>) -> Parsed {
+pub fn rotation_centre(scanner: &mut Scanner<'_>) -> Parsed {
     let mut wanted = [None; 3];
     loop {
-        let (place, word) = pivot_axis(scanner)?;
+        let (place, word) = centre_axis(scanner)?;
         if wanted[place].is_some() {
             return Err(word);
         }
         wanted[place] = Some(number(scanner.next())?);
         if scanner.is_at_end() {
-            return act(FrameAction::Pivot(wanted));
+            return act(FrameChange::RotationCentre(wanted));
         }
     }
 }
 
 /// `SPI?`
-pub fn pivots(scanner: &mut Scanner<'_>) -> Parsed {
+pub fn rotation_centre_query(scanner: &mut Scanner<'_>) -> Parsed {
     let mut named = [false; 3];
     while !scanner.is_at_end() {
-        let (place, word) = pivot_axis(scanner)?;
+        let (place, word) = centre_axis(scanner)?;
         if named[place] {
             return Err(word);
         }
         named[place] = true;
     }
-    ask(FrameQuery::Pivot(named))
+    ask(FrameQuery::RotationCentre(named))
 }
 
 /// `KEN?`
@@ -137,11 +92,11 @@ pub fn totals(scanner: &mut Scanner<'_>) -> Parsed {
 /// `KET?`
 pub fn types(scanner: &mut Scanner<'_>) -> Parsed {
     let word = scanner.word();
-    let kind = Kind::ALL
+    let kind = KINDS
         .into_iter()
-        .find(|kind| kind.word().as_bytes().eq_ignore_ascii_case(word.text));
+        .find(|&kind| keyword(kind).as_bytes().eq_ignore_ascii_case(word.text));
     if kind.is_none() && !word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::OutOfRange, "a type: KSD, KSF, KST or KSW"));
+        return Err(word.error(ErrorCode::OutOfRange, "a type: KSD, KSF, KST or KSW"));
     }
     ask(FrameQuery::Types(kind))
 }
@@ -174,14 +129,14 @@ fn list_item(scanner: &mut Scanner<'_>) -> Result<ListItem, ParseError> {
         };
         Ok(ListItem::Position(axis))
     } else {
-        Err(word.unfit(
+        Err(word.error(
             ErrorCode::OutOfRange,
             "an item: TYPE, PARENT, ENABLED or POS",
         ))
     }
 }
 
-fn act(action: FrameAction) -> Parsed {
+fn act(action: FrameChange) -> Parsed {
     Ok(Request::Act(Action::Frame(action)))
 }
 
@@ -192,9 +147,9 @@ fn ask(query: FrameQuery) -> Parsed {
 fn name(scanner: &mut Scanner<'_>) -> Result<FrameName, ParseError> {
     let word = scanner.word();
     if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, A_NAME));
+        return Err(word.error(ErrorCode::ParameterCount, A_NAME));
     }
-    FrameName::new(word.text).ok_or_else(|| word.unfit(ErrorCode::OutOfRange, A_NAME))
+    FrameName::new(word.text).ok_or_else(|| word.error(ErrorCode::OutOfRange, A_NAME))
 }
 
 fn name_or_none(scanner: &mut Scanner<'_>) -> Result<Option<FrameName>, ParseError> {
@@ -205,18 +160,18 @@ fn name_or_none(scanner: &mut Scanner<'_>) -> Result<Option<FrameName>, ParseErr
 }
 
 /// The place of R, S or T, and the error should it have been named before.
-fn pivot_axis(scanner: &mut Scanner<'_>) -> Result<(usize, ParseError), ParseError> {
+fn centre_axis(scanner: &mut Scanner<'_>) -> Result<(usize, ParseError), ParseError> {
     let word = scanner.next();
     let place = match word.text {
         b"R" | b"r" => 0,
         b"S" | b"s" => 1,
         b"T" | b"t" => 2,
-        b"" => return Err(word.unfit(ErrorCode::ParameterCount, "R, S or T")),
-        _ => return Err(word.unfit(ErrorCode::InvalidAxis, "R, S or T")),
+        b"" => return Err(word.error(ErrorCode::ParameterCount, "R, S or T")),
+        _ => return Err(word.error(ErrorCode::InvalidAxis, "R, S or T")),
     };
     Ok((
         place,
-        word.unfit(
+        word.error(
             ErrorCode::AxisTwice,
             "a coordinate that has not been named yet",
         ),

@@ -1,107 +1,24 @@
-//! Carrying out what is about macros and variables, and running the macro.
+//! What the lines about macros do.
 
-use super::state::lines;
-use super::{Failure, LINES, MacroRequest, Macros};
-use crate::gcs::Panel;
+use super::replies::reply_lines;
+use super::request::MacroRequest;
 use crate::gcs::error::ErrorCode;
-use crate::gcs::reply::Reply;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::request::Condition;
 use crate::gcs::session::Session;
 use crate::gcs::text::{Name, Text};
-use crate::gcs::variables::{Locals, VariableRequest, text_of};
-use crate::queues::PanelLink;
-use core::convert::Infallible;
-use embedded_io::{ErrorType, Write};
 
-impl Macros {
-    /// Whether a macro runs.
-    pub fn is_running(&self) -> bool {
-        !self.calls.is_empty()
-    }
-
-    /// Ends the macro that runs, if one does.
-    pub fn stop(&mut self) {
-        self.calls.clear();
-    }
-
-    /// The local variables of the macro that runs, for its own lines.
-    pub fn locals(&self, session: &Session) -> Option<&Locals> {
-        session.is_macro.then(|| self.calls.locals()).flatten()
-    }
-
-    fn locals_mut(&mut self, session: &Session) -> Option<&mut Locals> {
-        if session.is_macro {
-            self.calls.locals_mut()
-        } else {
-            None
-        }
-    }
-
-    /// All macros, with their lines.
-    pub fn all(&self) -> impl Iterator<Item = (Name, &[u8])> {
-        self.store.all()
-    }
-
-    /// Adds to the text of a macro that was kept; false when it can be none, or there is no room.
-    pub fn add_text(&mut self, text: &[u8]) -> bool {
-        let printable = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
-        text.iter().all(printable) && self.store.extend(text)
-    }
-
-    /// The text that was added is the macro of this name; false when there are too many.
-    pub fn end_text(&mut self, name: Name) -> bool {
-        self.store.find(&name).is_none() && self.store.keep(name).is_ok()
-    }
-
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.store.clear();
-    }
-
-    fn place(&self, name: &Name) -> Result<usize, ErrorCode> {
-        self.store.find(name).ok_or(ErrorCode::MacroNotFound)
-    }
-
-    fn delete(&mut self, name: &Name) -> Result<(), ErrorCode> {
-        if self.is_running() {
-            return Err(ErrorCode::MacroRunning);
-        }
-        let place = self.place(name)?;
-        self.store.remove(place);
-        Ok(())
-    }
-
-    /// The macro's line has been carried out: whether it goes on.
-    fn look_at_line(&mut self, session: &mut Session) -> bool {
-        match core::mem::take(&mut session.error) {
-            // What `HLT` leaves; after `STP` nothing runs any more.
-            ErrorCode::None | ErrorCode::Stopped => {}
-            code => {
-                if let Some((place, number)) = self.calls.current() {
-                    self.failure = Some(Failure {
-                        name: self.store.name(place),
-                        line: number,
-                        code,
-                        text: self.line.clone(),
-                    });
-                }
-                self.stop();
-            }
-        }
-        self.is_running()
-    }
-}
-
-impl Panel {
+impl Interpreter {
     /// Carries out what is about macros; queries are answered.
-    pub(in crate::gcs) fn obey_macro<W: Write>(
+    pub(in crate::gcs) fn execute_macro(
         &mut self,
         request: &MacroRequest,
         session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let result = match request {
-            MacroRequest::Begin(name) => self.macros.begin(*name, self.stage.tick(), session),
+            MacroRequest::Begin(name) => self.macros.begin(*name, self.commander.tick(), session),
             MacroRequest::End => self.macros.end(session),
             MacroRequest::Start(name, times, arguments) => {
                 self.start(name, *times, arguments, session)
@@ -109,52 +26,18 @@ impl Panel {
             MacroRequest::Delete(name) => self.macros.delete(name),
             MacroRequest::Stop(name) => self.stop_macro(name.as_ref()),
             MacroRequest::List(Some(name)) => match self.macros.place(name) {
-                Ok(place) => return tell_lines(self.macros.store.text(place), out),
+                Ok(place) => return reply_lines(self.macros.store.text(place), out),
                 Err(code) => Err(code),
             },
-            _ => return self.tell_macros(request, out),
+            _ => return self.reply_macros(request, out),
         };
         let changes = matches!(request, MacroRequest::End | MacroRequest::Delete(_));
         match result {
-            Ok(()) if changes => self.keeping.note_macros(),
+            Ok(()) if changes => self.persistence.mark_macros_changed(),
             Ok(()) => {}
             Err(code) => session.error = code,
         }
         Ok(())
-    }
-
-    fn tell_macros<W: Write>(&self, request: &MacroRequest, out: &mut W) -> Result<(), W::Error> {
-        let macros = &self.macros;
-        let mut reply = Reply::new(out);
-        match request {
-            MacroRequest::Error => {
-                if let Some(Failure {
-                    name,
-                    line,
-                    code,
-                    text,
-                }) = &macros.failure
-                {
-                    // Only what could be printed was recorded.
-                    let text = core::str::from_utf8(text).unwrap_or_default();
-                    let code = code.number();
-                    reply.line(format_args!("{name} {line}={code} <{text}>"))?;
-                }
-            }
-            MacroRequest::Free => reply.line(format_args!("{}", macros.store.free()))?,
-            MacroRequest::List(_) => {
-                for name in macros.store.names() {
-                    reply.line(format_args!("{name}"))?;
-                }
-            }
-            MacroRequest::Running => {
-                for place in macros.calls.places() {
-                    reply.line(format_args!("{}", macros.store.name(place)))?;
-                }
-            }
-            _ => reply.line(format_args!("{}", u8::from(macros.is_running())))?,
-        }
-        reply.end()
     }
 
     /// `MAC START`: from a connection the macro begins a session of its own; from a macro it runs before that goes on.
@@ -173,9 +56,9 @@ impl Panel {
         if !session.is_macro {
             self.macros.failure = None;
             self.macros.session = Session::for_macro(session.level);
-            // What is old news already does not end it.
+            // What was reported before does not end it.
             let mut session = core::mem::take(&mut self.macros.session);
-            self.tell_bad_news(&mut session);
+            self.report_errors(&mut session);
             session.error = ErrorCode::None;
             self.macros.session = session;
         }
@@ -203,7 +86,7 @@ impl Panel {
         if !session.is_macro {
             return Err(ErrorCode::NotAllowed);
         }
-        if !self.holds(condition, session)? {
+        if !self.is_met(condition, session)? {
             return Ok(());
         }
         let macros = &mut self.macros;
@@ -218,118 +101,5 @@ impl Panel {
                 Ok(())
             }
         }
-    }
-
-    /// Carries out what is about variables.
-    pub(in crate::gcs) fn obey_variables<W: Write>(
-        &mut self,
-        request: &VariableRequest,
-        session: &mut Session,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let result = match request {
-            VariableRequest::Set(name, value) => self.set_variable(name, *value, session),
-            VariableRequest::Add(name, a, b) => {
-                text_of(a + b).and_then(|sum| self.set_variable(name, Some(sum), session))
-            }
-            VariableRequest::Tell(names) => {
-                let named = names.iter().flatten();
-                let locals = self.macros.locals(session);
-                let known = |name: &Name| self.variables.get(name, locals).is_some();
-                if named.clone().all(known) {
-                    return self.tell_variables(names, out);
-                }
-                Err(ErrorCode::UnknownVariable)
-            }
-        };
-        if let Err(code) = result {
-            session.error = code;
-        }
-        Ok(())
-    }
-
-    fn set_variable(
-        &mut self,
-        name: &Name,
-        value: Option<Text>,
-        session: &Session,
-    ) -> Result<(), ErrorCode> {
-        let locals = self.macros.locals_mut(session);
-        self.variables.set(name, value, locals)
-    }
-
-    fn tell_variables<W: Write>(
-        &self,
-        names: &[Option<Name>],
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
-        let all = names.iter().all(Option::is_none);
-        for (name, value) in self.variables.iter() {
-            if all || names.contains(&Some(*name)) {
-                reply.line(format_args!("{name}={value}"))?;
-            }
-        }
-        reply.end()
-    }
-
-    /// Carries on the macro that runs, as far as its lines for this tick go.
-    pub(in crate::gcs) fn run_macro(&mut self, link: &mut PanelLink<'_>) {
-        if !self.macros.is_running() {
-            return;
-        }
-        let tick = self.stage.tick();
-        if self.macros.tick != tick {
-            self.macros.tick = tick;
-            self.macros.lines = LINES;
-        }
-        let mut session = core::mem::take(&mut self.macros.session);
-        self.tell_bad_news(&mut session);
-        loop {
-            let Ok(()) = self.handle(&mut session, link, &mut Nowhere);
-            if !session.is_idle() || !self.macros.look_at_line(&mut session) {
-                break;
-            }
-            if self.macros.lines == 0 {
-                break;
-            }
-            self.macros.lines -= 1;
-            let macros = &mut self.macros;
-            macros.line.clear();
-            // No line was recorded that is longer than one may be, and the input is empty.
-            let _ = (macros.line).extend_from_slice(macros.calls.next(&macros.store));
-            session.receive(&macros.line);
-            session.receive(b"\n");
-        }
-        if self.macros.is_running() {
-            self.macros.session = session;
-        }
-    }
-}
-
-fn tell_lines<W: Write>(text: &[u8], out: &mut W) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
-    for line in lines(text) {
-        // Only what could be printed was recorded.
-        let line = core::str::from_utf8(line).unwrap_or_default();
-        reply.line(format_args!("{line}"))?;
-    }
-    reply.end()
-}
-
-/// Where the answers of a macro's queries go.
-struct Nowhere;
-
-impl ErrorType for Nowhere {
-    type Error = Infallible;
-}
-
-impl Write for Nowhere {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> Result<(), Infallible> {
-        Ok(())
     }
 }

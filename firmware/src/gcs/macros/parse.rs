@@ -1,71 +1,47 @@
-//! Understanding the lines about macros and variables.
+//! What the lines about macros mean.
 
-use super::MacroRequest;
+use super::request::MacroRequest;
+use crate::gcs::arguments::{ParseError, optional_text, required, whole};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, number};
-use crate::gcs::scan::{Scanner, Word};
+use crate::gcs::request::Request;
+use crate::gcs::scan::Scanner;
 use crate::gcs::text::{Name, Text};
-use crate::gcs::variables::{NAMED, VariableRequest};
 
-/// What follows a command about macros or variables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gcs) enum MacroSyntax {
-    /// A name.
-    Begin,
-    /// A name.
-    Delete,
-    /// A name and two arguments at most.
-    Start,
-    /// A name, a number and two arguments at most.
-    StartTimes,
-    /// A name or nothing.
-    Stop,
-    /// A name or nothing.
-    List,
+type Parsed = Result<Request, ParseError>;
+
+/// `MAC BEG`: a name.
+pub(in crate::gcs) fn begin(scanner: &mut Scanner<'_>) -> Parsed {
+    Ok(Request::Macro(MacroRequest::Begin(macro_name(scanner)?)))
 }
 
-/// The rest of a line about macros.
-pub(in crate::gcs) fn macro_request(
-    syntax: MacroSyntax,
-    scanner: &mut Scanner<'_>,
-) -> Result<MacroRequest, ParseError> {
-    Ok(match syntax {
-        MacroSyntax::Begin => MacroRequest::Begin(macro_name(scanner)?),
-        MacroSyntax::Delete => MacroRequest::Delete(macro_name(scanner)?),
-        MacroSyntax::Start => MacroRequest::Start(macro_name(scanner)?, 1, arguments(scanner)?),
-        MacroSyntax::StartTimes => {
-            let (name, times) = (macro_name(scanner)?, scanner.word());
-            let count = whole(times, 1.0, f64::from(u32::MAX))?;
-            MacroRequest::Start(name, count as u32, arguments(scanner)?)
-        }
-        MacroSyntax::Stop => MacroRequest::Stop(perhaps_a_name(scanner)?),
-        MacroSyntax::List => MacroRequest::List(perhaps_a_name(scanner)?),
-    })
+/// `MAC DEL`: a name.
+pub(in crate::gcs) fn delete(scanner: &mut Scanner<'_>) -> Parsed {
+    Ok(Request::Macro(MacroRequest::Delete(macro_name(scanner)?)))
 }
 
-/// What follows `VAR`: a name and, unless it is to be forgotten, a value.
-pub(in crate::gcs) fn set(scanner: &mut Scanner<'_>) -> Result<VariableRequest, ParseError> {
-    let name = variable(scanner)?;
-    Ok(VariableRequest::Set(name, perhaps_a_text(scanner)?))
+/// `MAC START`: a name and two arguments at most.
+pub(in crate::gcs) fn start(scanner: &mut Scanner<'_>) -> Parsed {
+    let name = macro_name(scanner)?;
+    let arguments = arguments(scanner)?;
+    Ok(Request::Macro(MacroRequest::Start(name, 1, arguments)))
 }
 
-/// What follows `ADD`: a name and two numbers.
-pub(in crate::gcs) fn add(scanner: &mut Scanner<'_>) -> Result<VariableRequest, ParseError> {
-    let name = variable(scanner)?;
-    let (a, b) = (number(scanner.word())?, number(scanner.word())?);
-    Ok(VariableRequest::Add(name, a, b))
+/// `MAC NSTART`: a name, a number and two arguments at most.
+pub(in crate::gcs) fn start_times(scanner: &mut Scanner<'_>) -> Parsed {
+    let (name, times) = (macro_name(scanner)?, scanner.word());
+    let count = whole(times, 1.0, f64::from(u32::MAX))? as u32;
+    let arguments = arguments(scanner)?;
+    Ok(Request::Macro(MacroRequest::Start(name, count, arguments)))
 }
 
-/// What follows `VAR?`: names.
-pub(in crate::gcs) fn tell(scanner: &mut Scanner<'_>) -> Result<VariableRequest, ParseError> {
-    let mut names = [None; NAMED];
-    for place in &mut names {
-        if scanner.is_at_end() {
-            break;
-        }
-        *place = Some(variable(scanner)?);
-    }
-    Ok(VariableRequest::Tell(names))
+/// `MAC STOP`: a name or nothing.
+pub(in crate::gcs) fn stop(scanner: &mut Scanner<'_>) -> Parsed {
+    Ok(Request::Macro(MacroRequest::Stop(optional_name(scanner)?)))
+}
+
+/// `MAC?`: a name or nothing.
+pub(in crate::gcs) fn list(scanner: &mut Scanner<'_>) -> Parsed {
+    Ok(Request::Macro(MacroRequest::List(optional_name(scanner)?)))
 }
 
 /// What follows `JRC`, before its condition: how many lines to go.
@@ -74,23 +50,12 @@ pub(in crate::gcs) fn jump(scanner: &mut Scanner<'_>) -> Result<i32, ParseError>
     Ok(whole(scanner.word(), -most, most)? as i32)
 }
 
-/// The name of a variable: a digit, or what starts with none.
-pub(in crate::gcs) fn variable(scanner: &mut Scanner<'_>) -> Result<Name, ParseError> {
-    let word = required(scanner, "a variable's name")?;
-    let starts_well = |name: &Name| {
-        name.digit().is_some() || name.as_bytes().first().is_some_and(|b| !b.is_ascii_digit())
-    };
-    Name::named(word.text)
-        .filter(starts_well)
-        .ok_or_else(|| word.unfit(ErrorCode::InvalidIdentifier, "a variable's name"))
-}
-
 fn macro_name(scanner: &mut Scanner<'_>) -> Result<Name, ParseError> {
     let word = required(scanner, "a macro's name")?;
-    Name::named(word.text).ok_or_else(|| word.unfit(ErrorCode::MacroName, "a macro's name"))
+    Name::named(word.text).ok_or_else(|| word.error(ErrorCode::MacroName, "a macro's name"))
 }
 
-fn perhaps_a_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError> {
+fn optional_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError> {
     if scanner.is_at_end() {
         return Ok(None);
     }
@@ -98,35 +63,5 @@ fn perhaps_a_name(scanner: &mut Scanner<'_>) -> Result<Option<Name>, ParseError>
 }
 
 fn arguments(scanner: &mut Scanner<'_>) -> Result<[Option<Text>; 2], ParseError> {
-    Ok([perhaps_a_text(scanner)?, perhaps_a_text(scanner)?])
-}
-
-fn perhaps_a_text(scanner: &mut Scanner<'_>) -> Result<Option<Text>, ParseError> {
-    let word = scanner.word();
-    if word.text.is_empty() {
-        return Ok(None);
-    }
-    let text = Text::new(word.text);
-    text.map(Some).ok_or_else(|| {
-        word.unfit(
-            ErrorCode::OutOfRange,
-            "a value of 32 printable characters at most",
-        )
-    })
-}
-
-fn whole(word: Word<'_>, lowest: f64, highest: f64) -> Result<f64, ParseError> {
-    let value = number(word)?;
-    if libm::rint(value) == value && (lowest..=highest).contains(&value) {
-        return Ok(value);
-    }
-    Err(word.unfit(ErrorCode::OutOfRange, "a whole number"))
-}
-
-fn required<'a>(scanner: &mut Scanner<'a>, expected: &'static str) -> Result<Word<'a>, ParseError> {
-    let word = scanner.word();
-    if word.text.is_empty() {
-        return Err(word.unfit(ErrorCode::ParameterCount, expected));
-    }
-    Ok(word)
+    Ok([optional_text(scanner)?, optional_text(scanner)?])
 }

@@ -1,10 +1,11 @@
 //! Recording a macro, one at a time in the whole controller.
 //!
-//! A client that goes away in the middle leaves its recording open; another connection may begin its own when nothing has been
-//! recorded for [`PATIENCE_TICKS`]. The lines of the one that lost it, should it be there still, are thrown away up to its
-//! `MAC END`, which is an error: they were never meant to be carried out.
+//! A client that goes away in the middle leaves its recording open; another connection may begin its own when nothing
+//! has been recorded for [`RECORDING_TIMEOUT_TICKS`]. The lines of the one that lost it, should it be there still, are
+//! thrown away up to its `MAC END`, which is an error: they were never meant to be carried out.
 
-use super::{MacroRequest, Macros};
+use super::request::MacroRequest;
+use super::state::{Macros, Recording};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::parse::parse;
 use crate::gcs::request::Request;
@@ -14,23 +15,12 @@ use crate::gcs::table::find;
 use crate::gcs::text::Name;
 
 /// How long a recording without a new line keeps others out: 10 s at 20 kHz.
-pub const PATIENCE_TICKS: u64 = 200_000;
-
-/// The recording under way.
-pub(super) struct Recording {
-    name: Name,
-    /// Its connection holds the same number.
-    number: u32,
-    /// When its last line came.
-    tick: u64,
-    /// Why it will not be kept.
-    spoilt: Option<ErrorCode>,
-}
+pub const RECORDING_TIMEOUT_TICKS: u64 = 200_000;
 
 /// What becomes of a line of a connection that records.
 pub(in crate::gcs) enum Recorded {
     /// It is part of the macro now.
-    Kept,
+    AddedToMacro,
     /// It is to be carried out.
     CarryOut,
 }
@@ -46,44 +36,44 @@ impl Macros {
         if self.is_running() {
             return Err(ErrorCode::MacroRunning);
         }
-        let open = |recording: &Recording| tick < recording.tick + PATIENCE_TICKS;
+        let open = |recording: &Recording| tick < recording.tick + RECORDING_TIMEOUT_TICKS;
         if self.recording.as_ref().is_some_and(open) {
             return Err(ErrorCode::Busy);
         }
-        self.store.drop_recorded();
+        self.store.discard_recording();
         self.recordings = self.recordings.wrapping_add(1);
         self.recording = Some(Recording {
             name,
             number: self.recordings,
             tick,
-            spoilt: None,
+            error: None,
         });
         session.recording = Some(self.recordings);
         Ok(())
     }
 
     /// Takes the line of a connection that records.
-    pub(in crate::gcs) fn record(
+    pub(in crate::gcs) fn record_line(
         &mut self,
         number: u32,
         line: &[u8],
         tick: u64,
     ) -> Result<Recorded, ErrorCode> {
-        if is_for_now(line) {
+        if is_immediate(line) {
             return Ok(Recorded::CarryOut);
         }
         let Some(recording) = self.recording.as_mut().filter(|r| r.number == number) else {
             return Err(ErrorCode::Busy);
         };
         recording.tick = tick;
-        let result = could_be_carried_out(line).and_then(|()| {
+        let result = check_macro_line(line).and_then(|()| {
             let fits = self.store.append(line);
             fits.then_some(()).ok_or(ErrorCode::NoMemory)
         });
         if let Err(code) = result {
-            recording.spoilt.get_or_insert(code);
+            recording.error.get_or_insert(code);
         }
-        result.map(|()| Recorded::Kept)
+        result.map(|()| Recorded::AddedToMacro)
     }
 
     /// `MAC END`: the connection does not record any more, whatever becomes of it.
@@ -94,27 +84,27 @@ impl Macros {
         let running = self.store.find(&recording.name);
         let running = running.is_some_and(|place| self.calls.contains(place));
         let problem = recording
-            .spoilt
+            .error
             .or(running.then_some(ErrorCode::MacroRunning));
         if let Some(code) = problem {
-            self.store.drop_recorded();
+            self.store.discard_recording();
             return Err(code);
         }
-        self.store.keep(recording.name)
+        self.store.commit(recording.name)
     }
 }
 
 /// Whether a line is no part of a macro: the end of the recording, and queries, whose answer the client waits for.
-fn is_for_now(line: &[u8]) -> bool {
+fn is_immediate(line: &[u8]) -> bool {
     let name = Scanner::new(line).word().text;
     name.is_empty()
         || name.ends_with(b"?")
         || matches!(parse(line), Ok(Request::Macro(MacroRequest::End)))
 }
 
-/// Whether a line can be one of a macro. What stands for a variable is known only when it runs, so of such a line only the
-/// command's name is looked at.
-fn could_be_carried_out(line: &[u8]) -> Result<(), ErrorCode> {
+/// Whether a line can be one of a macro. What stands for a variable is known only when it runs, so of such a line only
+/// the command's name is looked at.
+fn check_macro_line(line: &[u8]) -> Result<(), ErrorCode> {
     if !line.iter().all(|byte| matches!(byte, b' '..=b'~')) {
         return Err(ErrorCode::Syntax);
     }

@@ -1,138 +1,130 @@
-//! The text of all macros: one block of bytes in which each has a stretch, line after line, each ended by LF, as it was sent.
-//! A stretch is all that has to be written to keep a macro somewhere else, and to be sent to have it again.
+//! All about macros that the connections share.
 
+use super::calls::Calls;
+use super::texts::MacroTexts;
 use crate::gcs::error::ErrorCode;
-use crate::gcs::text::Name;
-use heapless::Vec;
+use crate::gcs::session::Session;
+use crate::gcs::text::{LINE_BYTES, Name};
+use crate::gcs::variables::Locals;
 
-/// Bytes for the text of all macros, a line's LF included.
-pub const MACRO_BYTES: usize = 8192;
-/// Macros that can be kept.
-pub const MACROS: usize = 16;
+/// Lines of a macro carried out in a tick.
+pub const LINES_PER_TICK: u32 = 8;
 
-/// See the module. Stretches lie behind one another in no order; what is being recorded comes last.
+/// All about macros that the connections share.
 #[derive(Default)]
-pub(super) struct Store {
-    text: Vec<u8, MACRO_BYTES>,
-    macros: [Option<Stretch>; MACROS],
+pub(in crate::gcs) struct Macros {
+    pub(super) store: MacroTexts,
+    pub(super) recording: Option<Recording>,
+    /// Recordings begun so far: identifies one.
+    pub(super) recordings: u32,
+    pub(super) calls: Calls,
+    /// The connection of the macro that runs.
+    pub(super) session: Session,
+    /// Its line that is being carried out.
+    pub(super) line: Line,
+    /// Lines left for this tick, and which it is.
+    pub(super) lines: u32,
+    pub(super) tick: u64,
+    pub(super) failure: Option<Failure>,
 }
 
-#[derive(Clone, Copy)]
-struct Stretch {
-    name: Name,
-    start: u16,
-    length: u16,
+/// A line of a macro.
+pub(super) type Line = heapless::Vec<u8, { LINE_BYTES }>;
+
+/// The error that ended a macro.
+pub(super) struct Failure {
+    pub name: Name,
+    pub line: u16,
+    pub code: ErrorCode,
+    pub text: Line,
 }
 
-impl Store {
-    /// Bytes left.
-    pub fn free(&self) -> usize {
-        MACRO_BYTES - self.text.len()
+/// The recording under way.
+pub(super) struct Recording {
+    pub name: Name,
+    /// Its connection holds the same number.
+    pub number: u32,
+    /// When its last line came.
+    pub tick: u64,
+    /// Why it will not be stored.
+    pub error: Option<ErrorCode>,
+}
+
+impl Macros {
+    /// Whether a macro runs.
+    pub fn is_running(&self) -> bool {
+        !self.calls.is_empty()
     }
 
-    /// Names of all macros.
-    pub fn names(&self) -> impl Iterator<Item = &Name> {
-        self.macros.iter().flatten().map(|stretch| &stretch.name)
+    /// Ends the macro that runs, if one does.
+    pub fn stop(&mut self) {
+        self.calls.clear();
     }
 
-    /// The place of the macro of this name: it stays the same as long as there is one.
-    pub fn find(&self, name: &Name) -> Option<usize> {
-        let is_it = |stretch: &Option<Stretch>| stretch.is_some_and(|s| s.name == *name);
-        self.macros.iter().position(is_it)
+    /// The local variables of the macro that runs, for its own lines.
+    pub fn locals(&self, session: &Session) -> Option<&Locals> {
+        session.is_macro.then(|| self.calls.locals()).flatten()
     }
 
-    /// The name of the macro at a place.
-    pub fn name(&self, place: usize) -> Name {
-        self.stretch(place)
-            .map_or(Name::EMPTY, |stretch| stretch.name)
-    }
-
-    /// The text of the macro at a place.
-    pub fn text(&self, place: usize) -> &[u8] {
-        let stretch = self.stretch(place);
-        let text = stretch.and_then(|s| {
-            let start = usize::from(s.start);
-            self.text.get(start..start + usize::from(s.length))
-        });
-        text.unwrap_or_default()
-    }
-
-    /// Adds a line to what is being recorded; false, and nothing is added, when there is no room.
-    pub fn append(&mut self, line: &[u8]) -> bool {
-        if line.len() >= self.free() {
-            return false;
+    pub fn locals_mut(&mut self, session: &Session) -> Option<&mut Locals> {
+        if session.is_macro {
+            self.calls.locals_mut()
+        } else {
+            None
         }
-        self.text.extend_from_slice(line).is_ok() && self.text.push(b'\n').is_ok()
     }
 
-    /// Adds text as it was kept; false, and nothing is added, when there is no room.
-    pub fn extend(&mut self, text: &[u8]) -> bool {
-        self.text.extend_from_slice(text).is_ok()
-    }
-
-    /// Names and texts of all macros.
+    /// All macros, with their lines.
     pub fn all(&self) -> impl Iterator<Item = (Name, &[u8])> {
-        let places = (0..MACROS).filter(|&place| self.stretch(place).is_some());
-        places.map(|place| (self.name(place), self.text(place)))
+        self.store.all()
     }
 
-    /// Keeps what was recorded under a name; a macro that had it is gone. With an error nothing is kept of it.
-    pub fn keep(&mut self, name: Name) -> Result<(), ErrorCode> {
-        let old = self.find(&name);
-        let Some(place) = old.or_else(|| self.macros.iter().position(Option::is_none)) else {
-            self.drop_recorded();
-            return Err(ErrorCode::NoMemory);
-        };
-        self.remove(place);
-        let start = self.kept();
-        self.macros[place] = Some(Stretch {
-            name,
-            start: start as u16,
-            length: (self.text.len() - start) as u16,
-        });
+    /// Adds to the text of a macro that was stored; false when it can be none, or there is no room.
+    pub fn add_text(&mut self, text: &[u8]) -> bool {
+        let printable = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
+        text.iter().all(printable) && self.store.extend(text)
+    }
+
+    /// The text that was added is the macro of this name; false when there are too many.
+    pub fn end_text(&mut self, name: Name) -> bool {
+        self.store.find(&name).is_none() && self.store.commit(name).is_ok()
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.store.clear();
+    }
+
+    pub(super) fn place(&self, name: &Name) -> Result<usize, ErrorCode> {
+        self.store.find(name).ok_or(ErrorCode::MacroNotFound)
+    }
+
+    pub(super) fn delete(&mut self, name: &Name) -> Result<(), ErrorCode> {
+        if self.is_running() {
+            return Err(ErrorCode::MacroRunning);
+        }
+        let place = self.place(name)?;
+        self.store.remove(place);
         Ok(())
     }
 
-    /// Forgets everything.
-    pub fn clear(&mut self) {
-        self.text.clear();
-        self.macros = [None; MACROS];
-    }
-
-    /// Forgets what was recorded.
-    pub fn drop_recorded(&mut self) {
-        self.text.truncate(self.kept());
-    }
-
-    /// Removes the macro at a place, if there is one; the text behind it moves up.
-    pub fn remove(&mut self, place: usize) {
-        let Some(gone) = self.macros.get_mut(place).and_then(Option::take) else {
-            return;
-        };
-        let end = usize::from(gone.start + gone.length);
-        self.text.copy_within(end.., usize::from(gone.start));
-        self.text
-            .truncate(self.text.len() - usize::from(gone.length));
-        for stretch in self.macros.iter_mut().flatten() {
-            if stretch.start > gone.start {
-                stretch.start -= gone.length;
+    /// The macro's line has been carried out: whether it goes on.
+    pub(super) fn check_line_result(&mut self, session: &mut Session) -> bool {
+        match core::mem::take(&mut session.error) {
+            // What `HLT` leaves; after `STP` nothing runs any more.
+            ErrorCode::None | ErrorCode::Stopped => {}
+            code => {
+                if let Some((place, number)) = self.calls.current() {
+                    self.failure = Some(Failure {
+                        name: self.store.name(place),
+                        line: number,
+                        code,
+                        text: self.line.clone(),
+                    });
+                }
+                self.stop();
             }
         }
+        self.is_running()
     }
-
-    /// Bytes of the macros that are kept: what is being recorded starts behind them.
-    fn kept(&self) -> usize {
-        let lengths = self.macros.iter().flatten().map(|s| usize::from(s.length));
-        lengths.sum()
-    }
-
-    fn stretch(&self, place: usize) -> Option<&Stretch> {
-        self.macros.get(place)?.as_ref()
-    }
-}
-
-/// The lines of a macro's text.
-pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    text.split_inclusive(|&byte| byte == b'\n')
-        .map(|line| line.strip_suffix(b"\n").unwrap_or(line))
 }

@@ -1,92 +1,97 @@
 //! Setting parameters: who may, when, and how the new values reach the tick.
 //!
-//! A line is carried out whole or not at all. The panel plans with the new parameters from the next line on; what the tick
-//! computes with is derived from them here and handed over as one command, which the tick takes only at rest. Nothing that
-//! depends on them is decided before the tick has said that it did.
+//! A line is carried out whole or not at all. The commander plans with the new parameters from the next line on; what
+//! the tick computes with is derived from them here and handed over as one command, which the tick takes only at rest.
+//! Nothing that depends on them is decided before the tick has said that it did.
 
-use super::{PARAMETERS, Parameter, Settings, When};
-use crate::gcs::Panel;
+use super::address::Settings;
+use super::descriptor::{Parameter, When};
+use super::table::PARAMETERS;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
+use crate::gcs::interpreter::Interpreter;
 use crate::gcs::session::Session;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
-use crate::queues::PanelLink;
+use crate::queues::CommandQueues;
 
-/// What `CCL 1` asks for: against accidents, not against intruders. The same for all controllers of this family.
-pub(in crate::gcs) const PASSWORD: &[u8] = b"ADVANCED";
-
-impl Panel {
+impl Interpreter {
     /// `SPA`: all settings or, with an error, none.
     pub(in crate::gcs) fn set(
         &mut self,
         settings: &Settings,
         session: &Session,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let mut wanted = self.parameters.clone();
         for (address, value) in settings.iter().flatten() {
             let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
-            self.permit(parameter, session.level)?;
-            parameter.put(*value, &mut wanted)?;
+            self.check_allowed(parameter, session.level)?;
+            parameter.set(*value, &mut wanted)?;
         }
-        if session.level == 0 && !self.is_within_rating(&wanted) {
+        if session.level == 0 && !self.is_within_rated_limits(&wanted) {
             return Err(ErrorCode::OutOfRange);
         }
-        self.put_in_force(wanted, link)?;
+        self.apply_parameters(wanted, queues)?;
         for (address, value) in settings.iter().flatten() {
-            self.events
-                .add(self.stage.tick(), Event::Set(address.id, *value));
+            self.events.add(
+                self.commander.tick(),
+                Event::ParameterSet(address.id, *value),
+            );
         }
         Ok(())
     }
 
     /// Goes over to other parameters, or leaves everything as it is.
-    pub(in crate::gcs) fn put_in_force(
+    pub(in crate::gcs) fn apply_parameters(
         &mut self,
         wanted: Parameters,
-        link: &mut PanelLink<'_>,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
-        let most_rows = self.desk.most_rows(link.recorder.capacity());
+        let most_rows = self.recorder_state.most_rows(queues.recorder.capacity());
         if wanted.recorder.points > most_rows || !wanted.are_sound() {
             return Err(ErrorCode::OutOfRange);
         }
-        self.stage.configure(&self.parameters, &wanted, link)?;
+        self.commander
+            .configure(&self.parameters, &wanted, queues)?;
         if wanted.recorder != self.parameters.recorder {
-            self.desk.arm_again(&link.recorder);
+            self.recorder_state.rearm(&queues.recorder);
         }
-        self.rated = highest(&self.rated, &wanted.limits);
-        self.parameters_before = core::mem::replace(&mut self.parameters, wanted);
+        self.rated_limits = highest(&self.rated_limits, &wanted.limits);
+        self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
         Ok(())
     }
 
-    /// Whether this may become of the parameters now: what was kept may be in force again at any command level.
-    pub(in crate::gcs) fn permit_change(&self, wanted: &Parameters) -> Result<(), ErrorCode> {
+    /// Whether this may become of the parameters now: what was stored may be in force again at any command level.
+    pub(in crate::gcs) fn check_change_allowed(
+        &self,
+        wanted: &Parameters,
+    ) -> Result<(), ErrorCode> {
         let changed = |p: &&Parameter| p.number(&self.parameters) != p.number(wanted);
         let settable = PARAMETERS.iter().filter(|p| !p.is_read_only());
         settable
             .filter(changed)
-            .try_for_each(|parameter| self.permit(parameter, parameter.level))
+            .try_for_each(|parameter| self.check_allowed(parameter, parameter.level))
     }
 
-    fn permit(&self, parameter: &Parameter, level: u8) -> Result<(), ErrorCode> {
+    fn check_allowed(&self, parameter: &Parameter, level: u8) -> Result<(), ErrorCode> {
         if level < parameter.level {
             return Err(ErrorCode::LevelTooLow);
         }
         // A motion under way was planned with other ones.
-        if self.stage.is_under_way() {
+        if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
         }
         match parameter.when {
             When::Never => Err(ErrorCode::ReadOnly),
-            When::ServoOff if self.stage.is_held() => Err(ErrorCode::NotAllowed),
+            When::ServoOff if self.commander.is_held() => Err(ErrorCode::NotAllowed),
             When::AtRest | When::ServoOff => Ok(()),
         }
     }
 
     /// Whether no limit of motion is over what the stage was set up for.
-    fn is_within_rating(&self, wanted: &Parameters) -> bool {
-        highest(&self.rated, &wanted.limits) == self.rated
+    fn is_within_rated_limits(&self, wanted: &Parameters) -> bool {
+        highest(&self.rated_limits, &wanted.limits) == self.rated_limits
     }
 
     /// `CCL`: the command level of the connection.
@@ -105,10 +110,10 @@ impl Panel {
     }
 
     /// Back to the parameters that the tick has, if it has refused those that were set last.
-    pub(in crate::gcs) fn take_back_if_refused(&mut self) {
-        if self.stage.has_refused_settings() {
-            self.parameters.clone_from(&self.parameters_before);
-            self.stage.use_parameters(&self.parameters);
+    pub(in crate::gcs) fn revert_if_refused(&mut self) {
+        if self.commander.take_configuration_refused() {
+            self.parameters.clone_from(&self.previous_parameters);
+            self.commander.use_parameters(&self.parameters);
         }
     }
 }

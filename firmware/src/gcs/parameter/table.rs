@@ -1,15 +1,15 @@
 //! The declaration of all parameters.
 //!
-//! Ranges are what a stage of this kind can be, and what the tick's arithmetic holds; what has to hold between several of them
-//! stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set up for; level 1
-//! raises them further.
+//! Ranges are what a stage of this kind can be, and what the tick's arithmetic holds; what has to hold between several
+//! of them stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set
+//! up for; level 1 raises them further.
 
-use super::{Kind, Parameter, Source, When};
+use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
-use crate::gcs::LONGEST_MS;
-use crate::motion::Way;
-use crate::recorder::RECORD_WORDS;
+use crate::gcs::request::MAX_DELAY_MS;
+use crate::motion::TurnDirection;
+use crate::recorder::RECORDER_WORDS;
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -41,7 +41,7 @@ impl Group {
         text: &'static str,
         unit: &'static str,
         range: [f64; 2],
-        source: Source,
+        source: ValueSource,
     ) -> Parameter {
         Parameter {
             id,
@@ -56,7 +56,13 @@ impl Group {
         }
     }
 
-    const fn int(self, id: u32, text: &'static str, range: [f64; 2], source: Source) -> Parameter {
+    const fn int(
+        self,
+        id: u32,
+        text: &'static str,
+        range: [f64; 2],
+        source: ValueSource,
+    ) -> Parameter {
         Parameter {
             kind: Kind::Int,
             ..self.float(id, text, "", range, source)
@@ -64,13 +70,13 @@ impl Group {
     }
 }
 
-/// A parameter that is only told.
-const fn told(
+/// A parameter that can only be read.
+const fn read_only(
     id: u32,
     kind: Kind,
     text: &'static str,
     unit: &'static str,
-    source: Source,
+    source: ValueSource,
 ) -> Parameter {
     Parameter {
         kind,
@@ -80,16 +86,16 @@ const fn told(
 
 /// A field of the parameters, as it is or as a number.
 macro_rules! at {
-    ($($field:tt)+) => { Source::Kept(|p| p.$($field)+, |p, value| p.$($field)+ = value) };
+    ($($field:tt)+) => { ValueSource::Settable(|p| p.$($field)+, |p, value| p.$($field)+ = value) };
 }
 macro_rules! whole {
     ($number:ty: $($field:tt)+) => {
-        Source::Kept(|p| p.$($field)+ as f64, |p, value| p.$($field)+ = value as $number)
+        ValueSource::Settable(|p| p.$($field)+ as f64, |p, value| p.$($field)+ = value as $number)
     };
 }
 macro_rules! flag {
     ($($field:tt)+) => {
-        Source::Kept(|p| f64::from(u8::from(p.$($field)+)), |p, value| p.$($field)+ = value != 0.0)
+        ValueSource::Settable(|p| f64::from(u8::from(p.$($field)+)), |p, value| p.$($field)+ = value != 0.0)
     };
 }
 
@@ -97,11 +103,16 @@ macro_rules! flag {
 const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 
 /// Most points that a record of one word has room for.
-const ROWS: f64 = RECORD_WORDS as f64;
+const ROWS: f64 = RECORDER_WORDS as f64;
 /// By their numbers.
-const WAYS: [Way; 4] = [Way::Literal, Way::Shortest, Way::Positive, Way::Negative];
+const WAYS: [TurnDirection; 4] = [
+    TurnDirection::AsGiven,
+    TurnDirection::Shortest,
+    TurnDirection::Positive,
+    TurnDirection::Negative,
+];
 
-fn way_number(way: Way) -> f64 {
+fn way_number(way: TurnDirection) -> f64 {
     let place = WAYS.iter().position(|&other| other == way);
     place.map_or(0.0, |place| place as f64)
 }
@@ -109,8 +120,8 @@ fn way_number(way: Way) -> f64 {
 /// Every parameter, in the order of `HPA?`. A static: a constant would stand in the image once for each use.
 #[rustfmt::skip]
 pub static PARAMETERS: &[Parameter] = &[
-    told(0x0700_0601, Kind::Char, "unit of the axis", "", Source::Axis(Axis::unit)),
-    told(0x0E00_0200, Kind::Float, "servo update time", "s", Source::Told(|p| 1.0 / p.limits.rate_hz)),
+    read_only(0x0700_0601, Kind::Char, "unit of the axis", "", ValueSource::Axis(Axis::unit)),
+    read_only(0x0E00_0200, Kind::Float, "servo update time", "s", ValueSource::ReadOnly(|p| 1.0 / p.limits.rate_hz)),
     TARGET.int(0x1900_1900, "trajectory source: 0 moves to targets, 1 streamed targets", [0.0, 1.0], flag!(targets.streamed)),
 
     RECORDER.int(0x1600_0201, "points of a record, as many as the tables leave room for", [1.0, ROWS], whole!(u32: recorder.points)),
@@ -127,13 +138,13 @@ pub static PARAMETERS: &[Parameter] = &[
     Parameter { level: 1, ..LIMIT.float(0x5450_0108, "how much harder an urgent stop brakes", "", [1.0, 4.0], at!(limits.stop_factor)) },
 
     TARGET.int(0x5450_0110, "way of W to a target: 0 literal, 1 shortest, 2 always positive, 3 always negative", [0.0, 3.0],
-        Source::Kept(|p| way_number(p.targets.way), |p, number| p.targets.way = WAYS[number as usize & 3])),
+        ValueSource::Settable(|p| way_number(p.targets.turn_direction), |p, number| p.targets.turn_direction = WAYS[number as usize & 3])),
 
     GEOMETRY.float(0x5450_0200, "radius of the track", "mm", [20.0, 1_000.0], at!(geometry.radius_mm)),
     GEOMETRY.float(0x5450_0201, "start of a guide", "track radii", [0.05, 0.95], at!(geometry.guide_start)),
     GEOMETRY.float(0x5450_0202, "length of a guide", "track radii", [0.1, 2.0], at!(geometry.guide_length)),
     GEOMETRY.float(0x5450_0203, "smallest angle between pivots", "deg", [0.0, 110.0],
-        Source::Kept(|p| p.geometry.separation_rad.to_degrees(), |p, deg| p.geometry.separation_rad = deg.to_radians())),
+        ValueSource::Settable(|p| p.geometry.separation_rad.to_degrees(), |p, deg| p.geometry.separation_rad = deg.to_radians())),
 
     SERVO.float(0x5450_0300, "position gain", "1/s", [0.0, 2_000.0], at!(servo.position_1_s)),
     SERVO.float(0x5450_0301, "velocity gain", "V s/rad", [0.0, 500.0], at!(servo.velocity_v_s_rad)),
@@ -154,16 +165,16 @@ pub static PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
     SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
     SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
-    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.at_end_s)),
+    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.max_saturation_s)),
     SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
     SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
     SUPERVISION.int(0x5450_050B, "late ticks that are allowed, one in 100 ticks forgiven", [0.0, 1_000.0], whole!(u32: supervision.late_ticks)),
     SUPERVISION.float(0x5450_050C, "how far out of the disk the setpoint is a fault", "mm", [0.01, 100.0], at!(supervision.disk_margin_mm)),
     SUPERVISION.float(0x5450_050D, "how far out of a guide's range the setpoint is a fault", "track radii", [1e-4, 0.5], at!(supervision.guide_margin)),
     SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 20.0],
-        Source::Kept(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
+        ValueSource::Settable(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
     SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
-    Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT); heard is any connection where none has sent HBT", "ms", [0.0, LONGEST_MS], at!(supervision.host_silence_ms)) },
+    Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT); heard is any connection where none has sent HBT", "ms", [0.0, MAX_DELAY_MS], at!(supervision.host_silence_ms)) },
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
     ENCODER.int(0x5450_0601, "reading of encoder 2 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[1].zero_counts)),
@@ -190,6 +201,13 @@ pub static PARAMETERS: &[Parameter] = &[
     DRIVE.float(0x5450_0808, "viscous friction of a ring", "N m s/rad", [0.0, 5.0], at!(drive.viscous_n_m_s)),
     DRIVE.float(0x5450_0809, "Coulomb friction of a ring", "N m", [0.0, 5.0], at!(drive.coulomb_n_m)),
     DRIVE.float(0x5450_080A, "presliding of a ring", "rad", [1e-6, 0.1], at!(drive.presliding_rad)),
-    Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], Source::Told(|p| p.drive.pwm_hz)) },
-    Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], Source::Told(|p| f64::from(p.drive.pwm_counts))) },
+    Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.drive.pwm_hz)) },
+    Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.drive.pwm_counts))) },
 ];
+
+impl Parameter {
+    /// The parameter of an id.
+    pub fn find(id: u32) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| parameter.id == id)
+    }
+}

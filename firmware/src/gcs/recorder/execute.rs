@@ -1,196 +1,78 @@
-//! From tables and triggers to an order, and the commands that trigger.
-//!
-//! A command that moves has to be the first that the tick sees of its record. So the tick is told before the command is sent
-//! that its count of commands will be the trigger, and the order is taken back when the command is refused: nothing of the
-//! record before has been touched by then, unless rows before the trigger were being kept anyway.
+//! What the lines about the recorder do.
 
-use super::options::{Scales, words};
+use super::channel::Channel;
+use super::request::RecordAction;
+use super::state::{PendingOrder, RecorderState};
 use super::trigger::Trigger;
-use super::{Desk, Record, Wish};
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
-use crate::recorder::{PanelRecorder, Progress, Setup, Watch};
+use crate::recorder::{MAX_ROW_PERIOD_TICKS, RECORDER_TABLES, RecorderReader};
 
-/// What a command that moves has been announced as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gcs) enum Announced {
-    /// Nothing waits for it.
-    Nothing,
-    /// The trigger of the record that waits.
-    Trigger,
-    /// The trigger of a record of its own.
-    Record,
-}
-
-impl Desk {
-    /// Orders what is wanted, as far as there is room in the queue; later calls go on.
-    pub fn carry_on(&mut self, parameters: &Parameters, recorder: &mut PanelRecorder<'_>) {
-        let done = match self.wish {
-            Wish::Nothing => return,
-            Wish::Stop => {
-                self.stopped = true;
-                recorder.stop().is_ok()
-            }
-            Wish::Record => self.order(self.triggered(parameters), parameters, recorder),
-        };
-        if done {
-            self.wish = Wish::Nothing;
-        }
-    }
-
-    /// A record that waits for its trigger is ordered anew, so that a change counts for it too.
-    pub fn arm_again(&mut self, recorder: &PanelRecorder<'_>) {
-        if self.is_waiting(recorder) {
-            let recorded = self.tables.iter().any(|table| table.channel.is_some());
-            self.wish = if recorded { Wish::Record } else { Wish::Stop };
-        }
-    }
-
-    /// Rows of the record that was ordered last.
-    pub(super) fn progress(&self, recorder: &PanelRecorder<'_>) -> Progress {
-        let number = self.record.as_ref().map(|record| record.setup.number);
-        match (self.wish, number) {
-            (Wish::Record, _) | (_, None) => Progress::default(),
-            (_, Some(number)) => recorder.progress(number),
-        }
-    }
-
-    /// Whether a record waits for its trigger.
-    pub(super) fn is_waiting(&self, recorder: &PanelRecorder<'_>) -> bool {
-        let armed = self.record.is_some() && !self.stopped;
-        match self.wish {
-            Wish::Record => true,
-            Wish::Stop => false,
-            Wish::Nothing => armed && self.progress(recorder).rows == 0,
-        }
-    }
-
-    /// Before a command that moves is sent as the tick's command number `commands`; `step` is `STE`, which is recorded whatever
-    /// the triggers say.
-    ///
-    /// # Errors
-    /// Of `STE`: [`ErrorCode::TableOff`] when nothing is to be recorded, [`ErrorCode::Busy`] when the tick can not be told.
-    pub fn announce(
+impl RecorderState {
+    /// Carries out a change; an error means that nothing has changed. Points that fit no longer are fewer then.
+    pub fn change(
         &mut self,
-        step: bool,
-        commands: u32,
-        parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
-    ) -> Result<Announced, ErrorCode> {
-        if step && self.channels().iter().all(Option::is_none) {
+        action: &RecordAction,
+        parameters: &mut Parameters,
+        recorder: &RecorderReader<'_>,
+    ) -> Result<(), ErrorCode> {
+        match action {
+            RecordAction::Channels(changes) => {
+                for &(table, channel) in changes.iter().flatten() {
+                    self.set_channel(usize::from(table), channel);
+                }
+                let tuning = &mut parameters.recorder;
+                tuning.points = tuning.points.min(self.most_rows(recorder.capacity()));
+                tuning.before = tuning.before.min(tuning.points - 1);
+                self.rearm(recorder);
+            }
+            RecordAction::Triggers(changes) => self.set_triggers(changes, recorder)?,
+            RecordAction::Rate(ticks) => {
+                if !(1.0..=f64::from(MAX_ROW_PERIOD_TICKS)).contains(ticks)
+                    || libm::trunc(*ticks) != *ticks
+                {
+                    return Err(ErrorCode::OutOfRange);
+                }
+                self.every = *ticks as u32;
+                self.rearm(recorder);
+            }
+        }
+        Ok(())
+    }
+
+    /// A level that triggers is one of the signal that was there: it goes with it.
+    fn set_channel(&mut self, table: usize, channel: Option<Channel>) {
+        let table = &mut self.tables[table];
+        if table.channel != channel && matches!(table.trigger, Trigger::Crosses { .. }) {
+            table.trigger = Trigger::Never;
+        }
+        table.channel = channel;
+    }
+
+    fn set_triggers(
+        &mut self,
+        changes: &[Option<(u8, Trigger)>; RECORDER_TABLES],
+        recorder: &RecorderReader<'_>,
+    ) -> Result<(), ErrorCode> {
+        let mut tables = self.tables;
+        for &(table, trigger) in changes.iter().flatten() {
+            let table = &mut tables[usize::from(table)];
+            if matches!(trigger, Trigger::Crosses { .. }) {
+                let channel = table.channel.ok_or(ErrorCode::TableOff)?;
+                channel.trigger_word().ok_or(ErrorCode::OutOfRange)?;
+            }
+            table.trigger = trigger;
+        }
+        let armed = tables.iter().any(|table| table.trigger != Trigger::Never);
+        if armed && tables.iter().all(|table| table.channel.is_none()) {
             return Err(ErrorCode::TableOff);
         }
-        self.carry_on(parameters, recorder);
-        let every = self.has(|trigger| trigger == Trigger::EveryMove);
-        let complete = (self.record.as_ref())
-            .is_some_and(|record| self.progress(recorder).rows == record.setup.rows);
-        if step || (every && complete) {
-            let setup = Setup {
-                commands: Some(commands),
-                ..self.plain(parameters)
-            };
-            let ordered = self.order(setup, parameters, recorder);
-            return match (ordered, step) {
-                (true, _) => Ok(Announced::Record),
-                (false, true) => Err(ErrorCode::Busy),
-                (false, false) => Ok(Announced::Nothing),
-            };
+        self.tables = tables;
+        if armed {
+            self.pending_order = PendingOrder::Record;
+        } else if self.is_waiting(recorder) {
+            self.pending_order = PendingOrder::Stop;
         }
-        let waits = self.is_waiting(recorder) && self.has(Trigger::is_of_moves);
-        if waits && recorder.expect(Some(commands)).is_ok() {
-            return Ok(Announced::Trigger);
-        }
-        Ok(Announced::Nothing)
-    }
-
-    /// The command has been refused: what it was announced as is taken back.
-    pub fn take_back(&mut self, announced: Announced, recorder: &mut PanelRecorder<'_>) {
-        match announced {
-            Announced::Nothing => {}
-            // There is room: the announcement was the last, and at most the second, order in the queue.
-            Announced::Trigger => {
-                let _ = recorder.expect(None);
-            }
-            Announced::Record => {
-                let _ = recorder.stop();
-                self.record = self.before.take();
-            }
-        }
-    }
-
-    /// The command has been accepted; `sent` is the number of the last one that was sent, when it needed none of its own.
-    pub fn confirm(
-        &mut self,
-        announced: Announced,
-        sent: Option<u32>,
-        recorder: &mut PanelRecorder<'_>,
-    ) {
-        if announced == Announced::Nothing {
-            return;
-        }
-        if sent.is_some() {
-            let _ = recorder.expect(sent);
-        }
-        for table in &mut self.tables {
-            if announced == Announced::Trigger && table.trigger == Trigger::NextMove {
-                table.trigger = Trigger::Never;
-            }
-        }
-    }
-
-    fn has(&self, wanted: impl Fn(Trigger) -> bool) -> bool {
-        self.tables.iter().any(|table| wanted(table.trigger))
-    }
-
-    fn order(
-        &mut self,
-        setup: Setup,
-        parameters: &Parameters,
-        recorder: &mut PanelRecorder<'_>,
-    ) -> bool {
-        let ordered = recorder.record(&setup).is_ok();
-        if ordered {
-            let record = Record {
-                setup,
-                channels: self.channels(),
-                scales: Scales::new(parameters),
-            };
-            self.before = self.record.replace(record);
-            self.stopped = false;
-        }
-        ordered
-    }
-
-    /// The tables' record, without a trigger.
-    fn plain(&self, parameters: &Parameters) -> Setup {
-        let last = self.record.as_ref().map_or(0, |record| record.setup.number);
-        Setup {
-            number: last.wrapping_add(1),
-            words: words(&self.channels()),
-            every: self.every,
-            rows: parameters.recorder.points,
-            ..Setup::default()
-        }
-    }
-
-    /// The tables' record, with their triggers.
-    fn triggered(&self, parameters: &Parameters) -> Setup {
-        let mut setup = Setup {
-            before: parameters.recorder.before,
-            now: self.has(|trigger| trigger == Trigger::Now),
-            fault: self.has(|trigger| trigger == Trigger::Fault),
-            ..self.plain(parameters)
-        };
-        let scales = Scales::new(parameters);
-        for table in &self.tables {
-            if let Trigger::Crosses { value, rising } = table.trigger
-                && let Some(word) = table.channel.and_then(|channel| channel.watched())
-            {
-                // As many fit as there are tables.
-                let watch = Watch::new(word, value / scales.factor(word), rising);
-                let _ = setup.watches.push(watch);
-            }
-        }
-        setup
+        Ok(())
     }
 }

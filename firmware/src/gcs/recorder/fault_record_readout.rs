@@ -2,15 +2,11 @@
 //!
 //! When the servo is switched on meanwhile the record is no more; the rest is answered as not a number, with an error.
 
-use super::readout::{LINE, LINES};
-use crate::control::config::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
-use crate::fault_record::{BlackBox, Row, Span};
-use crate::gcs::Panel;
+use super::readout::MAX_LINE_BYTES;
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
+use crate::fault_record::{FaultRecord, FaultRecordRow, RetainedMemory};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::session::Session;
-use crate::queues::PanelLink;
 use core::fmt::{self, Write as _};
-use embedded_io::Write;
 use heapless::String;
 
 const COLUMNS: [&str; 17] = [
@@ -34,41 +30,47 @@ const COLUMNS: [&str; 17] = [
 ];
 
 /// Lines of the head besides the names.
-const HEAD: usize = 6;
+const HEADER_LINES: usize = 6;
 /// Degrees in 2^-32 turns.
 const DEG: f64 = 360.0 / 4_294_967_296.0;
 
 /// What is left of an answer.
-pub(in crate::gcs) struct HistoryDump {
-    span: Span,
+pub(in crate::gcs) struct FaultRecordReadout {
+    span: FaultRecord,
     /// Lines of the head that are written.
-    head: usize,
+    header_lines_written: usize,
     cursor: u32,
-    left: u32,
+    pub(super) left: u32,
 }
 
-impl HistoryDump {
-    pub(super) fn new(black_box: Option<&BlackBox>) -> Result<Self, ErrorCode> {
-        let span = (black_box.and_then(BlackBox::record)).ok_or(ErrorCode::NotRecorded)?;
+impl FaultRecordReadout {
+    pub(super) fn new(retained_memory: Option<&RetainedMemory>) -> Result<Self, ErrorCode> {
+        let span = (retained_memory.and_then(RetainedMemory::fault_record))
+            .ok_or(ErrorCode::NotRecorded)?;
         Ok(Self {
             span,
-            head: 0,
-            cursor: span.begin(),
+            header_lines_written: 0,
+            cursor: span.first_row(),
             left: span.rows,
         })
     }
 
     /// The next line, with its end; `None` for a row that is gone.
-    fn line(&mut self, black_box: &BlackBox, period_s: f64, line: &mut String<LINE>) -> bool {
+    pub(super) fn line(
+        &mut self,
+        retained_memory: &RetainedMemory,
+        period_s: f64,
+        line: &mut String<MAX_LINE_BYTES>,
+    ) -> bool {
         // The longest line fits; a longer one would be cut short.
-        if self.head < HEAD + COLUMNS.len() {
-            let _ = self.head_line(period_s, line);
+        if self.header_lines_written < HEADER_LINES + COLUMNS.len() {
+            let _ = self.header_line(period_s, line);
             let _ = line.write_str(" \n");
-            self.head += 1;
+            self.header_lines_written += 1;
             return true;
         }
-        let is_there = black_box.record() == Some(self.span);
-        let row = black_box.next(&self.span, &mut self.cursor);
+        let is_there = retained_memory.fault_record() == Some(self.span);
+        let row = retained_memory.next(&self.span, &mut self.cursor);
         let row = row.filter(|_| is_there);
         let _ = row_line(row.as_ref(), line);
         self.left = self.left.saturating_sub(1);
@@ -76,8 +78,8 @@ impl HistoryDump {
         row.is_some()
     }
 
-    fn head_line(&self, period_s: f64, line: &mut String<LINE>) -> fmt::Result {
-        match self.head {
+    fn header_line(&self, period_s: f64, line: &mut String<MAX_LINE_BYTES>) -> fmt::Result {
+        match self.header_lines_written {
             0 => write!(line, "# DIM = {}", COLUMNS.len()),
             1 => write!(line, "# NDATA = {}", self.span.rows),
             2 => write!(line, "# SAMPLE_TIME = {period_s}"),
@@ -91,7 +93,7 @@ impl HistoryDump {
     }
 }
 
-fn row_line(row: Option<&Row>, line: &mut String<LINE>) -> fmt::Result {
+fn row_line(row: Option<&FaultRecordRow>, line: &mut String<MAX_LINE_BYTES>) -> fmt::Result {
     let Some(row) = row else {
         for _ in 1..COLUMNS.len() {
             line.write_str("NaN ")?;
@@ -113,34 +115,4 @@ fn row_line(row: Option<&Row>, line: &mut String<LINE>) -> fmt::Result {
     }
     let supply_v = f64::from(row.supply_counts) * SUPPLY_V_PER_COUNT;
     write!(line, " {supply_v:.3} {}", row.tick_cycles)
-}
-
-impl Panel {
-    /// Writes some more of the fault record that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn carry_history<W: Write>(
-        &self,
-        session: &mut Session,
-        link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<bool, W::Error> {
-        let (Some(dump), Some(black_box)) = (&mut session.history, link.black_box) else {
-            return Ok(false);
-        };
-        for _ in 0..LINES {
-            if session.room.is_some_and(|room| room < LINE) {
-                return Ok(true);
-            }
-            let mut line = String::new();
-            if !dump.line(black_box, 1.0 / self.parameters.limits.rate_hz, &mut line) {
-                session.error = ErrorCode::NotRecorded;
-            }
-            out.write_all(line.as_bytes())?;
-            session.room = session.room.map(|room| room - line.len());
-            if dump.left == 0 {
-                session.history = None;
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
 }

@@ -1,153 +1,51 @@
 //! `DRR?`: an answer of any length, out of a connection that goes on meanwhile.
 //!
-//! The answer is a state of its session. Each service writes some more of it, line by line, as far as the output has room; single
-//! bytes act and are answered between two lines, other connections are served as ever, and lines of this one wait.
+//! The answer is a state of its session. Each service writes some more of it, line by line, as far as the output has
+//! room; single bytes act and are answered between two lines, other connections are served as ever, and lines of this
+//! one wait.
 //!
-//! If another record takes the place of the one that is being read, the rest is answered as not a number, with an error: a
-//! client counts the rows.
+//! If another record takes the place of the one that is being read, the rest is answered as not a number, with an
+//! error: a client counts the rows.
 
-use super::options::{Channel, Row};
-use super::{Desk, HistoryDump, Record, RecordQuery, TableList, replies};
-use crate::gcs::Panel;
-use crate::gcs::error::ErrorCode;
-use crate::gcs::session::Session;
-use crate::queues::PanelLink;
-use crate::recorder::{Cursor, PanelRecorder, TABLES};
+use super::channel::Channel;
+use super::scales::RecordRow;
+use super::state::Record;
+use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
-use embedded_io::Write;
 use heapless::String;
 
 /// Longest line: eight numbers.
-pub(super) const LINE: usize = 384;
+pub(super) const MAX_LINE_BYTES: usize = 384;
 /// Lines that a service writes at most, so that other work is not kept waiting.
-pub(super) const LINES: usize = 8;
+pub(super) const LINES_PER_SERVICE: usize = 8;
 
 /// What is left of an answer.
-pub(in crate::gcs) struct Dump {
+pub(in crate::gcs) struct RecordReadout {
     /// The record.
-    number: u32,
-    columns: [Option<Channel>; TABLES],
+    pub(super) number: u32,
+    pub(super) columns: [Option<Channel>; RECORDER_TABLES],
     /// Lines of the head that are written.
-    head: usize,
-    cursor: Cursor,
+    pub(super) header_lines_written: usize,
+    pub(super) cursor: Cursor,
     /// The next row, counted from that of the trigger.
-    row: i64,
-    rows: u32,
-    left: u32,
+    pub(super) row: i64,
+    pub(super) rows: u32,
+    pub(super) left: u32,
 }
 
-impl Panel {
-    /// Answers a question about the recorder, or begins to.
-    pub(in crate::gcs) fn tell_record<W: Write>(
-        &mut self,
-        query: RecordQuery,
-        session: &mut Session,
-        link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let desk = &self.desk;
-        match query {
-            RecordQuery::Channels(tables) => desk.tell_channels(&tables, out),
-            RecordQuery::Triggers(tables) => desk.tell_triggers(&tables, out),
-            RecordQuery::Rate => desk.tell_rate(out),
-            RecordQuery::Lengths(tables) => desk.tell_lengths(&tables, &link.recorder, out),
-            RecordQuery::History => {
-                match HistoryDump::new(link.black_box) {
-                    Ok(dump) => session.history = Some(dump),
-                    Err(code) => session.error = code,
-                }
-                Ok(())
-            }
-            RecordQuery::Help => replies::tell_help(self.parameters.recorder.points, out),
-            RecordQuery::Count => replies::tell_count(out),
-            RecordQuery::Data(span, tables) => {
-                match desk.dump(span, &tables, &link.recorder) {
-                    Ok(dump) => session.dump = Some(dump),
-                    Err(code) => session.error = code,
-                }
-                Ok(())
-            }
-        }
-    }
-
-    /// Writes some more of the answer that a connection waits for, if it waits for one; whether it still does.
-    pub(in crate::gcs) fn carry_dump<W: Write>(
-        &self,
-        session: &mut Session,
-        link: &PanelLink<'_>,
-        out: &mut W,
-    ) -> Result<bool, W::Error> {
-        let Some(dump) = &mut session.dump else {
-            return Ok(false);
-        };
-        for _ in 0..LINES {
-            if session.room.is_some_and(|room| room < LINE) {
-                return Ok(true);
-            }
-            let record = self.desk.record.as_ref();
-            let record = record.filter(|record| record.setup.number == dump.number);
-            if record.is_none() {
-                session.error = ErrorCode::NotRecorded;
-            }
-            let line = dump.line(record, &link.recorder);
-            out.write_all(line.as_bytes())?;
-            session.room = session.room.map(|room| room - line.len());
-            if dump.left == 0 {
-                session.dump = None;
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-}
-
-impl Desk {
-    fn dump(
-        &self,
-        span: Option<[u32; 2]>,
-        tables: &TableList,
-        recorder: &PanelRecorder<'_>,
-    ) -> Result<Dump, ErrorCode> {
-        let progress = self.progress(recorder);
-        let [first, rows] = span.unwrap_or([1, progress.rows]);
-        let enough = first
-            .checked_add(rows)
-            .is_some_and(|end| end - 1 <= progress.rows);
-        let (true, true, Some(record)) = (rows > 0, enough, &self.record) else {
-            return Err(ErrorCode::NotRecorded);
-        };
-        let mut columns = [None; TABLES];
-        let recorded = tables.iter().map(|table| record.channels[table]);
-        if tables.is_empty() {
-            for (column, channel) in columns.iter_mut().zip(recorded.flatten()) {
-                *column = Some(channel);
-            }
-        } else {
-            for (column, channel) in columns.iter_mut().zip(recorded) {
-                *column = Some(channel.ok_or(ErrorCode::TableOff)?);
-            }
-        }
-        Ok(Dump {
-            number: record.setup.number,
-            columns,
-            head: 0,
-            cursor: recorder.seek(&record.setup, first - 1),
-            row: i64::from(first - 1) - i64::from(progress.before),
-            rows,
-            left: rows,
-        })
-    }
-}
-
-impl Dump {
+impl RecordReadout {
     /// The next line, with its end.
-    fn line(&mut self, record: Option<&Record>, recorder: &PanelRecorder<'_>) -> String<LINE> {
+    pub(super) fn line(
+        &mut self,
+        record: Option<&Record>,
+        recorder: &RecorderReader<'_>,
+    ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
-        if self.head < HEAD + self.columns() {
-            let _ = self.head_line(record, &mut line);
+        if self.header_lines_written < HEADER_LINES + self.columns() {
+            let _ = self.header_line(record, &mut line);
             let _ = line.write_str(" \n");
-            self.head += 1;
+            self.header_lines_written += 1;
         } else {
             let _ = self.row_line(record, recorder, &mut line);
             self.left -= 1;
@@ -160,12 +58,16 @@ impl Dump {
         self.columns.iter().flatten().count()
     }
 
-    fn head_line(&self, record: Option<&Record>, line: &mut String<LINE>) -> fmt::Result {
+    fn header_line(
+        &self,
+        record: Option<&Record>,
+        line: &mut String<MAX_LINE_BYTES>,
+    ) -> fmt::Result {
         let period_s = record.map_or(0.0, |record| {
             record.scales.period_s() * f64::from(record.setup.every)
         });
         let names = self.columns();
-        match self.head {
+        match self.header_lines_written {
             0 => write!(line, "# DIM = {names}"),
             1 => write!(line, "# NDATA = {}", self.rows),
             2 => write!(line, "# SAMPLE_TIME = {period_s}"),
@@ -181,11 +83,11 @@ impl Dump {
     fn row_line(
         &mut self,
         record: Option<&Record>,
-        recorder: &PanelRecorder<'_>,
-        line: &mut String<LINE>,
+        recorder: &RecorderReader<'_>,
+        line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
-        let mut row = record.map(|record| Row {
-            words: &record.setup.words,
+        let mut row = record.map(|record| RecordRow {
+            words: &record.setup.signals,
             values: recorder.next(&record.setup, &mut self.cursor),
             scales: &record.scales,
             row: self.row,
@@ -211,4 +113,4 @@ impl Dump {
 }
 
 /// Lines of the head besides the names.
-const HEAD: usize = 6;
+const HEADER_LINES: usize = 6;

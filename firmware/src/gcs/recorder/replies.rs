@@ -1,24 +1,24 @@
 //! Answers about the recorder that are a few lines.
 
-use super::options::{OFF, OPTIONS, Source};
+use super::channel::{OPTION_OFF, OPTIONS, SignalSource};
 use super::trigger::TRIGGERS;
-use super::{Desk, TableList};
-use crate::gcs::reply::{Reply, one_line};
-use crate::recorder::{PanelRecorder, TABLES};
-use embedded_io::Write;
+use super::{RecorderState, TableList};
+use crate::gcs::output::{Output, WriteFailed};
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
+use crate::recorder::{RECORDER_TABLES, RecorderReader};
 
-impl Desk {
+impl RecorderState {
     /// `DRC?`
-    pub(super) fn tell_channels<W: Write>(
+    pub(super) fn reply_channels(
         &self,
         tables: &TableList,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
         for table in tables.iter() {
             let (source, option) = match self.tables[table].channel {
                 Some(channel) => (channel.source, channel.option),
-                None => (Source::Controller, OFF),
+                None => (SignalSource::Controller, OPTION_OFF),
             };
             reply.line(format_args!("{}={source} {option}", table + 1))?;
         }
@@ -26,12 +26,12 @@ impl Desk {
     }
 
     /// `DRT?`
-    pub(super) fn tell_triggers<W: Write>(
+    pub(super) fn reply_triggers(
         &self,
         tables: &TableList,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        let mut reply = Reply::new(out);
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
         for table in tables.iter() {
             let trigger = self.tables[table].trigger;
             reply.line(format_args!("{}={trigger}", table + 1))?;
@@ -40,14 +40,14 @@ impl Desk {
     }
 
     /// `DRL?`: nothing for a table that is not in the record.
-    pub(super) fn tell_lengths<W: Write>(
+    pub(super) fn reply_lengths(
         &self,
         tables: &TableList,
-        recorder: &PanelRecorder<'_>,
-        out: &mut W,
-    ) -> Result<(), W::Error> {
+        recorder: &RecorderReader<'_>,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
         let rows = self.progress(recorder).rows;
-        let mut reply = Reply::new(out);
+        let mut reply = ReplyWriter::new(out);
         for table in tables.iter() {
             let recorded = (self.record.as_ref()).and_then(|record| record.channels[table]);
             let rows = recorded.map_or(0, |_| rows);
@@ -57,21 +57,21 @@ impl Desk {
     }
 
     /// `RTR?`
-    pub(super) fn tell_rate<W: Write>(&self, out: &mut W) -> Result<(), W::Error> {
+    pub(super) fn reply_rate(&self, out: &mut Output<'_>) -> Result<(), WriteFailed> {
         one_line(out, format_args!("{}", self.every))
     }
 }
 
 /// `TNR?`
-pub(super) fn tell_count<W: Write>(out: &mut W) -> Result<(), W::Error> {
-    one_line(out, format_args!("{TABLES}"))
+pub(super) fn reply_count(out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    one_line(out, format_args!("{RECORDER_TABLES}"))
 }
 
 /// `HDR?`: in the sections by which clients find their way in it.
-pub(super) fn tell_help<W: Write>(points: u32, out: &mut W) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
+pub(super) fn reply_help(points: u32, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     reply.line(format_args!("#RecordOptions"))?;
-    reply.line(format_args!("{OFF}=nothing is recorded"))?;
+    reply.line(format_args!("{OPTION_OFF}=nothing is recorded"))?;
     for option in OPTIONS {
         let (number, name, detail) = (option.number, option.name, option.detail);
         reply.line(format_args!("{number}={name}{detail}"))?;
@@ -84,7 +84,7 @@ pub(super) fn tell_help<W: Write>(points: u32, out: &mut W) -> Result<(), W::Err
     reply.line(format_args!("0x16000201=points of a record"))?;
     reply.line(format_args!("0x54500900=points before the trigger"))?;
     reply.line(format_args!("#Additional information"))?;
-    reply.line(format_args!("{TABLES} record tables"))?;
+    reply.line(format_args!("{RECORDER_TABLES} record tables"))?;
     reply.line(format_args!("{points} datapoints per table"))?;
     reply.line(format_args!(
         "sources: X Y Z U V W axes of the platform in the base frame; 1 2 3 pivots; 0 controller"

@@ -62,7 +62,7 @@ impl Trigger {
     }
 
     /// Whether commands that move trigger it.
-    pub(super) const fn is_of_moves(self) -> bool {
+    pub(super) const fn is_by_command(self) -> bool {
         matches!(self, Self::EveryMove | Self::NextMove)
     }
 

@@ -1,105 +1,34 @@
 //! From lines to what they ask of tables and generators.
 
-use crate::commander::wave::{Curve, Join, LONGEST, Shape, TABLES};
+use super::request::WaveQuery;
+use crate::commander::wave::{
+    Curve, Join, LINE_POINTS, MAX_TABLE_POINTS, Shape, WAVE_TABLES, WaveChange, WavePoints,
+};
+use crate::gcs::arguments::{ParseError, number};
 use crate::gcs::error::ErrorCode;
-use crate::gcs::parse::{ParseError, number};
 use crate::gcs::request::{Action, Request};
 use crate::gcs::scan::{Scanner, Word};
 use heapless::Vec;
-
-/// Points that one line can give.
-pub const LINE_POINTS: usize = 32;
-
-/// Points of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WavePoints {
-    values: [f64; LINE_POINTS],
-    count: u8,
-}
-
-impl WavePoints {
-    /// The points.
-    pub fn values(&self) -> &[f64] {
-        let count = usize::from(self.count).min(LINE_POINTS);
-        &self.values[..count]
-    }
-}
-
-/// What is to be done with tables and generators. Tables are counted from 0, generators are the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-// A line's points are by far the largest; there is no heap to box them in.
-#[allow(clippy::large_enum_variant)]
-pub enum WaveAction {
-    /// `WAV`, calculated.
-    Define {
-        /// Which.
-        table: u8,
-        /// How it joins.
-        join: Join,
-        /// Points of the segment.
-        length: u32,
-        /// Its curve.
-        shape: Shape,
-    },
-    /// `WAV PNT`
-    Points {
-        /// Which.
-        table: u8,
-        /// How it joins.
-        join: Join,
-        /// The values.
-        points: WavePoints,
-    },
-    /// `WCL`: a flag for each table.
-    Clear([bool; TABLES]),
-    /// `WSL`: a table (from 1, 0: none) for each generator.
-    Select([Option<u32>; 6]),
-    /// `WGC`: cycles of each generator.
-    Cycles([Option<u32>; 6]),
-    /// `WTR`: ticks of a point.
-    Rate(u32),
-    /// `WGO`: 1 starts, 0 stops.
-    Go([Option<u32>; 6]),
-}
-
-/// A question about tables and generators: a flag for each that was named, none stands for all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WaveQuery {
-    /// `WAV?`
-    Lengths([bool; TABLES]),
-    /// `TWG?`
-    Generators,
-    /// `#9`: mask of those that run, hexadecimal.
-    Mask,
-    /// `WSL?`
-    Tables([bool; 6]),
-    /// `WGC?`
-    Cycles([bool; 6]),
-    /// `WTR?`
-    Rates([bool; 6]),
-    /// `WGO?`
-    Going([bool; 6]),
-}
 
 /// What follows the name of a command about waveforms.
 type Parsed = Result<Request, ParseError>;
 
 /// `WAV`: table, how it joins, type, and what the type takes.
 pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
-    let table = place::<TABLES>(scanner)? as u8;
+    let table = place::<WAVE_TABLES>(scanner)? as u8;
     let word = scanner.word();
     let join = match word.text {
         b"X" | b"x" => Join::Anew,
         b"&" => Join::Append,
         b"+" => Join::Add,
-        b"" => return Err(word.unfit(ErrorCode::ParameterCount, "X, & or +")),
-        _ => return Err(word.unfit(ErrorCode::OutOfRange, "X, & or +")),
+        b"" => return Err(word.error(ErrorCode::ParameterCount, "X, & or +")),
+        _ => return Err(word.error(ErrorCode::OutOfRange, "X, & or +")),
     };
     let word = scanner.word();
     let is = |name: &[u8]| word.text.eq_ignore_ascii_case(name);
     if is(b"PNT") {
         let points = points(scanner)?;
-        return act(WaveAction::Points {
+        return act(WaveChange::Points {
             table,
             join,
             points,
@@ -107,7 +36,7 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
     }
     let (line, ramp, sine) = (is(b"LIN"), is(b"RAMP"), is(b"SIN_P"));
     if !(line || ramp || sine) {
-        return Err(word.unfit(ErrorCode::OutOfRange, "PNT, LIN, RAMP or SIN_P"));
+        return Err(word.error(ErrorCode::OutOfRange, "PNT, LIN, RAMP or SIN_P"));
     }
     let length = whole(scanner)?;
     let (amplitude, offset) = (number(scanner.word())?, number(scanner.word())?);
@@ -137,7 +66,7 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
             }
         }
     };
-    act(WaveAction::Define {
+    act(WaveChange::Define {
         table,
         join,
         length,
@@ -149,54 +78,51 @@ pub fn define(scanner: &mut Scanner<'_>) -> Parsed {
 fn points(scanner: &mut Scanner<'_>) -> Result<WavePoints, ParseError> {
     // Where the segment goes is what `X`, `&` and `+` say; clients count on in lines that append.
     whole(scanner)?;
-    let column = scanner.word_ahead();
+    let column = scanner.peek_word();
     let count = whole(scanner)?;
     let mut values: Vec<f64, LINE_POINTS> = Vec::new();
     while !scanner.is_at_end() {
         let word = scanner.word();
-        let full = word.unfit(ErrorCode::ParameterCount, "32 points at most in a line");
+        let full = word.error(ErrorCode::ParameterCount, "32 points at most in a line");
         values.push(number(word)?).map_err(|_| full)?;
     }
     if values.is_empty() || values.len() != count as usize {
-        return Err(column.unfit(ErrorCode::ParameterCount, "how many points follow"));
+        return Err(column.error(ErrorCode::ParameterCount, "how many points follow"));
     }
-    let mut points = WavePoints {
-        values: [0.0; LINE_POINTS],
-        count: values.len() as u8,
-    };
-    for (point, value) in points.values.iter_mut().zip(&values) {
-        *point = *value;
-    }
-    Ok(points)
+    // They fit, as the values did.
+    WavePoints::new(&values)
+        .ok_or(column.error(ErrorCode::ParameterCount, "how many points follow"))
 }
 
 /// `WCL`
 pub fn clear(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut wanted = [false; TABLES];
+    let mut wanted = [false; WAVE_TABLES];
     loop {
-        wanted[place::<TABLES>(scanner)?] = true;
+        wanted[place::<WAVE_TABLES>(scanner)?] = true;
         if scanner.is_at_end() {
-            return act(WaveAction::Clear(wanted));
+            return act(WaveChange::Clear(wanted));
         }
     }
 }
 
 /// `WSL`
 pub fn select(scanner: &mut Scanner<'_>) -> Parsed {
-    let tables = pairs(scanner, TABLES as u32)?;
-    act(WaveAction::Select(tables))
+    let tables = pairs(scanner, WAVE_TABLES as u32)?;
+    act(WaveChange::Select(tables))
 }
 
 /// `WGC`
 pub fn cycles(scanner: &mut Scanner<'_>) -> Parsed {
-    let cycles = pairs(scanner, LONGEST)?;
-    act(WaveAction::Cycles(cycles))
+    let cycles = pairs(scanner, MAX_TABLE_POINTS)?;
+    act(WaveChange::Cycles(cycles))
 }
 
 /// `WGO`
 pub fn go(scanner: &mut Scanner<'_>) -> Parsed {
     let modes = pairs(scanner, 1)?;
-    act(WaveAction::Go(modes))
+    act(WaveChange::Switch(
+        modes.map(|mode| mode.map(|mode| mode == 1)),
+    ))
 }
 
 /// `WTR`: triples of generator (0: all, as any of them does), ticks a point and interpolation, which is what it is.
@@ -207,16 +133,16 @@ pub fn rate(scanner: &mut Scanner<'_>) -> Parsed {
         ticks = whole(scanner)?;
         within(scanner, 0, 1)?;
         if scanner.is_at_end() {
-            return act(WaveAction::Rate(ticks));
+            return act(WaveChange::Rate(ticks));
         }
     }
 }
 
 /// `WAV?`: pairs of table and 1, which asks for the length.
 pub fn lengths(scanner: &mut Scanner<'_>) -> Parsed {
-    let mut named = [false; TABLES];
+    let mut named = [false; WAVE_TABLES];
     while !scanner.is_at_end() {
-        named[place::<TABLES>(scanner)?] = true;
+        named[place::<WAVE_TABLES>(scanner)?] = true;
         within(scanner, 1, 1)?;
     }
     ask(WaveQuery::Lengths(named))
@@ -236,22 +162,22 @@ pub fn generators(query: fn([bool; 6]) -> WaveQuery, scanner: &mut Scanner<'_>) 
     ask(query(named))
 }
 
-fn act(action: WaveAction) -> Parsed {
+fn act(action: WaveChange) -> Parsed {
     Ok(Request::Act(Action::Wave(action)))
 }
 
 fn ask(query: WaveQuery) -> Parsed {
-    Ok(Request::Waves(query))
+    Ok(Request::Waveforms(query))
 }
 
 /// Pairs of generator and a number up to `most`, at least one.
 fn pairs(scanner: &mut Scanner<'_>, most: u32) -> Result<[Option<u32>; 6], ParseError> {
     let mut values = [None; 6];
     loop {
-        let word = scanner.word_ahead();
+        let word = scanner.peek_word();
         let place = place::<6>(scanner)?;
         if values[place].is_some() {
-            return Err(word.unfit(
+            return Err(word.error(
                 ErrorCode::AxisTwice,
                 "a generator that has not been named yet",
             ));
@@ -270,7 +196,7 @@ fn place<const COUNT: usize>(scanner: &mut Scanner<'_>) -> Result<usize, ParseEr
 }
 
 fn whole(scanner: &mut Scanner<'_>) -> Result<u32, ParseError> {
-    within(scanner, 0, LONGEST)
+    within(scanner, 0, MAX_TABLE_POINTS)
 }
 
 /// A whole number of a range.
@@ -278,7 +204,7 @@ fn within(scanner: &mut Scanner<'_>, least: u32, most: u32) -> Result<u32, Parse
     let word: Word<'_> = scanner.word();
     let value = number(word)?;
     if !(f64::from(least)..=f64::from(most)).contains(&value) || value != libm::trunc(value) {
-        return Err(word.unfit(ErrorCode::OutOfRange, "a whole number that is there"));
+        return Err(word.error(ErrorCode::OutOfRange, "a whole number that is there"));
     }
     Ok(value as u32)
 }

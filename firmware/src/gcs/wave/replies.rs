@@ -1,43 +1,42 @@
 //! What queries about tables and generators answer.
 
-use crate::commander::wave::{WaveQuery, Waves};
-use crate::gcs::reply::{Reply, one_line};
-use embedded_io::Write;
+use super::request::WaveQuery;
+use crate::commander::wave::Waveforms;
+use crate::gcs::output::{Output, WriteFailed};
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
 
-impl Waves {
-    /// Answers a query; `going` says which generators run.
-    pub fn answer<W: Write>(
-        &self,
-        query: WaveQuery,
-        going: &[bool; 6],
-        out: &mut W,
-    ) -> Result<(), W::Error> {
-        match query {
-            WaveQuery::Generators => one_line(out, format_args!("{}", self.generators.len())),
-            WaveQuery::Mask => {
-                let bits = going
-                    .iter()
-                    .zip(0..)
-                    .map(|(&going, bit)| u8::from(going) << bit);
-                one_line(out, format_args!("{:x}", bits.sum::<u8>()))
+/// Answers a query; `running` says which generators run.
+pub(in crate::gcs) fn reply_waves(
+    waves: &Waveforms,
+    query: WaveQuery,
+    running: &[bool; 6],
+    out: &mut Output<'_>,
+) -> Result<(), WriteFailed> {
+    match query {
+        WaveQuery::Generators => one_line(out, format_args!("{}", waves.generators.len())),
+        WaveQuery::Mask => {
+            let bits = running
+                .iter()
+                .zip(0..)
+                .map(|(&running, bit)| u8::from(running) << bit);
+            one_line(out, format_args!("{:x}", bits.sum::<u8>()))
+        }
+        WaveQuery::Lengths(named) => {
+            let mut reply = ReplyWriter::new(out);
+            for (table, _) in wanted(&named) {
+                reply.line(format_args!("{} 1={}", table + 1, waves.length(table)))?;
             }
-            WaveQuery::Lengths(named) => {
-                let mut reply = Reply::new(out);
-                for (table, _) in wanted(&named) {
-                    reply.line(format_args!("{} 1={}", table + 1, self.length(table)))?;
-                }
-                reply.end()
+            reply.end()
+        }
+        WaveQuery::Tables(named) => each(&named, out, |i| waves.generators[i].table.into()),
+        WaveQuery::Cycles(named) => each(&named, out, |i| waves.generators[i].cycles),
+        WaveQuery::Running(named) => each(&named, out, |i| running[i].into()),
+        WaveQuery::Rates(named) => {
+            let mut reply = ReplyWriter::new(out);
+            for (generator, _) in wanted(&named) {
+                reply.line(format_args!("{}={} 1", generator + 1, waves.ticks))?;
             }
-            WaveQuery::Tables(named) => each(&named, out, |i| self.generators[i].table.into()),
-            WaveQuery::Cycles(named) => each(&named, out, |i| self.generators[i].cycles),
-            WaveQuery::Going(named) => each(&named, out, |i| going[i].into()),
-            WaveQuery::Rates(named) => {
-                let mut reply = Reply::new(out);
-                for (generator, _) in wanted(&named) {
-                    reply.line(format_args!("{}={} 1", generator + 1, self.ticks))?;
-                }
-                reply.end()
-            }
+            reply.end()
         }
     }
 }
@@ -49,12 +48,12 @@ fn wanted(named: &[bool]) -> impl Iterator<Item = (usize, &bool)> {
 }
 
 /// A line of each generator.
-fn each<W: Write>(
+fn each(
     named: &[bool; 6],
-    out: &mut W,
+    out: &mut Output<'_>,
     value: impl Fn(usize) -> u32,
-) -> Result<(), W::Error> {
-    let mut reply = Reply::new(out);
+) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
     for (generator, _) in wanted(named) {
         reply.line(format_args!("{}={}", generator + 1, value(generator)))?;
     }

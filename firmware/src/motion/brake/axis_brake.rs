@@ -1,12 +1,13 @@
 //! The fastest brake of one axis, in closed form: `brake` without the vectors.
 //!
-//! Over the limit of acceleration, with jerk `j` a tick, and seen along the braking force: velocity `-v` is to be gained from
-//! acceleration `a`. Up to a peak `p` and back to zero gains `(p^2 - a^2) / (2 j) + p^2 / (2 j)`, so `p^2 = j v + a^2 / 2`;
-//! beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down to it.
+//! Over the limit of acceleration, with jerk `j` a tick, and seen along the braking force: velocity `-v` is to be
+//! gained from acceleration `a`. Up to a peak `p` and back to zero gains `(p^2 - a^2) / (2 j) + p^2 / (2 j)`, so
+//! `p^2 = j v + a^2 / 2`; beyond the limit of 1 the peak is 1, held for what is left. An `a` over 1 is first let down
+//! to it.
 
-use super::{SLACK, whole};
-use crate::motion::profile::any_state::AxisLimits;
-use crate::number::float::Order;
+use super::{BRAKE_SLACK, whole};
+use crate::motion::plan::units::AxisLimits;
+use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 
 /// What is to be braked, over the limit of acceleration.
@@ -39,12 +40,12 @@ impl AxisBrake {
         let (v, a) = if released > 0.0 { (v, -a) } else { (-v, a) };
         let square = j * v + a * a / 2.0;
         if a > 1.0 {
-            [(a - 1.0) / j, (v - a * a / (2.0 * j)).larger(0.0), 1.0 / j]
+            [(a - 1.0) / j, (v - a * a / (2.0 * j)).fmax(0.0), 1.0 / j]
         } else if square > 1.0 {
             [(1.0 - a) / j, (square - 1.0) / j, 1.0 / j]
         } else {
-            let peak = sqrt_f32(square.larger(0.0));
-            [(peak - a).larger(0.0) / j, 0.0, peak / j]
+            let peak = sqrt_f32(square.fmax(0.0));
+            [(peak - a).fmax(0.0) / j, 0.0, peak / j]
         }
     }
 
@@ -57,11 +58,11 @@ impl AxisBrake {
     pub fn over(&self, [n1, n2, n3]: [f32; 3]) -> [bool; 3] {
         let left = self.velocity + self.acceleration * (n1 / 2.0);
         let peak = -left / (n1 / 2.0 + n2 + n3 / 2.0);
-        let hardest = self.acceleration.abs().larger(1.0);
+        let hardest = self.acceleration.abs().fmax(1.0);
         [
-            (peak - self.acceleration).abs() > self.jerk * n1 * SLACK,
-            peak.abs() > hardest * SLACK,
-            peak.abs() > self.jerk * n3 * SLACK,
+            (peak - self.acceleration).abs() > self.jerk * n1 * BRAKE_SLACK,
+            peak.abs() > hardest * BRAKE_SLACK,
+            peak.abs() > self.jerk * n3 * BRAKE_SLACK,
         ]
     }
 }

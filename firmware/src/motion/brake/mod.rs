@@ -8,20 +8,21 @@
 //!   P  n1  n2  n3      stays on the line.
 //! ```
 //!
-//! Sizes are measured by what is allowed: translation and rotation each over its limit of acceleration, the greater counts.
-//! With `w = v + a0 n1 / 2`, to be taken away along its own direction, where jerk may change the size by `j` a tick, the
-//! shortest times for a given `n1` have a peak of `p = j (sqrt(n1^2 / 4 + 2 |w| / j) - n1 / 2)`, or of 1 and a time at it. `n1`
-//! follows from `|P - a0|`; a few rounds find the two together (the change of one by the other is a third at most). Times
-//! are rounded up to whole ticks and the jerks of each axis follow from them exactly.
+//! Sizes are measured by what is allowed: translation and rotation each over its limit of acceleration, the greater
+//! counts. With `w = v + a0 n1 / 2`, to be taken away along its own direction, where jerk may change the size by `j` a
+//! tick, the shortest times for a given `n1` have a peak of `p = j (sqrt(n1^2 / 4 + 2 |w| / j) - n1 / 2)`, or of 1 and
+//! a time at it. `n1` follows from `|P - a0|`; a few rounds find the two together (the change of one by the other is a
+//! third at most). Times are rounded up to whole ticks and the jerks of each axis follow from them exactly.
 
-pub(crate) mod axis_brake;
-pub(crate) mod halt;
-pub(crate) mod velocity_change;
+pub(super) mod axis_brake;
+pub(super) mod velocity_change;
 
-use super::check::sample::Sample;
-use super::plan::axis_state::{Axis, JERK_STEP};
-use super::plan::units::{AXIS_UNITS, UnitLimits};
-use crate::number::float::{Order, down, float, hypot, rough, ticks_up, up};
+use super::plan::axis_state::{AxisState, JERK_STEP};
+use super::plan::cubic_segment::MotionState;
+use super::plan::units::{AXIS_UNITS, TickLimits};
+use crate::number::float::{
+    FloatMinMax, ceil, ceil_ticks, floor, hypot, i64_to_f32_fast, ticks_to_f32,
+};
 use crate::number::sqrt_f32;
 
 /// Rounds for n1 and the peak at most, and the change of n1, ticks, after which there is none.
@@ -31,7 +32,7 @@ const SETTLED: f32 = 1e-3;
 const NEARLY_SETTLED: f32 = 0.2;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
-pub(super) const SLACK: f32 = 1.0 + 5e-7;
+pub(super) const BRAKE_SLACK: f32 = 1.0 + 5e-7;
 
 /// What is to be braked, over the limits of acceleration.
 pub(super) struct Brake {
@@ -43,17 +44,17 @@ pub(super) struct Brake {
 
 impl Brake {
     /// Of a state, with acceleration and jerk limited to this much of the limits.
-    pub fn new(state: &[Axis; 3], limits: &UnitLimits, acceleration: f32, jerk: f32) -> Self {
+    pub fn new(state: &[AxisState; 3], limits: &TickLimits, acceleration: f32, jerk: f32) -> Self {
         Self::of(
-            state.map(|axis| rough(axis.velocity)),
-            state.map(|axis| rough(axis.acceleration)),
+            state.map(|axis| i64_to_f32_fast(axis.velocity)),
+            state.map(|axis| i64_to_f32_fast(axis.acceleration)),
             limits,
             [acceleration, jerk],
         )
     }
 
     /// Of a state in floats, with the ordinary limits.
-    pub fn in_seconds(at: &Sample, limits: &UnitLimits, hz: f32) -> Self {
+    pub fn in_seconds(at: &MotionState, limits: &TickLimits, hz: f32) -> Self {
         let once = AXIS_UNITS / hz;
         let each = |per: f32| [per, per, per / core::f32::consts::TAU];
         Self::of(
@@ -68,10 +69,10 @@ impl Brake {
     fn of(
         velocity: [f32; 3],
         acceleration: [f32; 3],
-        limits: &UnitLimits,
+        limits: &TickLimits,
         [harder, jerkier]: [f32; 2],
     ) -> Self {
-        let UnitLimits {
+        let TickLimits {
             translation,
             rotation,
         } = limits;
@@ -115,7 +116,7 @@ impl Brake {
             let back = self.jerk_ticks(&w) / size;
             let peak = (sqrt_f32(half * half + 2.0 * size * back) - half) / back;
             let (peak, hold) = if peak > 1.0 {
-                (1.0, (size - half - back / 2.0).larger(0.0))
+                (1.0, (size - half - back / 2.0).fmax(0.0))
             } else {
                 (peak, 0.0)
             };
@@ -133,7 +134,7 @@ impl Brake {
 
     /// The times in whole ticks.
     pub fn ticks(&self) -> [u64; 3] {
-        whole(self.times(), |n| self.over(n)).map(ticks_up)
+        whole(self.times(), |n| self.over(n)).map(ceil_ticks)
     }
 
     /// P in so many ticks.
@@ -144,7 +145,7 @@ impl Brake {
 
     /// The part of the limit that P comes to in so many ticks: jerk alone may end at less than all of it.
     pub fn part(&self, ticks: [u64; 3]) -> f32 {
-        size(&self.peak(ticks.map(float))).smaller(1.0)
+        size(&self.peak(ticks.map(ticks_to_f32))).fmin(1.0)
     }
 
     /// Which of these times are too short: for the first jerk, the peak, the last jerk.
@@ -152,11 +153,11 @@ impl Brake {
         let [n1, _, n3] = n;
         let peak = self.peak(n);
         let change = [0, 1, 2].map(|i| peak[i] - self.acceleration[i]);
-        let hardest = size(&self.acceleration).larger(1.0);
+        let hardest = size(&self.acceleration).fmax(1.0);
         [
-            self.jerk_ticks(&change) > n1 * SLACK,
-            size(&peak) > hardest * SLACK,
-            self.jerk_ticks(&peak) > n3 * SLACK,
+            self.jerk_ticks(&change) > n1 * BRAKE_SLACK,
+            size(&peak) > hardest * BRAKE_SLACK,
+            self.jerk_ticks(&peak) > n3 * BRAKE_SLACK,
         ]
     }
 
@@ -166,9 +167,9 @@ impl Brake {
     }
 
     /// The acceleration of size 1 that points against what is to be braked, track radii and rad per second squared.
-    pub fn peak_per_second(&self, limits: &UnitLimits, hz: f32) -> [f32; 3] {
+    pub fn peak_per_second(&self, limits: &TickLimits, hz: f32) -> [f32; 3] {
         let w = self.after(self.about()[0] / 2.0);
-        let scale = -hz * hz / (AXIS_UNITS * size(&w).larger(f32::MIN_POSITIVE));
+        let scale = -hz * hz / (AXIS_UNITS * size(&w).fmax(f32::MIN_POSITIVE));
         let [translation, rotation] =
             [limits.translation, limits.rotation].map(|limits| limits.acceleration * scale);
         times(
@@ -179,14 +180,14 @@ impl Brake {
 
     /// The time in which jerk makes an acceleration of this.
     fn jerk_ticks(&self, change: &[f32; 3]) -> f32 {
-        (hypot(change[0], change[1]) / self.jerk[0]).larger(change[2].abs() / self.jerk[1])
+        (hypot(change[0], change[1]) / self.jerk[0]).fmax(change[2].abs() / self.jerk[1])
     }
 }
 
 /// Times in whole ticks, with what is too short by then lengthened.
 pub(super) fn whole(times: [f32; 3], over: impl Fn([f32; 3]) -> [bool; 3]) -> [f32; 3] {
-    let [n1, n2, n3] = times.map(|ticks| up(ticks - 1e-3));
-    let mut n = [n1.larger(1.0), n2, n3.larger(1.0)];
+    let [n1, n2, n3] = times.map(|ticks| ceil(ticks - 1e-3));
+    let mut n = [n1.fmax(1.0), n2, n3.fmax(1.0)];
     for _ in 0..LENGTHENINGS {
         let over = over(n);
         if over == [false; 3] {
@@ -194,7 +195,7 @@ pub(super) fn whole(times: [f32; 3], over: impl Fn([f32; 3]) -> [bool; 3]) -> [f
         }
         for (n, over) in n.iter_mut().zip(over) {
             if over {
-                *n += 1.0 + down(*n * (1.0 / 64.0));
+                *n += 1.0 + floor(*n * (1.0 / 64.0));
             }
         }
     }
@@ -219,16 +220,17 @@ pub(super) fn gains([t1, t2, t3]: [f32; 3]) -> [f32; 2] {
 
 /// The greater of translation and rotation.
 fn size(vector: &[f32; 3]) -> f32 {
-    hypot(vector[0], vector[1]).larger(vector[2].abs())
+    hypot(vector[0], vector[1]).fmax(vector[2].abs())
 }
 
 fn times(vector: [f32; 3], factors: [f32; 3]) -> [f32; 3] {
     [0, 1, 2].map(|i| vector[i] * factors[i])
 }
 
-/// Jerks of the first and the last segment that bring one axis to rest in `n1 + n2 + n3` ticks; `n1` and `n3` are not zero.
+/// Jerks of the first and the last segment that bring one axis to rest in `n1 + n2 + n3` ticks; `n1` and `n3` are not
+/// zero.
 #[inline(never)]
-pub(super) fn jerks(axis: &Axis, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
+pub(super) fn jerks(axis: &AxisState, [n1, n2, n3]: [u64; 3]) -> [i64; 2] {
     let (n1, n2, n3) = (n1 as i64, n2 as i64, n3 as i64);
     // An acceleration is even.
     let half = axis.acceleration / 2;
@@ -247,7 +249,8 @@ fn twice_over(value: i64, divisor: i64) -> i64 {
     2 * whole + i64::from(rest >= divisor) - i64::from(rest <= -divisor)
 }
 
-/// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow exactly.
+/// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow
+/// exactly.
 pub(super) fn stepped(change: i64, ticks: i64) -> i64 {
     over(change, ticks * JERK_STEP) * JERK_STEP
 }

@@ -9,35 +9,39 @@
 //!
 //! A jog lasts: a single unit of acceleration left would be a velocity after a year.
 
-use crate::motion::check::pivot_bounds::Pace;
 use crate::motion::plan::Piece;
-use crate::motion::plan::axis_state::{Axis, JERK_STEP};
-use crate::number::float::{Order, cut, float};
+use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
+use crate::motion::speeds::Speeds;
+use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 use heapless::VecView;
 
 /// Limits of acceleration and jerk in units per second.
 #[derive(Clone, Copy)]
-pub(crate) struct Force {
-    pub acceleration: Pace,
-    pub jerk: Pace,
+pub(crate) struct AccelerationLimits {
+    pub acceleration: Speeds,
+    pub jerk: Speeds,
 }
 
 /// Ticks of the parts of a ramp: `n1` and `n2` above.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ramp {
+pub(crate) struct VelocityRamp {
     pub rise: u64,
     pub hold: u64,
 }
 
-impl Ramp {
+impl VelocityRamp {
     /// The shortest ramp in which velocity changes by `change` within `force`, both per second; of `hz` ticks a second.
     #[inline(never)]
-    pub fn new(change: Pace, force: &Force, hz: f32) -> Self {
-        let way = times(change.way, force.acceleration.way, force.jerk.way);
-        let turn = times(change.turn, force.acceleration.turn, force.jerk.turn);
+    pub fn new(change: Speeds, force: &AccelerationLimits, hz: f32) -> Self {
+        let way = times(change.linear, force.acceleration.linear, force.jerk.linear);
+        let turn = times(
+            change.angular,
+            force.acceleration.angular,
+            force.jerk.angular,
+        );
         // The longer of both, part by part: neither acceleration nor jerk is over its limit then.
-        let rise = ticks_up(way[0].larger(turn[0]) * hz).max(1);
-        let whole = ticks_up(way[1].larger(turn[1]) * hz).max(rise);
+        let rise = ceil_ticks(way[0].fmax(turn[0]) * hz).max(1);
+        let whole = ceil_ticks(way[1].fmax(turn[1]) * hz).max(rise);
         Self {
             rise,
             hold: whole - rise,
@@ -49,8 +53,8 @@ impl Ramp {
         2 * self.rise + self.hold
     }
 
-    /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk rounded down
-    /// leaves.
+    /// The pieces that change velocity by about `change` (2^-72 units a tick): by a little less than what a jerk
+    /// rounded down leaves.
     #[inline(never)]
     pub fn pieces(self, change: [i64; 3]) -> [Piece; 3] {
         let steps = (self.rise as i64)
@@ -84,13 +88,13 @@ fn times(change: f32, acceleration: f32, jerk: f32) -> [f32; 2] {
     }
 }
 
-/// Adds the pieces that bring the acceleration of `state` to exactly zero, within the jerks `most`; the velocities after them (all
-/// in 2^-72 units).
+/// Adds the pieces that bring the acceleration of `state` to exactly zero, within the jerks `most`; the velocities
+/// after them (all in 2^-72 units).
 #[inline(never)]
-pub(crate) fn release(
-    state: &[Axis; 3],
-    force: Pace,
-    most: Pace,
+pub(crate) fn release_acceleration(
+    state: &[AxisState; 3],
+    force: Speeds,
+    most: Speeds,
     hz: f32,
     pieces: &mut VecView<Piece>,
 ) -> [i64; 3] {
@@ -98,7 +102,7 @@ pub(crate) fn release(
     if state.iter().all(|axis| axis.acceleration == 0) {
         return velocity;
     }
-    let ticks = ticks_up(release_seconds(force, most) * hz).max(1);
+    let ticks = ceil_ticks(release_seconds(force, most) * hz).max(1);
     let steps = (ticks as i64).saturating_mul(JERK_STEP);
     let jerk = [0, 1, 2].map(|i| -state[i].acceleration / steps * JERK_STEP);
     let rest = [0, 1, 2].map(|i| -(state[i].acceleration + jerk[i] * ticks as i64));
@@ -119,16 +123,16 @@ pub(crate) fn release(
 }
 
 /// How long it takes to bring an acceleration to zero.
-pub(crate) fn release_seconds(force: Pace, jerk: Pace) -> f32 {
-    (force.way / jerk.way).larger(force.turn / jerk.turn)
+pub(crate) fn release_seconds(force: Speeds, jerk: Speeds) -> f32 {
+    (force.linear / jerk.linear).fmax(force.angular / jerk.angular)
 }
 
 /// Longest stretch that is counted: a hundred thousand years.
 const LONGEST: f32 = 36_028_797_018_963_968.0;
 
 /// Rounded up to whole ticks.
-fn ticks_up(ticks: f32) -> u64 {
-    let ticks = ticks.smaller(LONGEST);
-    let down = cut(ticks) as u64;
-    down + u64::from(float(down) * (1.0 + 1e-6) < ticks)
+fn ceil_ticks(ticks: f32) -> u64 {
+    let ticks = ticks.fmin(LONGEST);
+    let down = truncate(ticks) as u64;
+    down + u64::from(ticks_to_f32(down) * (1.0 + 1e-6) < ticks)
 }

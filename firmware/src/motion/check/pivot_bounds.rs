@@ -1,7 +1,8 @@
-//! What a motion asks of the pivots at worst, whatever the orientation: for motions that have no end to look at.
+//! What a motion asks of the pivots at worst, at any orientation: for motions without an end, which cannot be checked
+//! piece by piece.
 //!
-//! With the platform's centre `r` from the track's (DESIGN section 2; `k = 1 / sqrt(1 - r^2)`, lengths in track radii, a point
-//! moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
+//! With the platform's centre `r` from the track's (`k = 1 / sqrt(1 - r^2)`, lengths in track radii,
+//! a point moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
 //!
 //! ```text
 //! |phi'|  <= k |C'| + |theta'| (1 + r)
@@ -10,52 +11,20 @@
 //!
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
-use crate::motion::constraints::Ground;
-use crate::motion::plan::units::PER_AXIS_UNIT;
-use crate::number::float::{Order, hypot, rough};
+use crate::motion::constraints::Constraints;
+use crate::motion::speeds::Speeds;
+use crate::number::float::hypot;
 use crate::number::sqrt_f32;
-
-/// Speed of the moved point, track radii per second, and rate of rotation, rad per second; or their derivatives.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pace {
-    pub way: f32,
-    pub turn: f32,
-}
-
-impl Pace {
-    /// Of a vector of x, y and theta.
-    pub fn of(vector: &[f32; 3]) -> Self {
-        Self {
-            way: hypot(vector[0], vector[1]),
-            turn: vector[2].abs(),
-        }
-    }
-
-    /// The greater of both parts.
-    pub fn max(self, other: Self) -> Self {
-        Self {
-            way: self.way.larger(other.way),
-            turn: self.turn.larger(other.turn),
-        }
-    }
-}
-
-/// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
-pub(crate) fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
-    let unit = PER_AXIS_UNIT * hz;
-    let [x, y, theta] = rates.map(|rate| rough(rate) * unit);
-    [x, y, theta * core::f32::consts::TAU]
-}
 
 /// The bounds of the module's head, for a platform's centre within a radius.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bound {
+pub(crate) struct PivotGain {
     radius: f32,
     /// How much faster than the platform a pivot is at most.
     pub k: f32,
 }
 
-impl Bound {
+impl PivotGain {
     /// For a radius inside the track.
     pub fn new(radius: f32) -> Self {
         Self {
@@ -64,32 +33,38 @@ impl Bound {
         }
     }
 
-    /// Rate of a pivot when the platform's centre moves at `pace`; what its acceleration adds to that of a pivot, likewise.
-    pub fn asked(&self, pace: Pace) -> f32 {
-        self.k * pace.way + pace.turn * (1.0 + self.radius)
+    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot,
+    /// likewise.
+    pub fn rate(&self, speeds: Speeds) -> f32 {
+        self.k * speeds.linear + speeds.angular * (1.0 + self.radius)
     }
 
-    /// Acceleration of a pivot when the platform's centre moves at `pace` and is not accelerated.
-    pub fn coasting(&self, pace: Pace) -> f32 {
-        let Pace { way, turn } = pace;
-        let swing = self.k * way + turn * self.radius;
-        self.k * (turn * (2.0 * way + turn * self.radius) + swing * swing * self.radius)
+    /// Acceleration of a pivot when the platform's centre moves at `speeds` and is not accelerated.
+    pub fn bias_acceleration(&self, speeds: Speeds) -> f32 {
+        let Speeds { linear, angular } = speeds;
+        let relative_rate = self.k * linear + angular * self.radius;
+        self.k
+            * (angular * (2.0 * linear + angular * self.radius)
+                + relative_rate * relative_rate * self.radius)
     }
 }
 
 /// The pivots' limits, and how far the moved point lies from the platform's centre.
-pub(crate) struct Swing {
+pub(crate) struct PivotBound {
     rate: f32,
     acceleration: f32,
     arm: f32,
 }
 
-impl Swing {
-    pub fn new(ground: &Ground) -> Self {
+impl PivotBound {
+    pub fn new(constraints: &Constraints) -> Self {
         Self {
-            rate: ground.limits.pivot_rate_rad_s as f32,
-            acceleration: ground.limits.pivot_acceleration_rad_s2 as f32,
-            arm: hypot(ground.centre[0] as f32, ground.centre[1] as f32),
+            rate: constraints.limits.pivot_rate_rad_s as f32,
+            acceleration: constraints.limits.pivot_acceleration_rad_s2 as f32,
+            arm: hypot(
+                constraints.rotation_centre[0] as f32,
+                constraints.rotation_centre[1] as f32,
+            ),
         }
     }
 
@@ -98,30 +73,31 @@ impl Swing {
         self.arm
     }
 
-    /// Whether the pivots' rate holds at `pace` anywhere within `radius`.
-    pub fn rate_holds(&self, radius: f32, pace: Pace) -> bool {
-        Bound::new(radius).asked(self.platform(pace)) <= self.rate
+    /// Whether the pivots' rate holds at `speeds` anywhere within `radius`.
+    pub fn rate_is_within(&self, radius: f32, speeds: Speeds) -> bool {
+        PivotGain::new(radius).rate(self.platform_speeds(speeds)) <= self.rate
     }
 
-    /// What is left of the pivots' acceleration when the platform moves at `pace` within `radius`.
+    /// What is left of the pivots' acceleration when the platform moves at `speeds` within `radius`.
     #[inline(never)]
-    pub fn room(&self, radius: f32, pace: Pace) -> f32 {
-        let bound = Bound::new(radius);
+    pub fn acceleration_margin(&self, radius: f32, speeds: Speeds) -> f32 {
+        let bound = PivotGain::new(radius);
         // Turning alone accelerates the centre towards the point.
-        let inward = bound.k * pace.turn * pace.turn * self.arm;
-        self.acceleration - bound.coasting(self.platform(pace)) - inward
+        let inward = bound.k * speeds.angular * speeds.angular * self.arm;
+        self.acceleration - bound.bias_acceleration(self.platform_speeds(speeds)) - inward
     }
 
     /// What accelerations of the moved point and of theta ask of the pivots.
-    pub fn need(&self, radius: f32, force: Pace) -> f32 {
-        Bound::new(radius).asked(self.platform(force))
+    pub fn acceleration_demand(&self, radius: f32, accelerations: Speeds) -> f32 {
+        PivotGain::new(radius).rate(self.platform_speeds(accelerations))
     }
 
-    /// How far from the track's centre, up to `most`, the pivots can follow `pace` with half of their acceleration to spare;
-    /// `None` where they can nowhere.
-    pub fn radius(&self, pace: Pace, most: f32) -> Option<f32> {
+    /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to
+    /// spare; `None` where they can nowhere.
+    pub fn max_radius(&self, speeds: Speeds, most: f32) -> Option<f32> {
         let follows = |radius: f32| {
-            self.rate_holds(radius, pace) && self.room(radius, pace) >= self.acceleration / 2.0
+            self.rate_is_within(radius, speeds)
+                && self.acceleration_margin(radius, speeds) >= self.acceleration / 2.0
         };
         if follows(most) {
             return Some(most);
@@ -142,11 +118,11 @@ impl Swing {
         Some(low)
     }
 
-    /// Pace, or acceleration, of the platform's centre at most.
-    fn platform(&self, pace: Pace) -> Pace {
-        Pace {
-            way: pace.way + pace.turn * self.arm,
-            ..pace
+    /// Speeds, or accelerations, of the platform's centre at most.
+    fn platform_speeds(&self, speeds: Speeds) -> Speeds {
+        Speeds {
+            linear: speeds.linear + speeds.angular * self.arm,
+            ..speeds
         }
     }
 }
@@ -157,8 +133,8 @@ mod tests {
     use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
     use std::f64::consts::TAU;
 
-    /// States all over the disk of 0.8, about points up to 0.8 from the platform's centre: what the bounds say, and what the
-    /// worst of the pivots does.
+    /// States all over the disk of 0.8, about points up to 0.8 from the platform's centre: what the bounds say, and
+    /// what the worst of the pivots does.
     #[test]
     fn no_pivot_is_asked_for_more_than_the_bounds_say() {
         let mut random = 1_u64;
@@ -168,21 +144,21 @@ mod tests {
                 .wrapping_add(1_442_695_040_888_963_407);
             (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
         };
-        let (mut rates, mut forces) = (0.0_f64, 0.0_f64);
+        let (mut rates, mut largest) = (0.0_f64, 0.0_f64);
         for round in 0..40_000 {
             let arm = if round % 2 == 0 {
                 0.0
             } else {
                 next().abs() * 0.8
             };
-            let swing = Swing {
+            let pivot_bound = PivotBound {
                 rate: 0.0,
                 acceleration: 0.0,
                 arm: arm as f32,
             };
             let (r, direction, theta) = (next().abs() * 0.8, next() * TAU, next() * TAU);
             let (v, turn) = ([next() * 2.0, next() * 2.0], next() * 6.0);
-            let (a, turn_force) = ([next() * 40.0, next() * 40.0], next() * 120.0);
+            let (a, turn_acceleration) = ([next() * 40.0, next() * 40.0], next() * 120.0);
             let to_point = next() * TAU;
             let (e, n) = (arm * to_point.cos(), arm * to_point.sin());
             let pose = Pose {
@@ -196,44 +172,47 @@ mod tests {
                 theta: turn,
             };
             let acceleration = Acceleration {
-                x: a[0] + turn_force * n + turn * turn * e,
-                y: a[1] - turn_force * e + turn * turn * n,
-                theta: turn_force,
+                x: a[0] + turn_acceleration * n + turn * turn * e,
+                y: a[1] - turn_acceleration * e + turn * turn * n,
+                theta: turn_acceleration,
             };
             let guides = inverse(&pose).expect("inside").guides;
             let exact = pivot_motion(&guides, &twist, &acceleration);
             let worst = |all: [f64; 3]| all.iter().fold(0.0_f64, |worst, x| worst.max(x.abs()));
-            let pace = |v: [f64; 2], turn: f64| Pace {
-                way: v[0].hypot(v[1]) as f32,
-                turn: turn.abs() as f32,
+            let speeds = |v: [f64; 2], turn: f64| Speeds {
+                linear: v[0].hypot(v[1]) as f32,
+                angular: turn.abs() as f32,
             };
-            let (pace, force) = (pace(v, turn), pace(a, turn_force));
+            let (speeds, accelerations) = (speeds(v, turn), speeds(a, turn_acceleration));
             let r = r as f32;
-            let rate = f64::from(Bound::new(r).asked(swing.platform(pace)));
-            let asked = f64::from(swing.need(r, force) - swing.room(r, pace));
+            let rate = f64::from(PivotGain::new(r).rate(pivot_bound.platform_speeds(speeds)));
+            let asked = f64::from(
+                pivot_bound.acceleration_demand(r, accelerations)
+                    - pivot_bound.acceleration_margin(r, speeds),
+            );
             rates = rates.max(worst(exact.rates) / rate);
-            forces = forces.max(worst(exact.accelerations) / asked);
+            largest = largest.max(worst(exact.accelerations) / asked);
         }
-        println!("largest share of the bounds: rate {rates:.3}, acceleration {forces:.3}");
+        println!("largest share of the bounds: rate {rates:.3}, acceleration {largest:.3}");
         assert!((0.95..=1.000_01).contains(&rates), "{rates}");
-        assert!((0.8..=1.000_01).contains(&forces), "{forces}");
+        assert!((0.8..=1.000_01).contains(&largest), "{largest}");
     }
 
     /// Without an acceleration of its own the platform asks for some.
     #[test]
     fn a_steady_motion_leaves_less_room() {
-        let swing = Swing {
+        let pivot_bound = PivotBound {
             rate: 10.0,
             acceleration: 300.0,
             arm: 0.0,
         };
-        let pace = Pace {
-            way: 0.0,
-            turn: 5.0,
+        let speeds = Speeds {
+            linear: 0.0,
+            angular: 5.0,
         };
-        assert_eq!(swing.room(0.0, pace), 300.0);
+        assert_eq!(pivot_bound.acceleration_margin(0.0, speeds), 300.0);
         // Half a radius out, guide across: theta'^2 d / c.
         let least = 25.0 * 0.5 / 0.75_f32.sqrt();
-        assert!(swing.room(0.5, pace) <= 300.0 - least);
+        assert!(pivot_bound.acceleration_margin(0.5, speeds) <= 300.0 - least);
     }
 }

@@ -1,9 +1,11 @@
 //! The platform at an instant, in single precision: where its centre is, how it moves, and what it asks of the pivots.
 //!
-//! All along the platform's own axes, where the moved point `p` and the guides stand still: `C = P - p`, `C' = P' - theta' E p`,
-//! `C'' = P'' - theta'' E p + theta'^2 p`, with E the quarter turn. Track radii, radians and seconds. Single precision is off
-//! by less than 1e-7 track radii (10 nm): enough to hold a motion against its limits, not to make one.
+//! All along the platform's own axes, where the moved point `p` and the guides stand still: `C = P - p`,
+//! `C' = P' - theta' E p`, `C'' = P'' - theta'' E p + theta'^2 p`, with E the quarter turn. Track radii, radians and
+//! seconds. Single precision is off by less than 1e-7 track radii (10 nm): enough to hold a motion against its limits,
+//! not to make one.
 
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::number::float::hypot;
 use crate::number::sqrt_f32;
 use kinematics::{Acceleration, Twist, guides_along_axes, pivot_motion_in_platform_axes};
@@ -18,8 +20,8 @@ pub(crate) struct Platform {
 }
 
 impl Platform {
-    /// When the moved point, which lies at `centre` in the platform's axes, is at `point` with velocity `v` and acceleration
-    /// `a`, all in the base frame, and theta has this sine and cosine.
+    /// When the moved point, which lies at `centre` in the platform's axes, is at `point` with velocity `v` and
+    /// acceleration `a`, all in the base frame, and theta has this sine and cosine.
     pub fn new(
         point: [f32; 2],
         (sin, cos): (f32, f32),
@@ -32,7 +34,7 @@ impl Platform {
         let (x, y) = turned(point[0], point[1]);
         let (v_x, v_y) = turned(v[0], v[1]);
         let (a_x, a_y) = turned(a[0], a[1]);
-        let (turn, spin) = (v[2], a[2]);
+        let (turn, angular_acceleration) = (v[2], a[2]);
         let inward = turn * turn;
         Self {
             x: x - p,
@@ -43,9 +45,9 @@ impl Platform {
                 theta: turn,
             },
             acceleration: Acceleration {
-                x: a_x + spin * q + inward * p,
-                y: a_y - spin * p + inward * q,
-                theta: spin,
+                x: a_x + angular_acceleration * q + inward * p,
+                y: a_y - angular_acceleration * p + inward * q,
+                theta: angular_acceleration,
             },
         }
     }
@@ -56,7 +58,7 @@ impl Platform {
     }
 
     /// Size of the centre's acceleration.
-    pub fn bend(&self) -> f32 {
+    pub fn centre_acceleration(&self) -> f32 {
         hypot(self.acceleration.x, self.acceleration.y)
     }
 
@@ -67,6 +69,14 @@ impl Platform {
         };
         let motion = pivot_motion_in_platform_axes(&guides, &self.twist, &self.acceleration);
         [motion.rates, motion.accelerations]
+    }
+}
+
+impl CubicSegment {
+    /// The platform there, when `centre` is the moved point in its axes.
+    pub fn platform(&self, sample: &MotionState, centre: [f32; 2]) -> Platform {
+        let direction = self.sin_cos(sample.displacement[2]);
+        Platform::new(self.point(sample), direction, sample.v, sample.a, centre)
     }
 }
 

@@ -1,32 +1,31 @@
-//! Whether a target can be moved to, and along a straight line.
+//! Whether a target can be moved to, from anywhere.
 
-use super::line_in_disk;
-use crate::motion::constraints::Ground;
-use crate::motion::limits::centre;
+use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
-use crate::motion::plan::units::PER_UNIT;
+use crate::motion::plan::units::{PER_POSITION_UNIT, xy_radii};
 use crate::motion::refusal::Refusal;
 use crate::number::Fixed;
-use crate::number::float::rough;
+use crate::number::float::i64_to_f32_fast;
 use kinematics::{Angle, Scalar};
 
-/// A thousand million turns, in units of a position.
-const MOST_TURNS: i64 = 1_000_000_000 << 32;
+/// Most turns that a target may have, a thousand million, in units of a position.
+pub(crate) const MAX_TURNS: i64 = 1_000_000_000 << 32;
 
 /// Slack for a target on the rim itself, track radii: its coordinates are rounded to 2^-32.
-const RIM: f64 = 1e-9;
+const TARGET_RIM: f64 = 1e-9;
 /// The same where the platform centre follows from another point by sines that are good to 2^-29.
-const RIM_TURNED: f64 = 1e-8;
+const TARGET_RIM_OFF_CENTRE: f64 = 1e-8;
 
-/// Whether `target` can be moved to, from anywhere.
-pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
-    if target[2].unsigned_abs() > MOST_TURNS.unsigned_abs() {
+/// Whether `target` lies inside the workspace.
+pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
+    if target[2].unsigned_abs() > MAX_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
-    if !is_well_inside(target, ground) {
-        check_disk(target, ground)?;
+    if !is_well_inside(target, constraints) {
+        check_disk(target, constraints)?;
     }
-    let inside = |i: usize| (ground.bounds[i][0]..=ground.bounds[i][1]).contains(&target[i]);
+    let inside =
+        |i: usize| (constraints.bounds[i][0]..=constraints.bounds[i][1]).contains(&target[i]);
     if let Some(axis) = (0..3).find(|&i| !inside(i)) {
         return Err(Refusal::OutOfBounds { axis });
     }
@@ -34,51 +33,35 @@ pub fn check_target(target: &Position, ground: &Ground) -> Result<(), Refusal> {
 }
 
 /// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
-fn is_well_inside(target: &Position, ground: &Ground) -> bool {
-    let [x, y] = [0, 1].map(|i| rough(target[i]) * PER_UNIT);
-    let usable = ground.usable as f32;
-    ground.centre.map(f64::to_bits) == [0; 2] && x * x + y * y < usable * usable * NEARLY
+fn is_well_inside(target: &Position, constraints: &Constraints) -> bool {
+    let [x, y] = [0, 1].map(|i| i64_to_f32_fast(target[i]) * PER_POSITION_UNIT);
+    let usable = constraints.usable_radius as f32;
+    constraints.rotation_centre.map(f64::to_bits) == [0; 2]
+        && x * x + y * y < usable * usable * NEARLY
 }
 
 /// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
 const NEARLY: f32 = 0.999_99;
 
 #[inline(never)]
-fn check_disk(target: &Position, ground: &Ground) -> Result<(), Refusal> {
-    let [mut x, mut y] = centre(target);
-    let mut rim = RIM;
-    if ground.centre != [0.0; 2] {
+fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
+    let [mut x, mut y] = xy_radii(target);
+    let mut rim = TARGET_RIM;
+    if constraints.rotation_centre != [0.0; 2] {
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
         let (sin, cos) = (sin.to_f64(), cos.to_f64());
-        let [p, q] = ground.centre;
+        let [p, q] = constraints.rotation_centre;
         x -= cos * p - sin * q;
         y -= sin * p + cos * q;
-        rim = RIM_TURNED;
+        rim = TARGET_RIM_OFF_CENTRE;
     }
-    let most = ground.usable + rim;
+    let most = constraints.usable_radius + rim;
     let square = x * x + y * y;
     if square > most * most {
         return Err(Refusal::OutsideDisk {
-            radius_mm: libm::sqrt(square) * ground.geometry.radius_mm,
-            usable_mm: ground.usable * ground.geometry.radius_mm,
+            radius_mm: libm::sqrt(square) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
         });
     }
     Ok(())
-}
-
-/// Whether the straight line between two positions can be moved along: the same answer as that of [`plan_line`](crate::motion::plan_line).
-#[inline(never)]
-pub fn check_line(from: &Position, to: &Position, ground: &Ground) -> Result<(), Refusal> {
-    check_target(to, ground)?;
-    if !ground.limits.all_positive() {
-        return Err(Refusal::Limits);
-    }
-    match line_in_disk::exit(from, to, ground) {
-        Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * ground.geometry.radius_mm,
-            usable_mm: ground.usable * ground.geometry.radius_mm,
-            share: f64::from(exit.share),
-        }),
-        None => Ok(()),
-    }
 }

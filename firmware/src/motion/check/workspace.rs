@@ -1,16 +1,17 @@
 //! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
 
-use super::sample::{Arc, Sample};
-use super::{Broken, Look};
+use super::interval::IntervalEnd;
+use super::violation::Violation;
 use crate::motion::brake::Brake;
-use crate::motion::constraints::{Bounds, Ground};
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_UNIT, UnitLimits};
-use crate::number::float::{Order, hypot, rough};
+use crate::motion::constraints::{Bounds, Constraints};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, TickLimits};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use core::f32::consts::TAU;
 
 /// See the module.
-pub(crate) struct Reach {
+pub(crate) struct Workspace {
     radius: f32,
     bounds: Bounds,
     /// The moved point in the platform's axes, and its distance from the platform's centre.
@@ -19,7 +20,7 @@ pub(crate) struct Reach {
 }
 
 /// What translation and rotation brake with, per second.
-pub(crate) struct Braking {
+pub(crate) struct StopLimits {
     /// Acceleration, and its inverse.
     most: [f32; 2],
     over_most: [f32; 2],
@@ -27,9 +28,9 @@ pub(crate) struct Braking {
     over_jerk: [f32; 2],
 }
 
-impl Braking {
+impl StopLimits {
     /// Of limits at `hz` ticks a second.
-    pub fn new(limits: &UnitLimits, hz: f32) -> Self {
+    pub fn new(limits: &TickLimits, hz: f32) -> Self {
         let units = [PER_AXIS_UNIT * hz * hz, PER_AXIS_UNIT * TAU * hz * hz];
         let each = [&limits.translation, &limits.rotation];
         let most = [0, 1].map(|i| each[i].acceleration * units[i]);
@@ -42,89 +43,103 @@ impl Braking {
 }
 
 /// Slack of single precision: 0.02 um on the reference stage.
-const RIM: f32 = 2e-7;
+const PLAN_RIM: f32 = 2e-7;
 
-impl Reach {
-    pub fn new(ground: &Ground) -> Self {
-        let centre = ground.centre.map(|value| value as f32);
+impl Workspace {
+    pub fn new(constraints: &Constraints) -> Self {
+        let centre = constraints.rotation_centre.map(|value| value as f32);
         Self {
-            radius: ground.usable as f32,
-            bounds: ground.bounds,
+            radius: constraints.usable_radius as f32,
+            bounds: constraints.bounds,
             centre,
             arm: hypot(centre[0], centre[1]),
         }
     }
 
     /// How far each axis may go down and up from here, track radii and rad.
-    pub fn rooms(&self, axes: &[Axis; 3]) -> [[f32; 2]; 3] {
-        let unit = [PER_UNIT, PER_UNIT, TAU * PER_UNIT];
+    pub fn bound_distances(&self, axes: &[AxisState; 3]) -> [[f32; 2]; 3] {
+        let unit = [
+            PER_POSITION_UNIT,
+            PER_POSITION_UNIT,
+            TAU * PER_POSITION_UNIT,
+        ];
         [0, 1, 2].map(|i| {
             let here = axes[i].rounded();
-            self.bounds[i].map(|bound| rough(bound.saturating_sub(here)) * unit[i])
+            self.bounds[i].map(|bound| i64_to_f32_fast(bound.saturating_sub(here)) * unit[i])
         })
     }
 
-    /// Holds a stretch against the bounds; `rise` is how far translation and rotation can rise between its ends.
-    pub fn check_way(
+    /// Holds an interval against the bounds; `rise` is how far translation and rotation can rise between its ends.
+    pub fn check_bounds(
         &self,
-        rooms: &[[f32; 2]; 3],
-        from: &Sample,
-        to: &Sample,
+        bound_distances: &[[f32; 2]; 3],
+        from: &MotionState,
+        to: &MotionState,
         rise: [f32; 2],
-    ) -> Result<(), Broken> {
+    ) -> Result<(), Violation> {
         for i in 0..3 {
             let rise = rise[i / 2];
             let (low, high) = (
-                from.way[i].smaller(to.way[i]) - rise,
-                from.way[i].larger(to.way[i]) + rise,
+                from.displacement[i].fmin(to.displacement[i]) - rise,
+                from.displacement[i].fmax(to.displacement[i]) + rise,
             );
-            if !(rooms[i][0] - RIM <= low && high <= rooms[i][1] + RIM) {
-                return Err(Broken::Reach);
+            if !(bound_distances[i][0] - PLAN_RIM <= low
+                && high <= bound_distances[i][1] + PLAN_RIM)
+            {
+                return Err(Violation::Workspace);
             }
         }
         Ok(())
     }
 
     /// A distance of the platform's centre from the track's, if that is inside the disk.
-    pub fn inside(&self, distance: f32) -> Result<f32, Broken> {
-        if distance <= self.radius + RIM {
+    pub fn check_disk(&self, distance: f32) -> Result<f32, Violation> {
+        if distance <= self.radius + PLAN_RIM {
             Ok(distance)
         } else {
-            Err(Broken::Reach)
+            Err(Violation::Workspace)
         }
     }
 
     /// Of the platform's centre from the track's.
-    pub fn distance(&self, arc: &Arc, sample: &Sample) -> f32 {
+    pub fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
         if self.arm > 0.0 {
-            arc.platform(sample, self.centre).radius()
+            segment.platform(sample, self.centre).radius()
         } else {
-            let [x, y] = arc.place(sample);
+            let [x, y] = segment.point(sample);
             hypot(x, y)
         }
     }
 
-    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few operations.
-    pub fn far_inside(&self, rooms: &[[f32; 2]; 3], at: &Look, braking: &Braking) -> bool {
+    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few
+    /// operations.
+    pub fn stop_is_clear_of_edges(
+        &self,
+        bound_distances: &[[f32; 2]; 3],
+        at: &IntervalEnd,
+        braking: &StopLimits,
+    ) -> bool {
         let release = [0, 1].map(|i| (at.a[i] + braking.most[i]) * braking.over_jerk[i]);
         let gained = [0, 1].map(|i| at.v[i] + at.a[i] * release[i]);
         let lasts = [0, 1].map(|i| 2.0 * release[i] + gained[i] * braking.over_most[i]);
-        let [way, turn] = gained.map(|speed| speed * lasts[0].larger(lasts[1]));
+        let [way, turn] = gained.map(|speed| speed * lasts[0].fmax(lasts[1]));
         let ways = [way, way, turn];
-        let here = &at.sample.way;
-        let clear = |i: usize| rooms[i][0] <= here[i] - ways[i] && here[i] + ways[i] <= rooms[i][1];
-        at.far + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
+        let here = &at.sample.displacement;
+        let clear = |i: usize| {
+            bound_distances[i][0] <= here[i] - ways[i] && here[i] + ways[i] <= bound_distances[i][1]
+        };
+        at.point_distance + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
     }
 
     /// Holds a stop from a state against disk and bounds: at the ends of its three segments.
     pub fn check_stop(
         &self,
-        arc: &Arc,
-        rooms: &[[f32; 2]; 3],
-        at: &Sample,
+        segment: &CubicSegment,
+        bound_distances: &[[f32; 2]; 3],
+        at: &MotionState,
         brake: &Brake,
         hz: f32,
-    ) -> Result<(), Broken> {
+    ) -> Result<(), Violation> {
         let [t1, t2, t3] = brake.about().map(|ticks| ticks / hz);
         let mut spots = [*at; 3];
         for i in 0..3 {
@@ -136,13 +151,13 @@ impl Reach {
             let peak = -(v + a * t1 / 2.0) / whole;
             let v1 = v + (a + peak) * t1 / 2.0;
             let v2 = v1 + peak * t2;
-            spots[0].way[i] = at.way[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
-            spots[1].way[i] = spots[0].way[i] + t2 * (v1 + peak * t2 / 2.0);
-            spots[2].way[i] = spots[1].way[i] + t3 * (v2 + peak * t3 / 3.0);
+            spots[0].displacement[i] = at.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
+            spots[1].displacement[i] = spots[0].displacement[i] + t2 * (v1 + peak * t2 / 2.0);
+            spots[2].displacement[i] = spots[1].displacement[i] + t3 * (v2 + peak * t3 / 3.0);
         }
         for spot in &spots {
-            self.check_way(rooms, spot, spot, [0.0; 2])?;
-            self.inside(self.distance(arc, spot))?;
+            self.check_bounds(bound_distances, spot, spot, [0.0; 2])?;
+            self.check_disk(self.centre_distance(segment, spot))?;
         }
         Ok(())
     }

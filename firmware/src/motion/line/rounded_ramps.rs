@@ -1,149 +1,159 @@
-//! Ramps of the acceleration in whole numbers: the pieces of a pace.
+//! Ramps of the acceleration in whole numbers: the pieces of a path profile.
 //!
-//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end, up to
-//! a few units, and two ticks more take those: the motion ends at rest to the bit.
+//! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end,
+//! up to a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::jerk_ramps::{Ramp, Ramps};
-use super::path_profile::{BITS, Beat, Pace};
-use super::segments::STRETCHES;
+use super::path_profile::{JERK_BITS, JerkSegment, PathProfile};
+use super::ramp::{JerkRamp, JerkRamps};
+use super::segments::MAX_SEGMENTS;
 use crate::motion::plan::MAX_PIECES;
-use crate::motion::plan::axis_state::{product, times};
-use crate::number::float::{Order, nearest_short, rough, rough_long};
+use crate::number::float::{FloatMinMax, i64_to_f32_fast, i128_to_f32_fast, round_i32};
+use crate::number::wide_integer::{mul_i64_u32, mul_i128_u32};
 use heapless::Vec;
 
 /// The ramps in integers.
-pub(crate) struct Score {
-    ramps: Vec<Note, { STRETCHES + 1 }>,
+pub(super) struct RoundedRamps {
+    ramps: Vec<RoundedRamp, { MAX_SEGMENTS + 1 }>,
     start: i32,
     end: i32,
 }
 
 /// A ramp: start, end and jerk.
 #[derive(Clone, Copy)]
-struct Note {
+struct RoundedRamp {
     start: i32,
     end: i32,
     jerk: i32,
 }
 
-impl Note {
+impl RoundedRamp {
     fn ticks(&self) -> i32 {
         self.end - self.start
     }
 
     /// Twice the distance of its middle from the end of all.
-    fn lever(&self, end: i32) -> i32 {
+    fn moment(&self, end: i32) -> i32 {
         2 * end - self.start - self.end
     }
 }
 
-impl Score {
-    pub fn new(ramps: &Ramps) -> Option<Self> {
-        let jerk = |ramp: &Ramp| ramp.change / ramp.ticks as f32;
+impl RoundedRamps {
+    pub fn new(ramps: &JerkRamps) -> Option<Self> {
+        let jerk = |ramp: &JerkRamp| ramp.change / ramp.ticks as f32;
         let largest = ramps
             .iter()
-            .fold(0.0_f32, |most, r| most.larger(jerk(r).abs()));
-        let mut score = Self {
+            .fold(0.0_f32, |most, r| most.fmax(jerk(r).abs()));
+        let mut rounded = Self {
             ramps: Vec::new(),
             start: i32::MAX,
             end: i32::MIN,
         };
-        let scale = (1_u32 << BITS) as f32 / largest;
+        let scale = (1_u32 << JERK_BITS) as f32 / largest;
         for ramp in ramps {
             let half = ramp.ticks / 2;
-            let note = Note {
+            let ramp = RoundedRamp {
                 start: ramp.middle - half,
                 end: ramp.middle + half,
-                jerk: nearest_short(jerk(ramp) * scale),
+                jerk: round_i32(jerk(ramp) * scale),
             };
-            score.start = score.start.min(note.start);
-            score.end = score.end.max(note.end);
-            score.ramps.push(note).ok()?;
+            rounded.start = rounded.start.min(ramp.start);
+            rounded.end = rounded.end.max(ramp.end);
+            rounded.ramps.push(ramp).ok()?;
         }
-        score.close()?;
-        Some(score)
+        rounded.close()?;
+        Some(rounded)
     }
 
-    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the end.
+    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the
+    /// end.
     fn left(&self) -> (i64, i128) {
-        self.ramps.iter().fold((0, 0), |(force, speed), note| {
-            let step = i64::from(note.jerk) * i64::from(note.ticks());
-            let lever = note.lever(self.end) as u32;
-            (force + step, speed + product(step, lever))
-        })
+        self.ramps
+            .iter()
+            .fold((0, 0), |(acceleration, speed), ramp| {
+                let step = i64::from(ramp.jerk) * i64::from(ramp.ticks());
+                let moment = ramp.moment(self.end) as u32;
+                (acceleration + step, speed + mul_i64_u32(step, moment))
+            })
     }
 
     /// Lets the last two ramps take up what is left.
     fn close(&mut self) -> Option<()> {
-        let (force, speed) = self.left();
+        let (acceleration, speed) = self.left();
         let [.., a, b] = &mut self.ramps[..] else {
             return None;
         };
-        let (far, near) = (a.lever(self.end), b.lever(self.end));
-        let a_step = -rough_long(speed - product(force, near as u32)) / (far - near) as f32;
-        let a_jerk = nearest_short(a_step / a.ticks() as f32);
+        let (far, near) = (a.moment(self.end), b.moment(self.end));
+        let a_step =
+            -i128_to_f32_fast(speed - mul_i64_u32(acceleration, near as u32)) / (far - near) as f32;
+        let a_jerk = round_i32(a_step / a.ticks() as f32);
         a.jerk = a.jerk.wrapping_add(a_jerk);
-        let force = force + i64::from(a_jerk) * i64::from(a.ticks());
-        b.jerk = (b.jerk).wrapping_sub(nearest_short(rough(force) / b.ticks() as f32));
+        let acceleration = acceleration + i64::from(a_jerk) * i64::from(a.ticks());
+        b.jerk = (b.jerk).wrapping_sub(round_i32(i64_to_f32_fast(acceleration) / b.ticks() as f32));
         Some(())
     }
 
     /// Writes the pieces between all starts and ends.
-    pub fn write(&self, pace: &mut Pace) -> Option<()> {
-        let mut times: Vec<(i32, i32), { 2 * (STRETCHES + 1) }> = Vec::new();
-        for note in &self.ramps {
-            insert(&mut times, (note.start, note.jerk))?;
-            insert(&mut times, (note.end, -note.jerk))?;
+    pub fn write(&self, profile: &mut PathProfile) -> Option<()> {
+        let mut times: Vec<(i32, i32), { 2 * (MAX_SEGMENTS + 1) }> = Vec::new();
+        for ramp in &self.ramps {
+            insert(&mut times, (ramp.start, ramp.jerk))?;
+            insert(&mut times, (ramp.end, -ramp.jerk))?;
         }
-        pace.beats.clear();
-        pace.bits = BITS;
+        profile.segments.clear();
+        profile.bits = JERK_BITS;
         let mut sum = Sum::default();
         let mut jerk = 0_i32;
         for pair in times.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             jerk = jerk.wrapping_add(from.1);
             if to.0 > from.0 {
-                sum.push(&mut pace.beats, (to.0 - from.0) as u32, jerk)?;
+                sum.push(&mut profile.segments, (to.0 - from.0) as u32, jerk)?;
             }
         }
-        sum.close(&mut pace.beats)?;
-        pace.sixfold = sum.sixfold;
-        (sum.sixfold > 0).then_some(())
+        sum.close(&mut profile.segments)?;
+        profile.six_times_distance = sum.six_times_distance;
+        (sum.six_times_distance > 0).then_some(())
     }
 }
 
-/// The state that beats lead to.
+/// The state that segments lead to.
 #[derive(Default)]
 struct Sum {
     /// Acceleration.
-    force: i64,
+    acceleration: i64,
     /// Twice the speed.
     speed: i128,
     /// Six times the way.
-    sixfold: i128,
+    six_times_distance: i128,
 }
 
 impl Sum {
     #[inline(never)]
-    fn push(&mut self, beats: &mut Vec<Beat, MAX_PIECES>, ticks: u32, jerk: i32) -> Option<()> {
+    fn push(
+        &mut self,
+        segments: &mut Vec<JerkSegment, MAX_PIECES>,
+        ticks: u32,
+        jerk: i32,
+    ) -> Option<()> {
         let bent = i64::from(jerk) * i64::from(ticks);
-        let way = 3 * self.speed + product(3 * self.force + bent, ticks);
-        self.sixfold += times(way, ticks);
-        self.speed += product(2 * self.force + bent, ticks);
-        self.force += bent;
+        let way = 3 * self.speed + mul_i64_u32(3 * self.acceleration + bent, ticks);
+        self.six_times_distance += mul_i128_u32(way, ticks);
+        self.speed += mul_i64_u32(2 * self.acceleration + bent, ticks);
+        self.acceleration += bent;
         let ticks = u64::from(ticks);
-        beats.push(Beat { ticks, jerk }).ok()
+        segments.push(JerkSegment { ticks, jerk }).ok()
     }
 
-    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the acceleration is.
-    fn close(&mut self, beats: &mut Vec<Beat, MAX_PIECES>) -> Option<()> {
-        if self.force == 0 && self.speed == 0 {
+    /// Ends at rest exactly: the few units that are left go in two more ticks. Twice the speed is odd when the
+    /// acceleration is.
+    fn close(&mut self, segments: &mut Vec<JerkSegment, MAX_PIECES>) -> Option<()> {
+        if self.acceleration == 0 && self.speed == 0 {
             return Some(());
         }
-        let first = i32::try_from(-(self.speed + i128::from(3 * self.force)) / 2).ok()?;
-        let second = i32::try_from(-self.force - i64::from(first)).ok()?;
-        self.push(beats, 1, first)?;
-        self.push(beats, 1, second)
+        let first = i32::try_from(-(self.speed + i128::from(3 * self.acceleration)) / 2).ok()?;
+        let second = i32::try_from(-self.acceleration - i64::from(first)).ok()?;
+        self.push(segments, 1, first)?;
+        self.push(segments, 1, second)
     }
 }
 
@@ -164,7 +174,7 @@ mod tests {
     use crate::motion::line::rounded_ramps::*;
 
     /// Up, along, and down, with ramps that overlap or not.
-    fn ramps(length: i32, ticks: i32) -> Ramps {
+    fn ramps(length: i32, ticks: i32) -> JerkRamps {
         [
             (0, 1.0),
             (length, -1.0),
@@ -172,7 +182,7 @@ mod tests {
             (6 * length, 0.7),
         ]
         .into_iter()
-        .map(|(middle, change)| Ramp {
+        .map(|(middle, change)| JerkRamp {
             middle,
             ticks,
             change: change * 1e-6,
@@ -180,23 +190,25 @@ mod tests {
         .collect()
     }
 
-    fn paced(ramps: &Ramps) -> Option<Pace> {
-        let mut pace = Pace::default();
-        Score::new(ramps)?.write(&mut pace).map(|()| pace)
+    fn profiled(ramps: &JerkRamps) -> Option<PathProfile> {
+        let mut profile = PathProfile::default();
+        RoundedRamps::new(ramps)?
+            .write(&mut profile)
+            .map(|()| profile)
     }
 
-    /// Every tick of it, in the integers of the beats.
-    fn played(pace: &Pace) -> (i128, i128, i128) {
-        let (mut force, mut twice_speed, mut sixfold) = (0_i128, 0_i128, 0_i128);
-        for beat in &pace.beats {
-            for _ in 0..beat.ticks {
-                let jerk = i128::from(beat.jerk);
-                sixfold += 3 * (twice_speed + force) + jerk;
-                twice_speed += 2 * force + jerk;
-                force += jerk;
+    /// Every tick of it, in the integers of the segments.
+    fn stepped(profile: &PathProfile) -> (i128, i128, i128) {
+        let (mut acceleration, mut twice_speed, mut six_times_distance) = (0_i128, 0_i128, 0_i128);
+        for segment in &profile.segments {
+            for _ in 0..segment.ticks {
+                let jerk = i128::from(segment.jerk);
+                six_times_distance += 3 * (twice_speed + acceleration) + jerk;
+                twice_speed += 2 * acceleration + jerk;
+                acceleration += jerk;
             }
         }
-        (force, twice_speed, sixfold)
+        (acceleration, twice_speed, six_times_distance)
     }
 
     #[test]
@@ -208,12 +220,15 @@ mod tests {
             (1_000, 1_400),
             (300_000, 2_000),
         ] {
-            let pace = paced(&ramps(length, ticks)).unwrap();
-            let (force, speed, sixfold) = played(&pace);
-            assert_eq!((force, speed), (0, 0), "{length} {ticks}");
-            assert_eq!(sixfold, pace.sixfold, "{length} {ticks}");
+            let profile = profiled(&ramps(length, ticks)).unwrap();
+            let (acceleration, speed, six_times_distance) = stepped(&profile);
+            assert_eq!((acceleration, speed), (0, 0), "{length} {ticks}");
+            assert_eq!(
+                six_times_distance, profile.six_times_distance,
+                "{length} {ticks}"
+            );
             // Two ticks close it.
-            assert!(pace.ticks() <= (6 * length + ticks) as u64 + 2);
+            assert!(profile.ticks() <= (6 * length + ticks) as u64 + 2);
         }
     }
 
@@ -225,8 +240,8 @@ mod tests {
             odd[1].middle += k;
             odd[2].ticks += 2 * (k % 5);
             odd[3].middle += 3 * k;
-            let (force, speed, _) = played(&paced(&odd).unwrap());
-            assert_eq!((force, speed), (0, 0), "{k}");
+            let (acceleration, speed, _) = stepped(&profiled(&odd).unwrap());
+            assert_eq!((acceleration, speed), (0, 0), "{k}");
         }
     }
 
@@ -234,17 +249,17 @@ mod tests {
     fn what_ramps_leave_of_speed_is_taken_up_by_the_last_two() {
         let mut off = ramps(1_000, 200);
         off[3].change *= 1.01;
-        let pace = paced(&off).unwrap();
-        let (force, speed, _) = played(&pace);
-        assert_eq!((force, speed), (0, 0));
+        let profile = profiled(&off).unwrap();
+        let (acceleration, speed, _) = stepped(&profile);
+        assert_eq!((acceleration, speed), (0, 0));
     }
 
     #[test]
-    fn backwards_is_no_pace() {
+    fn backwards_is_no_profile() {
         let mut backwards = ramps(1_000, 200);
         for ramp in &mut backwards {
             ramp.change = -ramp.change;
         }
-        assert!(paced(&backwards).is_none());
+        assert!(profiled(&backwards).is_none());
     }
 }

@@ -1,28 +1,28 @@
-//! From the fastest speed along a line to a few stretches of constant acceleration.
+//! From the fastest speed along a line to a few segments of constant acceleration.
 //!
-//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is one
-//! already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it stays
-//! between z and a share of z: from where the line before ended, the range of slopes that do narrows from place to place,
-//! and the line ends where none is left. A share that leaves too many lines is lowered.
+//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is
+//! one already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it
+//! stays between z and a share of z: from where the line before ended, the range of slopes that do narrows from place
+//! to place, and the line ends where none is left. A share that leaves too many lines is lowered.
 
-use super::topp::Squares;
+use super::topp::SquaredSpeeds;
 use crate::motion::limits::PathLimits;
-use crate::number::float::Order;
+use crate::number::float::FloatMinMax;
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
-/// Most stretches: each corner takes two pieces of a plan.
-pub(crate) const STRETCHES: usize = 12;
+/// Most segments: each corner takes two pieces of a plan.
+pub(super) const MAX_SEGMENTS: usize = 12;
 
 /// A corner: where, and the speed there (per second).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
+pub(super) struct Corner {
     pub s: f32,
     pub rate: f32,
 }
 
 /// Corners of a motion from rest to rest.
-pub(crate) type Polygon = Vec<Corner, { STRETCHES + 1 }>;
+pub(super) type Corners = Vec<Corner, { MAX_SEGMENTS + 1 }>;
 
 /// The share of z that is given away, the least and the most.
 const LEAST: f32 = 0.01;
@@ -36,45 +36,46 @@ const FINE: f32 = 0.04;
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
 
-/// Writes the polygon under `z`, of which there are `stretches` and one, whose slopes stand for accelerations up to
-/// `acceleration`. `None` where it takes too many stretches.
-pub(crate) fn under(
-    z: &Squares,
-    stretches: usize,
+/// Writes the corners of segments under `z`, of which there are `intervals` and one, whose slopes stand for
+/// accelerations up to `acceleration`. `None` where it takes too many segments.
+pub(super) fn fit_segments_below(
+    z: &SquaredSpeeds,
+    intervals: usize,
     acceleration: f32,
-    polygon: &mut Polygon,
+    corners: &mut Corners,
 ) -> Option<()> {
-    let z = z.get(..=stretches)?;
-    let laid = |loss: f32, polygon: &mut Polygon| lay(z, acceleration, 1.0 - loss, polygon);
+    let z = z.get(..=intervals)?;
+    let laid =
+        |loss: f32, corners: &mut Corners| lay_segments(z, acceleration, 1.0 - loss, corners);
     let (mut before, mut loss) = (0.0, LEAST);
-    while let Err(place) = laid(loss, polygon) {
+    while let Err(place) = laid(loss, corners) {
         if loss >= MOST {
             return None;
         }
-        // What makes the stretches of a curve as much longer as they would have to be, and a step at least.
-        let longer = stretches as f32 / place as f32;
+        // What makes the segments of a curve as much longer as they would have to be, and a step at least.
+        let longer = intervals as f32 / place as f32;
         before = loss;
         loss = (loss * (longer * longer))
-            .larger(STEP * loss + STEP_MORE)
-            .smaller(MOST);
+            .fmax(STEP * loss + STEP_MORE)
+            .fmin(MOST);
     }
     if loss - before >= FINE {
         // Once more, with half of what was added.
-        let mut finer = Polygon::new();
+        let mut finer = Corners::new();
         if laid(0.5 * (before + loss), &mut finer).is_ok() {
-            *polygon = finer;
+            *corners = finer;
         }
     }
     Some(())
 }
 
-/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only corners at
-/// which the acceleration falls: without them the speed is lower.
-pub(crate) fn thin(polygon: &mut Polygon, limits: &PathLimits) {
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
+/// corners at which the acceleration falls: without them the speed is lower.
+pub(super) fn remove_close_corners(corners: &mut Corners, limits: &PathLimits) {
     let mut k = 1;
-    while k + 2 < polygon.len() {
-        let stretch = |k: usize| Stretch::new(&polygon[k], &polygon[k + 1]);
-        let (before, here, after) = (stretch(k - 1), stretch(k), stretch(k + 1));
+    while k + 2 < corners.len() {
+        let segment = |k: usize| Segment::new(&corners[k], &corners[k + 1]);
+        let (before, here, after) = (segment(k - 1), segment(k), segment(k + 1));
         let [first, second] = [
             before.acceleration - here.acceleration,
             here.acceleration - after.acceleration,
@@ -82,7 +83,7 @@ pub(crate) fn thin(polygon: &mut Polygon, limits: &PathLimits) {
         let ramps = (first + second) / (2.0 * limits.jerk);
         if first > 0.0 && second > 0.0 && here.seconds < ramps {
             // The one that stands out less.
-            polygon.remove(if first < second { k } else { k + 1 });
+            corners.remove(if first < second { k } else { k + 1 });
             k = k.saturating_sub(1).max(1);
         } else {
             k += 1;
@@ -91,12 +92,12 @@ pub(crate) fn thin(polygon: &mut Polygon, limits: &PathLimits) {
 }
 
 /// What happens between two corners.
-struct Stretch {
+struct Segment {
     seconds: f32,
     acceleration: f32,
 }
 
-impl Stretch {
+impl Segment {
     fn new(from: &Corner, to: &Corner) -> Self {
         let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
         Self {
@@ -106,45 +107,50 @@ impl Stretch {
     }
 }
 
-/// One pass, written; an error is the place up to which the stretches suffice.
+/// One pass, written; an error is the place up to which the segments suffice.
 #[inline(never)]
-fn lay(z: &[f32], acceleration: f32, share: f32, polygon: &mut Polygon) -> Result<(), usize> {
+fn lay_segments(
+    z: &[f32],
+    acceleration: f32,
+    share: f32,
+    corners: &mut Corners,
+) -> Result<(), usize> {
     let last = z.len() - 1;
     let spacing = 1.0 / last as f32;
     let steepest = 2.0 * acceleration * spacing;
-    polygon.clear();
+    corners.clear();
     let (mut from, mut start) = (0, 0.0);
-    // There is room for one more than there are stretches.
-    let _ = polygon.push(Corner { s: 0.0, rate: 0.0 });
+    // There is room for one more than there are segments.
+    let _ = corners.push(Corner { s: 0.0, rate: 0.0 });
     while from < last {
         let (mut low, mut high) = (-steepest, steepest);
         let mut to = from + 1;
-        // The first stretch is taken in any case: at its end a line can be as low as it likes.
-        high = high.smaller(z[to] - start);
-        low = low.larger(z[to] * share - start).smaller(high);
+        // The first segment is taken in any case: at its end a line can be as low as it likes.
+        high = high.fmin(z[to] - start);
+        low = low.fmax(z[to] * share - start).fmin(high);
         while to < last {
             let steps = (to + 1 - from) as f32;
             let over = 1.0 / steps;
-            let highest = high.smaller((z[to + 1] - start) * over);
-            let lowest = low.larger((z[to + 1] * share - start) * over);
+            let highest = high.fmin((z[to + 1] - start) * over);
+            let lowest = low.fmax((z[to + 1] * share - start) * over);
             if lowest > highest + steepest * ALIKE {
                 break;
             }
-            (low, high) = (lowest.smaller(highest), highest);
+            (low, high) = (lowest.fmin(highest), highest);
             to += 1;
         }
-        start = (start + high * (to - from) as f32).larger(0.0);
+        start = (start + high * (to - from) as f32).fmax(0.0);
         from = to;
         let corner = Corner {
             s: from as f32 * spacing,
             rate: sqrt_f32(start),
         };
-        if polygon.push(corner).is_err() {
+        if corners.push(corner).is_err() {
             return Err(from);
         }
     }
-    // At the end z is 0, and so is the polygon but for roundings.
-    if let Some(corner) = polygon.last_mut() {
+    // At the end z is 0, and so is the speed but for roundings.
+    if let Some(corner) = corners.last_mut() {
         corner.rate = 0.0;
     }
     Ok(())

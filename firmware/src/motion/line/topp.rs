@@ -1,29 +1,29 @@
 //! The fastest speed along a line under the limits of the line and of the pivots, jerk aside.
 //!
-//! In `z = s'^2` acceleration is a slope, `s'' = dz/ds / 2`, and a pivot's limits are straight: `phi_i'^2 z` at most the
-//! square of its rate, and `|phi_i' s'' + phi_i'' z|` at most its acceleration. Backwards from rest at the end every place
-//! gets the largest z from which the rest of the line can still be kept; forwards from rest at the start z then grows as fast
-//! as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal path parameterization
-//! based on reachability analysis").
+//! In `z = s'^2` acceleration is a slope, `s'' = dz/ds / 2`, and a pivot's limits are straight: `phi_i'^2 z` at most
+//! the square of its rate, and `|phi_i' s'' + phi_i'' z|` at most its acceleration. Backwards from rest at the end
+//! every place gets the largest z from which the rest of the line can still be kept; forwards from rest at the start z
+//! then grows as fast as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal
+//! path parameterization based on reachability analysis").
 
-use super::pivot_demand::{Grid, Place};
-use crate::number::float::Order;
+use super::pivot_demand::{DemandGrid, GridPoint};
+use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
-/// Most stretches and one.
-pub(crate) const PLACES: usize = 65;
+/// Most intervals and one.
+pub(super) const GRID_POINTS: usize = 65;
 
 /// z at every place.
-pub(crate) type Squares = [f32; PLACES];
+pub(super) type SquaredSpeeds = [f32; GRID_POINTS];
 
 /// A line that bounds s'' over z: `offset + slope z`.
 #[derive(Clone, Copy)]
-struct Bound {
+struct LinearBound {
     offset: f32,
     slope: f32,
 }
 
-impl Bound {
+impl LinearBound {
     fn at(&self, z: f32) -> f32 {
         self.offset + self.slope * z
     }
@@ -33,19 +33,19 @@ impl Bound {
 const STILL: f32 = 1e-15;
 
 /// Writes the fastest; see the module.
-pub(crate) fn fastest(grid: &Grid, z: &mut Squares) {
-    let n = grid.stretches();
+pub(super) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
+    let n = grid.intervals();
     let half = 0.5 * n as f32;
-    // A slope of z over a stretch is this many times an acceleration.
+    // A slope of z over an interval is this many times an acceleration.
     let double = 2.0 / n as f32;
-    // Of the places that are not calm, the last first.
-    let mut nodes: Vec<Node, PLACES> = Vec::new();
+    // Of the places at which the pivots' limits are active, the last first.
+    let mut nodes: Vec<Node, GRID_POINTS> = Vec::new();
     let steepest = double * grid.limits.acceleration;
     let mut next = 0.0;
-    for (place, z) in grid.places().iter().zip(z.iter_mut()).take(n).rev() {
+    for (place, z) in grid.points().iter().zip(z.iter_mut()).take(n).rev() {
         let most = 1.0 / (place.rate * place.rate);
-        next = if place.calm {
-            most.smaller(next + steepest)
+        next = if place.pivot_limits_inactive {
+            most.fmin(next + steepest)
         } else {
             let node = Node::new(place, grid.limits.acceleration);
             // There is room for all.
@@ -56,13 +56,13 @@ pub(crate) fn fastest(grid: &Grid, z: &mut Squares) {
     }
     let mut now = 0.0;
     z[0] = now;
-    for (place, z) in grid.places().iter().zip(z.iter_mut().skip(1)).take(n) {
-        let up = if place.calm {
+    for (place, z) in grid.points().iter().zip(z.iter_mut().skip(1)).take(n) {
+        let up = if place.pivot_limits_inactive {
             steepest
         } else {
             (nodes.pop()).map_or(0.0, |node| double * node.highest(now))
         };
-        now = z.smaller((now + up).larger(0.0));
+        now = z.fmin((now + up).fmax(0.0));
         *z = now;
     }
 }
@@ -77,12 +77,12 @@ struct Node {
 }
 
 impl Node {
-    fn new(place: &Place, acceleration: f32) -> Self {
+    fn new(place: &GridPoint, acceleration: f32) -> Self {
         let mut widths = [0.0; 3];
         let mut slopes = [0.0; 3];
         for i in 0..3 {
             let first = place.first[i];
-            let width = 1.0 / first.abs().larger(STILL);
+            let width = 1.0 / first.abs().fmax(STILL);
             widths[i] = width;
             slopes[i] = if first < 0.0 {
                 place.second[i] * width
@@ -100,13 +100,13 @@ impl Node {
     /// The largest acceleration at z.
     fn highest(&self, z: f32) -> f32 {
         (self.widths.iter().zip(&self.slopes)).fold(self.acceleration, |most, (width, slope)| {
-            most.smaller(width + slope * z)
+            most.fmin(width + slope * z)
         })
     }
 
     /// The upper bound that counts at z, or the lower one, with a `sign` of -1.
-    fn bound(&self, z: f32, sign: f32) -> Bound {
-        let mut best = Bound {
+    fn bound(&self, z: f32, sign: f32) -> LinearBound {
+        let mut best = LinearBound {
             offset: sign * self.acceleration,
             slope: 0.0,
         };
@@ -115,7 +115,7 @@ impl Node {
             let other = width + slope * z * sign;
             if other < value {
                 value = other;
-                best = Bound {
+                best = LinearBound {
                     offset: sign * width,
                     slope: *slope,
                 };
@@ -124,10 +124,11 @@ impl Node {
         best
     }
 
-    /// The largest z up to `most` from which the next place's `next` is not exceeded: the last z at which the lowest upper bound is not
-    /// below the highest lower one. Newton's method from above: exact after as many rounds as there are lines on the way.
+    /// The largest z up to `most` from which the next place's `next` is not exceeded: the last z at which the lowest
+    /// upper bound is not below the highest lower one. Newton's method from above: exact after as many rounds as there
+    /// are lines on the way.
     fn largest(&self, most: f32, next: f32, half: f32) -> f32 {
-        let onwards = Bound {
+        let onwards = LinearBound {
             offset: next * half,
             slope: -half,
         };

@@ -4,6 +4,8 @@
 //! tick squared and per tick cubed. In integers a cubic is followed exactly: no rounding grows with time or with the
 //! number of turns, x86 and the chip agree to the bit, and a position can not step, because it is only ever added to.
 
+use crate::number::wide_integer::mul_i64_u32;
+
 /// Bits of an axis position below the 2^-32 track radii or turns of a [`Position`](crate::motion::Position).
 ///
 /// 40 leaves velocity, in 64 bits, a range of 2^-9 turns a tick (39 turns/s at 20 kHz), while the jerk of the slowest
@@ -13,13 +15,13 @@ pub const SUB_BITS: u32 = 40;
 /// Every jerk is a multiple of this, so that the halves and sixths of the cubic are whole numbers.
 pub const JERK_STEP: i64 = 6;
 
-/// Times 3 this is 1, modulo 2^64: a multiple of 3 times it is a third of it, without the library call that a division of
-/// 64 bits is on the chip.
+/// Times 3 this is 1, modulo 2^64: a multiple of 3 times it is a third of it, without the library call that a division
+/// of 64 bits is on the chip.
 const INVERSE_OF_3: i64 = 0xAAAA_AAAA_AAAA_AAAB_u64 as i64;
 
 /// Position, velocity and acceleration of one axis at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Axis {
+pub struct AxisState {
     /// Position, 2^-72 track radii or turns.
     pub position: i128,
     /// Velocity, the same per tick.
@@ -30,14 +32,14 @@ pub struct Axis {
 
 /// What drives an axis in every tick of a piece, so that a sixth is taken once a piece.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Push {
+pub struct TickIncrement {
     jerk: i64,
     /// A sixth of the jerk, and the nudge.
     sixth: i64,
 }
 
-impl Push {
-    /// Of a jerk and a nudge as [`Axis::advance`] takes them.
+impl TickIncrement {
+    /// Of a jerk and a nudge as [`AxisState::advance`] takes them.
     #[inline]
     pub fn new(jerk: i64, nudge: i64) -> Self {
         let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
@@ -48,7 +50,7 @@ impl Push {
     }
 }
 
-impl Axis {
+impl AxisState {
     /// At rest at `position` (2^-32 track radii or turns).
     pub const fn at_rest(position: i64) -> Self {
         Self {
@@ -62,21 +64,21 @@ impl Axis {
     /// besides; see [`Plan::nudge`](crate::motion::Plan::nudge).
     #[inline]
     pub fn advance(&mut self, jerk: i64, nudge: i64) {
-        self.push(&Push::new(jerk, nudge));
+        self.advance_by(&TickIncrement::new(jerk, nudge));
     }
 
     /// The state one tick later.
     #[inline]
-    pub fn push(&mut self, push: &Push) {
+    pub fn advance_by(&mut self, increment: &TickIncrement) {
         // Both are even, so that the shifts are the halves.
         let step = (self.velocity)
             .wrapping_add(self.acceleration >> 1)
-            .wrapping_add(push.sixth);
+            .wrapping_add(increment.sixth);
         self.position = self.position.wrapping_add(i128::from(step));
         self.velocity = (self.velocity)
             .wrapping_add(self.acceleration)
-            .wrapping_add(push.jerk >> 1);
-        self.acceleration = self.acceleration.wrapping_add(push.jerk);
+            .wrapping_add(increment.jerk >> 1);
+        self.acceleration = self.acceleration.wrapping_add(increment.jerk);
     }
 
     /// The state `ticks` later, the same to the bit as that many calls of [`advance`](Self::advance).
@@ -86,7 +88,9 @@ impl Axis {
             .acceleration
             .wrapping_add((ticks as i64).wrapping_mul(half_jerk));
         Self {
-            position: self.position.wrapping_add(self.way(ticks, jerk, nudge)),
+            position: self
+                .position
+                .wrapping_add(self.displacement(ticks, jerk, nudge)),
             velocity: self
                 .velocity
                 .wrapping_add((ticks as i64).wrapping_mul(change)),
@@ -97,7 +101,7 @@ impl Axis {
     }
 
     /// The way of `ticks`: `t (v + t (a / 2 + t j / 6))`.
-    fn way(&self, ticks: u64, jerk: i64, nudge: i64) -> i128 {
+    fn displacement(&self, ticks: u64, jerk: i64, nudge: i64) -> i128 {
         let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
         let half = self.acceleration >> 1;
         let t = ticks as i64;
@@ -106,14 +110,14 @@ impl Axis {
         let mean = mean.wrapping_add(self.velocity).wrapping_add(nudge);
         // A product with 32 bits is a fourth of one with 64, and only jogs and the slowest moves have pieces of days.
         match u32::try_from(ticks) {
-            Ok(t) => product(mean, t),
+            Ok(t) => mul_i64_u32(mean, t),
             Err(_) => i128::from(mean).wrapping_mul(i128::from(ticks)),
         }
     }
 
-    /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a velocity does not
-    /// count.
-    pub(crate) fn end(&self, ticks: u64, nudge: i64) -> i64 {
+    /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a
+    /// velocity does not count.
+    pub(crate) fn rest_position(&self, ticks: u64, nudge: i64) -> i64 {
         let rest = Self {
             position: self.position,
             ..Self::default()
@@ -126,25 +130,6 @@ impl Axis {
     pub fn rounded(&self) -> i64 {
         (self.position >> SUB_BITS) as i64
     }
-}
-
-/// The product.
-#[inline]
-pub(crate) fn product(value: i64, factor: u32) -> i128 {
-    let low = u64::from(value as u32) * u64::from(factor);
-    let high = (value >> 32) * i64::from(factor) + (low >> 32) as i64;
-    (i128::from(high) << 32) | i128::from(low as u32)
-}
-
-/// The product modulo 2^128.
-#[inline]
-pub(crate) fn times(value: i128, factor: u32) -> i128 {
-    let factor = u64::from(factor);
-    let (low, high) = (value as u64, (value >> 64) as u64);
-    let first = u64::from(low as u32) * factor;
-    let second = (low >> 32) * factor + (first >> 32);
-    let third = high.wrapping_mul(factor).wrapping_add(second >> 32);
-    (i128::from(third as i64) << 64) | i128::from(second << 32 | first & 0xFFFF_FFFF)
 }
 
 #[cfg(test)]
@@ -161,7 +146,7 @@ mod tests {
             (random as i64) >> (64 - bits)
         };
         for _ in 0..200 {
-            let start = Axis {
+            let start = AxisState {
                 position: i128::from(next(60)) << 42,
                 velocity: next(58),
                 acceleration: next(48) * JERK_STEP,
@@ -181,7 +166,7 @@ mod tests {
 
     #[test]
     fn two_stretches_are_as_long_as_one_beyond_32_bits() {
-        let start = Axis {
+        let start = AxisState {
             position: -(5 << 90),
             velocity: 123_456_789,
             acceleration: -6 * 5_000,

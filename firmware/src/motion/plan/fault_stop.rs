@@ -1,114 +1,90 @@
 //! The controlled stop of a fault: the plan under way is followed slower and slower.
 //!
-//! The plan's own time runs at a pace that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is over. So
-//! the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of any plan, without
-//! planning anything: velocity is the plan's times the pace, acceleration the plan's times its square and the plan's velocity
-//! times the pace's change, all continuous. It adds at most `1.5 / duration` times the velocity to the acceleration.
+//! The plan's own time runs at a rate that falls from 1 to 0 as `1 - u^2 (3 - 2 u)`, u the part of the stop that is
+//! over. So the stop stays on the plan's path and inside the workspace that the plan was made for, from any state of
+//! any plan, without planning anything: velocity is the plan's times the rate, acceleration the plan's times its square
+//! and the plan's velocity times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity
+//! to the acceleration.
 
-use super::follower::{ACCELERATION_CUT, Motion, Scale, Setpoint, VELOCITY_CUT};
+use super::follower::PlanFollower;
+use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::time_scaling::{FaultStop, TimeScaling};
 use kinematics::{Acceleration, Twist};
-
-/// How a motion is slowed down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slowdown {
-    /// Part of the stop that is a tick.
-    step: f32,
-    rate_hz: f32,
-}
-
-/// Where in its stop a motion is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Slowing {
-    /// Part of the stop that is over.
-    over: f32,
-    /// Part of the plan's tick that has begun.
-    part: f32,
-    pace: f32,
-    /// Change of the pace, 1/s.
-    change: f32,
-}
-
-impl Slowdown {
-    /// A stop that takes so long.
-    pub fn new(duration_s: f64, rate_hz: f64) -> Self {
-        Self {
-            step: (1.0 / (duration_s * rate_hz)) as f32,
-            rate_hz: rate_hz as f32,
-        }
-    }
-}
 
 /// 2^-32 turns or track radii in what a velocity and an acceleration are cut to.
 const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;
 const ACCELERATION_UNIT: f32 = 1.0 / (1 << (40 - ACCELERATION_CUT)) as f32;
 
-impl Motion {
+impl PlanFollower {
     /// A stop begins at the setpoint of this tick.
-    pub fn begin_slowing(&mut self) {
-        self.slowing = Slowing {
-            pace: 1.0,
-            ..Slowing::default()
+    pub fn begin_fault_stop(&mut self) {
+        self.time_scaling = TimeScaling {
+            rate: 1.0,
+            ..TimeScaling::default()
         };
     }
 
     /// One tick on, in a stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
-    pub fn advance_slower(&mut self, slowdown: &Slowdown) {
+    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop) {
         if !self.moving {
             return;
         }
-        let mut slowing = self.slowing;
-        let before = slowing.pace;
-        slowing.over += slowdown.step;
-        let u = slowing.over;
+        let mut time_scaling = self.time_scaling;
+        let before = time_scaling.rate;
+        time_scaling.progress += fault_stop.step;
+        let u = time_scaling.progress;
         if u >= 1.0 {
-            let rest = self.slowed_position();
+            let rest = self.fault_stop_position();
             self.rest_at(rest);
             return;
         }
-        slowing.pace = 1.0 - u * u * (3.0 - 2.0 * u);
-        slowing.change = -6.0 * u * (1.0 - u) * slowdown.step * slowdown.rate_hz;
-        slowing.part += 0.5 * (before + slowing.pace);
-        if slowing.part >= 1.0 {
-            slowing.part -= 1.0;
+        time_scaling.rate = 1.0 - u * u * (3.0 - 2.0 * u);
+        time_scaling.rate_change = -6.0 * u * (1.0 - u) * fault_stop.step * fault_stop.rate_hz;
+        time_scaling.part += 0.5 * (before + time_scaling.rate);
+        if time_scaling.part >= 1.0 {
+            time_scaling.part -= 1.0;
             self.advance();
         }
-        self.slowing = slowing;
+        self.time_scaling = time_scaling;
     }
 
     /// The setpoint now, in a stop.
-    pub fn slowed_setpoint(&self, scale: &Scale) -> Setpoint {
+    pub fn fault_stop_setpoint(&self, scale: &SetpointScale) -> Setpoint {
         if !self.moving {
             return self.setpoint(scale);
         }
         let plan = self.setpoint(scale);
-        let Slowing {
-            part, pace, change, ..
-        } = self.slowing;
+        let TimeScaling {
+            part,
+            rate,
+            rate_change,
+            ..
+        } = self.time_scaling;
         // Of the plan within its tick.
         let tick = part / scale.rate_hz;
         let (twist, acceleration) = (&plan.twist, &plan.acceleration);
         let x = twist.x + acceleration.x * tick;
         let y = twist.y + acceleration.y * tick;
         let theta = twist.theta + acceleration.theta * tick;
-        let square = pace * pace;
+        let square = rate * rate;
         Setpoint {
-            position: self.slowed_position(),
+            position: self.fault_stop_position(),
             twist: Twist {
-                x: x * pace,
-                y: y * pace,
-                theta: theta * pace,
+                x: x * rate,
+                y: y * rate,
+                theta: theta * rate,
             },
             acceleration: Acceleration {
-                x: acceleration.x * square + x * change,
-                y: acceleration.y * square + y * change,
-                theta: acceleration.theta * square + theta * change,
+                x: acceleration.x * square + x * rate_change,
+                y: acceleration.y * square + y * rate_change,
+                theta: acceleration.theta * square + theta * rate_change,
             },
         }
     }
 
     /// The plan's position within its tick.
-    fn slowed_position(&self) -> [i64; 3] {
-        let part = self.slowing.part;
+    fn fault_stop_position(&self) -> [i64; 3] {
+        let part = self.time_scaling.part;
         self.axes.map(|axis| {
             let velocity = (axis.velocity >> VELOCITY_CUT) as i32 as f32 * VELOCITY_UNIT;
             let acceleration =

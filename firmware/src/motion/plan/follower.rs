@@ -1,64 +1,20 @@
-//! Following a plan, tick by tick.
+//! Following a plan tick by tick, and taking the next one.
 
-pub use super::fault_stop::Slowdown;
-
-use super::axis_state::{Axis, Push};
-use super::rotation_centre::Centre;
-use super::{Plan, Position, Start};
+use super::axis_state::{AxisState, TickIncrement};
+use super::rotation_centre::RotationCentre;
+use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::{Plan, PlanStart, Position};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
-
-/// Where the point that is moved, or the platform's centre, should be at a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Setpoint {
-    /// Pose.
-    pub position: Position,
-    /// Velocity, track radii and rad per second.
-    pub twist: Twist<f32>,
-    /// Acceleration, track radii and rad per second squared.
-    pub acceleration: Acceleration<f32>,
-}
-
-/// Factors from the integers of [`Axis`] to physical rates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
-    pub(super) velocity: f32,
-    pub(super) turn_velocity: f32,
-    pub(super) acceleration: f32,
-    pub(super) turn_acceleration: f32,
-    pub(super) rate_hz: f32,
-}
-
-/// Bits cut from a velocity and from an acceleration to make them 32 bits wide: full range 39 turns per second and 3,050 per
-/// second squared at 20 kHz, resolution 1e-7 rad/s and 9e-6 rad/s^2. An urgent stop brakes as hard as a pivot can, 300 rad/s^2 by
-/// default: some 350 track radii per second squared.
-pub(crate) const VELOCITY_CUT: u32 = 32;
-pub(crate) const ACCELERATION_CUT: u32 = 24;
-
-impl Scale {
-    /// For `rate_hz` ticks a second.
-    pub fn new(rate_hz: f64) -> Self {
-        let unit = |cut: u32| libm::exp2(f64::from(cut) - 72.0);
-        let velocity = unit(VELOCITY_CUT) * rate_hz;
-        let acceleration = unit(ACCELERATION_CUT) * rate_hz * rate_hz;
-        Self {
-            velocity: velocity as f32,
-            turn_velocity: (velocity * core::f64::consts::TAU) as f32,
-            acceleration: acceleration as f32,
-            turn_acceleration: (acceleration * core::f64::consts::TAU) as f32,
-            rate_hz: rate_hz as f32,
-        }
-    }
-}
 
 /// The motion of the setpoint: at rest, or following a plan.
 ///
 /// A plan is 900 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
-pub struct Motion {
-    pub(super) axes: [Axis; 3],
+pub struct PlanFollower {
+    pub(super) axes: [AxisState; 3],
     /// The point that is moved.
-    pub(super) centre: Centre,
+    pub(super) centre: RotationCentre,
     pub(super) slots: [Plan; 2],
     /// Slot of the plan under way, or of the last one.
     pub(super) current: usize,
@@ -68,19 +24,19 @@ pub struct Motion {
     pub(super) piece: usize,
     /// Ticks of the piece that are left, and what drives the axes in it.
     pub(super) left: u64,
-    pub(super) pushes: [Push; 3],
+    pub(super) increments: [TickIncrement; 3],
     pub(super) done: u64,
-    pub(super) slowing: super::fault_stop::Slowing,
+    pub(super) time_scaling: super::time_scaling::TimeScaling,
 }
 
 /// A plan does not start where the motion is (any more); nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
 
-impl Motion {
+impl PlanFollower {
     /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
     pub fn rest_at(&mut self, position: Position) {
-        self.axes = position.map(Axis::at_rest);
+        self.axes = position.map(AxisState::at_rest);
         self.moving = false;
         self.splice = None;
         self.done = 0;
@@ -88,25 +44,25 @@ impl Motion {
 
     /// The point of the platform that is moved.
     #[inline]
-    pub fn centre(&self) -> Centre {
+    pub fn centre(&self) -> RotationCentre {
         self.centre
     }
 
     /// Moves another point of the platform from now on. Only at rest: the setpoint is then where that point is, and the
     /// platform stays where it is to the unit.
-    pub fn set_centre(&mut self, centre: Centre) -> Result<(), Stale> {
+    pub fn set_centre(&mut self, centre: RotationCentre) -> Result<(), Stale> {
         if self.moving {
             return Err(Stale);
         }
         let platform = self.centre.to_platform(&self.position());
         self.centre = centre;
-        self.rest_at(centre.of_platform(&platform));
+        self.rest_at(centre.from_platform(&platform));
         Ok(())
     }
 
     /// Whether a plan is under way.
     #[inline]
-    pub fn moving(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         self.moving
     }
 
@@ -120,11 +76,11 @@ impl Motion {
     pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
         let plan = plan.borrow();
         match plan.start {
-            Start::Rest(from) if !self.moving && same(&from, &self.position()) => {
+            PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
                 self.keep(plan);
                 self.begin();
             }
-            Start::Splice { plan: id, tick }
+            PlanStart::Splice { plan: id, tick }
                 if self.moving && self.progress().0 == id && tick >= self.done =>
             {
                 self.keep(plan);
@@ -146,8 +102,8 @@ impl Motion {
         }
         // None are left where a plan has no pieces.
         if self.left > 0 {
-            for (axis, push) in self.axes.iter_mut().zip(&self.pushes) {
-                axis.push(push);
+            for (axis, increment) in self.axes.iter_mut().zip(&self.increments) {
+                axis.advance_by(increment);
             }
             self.done += 1;
             self.left -= 1;
@@ -168,12 +124,12 @@ impl Motion {
             return;
         };
         self.left = piece.ticks;
-        self.pushes = [0, 1, 2].map(|i| Push::new(piece.jerk[i], plan.nudge[i]));
+        self.increments = [0, 1, 2].map(|i| TickIncrement::new(piece.jerk[i], plan.nudge[i]));
     }
 
     /// The setpoint now.
     #[inline]
-    pub fn setpoint(&self, scale: &Scale) -> Setpoint {
+    pub fn setpoint(&self, scale: &SetpointScale) -> Setpoint {
         let velocity = self
             .axes
             .map(|axis| (axis.velocity >> VELOCITY_CUT) as i32 as f32);
@@ -231,7 +187,7 @@ impl Motion {
 
     /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
     fn finish(&mut self) {
-        self.axes = self.slots[self.current & 1].end.map(Axis::at_rest);
+        self.axes = self.slots[self.current & 1].end.map(AxisState::at_rest);
         self.moving = false;
         self.splice = None;
     }

@@ -1,122 +1,30 @@
-//! A plan: the pieces of constant jerk that carry the three axes from a known state to rest.
+//! A plan: the pieces of constant jerk that carry the three axes from a known state to rest, and how the tick follows
+//! it.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `axis_state` | one axis in integers: an exact cubic, tick by tick or many ticks at once |
+//! | `piece` | a position, a piece of constant jerk, a list of them |
+//! | `motion_plan` | the plan: what it starts from, its pieces, where it ends |
+//! | `units` | the units of positions and axes as floats, limits per tick |
+//! | `cubic_segment` | a piece in floats: the state at an instant of it |
+//! | `setpoint` | what the control loop is given at a tick |
+//! | `rotation_centre` | the point that is moved, and what its motion is for the platform's centre |
+//! | `time_scaling`, `fault_stop` | a fault's stop: the plan's time runs slower and slower |
+//! | `follower` | following a plan, and taking the next |
 
-pub(crate) mod axis_state;
+pub(super) mod axis_state;
+pub(super) mod cubic_segment;
 pub(crate) mod fault_stop;
-pub(crate) mod follower;
+pub(super) mod follower;
+pub(super) mod motion_plan;
+pub(crate) mod piece;
 pub(crate) mod rotation_centre;
+pub(crate) mod setpoint;
+pub(super) mod time_scaling;
 pub(crate) mod units;
 
-use crate::motion::plan::axis_state::{Axis, SUB_BITS};
-use heapless::Vec;
-
-/// Pieces a plan can hold: the nine segments of three axes' profiles, no two of which begin together.
-pub const MAX_PIECES: usize = 27;
-
-/// x and y in 2^-32 track radii, theta in 2^-32 turns (multi-turn).
-pub type Position = [i64; 3];
-
-/// A stretch of constant jerk.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Piece {
-    /// Length in ticks.
-    pub ticks: u64,
-    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of [`JERK_STEP`](super::JERK_STEP).
-    pub jerk: [i64; 3],
-}
-
-impl Piece {
-    /// Takes the axes on by `ticks` of this piece, with a plan's nudge.
-    // Inlined wherever plans are walked through, products of 128 bits were a tenth of the generator's code.
-    #[inline(never)]
-    pub(super) fn run(&self, axes: &mut [Axis; 3], ticks: u64, nudge: &[i64; 3]) {
-        for (axis, (jerk, nudge)) in axes.iter_mut().zip(self.jerk.iter().zip(nudge)) {
-            *axis = axis.after(ticks, *jerk, *nudge);
-        }
-    }
-}
-
-/// The axes after all of these pieces.
-pub(super) fn after_all(state: &[Axis; 3], pieces: &[Piece], nudge: &[i64; 3]) -> [Axis; 3] {
-    let mut axes = *state;
-    for piece in pieces {
-        piece.run(&mut axes, piece.ticks, nudge);
-    }
-    axes
-}
-
-/// The nudge with which pieces that lead to `end` in `ticks` lead to `to`; `None` where they lead elsewhere.
-pub(super) fn nudge(end: &[Axis; 3], to: &Position, ticks: u64) -> Option<[i64; 3]> {
-    let mut nudge = [0; 3];
-    for (nudge, (axis, to)) in nudge.iter_mut().zip(end.iter().zip(to)) {
-        let rest = (i128::from(*to) << SUB_BITS) - axis.position;
-        // In 64 bits a division is a tenth of one in 128.
-        *nudge = i64::try_from(rest).ok()? / ticks.max(1) as i64;
-    }
-    Some(nudge)
-}
-
-/// The state a plan starts from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// At rest at this position.
-    Rest(Position),
-    /// In motion: where plan `plan` is `tick` ticks after its first.
-    Splice {
-        /// Identity of the plan that is left.
-        plan: u32,
-        /// Tick of that plan at which it is left.
-        tick: u64,
-    },
-}
-
-/// A motion ready to be executed tick by tick.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Plan {
-    /// Identity, given by who plans; the tick reports progress under it.
-    pub id: u32,
-    /// What the plan starts from.
-    pub start: Start,
-    /// The pieces, in order.
-    pub pieces: Vec<Piece, MAX_PIECES>,
-    /// Added to each position at every tick. It spreads what the rounding of the jerks leaves over the whole plan: far below
-    /// anything that can be seen (2^-34 turns a tick in the most extreme case), and what remains of it at the end is less
-    /// than 2^-32 of a [`Position`]'s unit a tick.
-    pub nudge: [i64; 3],
-    /// Where it ends, at rest, exactly.
-    pub end: Position,
-}
-
-impl Default for Plan {
-    /// Nothing to do, at the origin.
-    fn default() -> Self {
-        Self {
-            id: 0,
-            start: Start::Rest([0; 3]),
-            pieces: Vec::new(),
-            nudge: [0; 3],
-            end: [0; 3],
-        }
-    }
-}
-
-impl Plan {
-    /// Duration in ticks.
-    pub fn ticks(&self) -> u64 {
-        self.pieces.iter().map(|piece| piece.ticks).sum()
-    }
-
-    /// The three axes `ticks` after the start from `axes`, as the tick will hold them; at rest at the end from the last
-    /// tick on.
-    pub fn state_after(&self, axes: &[Axis; 3], mut ticks: u64) -> [Axis; 3] {
-        let mut state = *axes;
-        for piece in &self.pieces {
-            let now = ticks.min(piece.ticks);
-            piece.run(&mut state, now, &self.nudge);
-            ticks -= now;
-            if now < piece.ticks {
-                return state;
-            }
-        }
-        self.end.map(Axis::at_rest)
-    }
-}
+pub(crate) use motion_plan::nudge_to;
+pub use motion_plan::{Plan, PlanStart};
+pub use piece::{MAX_PIECES, Piece, Position};
+pub(crate) use piece::{Pieces, state_after_pieces};

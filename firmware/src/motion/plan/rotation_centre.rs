@@ -7,30 +7,32 @@
 //!     C  the platform's centre, which the pivots carry                 E: the quarter turn
 //! ```
 //!
-//! Plans are in P, so that a straight line of P is a straight plan wherever the point lies, and theta turns about it. The
-//! pivots need C: the tick derives it, in whole units of a position, so that the way there and back is exact: another point
-//! may be chosen at rest and the platform does not move by a single unit.
+//! Plans are in P, so that a straight line of P is a straight plan wherever the point lies, and theta turns about it.
+//! The pivots need C: the tick derives it, in whole units of a position, so that the way there and back is exact:
+//! another point may be chosen at rest and the platform does not move by a single unit.
 
 use super::Position;
-use super::follower::Setpoint;
+use super::setpoint::Setpoint;
 use crate::number::Fixed;
 use kinematics::{Acceleration, Scalar, Twist};
 
 /// A point of the platform: x and y in the platform's own axes. The default is the platform's centre itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Centre([Fixed; 2]);
+pub struct RotationCentre([Fixed; 2]);
 
-/// Furthest that a point may lie from the platform's centre, track radii. Further out its rotation alone would ask more of
-/// the numbers than [`Fixed`] holds.
-pub const FURTHEST: f64 = 1.0;
+/// Furthest that a point may lie from the platform's centre, track radii. Further out its rotation alone would ask more
+/// of the numbers than [`Fixed`] holds.
+pub const MAX_CENTRE_OFFSET: f64 = 1.0;
 
-impl Centre {
+impl RotationCentre {
     /// The platform's own centre.
     pub const PLATFORM: Self = Self([Fixed::ZERO; 2]);
 
-    /// The point at `point` (track radii), to the nearest 2^-29; `None` beyond [`FURTHEST`] or when it is no point.
+    /// The point at `point` (track radii), to the nearest 2^-29; `None` beyond [`MAX_CENTRE_OFFSET`] or when it is no
+    /// point.
     pub fn new(point: [f64; 2]) -> Option<Self> {
-        (libm::hypot(point[0], point[1]) <= FURTHEST).then(|| Self(point.map(Fixed::from_f64)))
+        (libm::hypot(point[0], point[1]) <= MAX_CENTRE_OFFSET)
+            .then(|| Self(point.map(Fixed::from_f64)))
     }
 
     /// Where it lies, track radii, exactly.
@@ -39,14 +41,14 @@ impl Centre {
     }
 
     /// Position of this point when the platform's centre is at `platform`.
-    pub fn of_platform(&self, platform: &Position) -> Position {
+    pub fn from_platform(&self, platform: &Position) -> Position {
         let [x, y, theta] = *platform;
         let arm = self.arm(theta).units;
         [x.wrapping_add(arm[0]), y.wrapping_add(arm[1]), theta]
     }
 
-    /// Position of the platform's centre when this point is at `point`: the inverse of [`of_platform`](Self::of_platform),
-    /// to the unit.
+    /// Position of the platform's centre when this point is at `point`: the inverse of
+    /// [`from_platform`](Self::from_platform), to the unit.
     pub fn to_platform(&self, point: &Position) -> Position {
         let [x, y, theta] = *point;
         let arm = self.arm(theta).units;
@@ -55,7 +57,7 @@ impl Centre {
 
     /// The platform's setpoint when this point's is `point`.
     #[inline]
-    pub fn platform(&self, point: &Setpoint) -> Setpoint {
+    pub fn platform_setpoint(&self, point: &Setpoint) -> Setpoint {
         if *self == Self::PLATFORM {
             return *point;
         }

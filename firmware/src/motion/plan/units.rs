@@ -1,26 +1,26 @@
-//! The units of a [`Position`](crate::motion::Position) and of an [`Axis`](crate::motion::Axis) in floats, and limits in those of the latter and
-//! ticks.
+//! The units of a [`Position`] and of an [`AxisState`](super::axis_state::AxisState) as floats, and limits in those of
+//! the latter and ticks.
 
-use crate::motion::constraints::Ground;
-use crate::motion::profile::any_state::AxisLimits;
+use super::piece::Position;
+use crate::motion::constraints::Constraints;
 
 /// Limits of translation and of rotation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct UnitLimits {
+pub(crate) struct TickLimits {
     pub translation: AxisLimits<f32>,
     pub rotation: AxisLimits<f32>,
 }
 
-/// 2^32: units of a [`Position`](crate::motion::Position) in a track radius or a turn, and the inverse.
-pub(crate) const UNITS: f32 = 4_294_967_296.0;
-pub(crate) const PER_UNIT: f32 = 1.0 / UNITS;
-/// 2^72: units of an [`Axis`](crate::motion::Axis), and the inverse.
+/// 2^32: units of a [`Position`] in a track radius or a turn, and the inverse.
+pub(crate) const POSITION_UNITS: f32 = 4_294_967_296.0;
+pub(crate) const PER_POSITION_UNIT: f32 = 1.0 / POSITION_UNITS;
+/// 2^72: units of an [`AxisState`](super::axis_state::AxisState), and the inverse.
 pub(crate) const AXIS_UNITS: f32 = 4_722_366_482_869_645_213_696.0;
 pub(crate) const PER_AXIS_UNIT: f32 = 1.0 / AXIS_UNITS;
 
-impl UnitLimits {
-    pub fn new(ground: &Ground) -> Self {
-        let limits = &ground.limits;
+impl TickLimits {
+    pub fn new(constraints: &Constraints) -> Self {
+        let limits = &constraints.limits;
         let tick = 1.0 / limits.rate_hz as f32;
         let axis = |unit: f32, [speed, acceleration, jerk]: [f64; 3]| {
             let velocity = unit * tick;
@@ -32,7 +32,7 @@ impl UnitLimits {
         };
         Self {
             translation: axis(
-                AXIS_UNITS / ground.geometry.radius_mm as f32,
+                AXIS_UNITS / constraints.geometry.radius_mm as f32,
                 [
                     limits.speed_mm_s,
                     limits.acceleration_mm_s2,
@@ -53,11 +53,28 @@ impl UnitLimits {
 
 impl AxisLimits<f32> {
     /// With speed, acceleration and jerk times these.
-    pub(crate) fn times(&self, speed: f32, acceleration: f32, jerk: f32) -> Self {
+    pub(crate) fn scaled(&self, speed: f32, acceleration: f32, jerk: f32) -> Self {
         Self {
             velocity: self.velocity * speed,
             acceleration: self.acceleration * acceleration,
             jerk: self.jerk * jerk,
         }
     }
+}
+
+/// Limits of one axis, the same both ways, in any consistent units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisLimits<F> {
+    /// Speed.
+    pub velocity: F,
+    /// Acceleration.
+    pub acceleration: F,
+    /// Jerk.
+    pub jerk: F,
+}
+
+/// x and y of a position in track radii.
+pub(crate) fn xy_radii(position: &Position) -> [f64; 2] {
+    const UNIT: f64 = 1.0 / 4_294_967_296.0;
+    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
 }

@@ -1,4 +1,5 @@
-//! The broken line of an axis' acceleration as a sum of three hats: of the start's acceleration, of the peak, of the brake.
+//! The broken line of an axis' acceleration as a sum of three hats: of the start's acceleration, of the peak, of the
+//! brake.
 //!
 //! ```text
 //!   a0 \   P  /------\                Area f: the speed that a hat of height 1 gains. Moment g about the end: the way.
@@ -8,12 +9,12 @@
 //!         n0    n1   n2   n3    \_/ Q   Q = -(v + a0 f0 + P f1) / f2
 //! ```
 
-use super::any_state::Task;
-use super::whole_ticks::{Shape, Solution};
-use crate::number::float::float;
+use super::any_state::task::Task;
+use super::shape::{Shape, Solution};
+use crate::number::float::ticks_to_f32;
 
 /// Areas, and what the way gains by the heights when the brake always ends at rest.
-pub(crate) struct Hats {
+pub(super) struct Hats {
     area: [f32; 3],
     /// By the start's velocity and acceleration.
     by_start: [f32; 2],
@@ -24,7 +25,7 @@ pub(crate) struct Hats {
 impl Hats {
     pub fn new(shape: &Shape) -> Self {
         const THIRD: f32 = 1.0 / 3.0;
-        let n = shape.n.map(float);
+        let n = shape.n.map(ticks_to_f32);
         let braking = n[4] + n[5] + n[6];
         let brake = (n[4] + n[6]) / 2.0 + n[5];
         let brake_moment = n[4] / 2.0 * (n[5] + n[6] + n[4] * THIRD)

@@ -13,24 +13,23 @@
 //! themselves, a millionth.
 
 use crate::motion::limits::PathLimits;
-use crate::motion::line::path_profile::{Beat, Pace};
-use crate::number::float::{Order, float, ticks_up};
+use crate::number::float::{FloatMinMax, ceil_ticks, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 
-/// Lengths of the three moving averages in ticks: `jerk <= ramp`, `way >= jerk + ramp`.
+/// Lengths of the three moving averages in ticks: `jerk <= ramp`, `travel >= jerk + ramp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Profile {
+pub struct RestToRestProfile {
     /// b1: how long jerk acts.
     pub jerk: u64,
     /// b2: from the start of one acceleration phase to the start of its end.
     pub ramp: u64,
     /// b3: from the start of the acceleration to the start of the deceleration.
-    pub way: u64,
+    pub travel: u64,
 }
 
-impl Profile {
-    /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is not a
-    /// positive number or the move would last longer than 2^52 ticks.
+impl RestToRestProfile {
+    /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is
+    /// not a positive number or the move would last longer than 2^52 ticks.
     pub fn new(limits: &PathLimits, hz: f32) -> Option<Self> {
         let PathLimits {
             rate,
@@ -46,25 +45,25 @@ impl Profile {
 
     /// The same motion, `slower` (1 or more).
     pub(crate) fn slowed(&self, slower: f32) -> Option<Self> {
-        Self::lasting([self.jerk, self.ramp, self.way].map(|ticks| float(ticks) * slower))
+        Self::lasting([self.jerk, self.ramp, self.travel].map(|ticks| ticks_to_f32(ticks) * slower))
     }
 
     fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
         let jerk = ticks(b1)?;
         let ramp = ticks(b2)?.max(jerk);
-        let way = ticks(b3)?.max(jerk + ramp);
-        Some(Self { jerk, ramp, way })
+        let travel = ticks(b3)?.max(jerk + ramp);
+        Some(Self { jerk, ramp, travel })
     }
 
     /// Duration in ticks.
     pub fn ticks(&self) -> u64 {
-        self.jerk + self.ramp + self.way
+        self.jerk + self.ramp + self.travel
     }
 
     /// Durations and jerk signs of the seven segments.
     pub fn segments(&self) -> [(u64, i32); 7] {
         let flat = self.ramp - self.jerk;
-        let cruise = self.way - self.ramp - self.jerk;
+        let cruise = self.travel - self.ramp - self.jerk;
         let j = self.jerk;
         [
             (j, 1),
@@ -79,20 +78,7 @@ impl Profile {
 
     /// Jerk times this is the way: b1 b2 b3.
     pub fn volume(&self) -> i128 {
-        i128::from(self.jerk * self.ramp) * i128::from(self.way)
-    }
-
-    /// Writes it as a pace: its jerks are 1 and -1.
-    pub(crate) fn write(&self, pace: &mut Pace) {
-        pace.beats.clear();
-        for (ticks, jerk) in self.segments() {
-            if ticks > 0 {
-                // Seven segments, room for more.
-                let _ = pace.beats.push(Beat { ticks, jerk });
-            }
-        }
-        pace.sixfold = 6 * self.volume();
-        pace.bits = 0;
+        i128::from(self.jerk * self.ramp) * i128::from(self.travel)
     }
 }
 
@@ -103,8 +89,8 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
         jerk,
     } = *limits;
     // Reaching full speed: with full acceleration, or by jerk alone.
-    let b1 = (acceleration / jerk).smaller(sqrt_f32(rate / jerk));
-    let b2 = (rate / acceleration).larger(b1);
+    let b1 = (acceleration / jerk).fmin(sqrt_f32(rate / jerk));
+    let b2 = (rate / acceleration).fmax(b1);
     if rate * (b1 + b2) <= 1.0 {
         return [b1, b2, 1.0 / rate];
     }
@@ -125,5 +111,5 @@ fn ticks(duration: f32) -> Option<u64> {
     // A duration that is whole but for its rounding errors is not rounded up.
     let duration = duration * (1.0 - 1e-6);
     // A NaN is not that short either.
-    (duration <= LONGEST).then(|| ticks_up(duration).max(1))
+    (duration <= LONGEST).then(|| ceil_ticks(duration).max(1))
 }

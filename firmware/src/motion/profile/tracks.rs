@@ -1,18 +1,15 @@
 //! Three axes that arrive together, each on its own track, and their tracks as one list of pieces.
 
-use super::any_state::{AxisLimits, AxisProfile};
+use super::any_state::task::AxisProfile;
 use super::whole_ticks::{Track, fit, task};
 use crate::motion::brake::jerks;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::{MAX_PIECES, Piece};
-use crate::number::float::Order;
-use heapless::Vec;
-
-/// Pieces of a plan.
-pub(crate) type Pieces = Vec<Piece, MAX_PIECES>;
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::AxisLimits;
+use crate::motion::plan::{Piece, Pieces};
+use crate::number::float::FloatMinMax;
 
 /// An axis and its way to where it is to be at rest, 2^-72 track radii or turns.
-pub type AxisWay = (Axis, i128);
+pub type AxisWay = (AxisState, i128);
 
 /// Ticks in which each axis alone could arrive; `None` where there is no profile.
 pub(crate) fn shortest(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Option<[f32; 3]> {
@@ -27,11 +24,13 @@ pub(crate) fn shortest(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Op
     Some(shortest)
 }
 
-/// The pieces that carry three independent axes to rest, each within its own limits (2^-72 units and ticks), as soon as the
-/// slowest of them can: the others take as long, or arrive early where no slower motion leads there. `None` for limits that
-/// are not positive numbers, and states that take more than 2^63 ticks.
+/// The pieces that carry three independent axes to rest, each within its own limits (2^-72 units and ticks), as soon as
+/// the slowest of them can: the others take as long, or arrive early where no slower motion leads there. `None` for
+/// limits that are not positive numbers, and states that take more than 2^63 ticks.
 pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Option<Pieces> {
-    let longest = shortest(ways, limits)?.into_iter().fold(0.0, Order::larger);
+    let longest = shortest(ways, limits)?
+        .into_iter()
+        .fold(0.0, FloatMinMax::fmax);
     let mut tracks: [Track; 3] = Default::default();
     for (i, track) in tracks.iter_mut().enumerate() {
         let (axis, way) = ways[i];
@@ -43,7 +42,7 @@ pub fn synchronised(ways: &[AxisWay; 3], limits: &[AxisLimits<f32>; 3]) -> Optio
 }
 
 /// Writes the track of one axis that takes so many ticks to rest, wherever that is.
-pub(crate) fn brake(track: &mut Track, axis: &Axis, ticks: [u64; 3]) {
+pub(crate) fn brake(track: &mut Track, axis: &AxisState, ticks: [u64; 3]) {
     track.clear();
     if axis.velocity != 0 || axis.acceleration != 0 {
         let [first, last] = jerks(axis, ticks);

@@ -1,43 +1,41 @@
 //! From an axis profile to jerks over whole ticks, exact in integers.
 //!
-//! The profile's durations are rounded up to whole ticks. With these fixed, the acceleration is a broken line through the
-//! start's, a peak `P` and a brake `Q`, and zero at the end; speed and position at the end are linear in `P` and `Q`:
-//! `v + a f0 + P f1 + Q f2 = 0` and `v n + a g0 + P g1 + Q g2 = d`, where `f` are the areas of the hats of the broken line and
-//! `g` their moments about the end ([`Hats`]). Two equations, two unknowns, in floats. Where rounding has put an acceleration,
-//! a jerk or a speed over its limit, the segment concerned is lengthened.
+//! The profile's durations are rounded up to whole ticks. With these fixed, the acceleration is a broken line through
+//! the start's, a peak `P` and a brake `Q`, and zero at the end; speed and position at the end are linear in `P` and
+//! `Q`: `v + a f0 + P f1 + Q f2 = 0` and `v n + a g0 + P g1 + Q g2 = d`, where `f` are the areas of the hats of the
+//! broken line and `g` their moments about the end ([`Hats`]). Two equations, two unknowns, in floats. Where rounding
+//! has put an acceleration, a jerk or a speed over its limit, the segment concerned is lengthened.
 //!
-//! The integers then close what the floats left: the segments are run exactly up to the brake, the brake is the one that
-//! comes to rest from there, and the way that is missing is made up by another `P`.
+//! The integers then close what the floats left: the segments are run exactly up to the brake, the brake is the one
+//! that comes to rest from there, and the way that is missing is made up by another `P`.
 
-use super::any_state::{AxisLimits, AxisProfile, SEGMENTS, Task};
+use super::any_state::task::{AxisProfile, SEGMENTS, Task};
 use super::hats::Hats;
+use super::shape::{Shape, Solution};
 use crate::motion::brake::{jerks, stepped};
-use crate::motion::plan::axis_state::Axis;
-use crate::number::float::{Order, float, nearest, rough, rough_long, ticks_up};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::AxisLimits;
+use crate::number::float::{
+    FloatMinMax, ceil_ticks, i64_to_f32_fast, i128_to_f32_fast, round_i64, ticks_to_f32,
+};
 use crate::number::sqrt_f32;
 use heapless::Vec;
 
 /// Stretches of constant jerk of one axis: ticks, and jerk in 2^-72 units per tick cubed.
 pub(crate) type Track = Vec<(u64, i64), SEGMENTS>;
 
-/// Durations of the main segments in ticks.
-pub(crate) struct Shape {
-    pub n: [u64; 7],
-    pub released_in_part: bool,
-}
-
 /// How often segments may have to be lengthened.
 const MOST_ROUNDS: usize = 24;
 /// How often the way that is missing is made up for. Each time it becomes a millionth.
 const CLOSINGS: usize = 1;
 /// How much of a limit is granted to the roundings of floats.
-const SLACK: f32 = 1.0 + 5e-7;
+const FIT_SLACK: f32 = 1.0 + 5e-7;
 
-/// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None` where
-/// the state allows none.
+/// Writes the track of an axis over `way` (2^-72 units) to rest in about `duration` ticks, or as soon as it can; `None`
+/// where the state allows none.
 pub(crate) fn fit(
     track: &mut Track,
-    mut axis: Axis,
+    mut axis: AxisState,
     way: i128,
     limits: &AxisLimits<f32>,
     duration: f32,
@@ -49,14 +47,17 @@ pub(crate) fn fit(
     let target = axis.position + way;
     let mut task = task(&axis, target);
     let mut profile = AxisProfile::lasting(&task, limits, duration).ok()?;
-    let braking = [profile.durations[0] as u64, ticks_up(profile.durations[1])];
+    let braking = [
+        profile.durations[0] as u64,
+        ceil_ticks(profile.durations[1]),
+    ];
     if braking != [0, 0] {
-        let jerk = stepped(nearest(profile.jerks[0]), 1);
+        let jerk = stepped(round_i64(profile.jerks[0]), 1);
         for (ticks, jerk) in [(braking[0], jerk), (braking[1], 0)] {
             run(track, &mut axis, ticks, jerk)?;
         }
         task = self::task(&axis, target);
-        let left = duration - float(braking[0] + braking[1]);
+        let left = duration - ticks_to_f32(braking[0] + braking[1]);
         profile = AxisProfile::lasting(&task, limits, left).ok()?;
     }
     let mut shape = Shape::new(&profile);
@@ -67,15 +68,15 @@ pub(crate) fn fit(
         track.truncate(begun);
         shape.run(track, &mut end, peak)?;
         if closing < CLOSINGS {
-            let missing = rough_long(target - end.position);
-            peak = peak.wrapping_add(nearest(missing / Hats::new(&shape).gain));
+            let missing = i128_to_f32_fast(target - end.position);
+            peak = peak.wrapping_add(round_i64(missing / Hats::new(&shape).gain));
         }
     }
     Some(())
 }
 
 /// What is to be done, in 2^-72 units and ticks.
-pub(crate) fn task(axis: &Axis, target: i128) -> Task {
+pub(crate) fn task(axis: &AxisState, target: i128) -> Task {
     Task {
         distance: (target - axis.position) as f64,
         velocity: axis.velocity as f64,
@@ -84,16 +85,16 @@ pub(crate) fn task(axis: &Axis, target: i128) -> Task {
 }
 
 /// The same in single precision.
-fn rough_task(axis: &Axis, target: i128) -> Task<f32> {
+fn rough_task(axis: &AxisState, target: i128) -> Task<f32> {
     Task {
-        distance: rough_long(target - axis.position),
-        velocity: rough(axis.velocity),
-        acceleration: rough(axis.acceleration),
+        distance: i128_to_f32_fast(target - axis.position),
+        velocity: i64_to_f32_fast(axis.velocity),
+        acceleration: i64_to_f32_fast(axis.acceleration),
     }
 }
 
 #[inline(never)]
-fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> {
+fn run(track: &mut Track, axis: &mut AxisState, ticks: u64, jerk: i64) -> Option<()> {
     if ticks > 0 {
         *axis = axis.after(ticks, jerk, 0);
         track.push((ticks, jerk)).ok()?;
@@ -104,7 +105,7 @@ fn run(track: &mut Track, axis: &mut Axis, ticks: u64, jerk: i64) -> Option<()> 
 impl Shape {
     fn new(profile: &AxisProfile<f32>) -> Self {
         // A duration that is whole but for rounding errors is not rounded up.
-        let up = |duration: f32| ticks_up(duration - 1e-3_f32.smaller(duration * 1e-6));
+        let up = |duration: f32| ceil_ticks(duration - 1e-3_f32.fmin(duration * 1e-6));
         let t = &profile.durations[2..];
         let mut n = [0; 7];
         for k in [0, 2, 4, 6] {
@@ -114,8 +115,9 @@ impl Shape {
         if profile.released_in_part {
             n[2] = 0;
         }
-        // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the way.
-        let longer = |n: &[u64; 7], k: usize| float(n[k]) - t[k];
+        // What the ramps are longer, a peak may be shorter: half of it gains the same speed; and at constant speed, the
+        // way.
+        let longer = |n: &[u64; 7], k: usize| ticks_to_f32(n[k]) - t[k];
         n[1] = up(t[1] - (longer(&n, 0) + longer(&n, 2)) / 2.0);
         n[5] = up(t[5] - (longer(&n, 4) + longer(&n, 6)) / 2.0);
         let all = [0, 1, 2, 4, 5, 6].map(|k| longer(&n, k));
@@ -136,15 +138,15 @@ impl Shape {
             let solution = hats.solution(task)?;
             if !self.lengthen(task, limits, &solution) {
                 // A brake that is only released in part has no peak to lengthen.
-                let most = limits.acceleration.larger(task.acceleration.abs());
-                return (solution.peak.abs() <= most * SLACK).then(|| nearest(solution.peak));
+                let most = limits.acceleration.fmax(task.acceleration.abs());
+                return (solution.peak.abs() <= most * FIT_SLACK).then(|| round_i64(solution.peak));
             }
         }
         None
     }
 
     /// Runs the segments with this peak.
-    fn run(&self, track: &mut Track, axis: &mut Axis, peak: i64) -> Option<()> {
+    fn run(&self, track: &mut Track, axis: &mut AxisState, peak: i64) -> Option<()> {
         let n = self.n;
         let first = stepped(peak - axis.acceleration, n[0] as i64);
         run(track, axis, n[0], first)?;
@@ -160,8 +162,8 @@ impl Shape {
         run(track, axis, n[6], release)
     }
 
-    /// A start near its peak goes down to it in the time of the peak: that much longer, the whole would only ask for a still
-    /// lower peak. As it does a little even so, by twice the time at once. Whether there was time left to take.
+    /// A start near its peak goes down to it in the time of the peak: that much longer, the whole would only ask for a
+    /// still lower peak. As it does a little even so, by twice the time at once. Whether there was time left to take.
     fn take_from_peak(&mut self, ticks: u64) -> bool {
         let (k, least) = if self.n[1] > 0 { (1, 0) } else { (2, 1) };
         let more = ticks.max(self.n[0]).min(self.n[k].saturating_sub(least));
@@ -170,8 +172,8 @@ impl Shape {
         more > 0
     }
 
-    /// Rounding a long brake up can turn a short peak over: it brakes too, and lengthening it would only add to the way that it
-    /// has to make up for. From it the acceleration then goes on to the brake's, not by way of zero.
+    /// Rounding a long brake up can turn a short peak over: it brakes too, and lengthening it would only add to the way
+    /// that it has to make up for. From it the acceleration then goes on to the brake's, not by way of zero.
     fn go_on_to_the_brake(&mut self) {
         self.released_in_part = true;
         self.n[0] += self.n[2] + self.n[3];
@@ -195,10 +197,10 @@ impl Shape {
             ((2, peak), (4, brake))
         };
         for (k, change) in [(0, peak - start), release, press, (6, brake)] {
-            if change.abs() > limits.jerk * SLACK * float(self.n[k]) {
+            if change.abs() > limits.jerk * FIT_SLACK * ticks_to_f32(self.n[k]) {
                 let now = self.n[k];
                 let enough = change.abs() / limits.jerk;
-                let longest = ticks_up(sqrt_f32(enough * float(now))).max(now + 1);
+                let longest = ceil_ticks(sqrt_f32(enough * ticks_to_f32(now))).max(now + 1);
                 longer = true;
                 let turned = !part && self.n[1] == 0 && peak * brake > 0.0;
                 if k < 4 && turned && self.n[3] < longest - now {
@@ -215,11 +217,12 @@ impl Shape {
                 self.n[k] = longest;
             }
         }
-        let hardest = limits.acceleration.larger(start.abs()) * SLACK;
+        let hardest = limits.acceleration.fmax(start.abs()) * FIT_SLACK;
         for (k, acceleration) in [(1, peak), (5, brake)] {
             if acceleration.abs() > hardest && !(part && k == 1) {
                 self.n[k] += 1;
-                // Where the peak brakes, another tick of it is more way to be made up for, unless it is one less at speed.
+                // Where the peak brakes, another tick of it is more way to be made up for, unless it is one less at
+                // speed.
                 if k == 1 && peak * brake > 0.0 {
                     self.n[3] = self.n[3].saturating_sub(1);
                 }
@@ -227,22 +230,15 @@ impl Shape {
             }
         }
         // The brake released in part leads to no speed in between.
-        let fastest = limits.velocity.larger(task.velocity.abs()) * SLACK;
+        let fastest = limits.velocity.fmax(task.velocity.abs()) * FIT_SLACK;
         if !part && top.abs() > fastest && !longer {
             let whole: u64 = self.n.iter().sum();
             let over = top.abs() / limits.velocity - 1.0;
-            self.n[3] += 1 + (over * float(whole) / 2.0) as u64;
+            self.n[3] += 1 + (over * ticks_to_f32(whole) / 2.0) as u64;
             longer = true;
         }
         longer
     }
-}
-
-/// Peak, brake, and the speed between.
-pub(crate) struct Solution {
-    pub peak: f32,
-    pub brake: f32,
-    pub top: f32,
 }
 
 #[cfg(test)]
@@ -259,9 +255,9 @@ mod tests {
     };
 
     /// An axis with these parts of the limits, and what it is to go, in ways that a stop from full speed takes.
-    fn state(velocity: f64, acceleration: f64, way: f64) -> (Axis, i128) {
+    fn state(velocity: f64, acceleration: f64, way: f64) -> (AxisState, i128) {
         let [v, a, j] = [LIMITS.velocity, LIMITS.acceleration, LIMITS.jerk].map(f64::from);
-        let axis = Axis {
+        let axis = AxisState {
             position: 5 << 70,
             velocity: (velocity * v) as i64,
             acceleration: (acceleration * a) as i64 / JERK_STEP * JERK_STEP,
@@ -313,7 +309,7 @@ mod tests {
 
     #[test]
     fn nothing_to_do_is_no_track() {
-        let axis = Axis::at_rest(3);
+        let axis = AxisState::at_rest(3);
         let mut track = Track::new();
         fit(&mut track, axis, 0, &LIMITS, 100.0).unwrap();
         assert!(track.is_empty());
@@ -387,7 +383,8 @@ mod tests {
         assert!(most < 5.0 && none < 5);
     }
 
-    /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two ticks.
+    /// At the limit of speed nothing may be added, and a tick too many is much to shed: over two ramps, not in two
+    /// ticks.
     #[test]
     fn at_the_limit_of_speed_it_takes_a_few_ticks_more() {
         for (v, a, way) in [(1.0, 0.0, 4.25), (0.999_9, 0.0, 40.1), (0.969, 0.06, 6.2)] {

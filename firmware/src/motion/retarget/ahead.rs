@@ -7,13 +7,15 @@
 //!                             \_ stop       \_    any of its ticks: it is the same motion.
 //! ```
 
-use super::{NoTransition, Tries};
-use crate::motion::check::{Broken, Envelope, Legs, Looks};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::UnitLimits;
-use crate::motion::plan::{MAX_PIECES, Piece, Plan, Start};
-use crate::motion::stop::{Stop, stop_in};
+use super::tries::Tries;
+use crate::motion::check::violation::Violation;
+use crate::motion::check::{CheckBudget, CheckedPieces, PlanCheck};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::TickLimits;
+use crate::motion::plan::{MAX_PIECES, Piece, Plan, PlanStart};
+use crate::motion::refusal::RetargetError;
+use crate::motion::stop::{Stop, write_stop};
 use heapless::Vec;
 
 /// Ticks of a head: enough for the slices that follow, 10 ms at 20 kHz.
@@ -28,7 +30,7 @@ pub struct Ahead {
     /// All of the transition.
     whole: Plan,
     /// The axes at its start.
-    start: [Axis; 3],
+    start: [AxisState; 3],
     /// Ticks that have been looked at.
     seen: u64,
     /// Ticks of the head before it stops.
@@ -36,22 +38,30 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head, and the rest `ahead`; whether there is
-    /// a head, or else the plan is as it was.
+    /// Leaves of `plan`, a transition of which so many ticks have been looked at, its head, and the rest `ahead`;
+    /// whether there is a head, or else the plan is as it was.
     ///
     /// # Errors
     /// What the head's stop breaks, where it can not be helped: what moves would have no way to rest.
     // A plan is a kilobyte: none is handed around by value.
     pub(crate) fn divide(
         plan: &mut Plan,
-        start: &[Axis; 3],
+        start: &[AxisState; 3],
         seen: u64,
-        ground: &Ground,
+        constraints: &Constraints,
         ahead: &mut Option<Self>,
-    ) -> Result<bool, Broken> {
+    ) -> Result<bool, Violation> {
         let head = seen.min(HEAD);
         let mut stop = Plan::default();
-        let stopped = stop_in(&mut stop, plan, start, head, ground, Stop::Smooth, ATTEMPTS);
+        let stopped = write_stop(
+            &mut stop,
+            plan,
+            start,
+            head,
+            constraints,
+            Stop::Smooth,
+            ATTEMPTS,
+        );
         let kept = begun(&plan.pieces, head);
         match stopped {
             // The plan itself comes to rest as soon.
@@ -93,13 +103,14 @@ impl Ahead {
         &self,
         id: u32,
         at: u64,
-        ground: &Ground,
+        constraints: &Constraints,
         tries: &mut Tries,
-    ) -> Result<Plan, NoTransition> {
-        self.look(ground).map_err(|broken| tries.after(&broken))?;
+    ) -> Result<Plan, RetargetError> {
+        self.look(constraints)
+            .map_err(|broken| tries.after(&broken))?;
         let mut plan = Plan {
             id,
-            start: Start::Splice {
+            start: PlanStart::Splice {
                 plan: self.whole.id,
                 tick: at,
             },
@@ -114,21 +125,22 @@ impl Ahead {
     }
 
     #[inline(never)]
-    fn look(&self, ground: &Ground) -> Result<(), Broken> {
-        let envelope = Envelope::new(ground, UnitLimits::new(ground), &self.start);
-        let mut legs = Legs::new();
-        envelope.legs(&self.whole.pieces, &self.start, &mut legs);
-        envelope.check(&legs, &mut Looks::after(self.seen))
+    fn look(&self, constraints: &Constraints) -> Result<(), Violation> {
+        let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), &self.start);
+        let mut checked_pieces = CheckedPieces::new();
+        plan_check.prepare(&self.whole.pieces, &self.start, &mut checked_pieces);
+        plan_check.check(&checked_pieces, &mut CheckBudget::after(self.seen))
     }
 
     /// Writes all of the transition, looked at.
     pub(crate) fn whole(
         self,
         plan: &mut Plan,
-        ground: &Ground,
+        constraints: &Constraints,
         tries: &mut Tries,
-    ) -> Result<(), NoTransition> {
-        self.look(ground).map_err(|broken| tries.after(&broken))?;
+    ) -> Result<(), RetargetError> {
+        self.look(constraints)
+            .map_err(|broken| tries.after(&broken))?;
         *plan = self.whole;
         Ok(())
     }

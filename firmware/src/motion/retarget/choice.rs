@@ -5,10 +5,10 @@ use super::slower::Slower;
 use crate::motion::brake::axis_brake::AxisBrake;
 use crate::motion::brake::{Brake, gains};
 use crate::motion::plan::Position;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::UnitLimits;
-use crate::motion::profile::any_state::{AxisLimits, AxisProfile, Task};
-use crate::number::float::{Order, hypot, rough, rough_long};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::units::{AxisLimits, TickLimits};
+use crate::motion::profile::any_state::task::{AxisProfile, Task};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast, i128_to_f32_fast};
 use crate::number::sqrt_f32;
 
 /// Heading, limits along, across and of theta, and what durations they allow.
@@ -41,24 +41,24 @@ const COMMANDING: f32 = 40.0;
 impl Choice {
     /// The soonest of some; or the one with these shares across over along, as for a second try at what differs little.
     pub fn new(
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         to: &Position,
         plane: &Plane,
-        limits: &UnitLimits,
+        limits: &TickLimits,
         slower: &Slower,
         like: Option<f32>,
     ) -> Option<Self> {
-        let translation = limits.translation.times(
+        let translation = limits.translation.scaled(
             MARGIN * slower.path * slower.speed,
             MARGIN * slower.force,
             MARGIN,
         );
         let rotation =
-            (limits.rotation).times(MARGIN * slower.speed, MARGIN * slower.force, MARGIN);
+            (limits.rotation).scaled(MARGIN * slower.speed, MARGIN * slower.force, MARGIN);
         let turn = Task {
-            distance: rough_long(target(to[2]) - state[2].position),
-            velocity: rough(state[2].velocity),
-            acceleration: rough(state[2].acceleration),
+            distance: i128_to_f32_fast(target(to[2]) - state[2].position),
+            velocity: i64_to_f32_fast(state[2].velocity),
+            acceleration: i64_to_f32_fast(state[2].acceleration),
         };
         let turning = shortest(&turn, &rotation)?;
         let mut best: Option<Self> = None;
@@ -85,24 +85,29 @@ impl Choice {
 
     /// Ticks of the whole.
     pub fn duration(&self) -> f32 {
-        self.shortest.into_iter().fold(0.0, Order::larger)
+        self.shortest.into_iter().fold(0.0, FloatMinMax::fmax)
     }
 
-    /// Whether this arrives before a stop and a straight line would. A line is slowed down for the pivots only where they ask
-    /// for it: by half as much as this, as a rule.
+    /// Whether this arrives before a stop and a straight line would. A line is slowed down for the pivots only where
+    /// they ask for it: by half as much as this, as a rule.
     pub fn is_sooner_than_a_stop(
         &self,
-        state: &[Axis; 3],
+        state: &[AxisState; 3],
         to: &Position,
-        limits: &UnitLimits,
+        limits: &TickLimits,
         slower: &Slower,
     ) -> bool {
         let brake = Brake::new(state, limits, 1.0, 1.0);
         let times = brake.about();
         let [by_velocity, by_acceleration] = gains(times);
         let left = [0, 1, 2].map(|i| {
-            let (v, a) = (rough(state[i].velocity), rough(state[i].acceleration));
-            rough_long(target(to[i]) - state[i].position) - by_velocity * v - by_acceleration * a
+            let (v, a) = (
+                i64_to_f32_fast(state[i].velocity),
+                i64_to_f32_fast(state[i].acceleration),
+            );
+            i128_to_f32_fast(target(to[i]) - state[i].position)
+                - by_velocity * v
+                - by_acceleration * a
         });
         let line = [
             (
@@ -119,7 +124,7 @@ impl Choice {
             };
             shortest(&task, limits).unwrap_or(0.0)
         })
-        .fold(0.0, Order::larger);
+        .fold(0.0, FloatMinMax::fmax);
         let line = line * (1.0 + 1.0 / slower.speed) / 2.0;
         self.duration() <= times[0] + times[1] + times[2] + line + COMMANDING
     }
@@ -127,7 +132,7 @@ impl Choice {
 
 /// Shares in proportion to what is to change: the velocity across to nothing, that along to the limit.
 fn chord([along, across]: &[f32; 2], limit: f32) -> f32 {
-    (across.abs() / (limit - along).larger(limit * 1e-3)).clamp(1.0 / MOST_UNEVEN, MOST_UNEVEN)
+    (across.abs() / (limit - along).fmax(limit * 1e-3)).clamp(1.0 / MOST_UNEVEN, MOST_UNEVEN)
 }
 
 /// The choice with acceleration across `ratio` times that along.
@@ -140,7 +145,7 @@ fn turned(
 ) -> Option<Choice> {
     let along = 1.0 / sqrt_f32(1.0 + ratio * ratio);
     let [mut along, mut aside] =
-        [along, along * ratio].map(|share| limits.times(1.0, share, share));
+        [along, along * ratio].map(|share| limits.scaled(1.0, share, share));
     give_way(
         heading.seen(&plane.a),
         limits.acceleration,
@@ -169,24 +174,24 @@ fn turned(
     })
 }
 
-/// Where the acceleration now is over the share of one axis, it takes some time to come down to it: so long the other gets what
-/// is left of the whole.
+/// Where the acceleration now is over the share of one axis, it takes some time to come down to it: so long the other
+/// gets what is left of the whole.
 fn give_way(now: [f32; 2], whole: f32, along: &mut AxisLimits<f32>, aside: &mut AxisLimits<f32>) {
-    let left =
-        |other: f32| sqrt_f32((whole * whole - other * other).larger(0.0)).larger(0.2 * whole);
+    let left = |other: f32| sqrt_f32((whole * whole - other * other).fmax(0.0)).fmax(0.2 * whole);
     let [ahead, across] = now.map(f32::abs);
     if across > aside.acceleration {
-        along.acceleration = along.acceleration.smaller(left(across));
+        along.acceleration = along.acceleration.fmin(left(across));
     }
     // Across starts from nothing or from less than it may: by then this much of the acceleration along is gone.
     let later = ahead - along.jerk * aside.acceleration / aside.jerk;
     if later > along.acceleration {
-        aside.acceleration = aside.acceleration.smaller(left(later));
+        aside.acceleration = aside.acceleration.fmin(left(later));
     }
 }
 
-/// The heading at which the target is straight ahead after a brake across, and the ticks of that brake. Ticks that serve for all
-/// that is under way have a heading at once; shorter ones are taken while they are long enough for what is across then.
+/// The heading at which the target is straight ahead after a brake across, and the ticks of that brake. Ticks that
+/// serve for all that is under way have a heading at once; shorter ones are taken while they are long enough for what
+/// is across then.
 fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading, [f32; 3]) {
     let [v, a] = [&plane.v, &plane.a].map(|vector| hypot(vector[0], vector[1]));
     let of = |ticks: [f32; 3]| (Heading::after(plane, gains(ticks)), ticks);
@@ -212,17 +217,18 @@ fn ahead_of(plane: &Plane, guess: Heading, limits: &AxisLimits<f32>) -> (Heading
     best
 }
 
-/// Speed along that keeps the path within a limit of 1. Velocity goes from `(ahead, aside)` straight, `ratio` aside for 1 ahead:
-/// to the axis, when that is met within the limit; else ahead is held where the limit is met, while aside goes on to zero.
+/// Speed along that keeps the path within a limit of 1. Velocity goes from `(ahead, aside)` straight, `ratio` aside for
+/// 1 ahead: to the axis, when that is met within the limit; else ahead is held where the limit is met, while aside goes
+/// on to zero.
 fn top_speed(ahead: f32, aside: f32, ratio: f32) -> f32 {
     if ahead * ratio + aside <= ratio {
         return 1.0;
     }
     let square = 1.0 + ratio * ratio;
     let half = ahead - ratio * aside;
-    let room = (1.0 - ahead * ahead - aside * aside).larger(0.0);
+    let room = (1.0 - ahead * ahead - aside * aside).fmax(0.0);
     let gained = (sqrt_f32(half * half + square * room) - half) / square;
-    (ahead + gained).smaller(1.0)
+    (ahead + gained).fmin(1.0)
 }
 
 fn shortest(task: &Task<f32>, limits: &AxisLimits<f32>) -> Option<f32> {

@@ -1,12 +1,12 @@
-//! A frame for a transition: one axis along the way to go, one across it. What is under way across is braked, once, while
-//! the axis along goes on; the frame is turned such that the target is ahead when that is done.
+//! A frame for a transition: one axis along the way to go, one across it. What is under way across is braked, once,
+//! while the axis along goes on; the frame is turned such that the target is ahead when that is done.
 //!
 //! It turns integers by integers (30 fraction bits), so that turning there and back leaves 1e-9 of them.
 
-use crate::motion::plan::axis_state::{Axis, JERK_STEP};
-use crate::motion::plan::{Piece, Position};
-use crate::motion::profile::tracks::{AxisWay, Pieces};
-use crate::number::float::{hypot, rough, rough_long};
+use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
+use crate::motion::plan::{Piece, Pieces, Position};
+use crate::motion::profile::tracks::AxisWay;
+use crate::number::float::{hypot, i64_to_f32_fast, i128_to_f32_fast};
 
 /// Direction of the axis along, 2^-30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,16 +28,16 @@ const STILL_WAY: i128 = 1 << 41;
 const STILL_RATE: u64 = 1 << 28;
 const POINT: u32 = 30;
 /// 2^-64.
-pub(crate) const SMALLER: f32 = 5.421_011e-20;
+pub(super) const SMALLER: f32 = 5.421_011e-20;
 /// Bits of a way that a turn does without: 2^-52 track radii.
 const WAY_CUT: u32 = 20;
 
 impl Plane {
-    pub fn new(state: &[Axis; 3], to: &Position) -> Self {
+    pub fn new(state: &[AxisState; 3], to: &Position) -> Self {
         Self {
-            way: [0, 1].map(|i| rough_long(target(to[i]) - state[i].position)),
-            v: [0, 1].map(|i| rough(state[i].velocity)),
-            a: [0, 1].map(|i| rough(state[i].acceleration)),
+            way: [0, 1].map(|i| i128_to_f32_fast(target(to[i]) - state[i].position)),
+            v: [0, 1].map(|i| i64_to_f32_fast(state[i].velocity)),
+            a: [0, 1].map(|i| i64_to_f32_fast(state[i].acceleration)),
         }
     }
 
@@ -92,7 +92,7 @@ impl Heading {
     }
 
     /// The axes along, across and theta, with their ways to the target.
-    pub fn view(&self, state: &[Axis; 3], to: &Position) -> [AxisWay; 3] {
+    pub fn view(&self, state: &[AxisState; 3], to: &Position) -> [AxisWay; 3] {
         let [x, y, theta] = [0, 1, 2].map(|i| (state[i], target(to[i]) - state[i].position));
         let seen = |x: i64, y: i64| {
             [
@@ -105,7 +105,7 @@ impl Heading {
         let velocity = seen(x.0.velocity, y.0.velocity);
         let acceleration = seen(x.0.acceleration, y.0.acceleration);
         let axis = |i: usize| {
-            let axis = Axis {
+            let axis = AxisState {
                 position: 0,
                 velocity: velocity[i],
                 acceleration: acceleration[i] & !1,
@@ -119,8 +119,8 @@ impl Heading {
         [axis(0), across, theta]
     }
 
-    /// Turns the jerks back to x and y, which start with the accelerations `from` where `view` has its own. Each takes up what
-    /// the rounding of the one before left of the acceleration.
+    /// Turns the jerks back to x and y, which start with the accelerations `from` where `view` has its own. Each takes
+    /// up what the rounding of the one before left of the acceleration.
     pub fn turn_back(&self, pieces: &mut Pieces, view: [i64; 2], from: [i64; 2]) {
         let turned = self.turned(view);
         let mut rest = [turned[0] - from[0], turned[1] - from[1]];
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn turning_there_and_back_leaves_a_thousand_millionth() {
-        let state = |v: i64, a: i64| Axis {
+        let state = |v: i64, a: i64| AxisState {
             position: 5 << 70,
             velocity: v,
             acceleration: a,
@@ -204,7 +204,7 @@ mod tests {
             let angle = k as f32 * 0.063;
             let heading = Heading::new(angle.cos() * 3e20, angle.sin() * 3e20);
             let (v, a) = ([1 << 59, -3 << 57], [6 << 45, 6 << 44]);
-            let state = [state(v[0], a[0]), state(v[1], a[1]), Axis::default()];
+            let state = [state(v[0], a[0]), state(v[1], a[1]), AxisState::default()];
             let view = heading.view(&state, &[3 << 31, -(1 << 30), 0]);
             let back = heading.turned([view[0].0.velocity, view[1].0.velocity]);
             for i in 0..2 {

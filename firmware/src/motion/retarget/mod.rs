@@ -1,8 +1,8 @@
 //! Planning from motion: a new target without coming to rest before.
 //!
-//! Position, velocity and acceleration of a stage in motion point anywhere, so there is no line to plan on: each axis gets
-//! the fastest profile of its own ([`AxisProfile`](super::AxisProfile)), and those of the faster axes are slowed down to the
-//! duration of the slowest.
+//! Position, velocity and acceleration of a stage in motion point anywhere, so there is no line to plan on: each axis
+//! gets the fastest profile of its own ([`AxisProfile`](super::AxisProfile)), and those of the faster axes are slowed
+//! down to the duration of the slowest.
 //!
 //! ```text
 //!   across                     The axes of translation are one along the way to go and one across it (`heading`). What is
@@ -13,59 +13,40 @@
 //!    |          V              a few is tried (`Choice`), and the soonest planned.
 //! ```
 //!
-//! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of it
-//! ([`Envelope`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too narrow, or
-//! where a stop and a straight line are sooner, the stage has to stop first.
+//! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of
+//! it ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too
+//! narrow, or where a stop and a straight line are sooner, the stage has to stop first.
+//!
+//! | file | idea |
+//! |---|---|
+//! | here | one slice of planning |
+//! | `heading` | the frame along the way to go and across it |
+//! | `choice` | shares, heading and speeds: the soonest of a few |
+//! | `slower`, `expected_demand` | by how much less than the limits, and why |
+//! | `tries` | what has been tried, and what is tried next |
+//! | `ahead` | what is checked in the next slice |
+
+use super::check::target::check_target;
+use super::check::violation::Violation;
+use super::check::{CheckBudget, CheckedPieces, MIN_CHECKED_TICKS, PlanCheck};
+use super::constraints::Constraints;
+use super::plan::axis_state::AxisState;
+use super::plan::units::TickLimits;
+use super::plan::{Piece, Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use super::profile::tracks::{brake, merged};
+use super::profile::whole_ticks::{Track, fit};
+use super::refusal::{Refusal, RetargetError};
+use crate::number::float::ceil_ticks;
+use ahead::{Ahead, HEAD};
+use choice::Choice;
+use tries::Tries;
 
 pub(crate) mod ahead;
 pub(crate) mod choice;
-pub(crate) mod heading;
-pub(crate) mod slower;
-
-use super::check::{Broken, Envelope, LEAST_SEEN, Legs, Looks};
-use super::constraints::Ground;
-use super::line::check_target;
-use super::plan::axis_state::Axis;
-use super::plan::units::UnitLimits;
-use super::plan::{Piece, Plan, Position, Start, after_all, nudge};
-use super::profile::tracks::{Pieces, brake, merged};
-use super::profile::whole_ticks::{Track, fit};
-use super::refusal::Refusal;
-use crate::motion::retarget::ahead::{Ahead, HEAD};
-use crate::motion::retarget::choice::Choice;
-use crate::motion::retarget::heading::Plane;
-use crate::motion::retarget::slower::Slower;
-use crate::number::float::ticks_up;
-
-/// Why there is no transition. Nothing has changed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoTransition {
-    /// The target can not be moved to at all.
-    Refused(Refusal),
-    /// It can, but not without a stop before, or not as soon.
-    NeedsStop,
-    /// Not so fast: the next of the [`Tries`] may find one.
-    TooFast,
-}
-
-/// What has been tried of a transition, so that the next try is as much slower as the last one asked for. The next may leave
-/// the motion at another tick, or leave what has taken its place: as a rule a stop that has just begun.
-#[derive(Clone, Copy, Debug)]
-pub struct Tries {
-    slower: Slower,
-    /// What was chosen first: it serves for what differs little.
-    ratio: Option<f32>,
-    left: usize,
-}
-
-impl Tries {
-    /// Nothing yet.
-    pub const NONE: Self = Self {
-        slower: Slower::NOT,
-        ratio: None,
-        left: 3,
-    };
-}
+pub(super) mod expected_demand;
+pub(super) mod heading;
+pub(super) mod slower;
+pub(crate) mod tries;
 
 /// What is left for another target.
 #[derive(Clone, Copy)]
@@ -73,81 +54,82 @@ pub struct Leave<'a> {
     /// The plan under way.
     pub of: &'a Plan,
     /// The axes at its start.
-    pub from: &'a [Axis; 3],
+    pub from: &'a [AxisState; 3],
     /// The tick of it at which it is left.
     pub at: u64,
 }
 
-/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries as it
-/// takes, all of it at once.
-pub fn plan_transition(
+/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries
+/// as it takes, all of it at once.
+pub fn plan_retarget(
     id: u32,
     of: &Plan,
-    from: &[Axis; 3],
+    from: &[AxisState; 3],
     at: u64,
     to: Position,
-    ground: &Ground,
-) -> Result<Plan, NoTransition> {
+    constraints: &Constraints,
+) -> Result<Plan, RetargetError> {
     let (mut tries, mut plan) = (Tries::NONE, Plan::default());
     loop {
         let mut ahead = None;
         let next = &mut plan;
         let leave = Leave { of, from, at };
-        let tried = try_transition(next, id, leave, to, ground, &mut tries, &mut ahead);
+        let tried = try_retarget(next, id, leave, to, constraints, &mut tries, &mut ahead);
         let tried = match ahead {
-            Some(ahead) => ahead.whole(&mut plan, ground, &mut tries),
+            Some(ahead) => ahead.whole(&mut plan, constraints, &mut tries),
             None => tried,
         };
-        if tried != Err(NoTransition::TooFast) {
+        if tried != Err(RetargetError::TooFast) {
             return tried.map(|()| plan);
         }
     }
 }
 
-/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then the rest is left
-/// `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a rule a stop.
+/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then
+/// the rest is left `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a
+/// rule a stop.
 #[inline(never)]
-pub fn try_transition(
+pub fn try_retarget(
     plan: &mut Plan,
     id: u32,
     Leave { of, from, at }: Leave<'_>,
     to: Position,
-    ground: &Ground,
+    constraints: &Constraints,
     tries: &mut Tries,
     ahead: &mut Option<Ahead>,
-) -> Result<(), NoTransition> {
-    check_target(&to, ground).map_err(NoTransition::Refused)?;
-    if !ground.limits.all_positive() {
-        return Err(NoTransition::Refused(Refusal::Limits));
+) -> Result<(), RetargetError> {
+    check_target(&to, constraints).map_err(RetargetError::Refused)?;
+    if !constraints.limits.all_positive() {
+        return Err(RetargetError::Refused(Refusal::InvalidLimits));
     }
     if at >= of.ticks() {
-        return Err(NoTransition::NeedsStop);
+        return Err(RetargetError::NeedsStop);
     }
     let state = of.state_after(from, at);
-    let limits = UnitLimits::new(ground);
+    let limits = TickLimits::new(constraints);
     let choice = tries
-        .choice(&state, &to, &limits, ground)
-        .ok_or(NoTransition::NeedsStop)?;
+        .choice(&state, &to, &limits, constraints)
+        .ok_or(RetargetError::NeedsStop)?;
     (plan.id, plan.end) = (id, to);
-    plan.start = Start::Splice {
+    plan.start = PlanStart::Splice {
         plan: of.id,
         tick: at,
     };
     choice
         .lay(&state, &to, &mut plan.pieces)
-        .ok_or(NoTransition::NeedsStop)?;
-    let envelope = Envelope::new(ground, limits, &state);
-    let mut legs = Legs::new();
+        .ok_or(RetargetError::NeedsStop)?;
+    let plan_check = PlanCheck::new(constraints, limits, &state);
+    let mut checked_pieces = CheckedPieces::new();
     let first = first_slice(&plan.pieces);
     let (now, later) = plan.pieces.split_at(first);
-    let then = envelope.legs(now, &state, &mut legs);
-    let end = after_all(&then, later, &[0; 3]);
-    plan.nudge = nudge(&end, &to, plan.ticks()).ok_or(NoTransition::NeedsStop)?;
-    let mut looks = Looks::SLICE;
-    let looked = match envelope.check(&legs, &mut looks) {
+    let then = plan_check.prepare(now, &state, &mut checked_pieces);
+    let end = state_after_pieces(&then, later, &[0; 3]);
+    plan.nudge = nudge_to(&end, &to, plan.ticks()).ok_or(RetargetError::NeedsStop)?;
+    let mut budget = CheckBudget::SLICE;
+    let looked = match plan_check.check(&checked_pieces, &mut budget) {
         Ok(()) if first == plan.pieces.len() => return Ok(()),
-        Ok(()) | Err(Broken::Unseen) if looks.seen >= LEAST_SEEN => {
-            Ahead::divide(plan, &state, looks.seen, ground, ahead)
+        Ok(()) | Err(Violation::Unchecked) if budget.checked_ticks >= MIN_CHECKED_TICKS => {
+            Ahead::divide(plan, &state, budget.checked_ticks, constraints, ahead)
         }
         Ok(()) => Ok(false),
         Err(broken) => Err(broken),
@@ -156,8 +138,11 @@ pub fn try_transition(
         if divided {
             return Ok(());
         }
-        envelope.legs(&plan.pieces, &state, &mut legs);
-        envelope.check(&legs, &mut Looks::after(looks.seen))
+        plan_check.prepare(&plan.pieces, &state, &mut checked_pieces);
+        plan_check.check(
+            &checked_pieces,
+            &mut CheckBudget::after(budget.checked_ticks),
+        )
     });
     looked.map_err(|broken| tries.after(&broken))
 }
@@ -179,45 +164,12 @@ fn first_slice(pieces: &[Piece]) -> usize {
 /// So many pieces are looked at at once.
 const FEW: usize = 12;
 
-impl Tries {
-    /// What is tried next.
-    fn choice(
-        &mut self,
-        state: &[Axis; 3],
-        to: &Position,
-        limits: &UnitLimits,
-        ground: &Ground,
-    ) -> Option<Choice> {
-        let plane = Plane::new(state, to);
-        let first = self.ratio.is_none();
-        let mut choice = Choice::new(state, to, &plane, limits, &self.slower, self.ratio)?;
-        if first && self.slower.expect(state, to, &choice, ground) {
-            choice = Choice::new(state, to, &plane, limits, &self.slower, Some(choice.ratio))?;
-        }
-        self.ratio = Some(choice.ratio);
-        choice
-            .is_sooner_than_a_stop(state, to, limits, &self.slower)
-            .then_some(choice)
-    }
-
-    /// After a try that broke something.
-    pub(super) fn after(&mut self, broken: &Broken) -> NoTransition {
-        self.slower.by(broken);
-        self.left = self.left.saturating_sub(1);
-        if self.left > 0 && *broken != Broken::Reach {
-            NoTransition::TooFast
-        } else {
-            NoTransition::NeedsStop
-        }
-    }
-}
-
 impl Choice {
     /// Writes the pieces of this choice.
-    fn lay(&self, state: &[Axis; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
+    fn lay(&self, state: &[AxisState; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
         let view = self.heading.view(state, to);
         let mut tracks: [Track; 3] = Default::default();
-        brake(&mut tracks[1], &view[1].0, self.across.map(ticks_up));
+        brake(&mut tracks[1], &view[1].0, self.across.map(ceil_ticks));
         for i in [0, 2] {
             let (axis, way) = view[i];
             fit(

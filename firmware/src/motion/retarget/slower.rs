@@ -1,16 +1,7 @@
 //! By how much speeds and accelerations of a transition are lower than their limits, and why.
 
-use super::choice::Choice;
-use crate::motion::check::Broken;
-use crate::motion::check::magnitudes::Sizes;
-use crate::motion::check::pivot_bounds::Bound;
-use crate::motion::constraints::Ground;
-use crate::motion::plan::Position;
-use crate::motion::plan::axis_state::Axis;
-use crate::motion::plan::units::{PER_AXIS_UNIT, UNITS};
-use crate::number::float::{Order, hypot, rough};
+use crate::motion::check::Violation;
 use crate::number::sqrt_f32;
-use core::f32::consts::TAU;
 
 /// Parts of the limits.
 #[derive(Clone, Copy, Debug)]
@@ -23,11 +14,6 @@ pub(crate) struct Slower {
     pub force: f32,
 }
 
-/// What the bounds of the pivots' rates and accelerations, which hold at any orientation, come to as a rule.
-const USUAL: f32 = 0.85;
-/// Less than this of a limit is not tried.
-const LEAST: f32 = 0.1;
-
 impl Slower {
     /// Everything as fast as allowed.
     pub const NOT: Self = Self {
@@ -37,75 +23,17 @@ impl Slower {
     };
 
     /// By what was broken, and a little for what changes with it.
-    pub fn by(&mut self, broken: &Broken) {
+    pub fn by(&mut self, broken: &Violation) {
         const MORE: f32 = 0.97;
         match broken {
-            Broken::Speed(over) => self.path *= MORE / over,
-            Broken::Force(over) => self.force *= MORE / over,
-            Broken::Rate(over) => self.speed *= MORE / over,
-            Broken::Acceleration(over) => {
+            Violation::Speed(over) => self.path *= MORE / over,
+            Violation::Acceleration(over) => self.force *= MORE / over,
+            Violation::PivotRate(over) => self.speed *= MORE / over,
+            Violation::PivotAcceleration(over) => {
                 self.force *= MORE / over;
                 self.speed *= sqrt_f32(MORE / over);
             }
-            Broken::Reach | Broken::NoStop | Broken::Unseen => {}
+            Violation::Workspace | Violation::NoRoomToStop | Violation::Unchecked => {}
         }
-    }
-
-    /// By what a choice asks of the pivots at the speeds to be expected; whether that is slower.
-    pub fn expect(
-        &mut self,
-        state: &[Axis; 3],
-        to: &Position,
-        choice: &Choice,
-        ground: &Ground,
-    ) -> bool {
-        let hz = ground.limits.rate_hz as f32;
-        let [along, rotation] = choice.limits;
-        let ticks = choice.duration();
-        let place = |position: i64| rough(position) / UNITS;
-        let way = [0, 1, 2].map(|i| place(to[i].wrapping_sub(state[i].rounded())));
-        // Twice the mean speed at most, whatever the limit.
-        let mean = |way: f32| 2.0 * way * hz / ticks.larger(1.0);
-        let once = |limit: f32| limit * PER_AXIS_UNIT * hz;
-        let speeds = [
-            once(along.velocity).smaller(mean(hypot(way[0], way[1]))),
-            TAU * once(rotation.velocity).smaller(mean(way[2].abs())),
-        ];
-        let twice = |limit: f32| once(limit) * hz;
-        let forces = [
-            twice(along.acceleration)
-                .smaller(speeds[0] * twice(along.jerk) * hz / twice(along.acceleration)),
-            (TAU * twice(rotation.acceleration))
-                .smaller(speeds[1] * twice(rotation.jerk) * hz / twice(rotation.acceleration)),
-        ];
-        let radius = hypot(place(state[0].rounded()), place(state[1].rounded()))
-            .larger(hypot(place(to[0]), place(to[1])))
-            .smaller(ground.usable as f32);
-        let bound = Bound::new(radius);
-        let arm = hypot(ground.centre[0] as f32, ground.centre[1] as f32);
-        let sizes = Sizes {
-            v: speeds,
-            a: forces,
-            j: [0.0; 2],
-        };
-        let [rate, acceleration] = sizes.at_arm(arm).pivots(&bound);
-        let [_, drift] = Sizes {
-            a: [0.0; 2],
-            ..sizes
-        }
-        .at_arm(arm)
-        .pivots(&bound);
-        let limits = [
-            ground.limits.pivot_rate_rad_s as f32 / USUAL,
-            ground.limits.pivot_acceleration_rad_s2 as f32 / USUAL,
-        ];
-        if rate > limits[0] {
-            self.speed = (limits[0] / rate).larger(LEAST);
-        }
-        let left = (limits[1] - drift * self.speed * self.speed).larger(LEAST * limits[1]);
-        if acceleration - drift > left {
-            self.force = (left / (acceleration - drift)).larger(LEAST);
-        }
-        self.speed < 1.0 || self.force < 1.0
     }
 }

@@ -1,10 +1,10 @@
 //! What goes between a stream, its sender and the tick.
 
 use crate::motion::plan::Plan;
-use crate::motion::plan::axis_state::Axis;
+use crate::motion::plan::axis_state::AxisState;
 use crate::motion::refusal::Refusal;
 
-/// Who sets the pace.
+/// Whose clock the targets follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The sender, whose clock is followed.
@@ -15,7 +15,7 @@ pub enum Clock {
 
 /// Why no target is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NotTaken {
+pub enum PushError {
     /// As many wait as can: the sender is too fast.
     Full,
     /// The stream is over, or its end has been announced.
@@ -26,11 +26,11 @@ pub enum NotTaken {
 
 /// How a stream came to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum End {
+pub enum StreamEnd {
     /// At its last target, as announced.
     Done,
     /// No target came in time: a stop is under way, or done.
-    Dry,
+    Starved,
     /// A target asked for too much: a stop before it is under way, or done.
     Refused(Refusal),
 }
@@ -39,18 +39,18 @@ pub enum End {
 #[derive(Clone, Debug, PartialEq)]
 // A plan is what it is all about; there is no heap to box it in.
 #[allow(clippy::large_enum_variant)]
-pub enum Next {
+pub enum StreamStep {
     /// Nothing yet.
     Wait,
     /// This plan is to be sent to the tick at once; it starts from these axes.
-    Send(Plan, [Axis; 3]),
+    Send(Plan, [AxisState; 3]),
     /// The stream is over.
-    Over(End),
+    Over(StreamEnd),
 }
 
 /// The plan that the tick was on when last heard of, ticks of it done, and whether it is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct PlanProgress {
     /// Identity.
     pub plan: u32,
     /// Ticks.

@@ -1,35 +1,35 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
 
-use super::spline::point;
-use super::{JERK_TOLERANCE, PART_BITS, Sent, Stream};
-use crate::motion::brake::halt::halt;
-use crate::motion::check::instant::{Instant, Limiter};
-use crate::motion::check::pivot_bounds::{Pace, per_second};
-use crate::motion::constraints::Ground;
-use crate::motion::plan::axis_state::{Axis, SUB_BITS};
-use crate::motion::plan::{Piece, Plan, Position, Start, nudge};
+use super::final_stop::final_stop;
+use super::spline::curve_point;
+use super::state::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
+use crate::motion::check::instant::{InstantCheck, InstantState};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
+use crate::motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use crate::motion::refusal::Refusal;
+use crate::motion::speeds::{Speeds, per_second};
 use heapless::Vec;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
-pub(super) type Planned = (Plan, [Axis; 3], Sent);
+pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
 
 impl Stream {
     /// The next plan, with the curve passed by its knots; after `sent`, or from rest.
     pub(super) fn plan(
         &mut self,
         id: u32,
-        sent: Option<Sent>,
-        ground: &Ground,
+        sent: Option<SentPlan>,
+        constraints: &Constraints,
     ) -> Result<Planned, Refusal> {
-        let limiter = Limiter::new(ground);
+        let instant_check = InstantCheck::new(constraints);
         let rest = self.target(2);
         let (start, from) = match sent {
-            Some(Sent { id, splice, state }) => {
+            Some(SentPlan { id, splice, state }) => {
                 let (plan, tick) = (id, splice);
-                (Start::Splice { plan, tick }, state)
+                (PlanStart::Splice { plan, tick }, state)
             }
-            None => (Start::Rest(rest), rest.map(Axis::at_rest)),
+            None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
         let mut plan = Plan {
             id,
@@ -38,13 +38,13 @@ impl Stream {
             nudge: [0; 3],
             end: rest,
         };
-        let (state, now) = self.knots(&mut plan, from, &limiter)?;
+        let (state, now) = self.knots(&mut plan, from, &instant_check)?;
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
-            plan.nudge = nudge(&state, &plan.end, splice).ok_or(Refusal::Limits)?;
+            plan.nudge = nudge_to(&state, &plan.end, splice).ok_or(Refusal::InvalidLimits)?;
         } else {
-            let (stop, end) = halt(&state, &now, &limiter)?;
+            let (stop, end) = final_stop(&state, &now, &instant_check)?;
             plan.pieces
                 .extend(stop.into_iter().filter(|piece| piece.ticks > 0));
             plan.end = end.map(|axis| axis.rounded());
@@ -56,31 +56,31 @@ impl Stream {
                 });
             }
         }
-        Ok((plan, from, Sent { id, splice, state }))
+        Ok((plan, from, SentPlan { id, splice, state }))
     }
 
     /// Adds the pieces along the curve; where they lead.
     fn knots(
         &mut self,
         plan: &mut Plan,
-        from: [Axis; 3],
-        limiter: &Limiter<'_>,
-    ) -> Result<([Axis; 3], Instant), Refusal> {
+        from: [AxisState; 3],
+        instant_check: &InstantCheck<'_>,
+    ) -> Result<([AxisState; 3], InstantState), Refusal> {
         let mut state = from;
-        let mut before = limiter.look(&state)?;
+        let mut before = instant_check.evaluate(&state)?;
         for _ in 0..self.knots {
             self.pass();
             for piece in self.pieces(&state) {
-                let jerk = per_second(&piece.jerk, limiter.hz);
-                let jerk = Pace::of(&jerk.map(|jerk| jerk * limiter.hz * limiter.hz));
-                if jerk.way > limiter.jerk.way * JERK_TOLERANCE
-                    || jerk.turn > limiter.jerk.turn * JERK_TOLERANCE
+                let jerk = per_second(&piece.jerk, instant_check.hz);
+                let jerk = Speeds::of(&jerk.map(|jerk| jerk * instant_check.hz * instant_check.hz));
+                if jerk.linear > instant_check.jerk_limit.linear * JERK_TOLERANCE
+                    || jerk.angular > instant_check.jerk_limit.angular * JERK_TOLERANCE
                 {
                     return Err(Refusal::Jerk);
                 }
-                piece.run(&mut state, piece.ticks, &[0; 3]);
-                let now = limiter.look(&state)?;
-                limiter.check(&before, &now, piece.ticks as f32 / limiter.hz)?;
+                piece.advance(&mut state, piece.ticks, &[0; 3]);
+                let now = instant_check.evaluate(&state)?;
+                instant_check.check(&before, &now, piece.ticks as f32 / instant_check.hz)?;
                 before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
@@ -106,7 +106,7 @@ impl Stream {
     }
 
     /// The pieces from a state to where the curve is now.
-    fn pieces(&self, state: &[Axis; 3]) -> [Piece; 3] {
+    fn pieces(&self, state: &[AxisState; 3]) -> [Piece; 3] {
         let mut pieces = self.knot.ticks.map(|ticks| Piece {
             ticks,
             jerk: [0; 3],
@@ -115,11 +115,11 @@ impl Stream {
         let window = [0, 1, 2, 3, 4, 5].map(|k| self.target(k));
         let (part, rate) = (self.part as f32 / ONE, self.rate as f32 / ONE);
         for (i, axis) in state.iter().enumerate() {
-            let point = point(&window, i, part);
+            let point = curve_point(&window, i, part);
             let units = (1_u64 << SUB_BITS) as f32;
             let velocity = point.rate * rate * units;
             let acceleration = point.acceleration * rate * rate * units;
-            let to = Axis {
+            let to = AxisState {
                 position: (i128::from(window[2][i]) << SUB_BITS)
                     + (i128::from((point.offset * FINE) as i64) << (SUB_BITS - FINE_BITS)),
                 velocity: velocity as i64,

@@ -1,13 +1,13 @@
 //! The fastest main part, by cases; see the module above. Distances count from the fastest stop.
 
-use super::start::{Main, Start};
+use super::start::{Main, ProfileStart};
 use super::state::{State, peak};
 use crate::number::float::Float;
 
 /// Rounds of the solutions; a few are needed.
 const MOST_ROUNDS: usize = 40;
 
-impl<F: Float> Start<F> {
+impl<F: Float> ProfileStart<F> {
     pub fn fastest(&self) -> Main<F> {
         let mut beyond = self.beyond;
         if self.state.a < F::ZERO && self.v_z > F::ZERO {
@@ -39,8 +39,8 @@ impl<F: Float> Start<F> {
     }
 
     /// Case A: `way` of braking virtually begun from `w = v_z + q^2`, with its derivative over `q`, but for a constant.
-    /// With `r = sqrt(w)` and `g = r - q = v_z / (r + q)`, `w / 2 T(w) - q (2 v_z + q^2)` is `g (g^2 + g q - q^2)`; over the
-    /// limit of acceleration it is `(v_z (v_z + 2 q^2 + A^2 - 4 q A) + q^2 (A - q)^2) / (2 A)`.
+    /// With `r = sqrt(w)` and `g = r - q = v_z / (r + q)`, `w / 2 T(w) - q (2 v_z + q^2)` is `g (g^2 + g q - q^2)`;
+    /// over the limit of acceleration it is `(v_z (v_z + 2 q^2 + A^2 - 4 q A) + q^2 (A - q)^2) / (2 A)`.
     fn partly(&self, q: F) -> (F, F) {
         let (v_z, most) = (self.v_z, self.limits.a);
         let w = v_z + q.square();
@@ -87,8 +87,8 @@ pub(super) fn cruising<F: Float>(state: &State<F>, u: F, top: F, hold: F, most: 
     }
 }
 
-/// Case B: the root `s` of the speed gained from the virtual start, as what it is `more` than the `least`, at which the way
-/// is that of the fastest stop (or of case A's most).
+/// Case B: the root `s` of the speed gained from the virtual start, as what it is `more` than the `least`, at which the
+/// way is that of the fastest stop (or of case A's most).
 struct Touching<F> {
     v_s: F,
     most: F,
@@ -99,7 +99,7 @@ struct Touching<F> {
 }
 
 impl<F: Float> Touching<F> {
-    fn new(start: &Start<F>) -> Self {
+    fn new(start: &ProfileStart<F>) -> Self {
         let least = if start.v_z > F::ZERO {
             start.state.a.max(F::ZERO)
         } else {
@@ -119,7 +119,8 @@ impl<F: Float> Touching<F> {
         self.base + more * (self.least + self.least + more)
     }
 
-    /// The way beyond that of `least`, and its derivative. Each ramp's is taken as a product with `more`, not as a difference.
+    /// The way beyond that of `least`, and its derivative. Each ramp's is taken as a product with `more`, not as a
+    /// difference.
     fn way(&self, more: F) -> (F, F) {
         let (low, s) = (self.least, self.least + more);
         let (up, up_slope) = if s <= self.most {
@@ -159,7 +160,7 @@ impl<F: Float> Touching<F> {
         // Exact from rest.
         let most = self.most;
         let from_rest = if beyond <= F::from_f64(2.0) * most.square() * most {
-            beyond.half().rough_cbrt().square()
+            beyond.half().cbrt_estimate().square()
         } else {
             let root = (most.square() + F::from_f64(4.0) * beyond / most).root();
             most.half() * (root - most)

@@ -1,7 +1,7 @@
 //! A longer duration, by a lower speed in segment 6.
 
 use super::fastest::cruising;
-use super::start::{Main, Start};
+use super::start::{Main, ProfileStart};
 use super::state::ramp;
 use crate::number::float::Float;
 
@@ -10,11 +10,12 @@ const MOST_ROUNDS: usize = 24;
 /// Part of a duration by which an axis may be early.
 const EARLY: f64 = 1e-4;
 
-impl<F: Float> Start<F> {
+impl<F: Float> ProfileStart<F> {
     /// The profile of a lower speed in segment 6 that lasts `duration`.
     ///
-    /// What the time left for segment 6 would cover at speed `top`, less what is left to cover, is negative for a `top` of
-    /// zero and positive at the fastest profile's: bisection and regula falsi between them, and the side that is early.
+    /// What the time left for segment 6 would cover at speed `top`, less what is left to cover, is negative for a `top`
+    /// of zero and positive at the fastest profile's: bisection and regula falsi between them, and the side that is
+    /// early.
     pub fn slower(&self, fastest: &Main<F>, duration: F) -> Option<Main<F>> {
         let miss = |top: F| {
             let (t, d) = self.ramps(top);

@@ -1,11 +1,12 @@
 //! Where the main part of a profile sets out, and how far beyond the fastest stop its target lies.
 
 use super::state::{Scaled, State};
-use super::{AxisLimits, AxisProfile, Task, Unusable};
+use super::task::{AxisProfile, Task, Unusable};
+use crate::motion::plan::units::AxisLimits;
 use crate::number::float::Float;
 
 /// Where the main part starts: within the limits, and mirrored so that the target lies beyond the fastest stop.
-pub(super) struct Start<F> {
+pub(super) struct ProfileStart<F> {
     pub limits: Scaled<F>,
     pub state: State<F>,
     /// How far the target lies beyond the stop.
@@ -32,7 +33,7 @@ pub(super) struct Main<F> {
 /// Smaller than this part of what it is the difference of, a difference is taken from doubles.
 const NEAR: f64 = 1.0 / 64.0;
 
-impl<F: Float> Start<F> {
+impl<F: Float> ProfileStart<F> {
     pub fn new<T: Float>(task: &Task<T>, limits: &AxisLimits<F>) -> Result<Self, Unusable> {
         let scaled = scaled(limits)?;
         let mut state = State::new(task, limits.jerk);

@@ -1,6 +1,6 @@
 //! A state over jerk: the ramp it is part of, its fastest stop, its way back into the limits.
 
-use super::Task;
+use super::task::Task;
 use crate::number::float::Float;
 
 /// Limits over jerk: that of acceleration is a time.
@@ -87,8 +87,8 @@ impl<F: Float> State<F> {
         sign * (p_s + v_s.half() * ramp((-v_s).max(F::ZERO), most))
     }
 
-    /// Brakes into the limits: the sign of the jerk, and how long it acts and the acceleration is held. Both reasons ask for
-    /// the same sign of jerk, or the second for none.
+    /// Brakes into the limits: the sign of the jerk, and how long it acts and the acceleration is held. Both reasons
+    /// ask for the same sign of jerk, or the second for none.
     pub fn brake(&mut self, limits: &Scaled<F>) -> (F, [F; 2]) {
         let (mut sign, mut jerking, mut holding) = (F::ZERO, F::ZERO, F::ZERO);
         let over = self.a.abs() - limits.a;
