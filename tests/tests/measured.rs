@@ -1,7 +1,7 @@
 //! `hal-sim/MEASURED.md` is what its command would write, and what it says of quick deterministic runs is so.
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
 use std::collections::BTreeSet;
 use std::path::Path;
 use tests::measured::{Page, SECTIONS, cost_differences, differences, figures, path};

@@ -2,8 +2,22 @@
 
 use super::{Group, Kind, Section};
 
-/// Lines that are not of a run's summary, or of the host: the script's queries and their answers, the folder, the speed.
-const BESIDES: &[&str] = &["?", "=", "times real time", "trace and report in"];
+/// Lines of a run that are not figures of the stage: the script's queries and their answers, the folder, the host's speed; and the
+/// run's conditions, which the section's command and words say, the program's commit among them.
+const BESIDES: &[&str] = &[
+    "?",
+    "=",
+    "trace and report in",
+    "times real time",
+    "conditions",
+    "  program ",
+    "  machine ",
+    "  seed ",
+    "  mismatch ",
+    "  payload ",
+    "  imperfections ",
+    "  settings ",
+];
 
 /// All of them; those of a chapter in the page's order.
 pub const SECTIONS: &[Section] = &[
@@ -329,7 +343,7 @@ pub const SECTIONS: &[Section] = &[
         group: Group::Host,
         about: "Time of rsruckig over ours, in one run: a straight line from rest; a new target in motion with all slices, looked at along its \
                 whole way for disk and pivots, which rsruckig does not do; a streamed target; the next setpoint.",
-        command: "cargo bench -p firmware --bench planning",
+        command: "cargo bench -p firmware-cost --bench planning",
         short: None,
         kind: Kind::HostTime,
         seconds: 30,
