@@ -5,6 +5,7 @@
 
 pub mod fuzz;
 pub mod ideal;
+pub mod measured;
 pub mod trouble;
 
 use firmware::control::Outputs;
