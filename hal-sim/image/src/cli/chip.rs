@@ -10,6 +10,7 @@ use drawing::claim_folder;
 use hal_sim::report::{FILES, Run};
 use hal_sim::rig::run::{self, RunOutcome};
 use hal_sim::rig::script::Script;
+use tripivot::cli::VERSION;
 use tripivot::cli::stage::options;
 
 /// Instructions a control period has at 168 MHz.
@@ -30,7 +31,8 @@ pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
         .to_string_lossy();
     let options = options(&format!("chip-{stem}"), &arguments.simulation);
     claim_folder(&options.out, &FILES)?;
-    let on_chip = chip::run(&script, &options)?;
+    let mut on_chip = chip::run(&script, &options)?;
+    on_chip.run.conditions.program = format!("image {VERSION}");
     let on_host = run::run(&script, &options);
     for (line, answer) in &on_chip.answers {
         println!("{line}\n{answer}\n");
