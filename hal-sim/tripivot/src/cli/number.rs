@@ -34,7 +34,9 @@ where
     move |text| {
         // Wider than every type that is asked for: a number out of range is still a number.
         let value = text.parse::<i128>().map_err(|_| match number(text) {
-            Ok(value) if !value.is_nan() && value.fract() != 0.0 => "not a whole number".to_owned(),
+            Ok(value) if value.is_finite() && value.fract() != 0.0 => {
+                "not a whole number".to_owned()
+            }
             Ok(value) if !value.is_nan() => not_within(range.start(), range.end()),
             _ => NO_NUMBER.to_owned(),
         })?;
