@@ -7,22 +7,36 @@
 //!                -> servo + feedforward -> limits -> duty -> motors
 //!                -> recorder
 //! ```
+//!
+//! From the top floor down; nothing takes from a floor above its own:
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | [`settings_store`] | settings kept in flash, over resets and power cuts |
+//! | [`gcs`] | the command language: lines in, answers out |
+//! | `commander` | the stage as the command side sees it: plans, what is sent and what is pending; no word of GCS |
+//! | [`queues`] | between the command side and the tick: commands one way, snapshots the other |
+//! | [`control`] | the tick: encoder frames in, duties out; servo, supervisor, referencing, settling |
+//! | [`fault_record`] | what is still there after a reset: events, and the ticks around a fault |
+//! | [`recorder`] | the data recorder, and a running hash of every tick |
+//! | [`parameters`] | every tunable, in physical units |
+//! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
+//! | [`drivers`] | chips on the board: encoder frames, bridges |
+//! | [`fault`] | kinds of fault, what each does and why |
+//! | [`mode`] | the modes of the controller |
+//! | [`number`] | fixed point and the functions of the tick, the same bits on every machine |
 #![cfg_attr(not(test), no_std)]
 
-pub mod blackbox;
-pub mod config;
-pub mod controller;
+pub mod commander;
+pub mod control;
 pub mod drivers;
-pub mod encoder;
 pub mod fault;
-pub mod interval;
-pub mod link;
+pub mod fault_record;
+pub mod gcs;
+pub mod mode;
 pub mod motion;
 pub mod number;
-pub mod panel;
 pub mod parameters;
+pub mod queues;
 pub mod recorder;
-mod reference;
-pub mod servo;
-mod settling;
-pub mod store;
+pub mod settings_store;

@@ -1,11 +1,17 @@
 //! Every tunable of the controller, in physical units, with the reference stage as default.
 //!
-//! What the tick uses is derived from these once, in [`Config`](crate::config::Config). Defaults come from the reference
-//! stage (DESIGN section 4) unless a line says otherwise.
+//! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
+//! unless a line says otherwise.
 
-use crate::link::RECORD_ROWS;
-use crate::motion::{Limits, Way};
+mod consistency;
+
+pub(crate) use consistency::MIN_HOST_SILENCE_MS;
+
+use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
+
+/// Rows that a record of any signals can have: with all tables 16,384 samples.
+pub const MAX_RECORD_ROWS: usize = 2048;
 
 /// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.
 pub const PWM_COUNTS: u16 = 4200;
@@ -24,13 +30,13 @@ pub struct Parameters {
     /// Servo gains.
     pub servo: Gains,
     /// Encoders, pivot by pivot.
-    pub encoders: [EncoderSetup; 3],
+    pub encoders: [EncoderMounting; 3],
     /// When the stage counts as settled.
-    pub window: Window,
+    pub window: SettlingWindow,
     /// Thresholds of the faults.
     pub supervision: Supervision,
     /// The data recorder.
-    pub recorder: Recording,
+    pub recorder: RecorderParameters,
     /// What targets mean.
     pub targets: Targets,
 }
@@ -39,7 +45,7 @@ pub struct Parameters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Targets {
     /// Which way round to an orientation.
-    pub way: Way,
+    pub turn_direction: TurnDirection,
     /// Whether `MOV` gives the targets of a stream, one after the other, instead of places to move to.
     pub streamed: bool,
 }
@@ -86,17 +92,18 @@ pub struct Drive {
     pub viscous_n_m_s: f64,
     /// Coulomb friction at the ring.
     pub coulomb_n_m: f64,
-    /// Way over which friction builds up after a reversal (presliding).
+    /// Distance over which friction builds up after a reversal (presliding).
     pub presliding_rad: f64,
 }
 
 /// Servo gains.
 ///
-/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain Kv crosses
-/// over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600 rad/s, 260 Hz. The
-/// electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and the 1.5 kHz resonance
-/// leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia 20 % under the model. The
-/// position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and 12 deg of phase at crossover.
+/// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain
+/// Kv crosses over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600
+/// rad/s, 260 Hz. The electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and
+/// the 1.5 kHz resonance leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia
+/// 20 % under the model. The position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and
+/// 12 deg of phase at crossover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// Velocity setpoint per position error.
@@ -105,18 +112,19 @@ pub struct Gains {
     pub velocity_v_s_rad: f64,
     /// Voltage per integral of the velocity error.
     pub integral_v_rad: f64,
-    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see [`crate::servo`].
+    /// How fast feedforward learns, as a share of the integral gain (0: not at all); see `control/servo`.
     pub learning: f64,
-    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the integral.
+    /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the
+    /// integral.
     pub friction_learning: f64,
-    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which voltage
-    /// feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
+    /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
+    /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
     pub latency_s: f64,
 }
 
 /// How an encoder is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EncoderSetup {
+pub struct EncoderMounting {
     /// Reading, in counts, at pivot angle 0.
     pub zero_counts: u32,
     /// Whether it counts down when the pivot angle grows.
@@ -125,7 +133,7 @@ pub struct EncoderSetup {
 
 /// When the stage counts as settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub struct SettlingWindow {
     /// Largest following error of any pivot, in encoder counts.
     pub counts: f64,
     /// For how long.
@@ -147,12 +155,12 @@ pub struct Supervision {
     pub supply_min_v: f64,
     /// Rate of a pivot that is a fault, over the largest rate of a pivot in motion.
     pub overspeed_factor: f64,
-    /// Way of a pivot's setpoint in which its encoder must show something new.
+    /// Distance of a pivot's setpoint in which its encoder must show something new.
     pub frozen_rad: f64,
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
-    /// Longest time of a bridge at its largest duty.
-    pub at_end_s: f64,
+    /// Longest time of a bridge at its largest duty (saturated).
+    pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,
     /// Time in which a motor's winding goes most of the way (all but 1/e) to its final temperature.
@@ -173,7 +181,7 @@ pub struct Supervision {
 
 /// Records of the data recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Recording {
+pub struct RecorderParameters {
     /// Rows of a record.
     pub points: u32,
     /// How many of them are from before the trigger.
@@ -230,20 +238,20 @@ impl Parameters {
             latency_s: 65e-6,
         },
         encoders: [
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 12_345_678,
                 reversed: false,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 50_331_649,
                 reversed: true,
             },
-            EncoderSetup {
+            EncoderMounting {
                 zero_counts: 67_000_000,
                 reversed: false,
             },
         ],
-        window: Window {
+        window: SettlingWindow {
             counts: 2.0,
             dwell_s: 2e-3,
         },
@@ -259,7 +267,7 @@ impl Parameters {
             frozen_rad: 2e-4,
             // Half a volt is 0.7 N m, seven times the friction.
             frozen_v: 0.5,
-            at_end_s: 0.1,
+            max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,
             late_ticks: 10,
@@ -269,12 +277,12 @@ impl Parameters {
             stop_s: 0.06,
             host_silence_ms: 0.0,
         },
-        recorder: Recording {
-            points: RECORD_ROWS as u32,
+        recorder: RecorderParameters {
+            points: MAX_RECORD_ROWS as u32,
             before: 0,
         },
         targets: Targets {
-            way: Way::Literal,
+            turn_direction: TurnDirection::AsGiven,
             streamed: false,
         },
     };

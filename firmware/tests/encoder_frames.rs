@@ -1,9 +1,9 @@
 //! Frames to angles: what is believed, what is bridged, what makes an encoder unusable and why.
 
+use firmware::control::encoder::{Encoder, EncoderConfig};
 use firmware::drivers::biss::RawFrame;
-use firmware::encoder::{Encoder, EncoderConfig};
 use firmware::fault::FaultKind;
-use firmware::parameters::{EncoderSetup, Parameters, Supervision};
+use firmware::parameters::{EncoderMounting, Parameters, Supervision};
 use kinematics::Angle;
 
 const COUNTS: u32 = 1 << 26;
@@ -45,7 +45,7 @@ struct Ring {
 }
 
 impl Ring {
-    fn new(setup: EncoderSetup, rate: i32) -> Self {
+    fn new(setup: EncoderMounting, rate: i32) -> Self {
         Self {
             encoder: Encoder::default(),
             config: EncoderConfig::new(&setup, &SUPERVISION, PERIOD_S),
@@ -55,7 +55,7 @@ impl Ring {
     }
 
     fn plain(rate: i32) -> Self {
-        Self::new(EncoderSetup::default(), rate)
+        Self::new(EncoderMounting::default(), rate)
     }
 
     /// Ready at rest, then brought up to its rate as gently as a real ring.
@@ -72,7 +72,7 @@ impl Ring {
     }
 
     fn take(&mut self, frame: RawFrame) {
-        self.encoder.take(&self.config, &frame);
+        self.encoder.update(&self.config, &frame);
     }
 
     /// A tick in which the ring goes on and the encoder sends what `send` makes of its counts.
@@ -137,7 +137,7 @@ fn the_first_step_is_judged_from_rest() {
 #[test]
 fn zero_and_direction() {
     for (reversed, sign) in [(false, 1), (true, -1)] {
-        let setup = EncoderSetup {
+        let setup = EncoderMounting {
             zero_counts: 12_345_678,
             reversed,
         };

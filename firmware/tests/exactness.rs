@@ -3,7 +3,7 @@
 //! Both get the very same inputs: a fixed-point length is a double exactly, and an angle is reduced to its fraction of a turn
 //! before it becomes one, so that doubles are good to 1e-15 here and turns cost them nothing.
 
-use firmware::motion::Centre;
+use firmware::motion::RotationCentre;
 use firmware::number::Fixed;
 use kinematics::{Angle, Pose, direct, inverse};
 use proptest::prelude::*;
@@ -118,7 +118,7 @@ fn measured_poses_are_exact_to_a_quarter_lsb() {
 
 /// Largest error of a pivot, rad, when not the platform's centre is commanded but the point at `point` (track radii).
 fn pivot_error_off_centre(pose: &Pose<Fixed>, point: [f64; 2]) -> f64 {
-    let centre = Centre::new(point).expect("near enough");
+    let centre = RotationCentre::new(point).expect("near enough");
     let [x, y] = centre.point();
     let commanded = {
         // Where the point is, to the unit below: the platform is then near `pose`, wherever exactly.

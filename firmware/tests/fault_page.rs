@@ -2,10 +2,10 @@
 
 mod written_page;
 
-use firmware::controller::{Outcome, STATES, TABLE};
-use firmware::fault::{ABOUT, Fault, Reaction};
-use firmware::link::Mode;
-use firmware::panel::{ErrorCode, PARAMETERS};
+use firmware::control::{MODES, Outcome, TRANSITIONS};
+use firmware::fault::{FAULT_DESCRIPTIONS, Fault, Reaction};
+use firmware::gcs::{ErrorCode, PARAMETERS};
+use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 use std::fmt::Write;
 
@@ -40,7 +40,7 @@ const BETWEEN: &str = "
 An encoder that was lost is ready for `FRF` with four good frames in a row, where its pivot is slower than 2.5 rad/s; until then `FRF`
 answers 45. A stage that coasts faster than that could not be held.
 
-How far one or two lost encoders let the platform be off its path: see \"Measured\" in the README.
+How far one or two lost encoders let the platform be off its path: see [MEASURED.md](../hal-sim/MEASURED.md).
 
 ## Kinds
 
@@ -68,10 +68,10 @@ fn word(mode: Mode) -> &'static str {
 }
 
 fn states(page: &mut String) {
-    let heads: Vec<&str> = STATES.into_iter().map(word).collect();
+    let heads: Vec<&str> = MODES.into_iter().map(word).collect();
     writeln!(page, "| event | {} |", heads.join(" | ")).unwrap();
-    writeln!(page, "|---|{}", "---|".repeat(STATES.len())).unwrap();
-    for (event, outcomes) in TABLE {
+    writeln!(page, "|---|{}", "---|".repeat(MODES.len())).unwrap();
+    for (event, outcomes) in TRANSITIONS {
         let cells = outcomes.map(|outcome| match outcome {
             Outcome::To(mode) => word(mode).to_owned(),
             Outcome::If(mode) => format!("{} if ready", word(mode)),
@@ -92,7 +92,7 @@ fn states(page: &mut String) {
 fn kinds(page: &mut String) {
     *page +=
         "| kind | found by | thresholds | reaction | why | error |\n|---|---|---|---|---|---|\n";
-    for about in ABOUT {
+    for about in FAULT_DESCRIPTIONS {
         let thresholds: Vec<String> = (about.thresholds.iter())
             .map(|id| {
                 let parameter = PARAMETERS.iter().find(|parameter| parameter.id == *id);
@@ -137,7 +137,7 @@ fn page_is_up_to_date() {
 /// Every kind is told about, once, where its number says; and told with its unit where it has values.
 #[test]
 fn every_kind_has_its_line() {
-    for (number, about) in ABOUT.iter().enumerate() {
+    for (number, about) in FAULT_DESCRIPTIONS.iter().enumerate() {
         assert_eq!(about.kind as usize, number);
         let fault = Fault {
             kind: about.kind,

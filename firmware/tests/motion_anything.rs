@@ -1,14 +1,15 @@
-//! Anything after anything: targets, constant velocities and stops, each at any tick of the one before, about any point of the
-//! platform, within bounds of x, y and theta, with strong and weak drives. Every tick keeps limits, workspace and continuity.
+//! Anything after anything: targets, constant velocities and stops, each at any tick of the one before, about any point
+//! of the platform, within bounds of x, y and theta, with strong and weak drives. Every tick keeps limits, workspace
+//! and continuity.
 
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Centre, Ground, Motion, NoTransition, Plan, Position, Scale, Setpoint, Start, Stop,
-    plan_jog, plan_line, plan_stop, plan_transition,
+    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
+    Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
+use motion_bench::constraints::{Velocity, any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
-use motion_bench::grounds::{Velocity, grounds, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
@@ -49,21 +50,25 @@ const MOST: u64 = 20_000;
 /// A motion under way.
 struct Course {
     plan: Plan,
-    from: [Axis; 3],
-    ground: Ground,
+    from: [AxisState; 3],
+    constraints: Constraints,
 }
 
 impl Course {
     /// At rest.
-    fn resting(from: [Axis; 3], ground: Ground) -> Self {
+    fn resting(from: [AxisState; 3], constraints: Constraints) -> Self {
         let at = from.map(|axis| axis.rounded());
-        let plan = plan_line(1, at, at, &ground).expect("where it is");
-        Self { plan, from, ground }
+        let plan = plan_line(1, at, at, &constraints).expect("where it is");
+        Self {
+            plan,
+            from,
+            constraints,
+        }
     }
 
     /// The plan for a command that comes at a tick, `None` where there is none or a stop has to come first.
     fn plan(&self, command: &Command, at: u64) -> Option<Plan> {
-        let (id, ground) = (self.plan.id + 1, &self.ground);
+        let (id, constraints) = (self.plan.id + 1, &self.constraints);
         let (state, moving) = (
             self.plan.state_after(&self.from, at),
             at < self.plan.ticks(),
@@ -71,26 +76,26 @@ impl Course {
         let here = state.map(|axis| axis.rounded());
         match *command {
             Command::Target(platform) => {
-                let to = Centre::new(ground.centre)?.of_platform(&platform);
+                let to = RotationCentre::new(constraints.rotation_centre)?.from_platform(&platform);
                 if moving {
-                    plan_transition(id, &self.plan, &self.from, at, to, ground).ok()
+                    plan_retarget(id, &self.plan, &self.from, at, to, constraints).ok()
                 } else {
-                    plan_line(id, here, to, ground).ok()
+                    plan_line(id, here, to, constraints).ok()
                 }
             }
             Command::Velocity(velocity) => {
                 let start = if moving {
                     let plan = self.plan.id;
-                    Start::Splice { plan, tick: at }
+                    PlanStart::Splice { plan, tick: at }
                 } else {
-                    Start::Rest(here)
+                    PlanStart::Rest(here)
                 };
-                match plan_jog(id, start, &state, &velocity, ground) {
-                    Err(NoTransition::NeedsStop) if !moving => panic!("at rest"),
+                match plan_jog(id, start, &state, &velocity, constraints) {
+                    Err(RetargetError::NeedsStop) if !moving => panic!("at rest"),
                     plan => plan.ok(),
                 }
             }
-            Command::Stop(how) => plan_stop(id, &self.plan, &self.from, at, ground, how),
+            Command::Stop(how) => plan_stop(id, &self.plan, &self.from, at, constraints, how),
         }
     }
 
@@ -99,11 +104,11 @@ impl Course {
         &self,
         command: &Command,
         next: &Plan,
-        start: &[Axis; 3],
+        start: &[AxisState; 3],
     ) -> Result<(), TestCaseError> {
         let mut worst = Worst::default();
-        let end = worst.walk_ends(next, start, &self.ground, MOST);
-        let before = Worst::of(start, &self.ground);
+        let end = worst.walk_ends(next, start, &self.constraints, MOST);
+        let before = Worst::of(start, &self.constraints);
         if let Command::Stop(_) = command {
             // It has no limits but the pivots', and the jerk that it is granted.
             worst.speed = 0.0;
@@ -118,16 +123,17 @@ impl Course {
         prop_assert!(
             worst.is_kept_but_for_a_thousandth(),
             "{command:?} {worst:?}\nfrom {before:?} {start:?}\n{next:?}\non {:?}",
-            self.ground
+            self.constraints
         );
         prop_assert!(ends_at_rest(next, &end), "{command:?} {end:?} {next:?}");
         Ok(())
     }
 }
 
-/// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the acceleration.
-fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Ground) -> bool {
-    let hz = ground.limits.rate_hz;
+/// Whether the tick's own setpoints do more than go on from tick to tick: position by the velocity, velocity by the
+/// acceleration.
+fn is_stepped(before: &Setpoint, now: &Setpoint, constraints: &Constraints) -> bool {
+    let hz = constraints.limits.rate_hz;
     let unit = [1.0, 1.0, 1.0 / std::f64::consts::TAU];
     let rates = |p: &Setpoint| [p.twist.x, p.twist.y, p.twist.theta].map(f64::from);
     let forces = |p: &Setpoint| {
@@ -149,13 +155,13 @@ fn is_stepped(before: &Setpoint, now: &Setpoint, ground: &Ground) -> bool {
 fn limits_workspace_and_continuity_are_kept() {
     // Plans made at rest and in motion, by command.
     let made = Cell::new([[0; 2]; 3]);
-    let all = (positions(0.3), grounds(), commands());
-    let result = TestRunner::new(settings(400)).run(&all, |(platform, ground, all)| {
-        let from = rest(platform, &ground);
+    let all = (positions(0.3), any_constraints(), commands());
+    let result = TestRunner::new(settings(400)).run(&all, |(platform, constraints, all)| {
+        let from = rest(platform, &constraints);
         prop_assume!(from.is_some());
-        let mut course = Course::resting(from.unwrap(), ground);
-        let scale = Scale::new(ground.limits.rate_hz);
-        let mut motion = Motion::default();
+        let mut course = Course::resting(from.unwrap(), constraints);
+        let scale = SetpointScale::new(constraints.limits.rate_hz);
+        let mut motion = PlanFollower::default();
         motion.rest_at(course.plan.end);
         let mut at = 0;
         let mut seen = motion.setpoint(&scale);
@@ -165,13 +171,13 @@ fn limits_workspace_and_continuity_are_kept() {
                 let start = course.plan.state_after(&course.from, at);
                 course.check(&command, &next, &start)?;
                 let mut counts = made.get();
-                counts[command.kind()][usize::from(motion.moving())] += 1;
+                counts[command.kind()][usize::from(motion.is_moving())] += 1;
                 made.set(counts);
                 prop_assert_eq!(motion.accept(&next), Ok(()));
                 course = Course {
                     plan: next,
                     from: start,
-                    ground,
+                    constraints,
                 };
                 at = 0;
             }
@@ -181,7 +187,7 @@ fn limits_workspace_and_continuity_are_kept() {
                 motion.advance();
                 let now = motion.setpoint(&scale);
                 prop_assert!(
-                    !is_stepped(&seen, &now, &ground),
+                    !is_stepped(&seen, &now, &constraints),
                     "{seen:?} {now:?} {command:?}"
                 );
                 seen = now;

@@ -2,7 +2,9 @@
 
 mod motion_bench;
 
-use firmware::motion::{Centre, FURTHEST, Motion, Scale, Setpoint, Stale};
+use firmware::motion::{
+    MAX_CENTRE_OFFSET, PlanFollower, RotationCentre, Setpoint, SetpointScale, Stale,
+};
 use kinematics::{Acceleration, Twist};
 use motion_bench::*;
 use proptest::prelude::*;
@@ -10,11 +12,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Points of the platform, out to the furthest.
 fn points() -> impl Strategy<Value = [f64; 2]> {
-    (0.0..=0.999_999 * FURTHEST, -PI..PI).prop_map(|(r, d)| [r * d.cos(), r * d.sin()])
+    (0.0..=0.999_999 * MAX_CENTRE_OFFSET, -PI..PI).prop_map(|(r, d)| [r * d.cos(), r * d.sin()])
 }
 
-fn centre(point: [f64; 2]) -> Centre {
-    Centre::new(point).expect("near enough")
+fn centre(point: [f64; 2]) -> RotationCentre {
+    RotationCentre::new(point).expect("near enough")
 }
 
 /// R(theta) p.
@@ -36,14 +38,14 @@ proptest! {
 
     #[test]
     fn another_point_does_not_move_the_platform(start in positions(1e4), chosen in proptest::collection::vec(points(), 1..6)) {
-        let mut motion = Motion::default();
+        let mut motion = PlanFollower::default();
         motion.rest_at(start);
         for point in chosen {
             prop_assert_eq!(motion.set_centre(centre(point)), Ok(()));
             prop_assert_eq!(motion.centre().to_platform(&motion.position()), start);
-            prop_assert_eq!(motion.centre().of_platform(&start), motion.position());
+            prop_assert_eq!(motion.centre().from_platform(&start), motion.position());
         }
-        prop_assert_eq!(motion.set_centre(Centre::PLATFORM), Ok(()));
+        prop_assert_eq!(motion.set_centre(RotationCentre::PLATFORM), Ok(()));
         prop_assert_eq!(motion.position(), start);
     }
 
@@ -70,7 +72,7 @@ proptest! {
             twist: Twist { x: v[0], y: v[1], theta: v[2] },
             acceleration: Acceleration { x: a[0], y: a[1], theta: a[2] },
         };
-        let platform = centre(point).platform(&setpoint);
+        let platform = centre(point).platform_setpoint(&setpoint);
         prop_assert_eq!(platform.position, centre(point).to_platform(&at));
         // The platform's centre as a function of time, differentiated numerically.
         let [v, a] = [v, a].map(|rates| rates.map(f64::from));
@@ -108,27 +110,30 @@ fn the_platforms_own_centre_changes_nothing() {
             theta: 3.0,
         },
     };
-    assert_eq!(Centre::PLATFORM.platform(&setpoint), setpoint);
+    assert_eq!(
+        RotationCentre::PLATFORM.platform_setpoint(&setpoint),
+        setpoint
+    );
 }
 
 #[test]
 fn a_point_out_of_reach_is_none() {
-    assert!(Centre::new([0.8, 0.7]).is_none());
-    assert!(Centre::new([f64::NAN, 0.0]).is_none());
-    assert!(Centre::new([0.8, 0.5]).is_some());
+    assert!(RotationCentre::new([0.8, 0.7]).is_none());
+    assert!(RotationCentre::new([f64::NAN, 0.0]).is_none());
+    assert!(RotationCentre::new([0.8, 0.5]).is_some());
 }
 
 #[test]
 fn in_motion_the_point_stays() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     motion.rest_at(from);
     motion.accept(line(from, to)).expect("at rest");
     for _ in 0..10 {
         motion.advance();
     }
-    let before = motion.setpoint(&Scale::new(LIMITS.rate_hz));
+    let before = motion.setpoint(&SetpointScale::new(LIMITS.rate_hz));
     assert_eq!(motion.set_centre(centre([0.5, 0.0])), Err(Stale));
-    assert_eq!(motion.setpoint(&Scale::new(LIMITS.rate_hz)), before);
-    assert_eq!(motion.centre(), Centre::PLATFORM);
+    assert_eq!(motion.setpoint(&SetpointScale::new(LIMITS.rate_hz)), before);
+    assert_eq!(motion.centre(), RotationCentre::PLATFORM);
 }

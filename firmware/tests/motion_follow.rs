@@ -2,15 +2,15 @@
 
 mod motion_bench;
 
-use firmware::motion::{Motion, Plan, Scale, Stale, Start, Stop, plan_stop};
+use firmware::motion::{Plan, PlanFollower, PlanStart, SetpointScale, Stale, Stop, plan_stop};
 use motion_bench::*;
 use proptest::prelude::*;
 
-fn started(plan: &Plan) -> Motion {
-    let Start::Rest(from) = plan.start else {
+fn started(plan: &Plan) -> PlanFollower {
+    let PlanStart::Rest(from) = plan.start else {
         panic!("a line starts at rest");
     };
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     motion.rest_at(from);
     assert_eq!(motion.accept(plan.clone()), Ok(()));
     motion
@@ -22,7 +22,7 @@ proptest! {
     #[test]
     fn every_tick_is_the_plan_to_the_bit((from, to) in moves()) {
         let plan = line(from, to);
-        let scale = Scale::new(LIMITS.rate_hz);
+        let scale = SetpointScale::new(LIMITS.rate_hz);
         let mut motion = started(&plan);
         for tick in 1..=plan.ticks() {
             motion.advance();
@@ -35,7 +35,7 @@ proptest! {
             for (exact, given) in [(x, twist.x), (y, twist.y), (turns, twist.theta / std::f32::consts::TAU)] {
                 prop_assert!((exact - f64::from(given)).abs() < 2e-8 + 3e-7 * exact.abs());
             }
-            prop_assert_eq!(motion.moving(), tick < plan.ticks());
+            prop_assert_eq!(motion.is_moving(), tick < plan.ticks());
             prop_assert_eq!(motion.progress(), (plan.id, tick));
         }
         prop_assert_eq!(motion.position(), to);
@@ -48,10 +48,10 @@ proptest! {
     #[test]
     fn steps_agree_with_the_rates_given_to_the_servo((from, to) in moves()) {
         let plan = line(from, to);
-        let scale = Scale::new(LIMITS.rate_hz);
+        let scale = SetpointScale::new(LIMITS.rate_hz);
         let mut motion = started(&plan);
         let mut before = motion.setpoint(&scale);
-        while motion.moving() {
+        while motion.is_moving() {
             motion.advance();
             let now = motion.setpoint(&scale);
             let step = [0, 1, 2].map(|i| (now.position[i] - before.position[i]) as f64);
@@ -73,7 +73,7 @@ proptest! {
     fn a_stop_takes_over_without_a_seam((from, to) in moves(), fraction in 0.0..1.0_f64, ahead in 0..200_u64) {
         let plan = line(from, to);
         let at = (fraction * plan.ticks() as f64) as u64;
-        let stop = plan_stop(8, &plan, &at_rest(from), at, &GROUND, Stop::Urgent);
+        let stop = plan_stop(8, &plan, &at_rest(from), at, &CONSTRAINTS, Stop::Urgent);
         prop_assume!(stop.is_some());
         let stop = stop.unwrap();
         let mut motion = started(&plan);
@@ -91,7 +91,7 @@ proptest! {
             };
             prop_assert_eq!(motion.position(), expected.map(|axis| axis.rounded()), "tick {}", tick);
         }
-        prop_assert!(!motion.moving());
+        prop_assert!(!motion.is_moving());
         prop_assert_eq!(motion.position(), stop.end);
     }
 }
@@ -100,20 +100,20 @@ proptest! {
 fn plans_that_do_not_start_where_the_motion_is_are_stale() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
     let plan = line(from, to);
-    let splice = |tick| plan_stop(8, &plan, &at_rest(from), tick, &GROUND, Stop::Smooth);
+    let splice = |tick| plan_stop(8, &plan, &at_rest(from), tick, &CONSTRAINTS, Stop::Smooth);
     let splice = |tick| splice(tick).expect("far from the end");
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     motion.rest_at(to);
     assert_eq!(motion.accept(plan.clone()), Err(Stale), "starts elsewhere");
     assert_eq!(motion.accept(splice(100)), Err(Stale), "nothing to leave");
-    assert!(!motion.moving() && motion.position() == to);
+    assert!(!motion.is_moving() && motion.position() == to);
 
     let mut motion = started(&plan);
     for _ in 0..100 {
         motion.advance();
     }
     let other = Plan {
-        start: Start::Splice {
+        start: PlanStart::Splice {
             plan: 99,
             tick: 200,
         },
@@ -142,17 +142,17 @@ fn plans_that_do_not_start_where_the_motion_is_are_stale() {
 fn the_tick_of_a_splice_may_be_this_one() {
     let from = at(0.0, 0.0, 0.0);
     let plan = line(from, at(10.0, 5.0, 0.2));
-    let stop = plan_stop(8, &plan, &at_rest(from), 100, &GROUND, Stop::Smooth).unwrap();
+    let stop = plan_stop(8, &plan, &at_rest(from), 100, &CONSTRAINTS, Stop::Smooth).unwrap();
     let mut motion = started(&plan);
     for _ in 0..100 {
         motion.advance();
     }
     assert_eq!(motion.accept(stop.clone()), Ok(()));
     for _ in 0..stop.ticks() {
-        assert!(motion.moving());
+        assert!(motion.is_moving());
         motion.advance();
     }
-    assert_eq!((motion.moving(), motion.position()), (false, stop.end));
+    assert_eq!((motion.is_moving(), motion.position()), (false, stop.end));
     assert_eq!(motion.progress(), (8, stop.ticks()));
 }
 
@@ -160,7 +160,7 @@ fn the_tick_of_a_splice_may_be_this_one() {
 fn a_later_stop_replaces_an_accepted_one() {
     let from = at(0.0, 0.0, 0.0);
     let plan = line(from, at(60.0, 5.0, 0.2));
-    let stop = |at, how| plan_stop(8, &plan, &at_rest(from), at, &GROUND, how).unwrap();
+    let stop = |at, how| plan_stop(8, &plan, &at_rest(from), at, &CONSTRAINTS, how).unwrap();
     let mut motion = started(&plan);
     assert_eq!(motion.accept(stop(5_000, Stop::Smooth)), Ok(()));
     let urgent = stop(3_000, Stop::Urgent);
@@ -168,7 +168,7 @@ fn a_later_stop_replaces_an_accepted_one() {
     for _ in 0..3_000 + urgent.ticks() {
         motion.advance();
     }
-    assert_eq!((motion.moving(), motion.position()), (false, urgent.end));
+    assert_eq!((motion.is_moving(), motion.position()), (false, urgent.end));
 }
 
 #[test]
@@ -176,12 +176,12 @@ fn a_plan_without_a_way_is_over_at_once() {
     let here = at(3.0, 4.0, 0.5);
     let mut motion = started(&line(here, here));
     motion.advance();
-    assert_eq!((motion.moving(), motion.position()), (false, here));
+    assert_eq!((motion.is_moving(), motion.position()), (false, here));
     // And the next is taken as usual.
     let next = line(here, at(0.0, 0.0, 0.0));
     assert_eq!(motion.accept(next.clone()), Ok(()));
     for _ in 0..next.ticks() {
         motion.advance();
     }
-    assert_eq!((motion.moving(), motion.position()), (false, next.end));
+    assert_eq!((motion.is_moving(), motion.position()), (false, next.end));
 }

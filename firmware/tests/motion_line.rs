@@ -3,7 +3,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Ground, Limits, PathLimits, Position, Profile, Refusal, check_target, plan_line,
+    AxisState, Constraints, Limits, PathLimits, Position, Refusal, RestToRestProfile, check_target,
+    plan_line,
 };
 use motion_bench::exact::Worst;
 use motion_bench::*;
@@ -57,9 +58,9 @@ proptest! {
     #[test]
     fn where_the_pivots_follow_the_duration_is_the_optimum_and_four_ticks((from, to) in moves()) {
         prop_assume!(from != to);
-        let ground = Ground::new(Limits { pivot_rate_rad_s: 1e3, pivot_acceleration_rad_s2: 1e5, ..LIMITS }, GEOMETRY);
+        let constraints = Constraints::new(Limits { pivot_rate_rad_s: 1e3, pivot_acceleration_rad_s2: 1e5, ..LIMITS }, GEOMETRY);
         let optimum = optimum_of_line(&from, &to);
-        let ticks = plan_line(7, from, to, &ground).unwrap().ticks() as f64;
+        let ticks = plan_line(7, from, to, &constraints).unwrap().ticks() as f64;
         // Lengths and limits are f32 on the way: a millionth.
         prop_assert!(ticks >= optimum * (1.0 - 2e-6), "{ticks} < {optimum}");
         prop_assert!(ticks < optimum * (1.0 + 2e-6) + 4.0, "{ticks} > {optimum}");
@@ -69,7 +70,7 @@ proptest! {
     #[test]
     fn outside_the_disk_is_refused(from in positions(2.0), beyond in 80.0001..500.0_f64, direction in -3.2..3.2_f64) {
         let to = at(beyond * direction.cos(), beyond * direction.sin(), 0.5);
-        let refusal = plan_line(1, from, to, &GROUND).unwrap_err();
+        let refusal = plan_line(1, from, to, &CONSTRAINTS).unwrap_err();
         let Refusal::OutsideDisk { radius_mm, usable_mm } = refusal else {
             return Err(TestCaseError::fail(format!("{refusal:?}")));
         };
@@ -78,13 +79,13 @@ proptest! {
 
     #[test]
     fn the_rim_itself_is_inside(direction in -3.2..3.2_f64) {
-        prop_assert_eq!(check_target(&at(80.0 * direction.cos(), 80.0 * direction.sin(), 0.0), &GROUND), Ok(()));
+        prop_assert_eq!(check_target(&at(80.0 * direction.cos(), 80.0 * direction.sin(), 0.0), &CONSTRAINTS), Ok(()));
     }
 }
 
 /// Part of its limit that a pivot's rate reaches.
-fn pivot_rate(axes: &[Axis; 3]) -> f64 {
-    Worst::of(axes, &GROUND).pivot_rate
+fn pivot_rate(axes: &[AxisState; 3]) -> f64 {
+    Worst::of(axes, &CONSTRAINTS).pivot_rate
 }
 
 /// Optimum of a line without the pivots' limits, ticks.
@@ -248,11 +249,11 @@ fn limits_that_allow_no_motion_are_refused() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(1.0, 0.0, 1.0));
     for (i, with) in with.iter().enumerate() {
         for bad in [0.0, -1.0, f64::NAN] {
-            let refusal = plan_line(1, from, to, &Ground::new(with(bad), GEOMETRY));
-            assert_eq!(refusal, Err(Refusal::Limits), "limit {i}: {bad}");
+            let refusal = plan_line(1, from, to, &Constraints::new(with(bad), GEOMETRY));
+            assert_eq!(refusal, Err(Refusal::InvalidLimits), "limit {i}: {bad}");
         }
         assert!(
-            plan_line(1, from, to, &Ground::new(with(20_000.0), GEOMETRY)).is_ok(),
+            plan_line(1, from, to, &Constraints::new(with(20_000.0), GEOMETRY)).is_ok(),
             "limit {i}"
         );
     }
@@ -261,11 +262,14 @@ fn limits_that_allow_no_motion_are_refused() {
         ..LIMITS
     };
     assert_eq!(
-        plan_line(1, from, to, &Ground::new(slow, GEOMETRY)),
-        Err(Refusal::Limits)
+        plan_line(1, from, to, &Constraints::new(slow, GEOMETRY)),
+        Err(Refusal::InvalidLimits)
     );
     let far = [0, 0, (1_000_000_000 << 32) + 1];
-    assert_eq!(plan_line(1, from, far, &GROUND), Err(Refusal::TooManyTurns));
+    assert_eq!(
+        plan_line(1, from, far, &CONSTRAINTS),
+        Err(Refusal::TooManyTurns)
+    );
 }
 
 proptest! {
@@ -276,6 +280,6 @@ proptest! {
         let mut limits = [good; 3];
         limits[which] = bad;
         let [rate, acceleration, jerk] = limits;
-        prop_assert_eq!(Profile::new(&PathLimits { rate, acceleration, jerk }, 20_000.0), None);
+        prop_assert_eq!(RestToRestProfile::new(&PathLimits { rate, acceleration, jerk }, 20_000.0), None);
     }
 }

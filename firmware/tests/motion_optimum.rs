@@ -1,12 +1,12 @@
 //! Straight lines against the numerical optimum, and every tick of them against every limit.
 //!
-//! `LINES=1000 cargo test -p firmware --release --test motion_optimum -- --nocapture` prints the distribution over 1,000
-//! moves; without it there are 200. `SEED` in the environment takes other moves.
+//! `LINES=1000 cargo test -p firmware --release --test motion_optimum -- --nocapture` prints the distribution over
+//! 1,000 moves; without it there are 200. `SEED` in the environment takes other moves.
 
 mod motion_bench;
 mod optimum;
 
-use firmware::motion::{Ground, Plan, Position, plan_line};
+use firmware::motion::{Constraints, Plan, Position, plan_line};
 use motion_bench::exact::Worst;
 use motion_bench::random::Random;
 use motion_bench::setting::setting;
@@ -14,18 +14,18 @@ use motion_bench::*;
 use optimum::Optimum;
 use std::f64::consts::TAU;
 
-/// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of them
-/// of any size from 0.1 mm up; one in four about another point than the platform centre.
-fn random_move(random: &mut Random) -> (Position, Position, Ground) {
-    let mut ground = GROUND;
+/// A random move that is not refused: x and y over the disk, theta up to a turn, one in five up to three turns; half of
+/// them of any size from 0.1 mm up; one in four about another point than the platform centre.
+fn random_move(random: &mut Random) -> (Position, Position, Constraints) {
+    let mut constraints = CONSTRAINTS;
     if random.unit() < 0.25 {
         let (r, direction) = (0.6 * random.unit().sqrt(), TAU * random.unit());
-        ground.centre = [r * direction.cos(), r * direction.sin()];
+        constraints.rotation_centre = [r * direction.cos(), r * direction.sin()];
     }
     let turns = if random.unit() < 0.2 { 3.0 } else { 1.0 };
     loop {
-        let from = random.place(&ground);
-        let mut to = random.place(&ground);
+        let from = random.place(&constraints);
+        let mut to = random.place(&constraints);
         to[2] = from[2] + (turns * (2.0 * random.unit() - 1.0) * UNIT) as i64;
         let size = if random.unit() < 0.5 {
             1.0
@@ -36,21 +36,21 @@ fn random_move(random: &mut Random) -> (Position, Position, Ground) {
             to[i] = from[i] + ((to[i] - from[i]) as f64 * size) as i64;
         }
         let way = [0, 1].map(|i| (to[i] - from[i]) as f64 / UNIT * GEOMETRY.radius_mm);
-        if way[0].hypot(way[1]) >= 0.1 && plan_line(1, from, to, &ground).is_ok() {
-            return (from, to, ground);
+        if way[0].hypot(way[1]) >= 0.1 && plan_line(1, from, to, &constraints).is_ok() {
+            return (from, to, constraints);
         }
     }
 }
 
 /// Every limit, and the disk; what a failure needs to be found again.
-fn check(plan: &Plan, from: &Position, to: &Position, ground: &Ground) -> Worst {
+fn check(plan: &Plan, from: &Position, to: &Position, constraints: &Constraints) -> Worst {
     let mut worst = Worst::default();
-    worst.walk(plan, &at_rest(*from), ground);
+    worst.walk(plan, &at_rest(*from), constraints);
     // Of the disk an f32's roundings on the way; 0.1 um.
     assert!(
         worst.shares().iter().all(|&share| share <= SLACK) && worst.outside <= 1e-6,
         "{from:?} -> {to:?} about {:?}: {worst:?}",
-        ground.centre
+        constraints.rotation_centre
     );
     worst
 }
@@ -63,15 +63,15 @@ fn lines_keep_every_limit_and_are_within_a_tenth_of_the_optimum() {
     let mut ratios = Vec::new();
     let mut most = Worst::default();
     for _ in 0..lines {
-        let (from, to, ground) = random_move(&mut random);
-        let plan = plan_line(1, from, to, &ground).expect("taken before");
-        most = most.max(check(&plan, &from, &to, &ground));
-        let optimum = Optimum::new(&from, &to, &ground).seconds();
-        let ratio = plan.ticks() as f64 / ground.limits.rate_hz / optimum;
+        let (from, to, constraints) = random_move(&mut random);
+        let plan = plan_line(1, from, to, &constraints).expect("taken before");
+        most = most.max(check(&plan, &from, &to, &constraints));
+        let optimum = Optimum::new(&from, &to, &constraints).seconds();
+        let ratio = plan.ticks() as f64 / constraints.limits.rate_hz / optimum;
         assert!(
             ratio > 1.0 - 1e-4,
             "{from:?} -> {to:?} about {:?}: {ratio}",
-            ground.centre
+            constraints.rotation_centre
         );
         ratios.push(ratio);
     }
@@ -103,11 +103,11 @@ fn lines_keep_every_limit_and_are_within_a_tenth_of_the_optimum() {
 fn low_limits_of_the_pivots_are_kept_as_well() {
     let mut random = Random::new(setting("SEED", 20_260_302));
     for _ in 0..60 {
-        let (from, to, mut ground) = random_move(&mut random);
-        ground.limits.pivot_acceleration_rad_s2 = 20.0 + 200.0 * random.unit();
-        ground.limits.pivot_rate_rad_s = 1.0 + 9.0 * random.unit();
-        let plan = plan_line(1, from, to, &ground).expect("the same line");
-        check(&plan, &from, &to, &ground);
+        let (from, to, mut constraints) = random_move(&mut random);
+        constraints.limits.pivot_acceleration_rad_s2 = 20.0 + 200.0 * random.unit();
+        constraints.limits.pivot_rate_rad_s = 1.0 + 9.0 * random.unit();
+        let plan = plan_line(1, from, to, &constraints).expect("the same line");
+        check(&plan, &from, &to, &constraints);
     }
 }
 
@@ -116,8 +116,8 @@ fn low_limits_of_the_pivots_are_kept_as_well() {
 fn odd_limits_are_kept() {
     let mut random = Random::new(setting("SEED", 20_260_303));
     for _ in 0..60 {
-        let (from, to, mut ground) = random_move(&mut random);
-        let limits = &mut ground.limits;
+        let (from, to, mut constraints) = random_move(&mut random);
+        let limits = &mut constraints.limits;
         for limit in [
             &mut limits.speed_mm_s,
             &mut limits.acceleration_mm_s2,
@@ -130,8 +130,8 @@ fn odd_limits_are_kept() {
         ] {
             *limit *= 10_f64.powf(2.0 * random.unit() - 1.0);
         }
-        let plan = plan_line(1, from, to, &ground).expect("the same line");
-        check(&plan, &from, &to, &ground);
+        let plan = plan_line(1, from, to, &constraints).expect("the same line");
+        check(&plan, &from, &to, &constraints);
     }
 }
 
@@ -140,10 +140,10 @@ fn odd_limits_are_kept() {
 fn a_line_of_a_minute_is_slowed_where_it_has_to_be() {
     for (turns, to_mm) in [(12.0, 79.0), (50.0, 79.0), (90.0, 70.0)] {
         let (from, to) = (at(0.0, 0.0, 0.0), at(to_mm, 0.0, turns));
-        let plan = plan_line(1, from, to, &GROUND).expect("a line");
-        check(&plan, &from, &to, &GROUND);
+        let plan = plan_line(1, from, to, &CONSTRAINTS).expect("a line");
+        check(&plan, &from, &to, &CONSTRAINTS);
         let ratio =
-            plan.ticks() as f64 / LIMITS.rate_hz / Optimum::new(&from, &to, &GROUND).seconds();
+            plan.ticks() as f64 / LIMITS.rate_hz / Optimum::new(&from, &to, &CONSTRAINTS).seconds();
         let off = corners(&plan, at_rest(from))
             .iter()
             .map(|axes| off_line(axes, &from, &to))

@@ -1,12 +1,14 @@
-//! What the chip computes, in single precision and integers and as the tick plays it, beside rsruckig in doubles: durations of
-//! three axes from motion to rest.
+//! What the chip computes, in single precision and integers and as the tick plays it, beside rsruckig in doubles:
+//! durations of three axes from motion to rest.
 //!
-//! `STATES=20000 cargo test --release -p firmware --test motion_reference -- --nocapture` takes more states, `SEED` others.
+//! `STATES=20000 cargo test --release -p firmware --test motion_reference -- --nocapture` takes more states, `SEED`
+//! others.
 
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, AxisLimits, JERK_STEP, Limits, Plan, Position, plan_line, plan_transition, synchronised,
+    AxisLimits, AxisState, JERK_STEP, Limits, Plan, Position, plan_line, plan_retarget,
+    synchronised,
 };
 use motion_bench::exact::ends_at_rest;
 use motion_bench::random::Random;
@@ -43,7 +45,7 @@ fn per_axis(limits: &Limits, part: f64) -> [AxisMost; 3] {
 }
 
 /// The reference's synchronised duration in ticks; `None` where it finds none.
-fn reference(axes: &[Axis; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
+fn reference(axes: &[AxisState; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
     // Times in thousands of ticks: it takes what is closer than 1e-8 for the same.
     const LONG: f64 = 1_000.0;
     let mut input = InputParameter::<3>::new(None);
@@ -65,7 +67,7 @@ fn reference(axes: &[Axis; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<
 }
 
 /// Ticks in which the tick itself plays a plan, which has to end at rest.
-fn played(plan: &Plan, start: &[Axis; 3]) -> f64 {
+fn played(plan: &Plan, start: &[AxisState; 3]) -> f64 {
     let all = states(plan, *start);
     assert!(
         ends_at_rest(plan, all.last().unwrap()),
@@ -102,7 +104,7 @@ fn three_axes_take_as_long_as_the_reference() {
             1 => limit,
             _ => (2.0 * random.unit() - 1.0) * limit,
         };
-        let axes = limits.map(|[v, a, _]| Axis {
+        let axes = limits.map(|[v, a, _]| AxisState {
             position: 0,
             velocity: within(v) as i64,
             acceleration: within(a) as i64 / JERK_STEP * JERK_STEP,
@@ -149,32 +151,35 @@ fn three_axes_take_as_long_as_the_reference() {
     assert!(median < 1.001 && most < 1.005 && worst < 1.05 && none <= 2 + cases / 4_000);
 }
 
-/// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of the
-/// path's it is a bound from below, with a square within the circle what it could be used for here. The pivots' limits, which
-/// it does not know either, are out of the way first.
+/// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of
+/// the path's it is a bound from below, with a square within the circle what it could be used for here. The pivots'
+/// limits, which it does not know either, are out of the way first.
 #[test]
 fn new_targets_in_motion_beside_the_reference() {
     let (seed, cases) = (setting("SEED", 20_260_402), setting("STATES", 4_000));
     println!("seed {seed}");
-    let mut free = GROUND;
+    let mut free = CONSTRAINTS;
     free.limits.pivot_rate_rad_s = 1e3;
     free.limits.pivot_acceleration_rad_s2 = 1e5;
-    for (what, ground, most_stops) in [("without pivots", free, 10), ("with pivots", GROUND, 4)] {
+    for (what, constraints, most_stops) in [
+        ("without pivots", free, 10),
+        ("with pivots", CONSTRAINTS, 4),
+    ] {
         let mut random = Random::new(seed);
         let mut ratios = [Vec::new(), Vec::new()];
         let mut stops = 0;
         for _ in 0..cases {
-            let [from, to, other] = [0; 3].map(|_| random.place(&ground));
-            let line = plan_line(1, from, to, &ground).expect("a line");
+            let [from, to, other] = [0; 3].map(|_| random.place(&constraints));
+            let line = plan_line(1, from, to, &constraints).expect("a line");
             let at = (random.unit() * line.ticks() as f64) as u64;
             let start = line.state_after(&at_rest(from), at);
-            let Ok(next) = plan_transition(2, &line, &at_rest(from), at, other, &ground) else {
+            let Ok(next) = plan_retarget(2, &line, &at_rest(from), at, other, &constraints) else {
                 stops += 1;
                 continue;
             };
             let ticks = played(&next, &start);
             for (ratios, part) in ratios.iter_mut().zip([0.5_f64.sqrt(), 1.0]) {
-                let limits = per_axis(&ground.limits, part);
+                let limits = per_axis(&constraints.limits, part);
                 if let Some(theirs) = reference(&start, &other, &limits) {
                     ratios.push(ticks / theirs);
                 }

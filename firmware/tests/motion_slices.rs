@@ -3,7 +3,7 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Ahead, Axis, Leave, NoTransition, Plan, Position, Tries, plan_transition, try_transition,
+    Ahead, AxisState, Leave, Plan, Position, RetargetError, Tries, plan_retarget, try_retarget,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::random::Random;
@@ -16,14 +16,14 @@ const TAKEN_OVER: [u64; 4] = [1, 40, 99, 200];
 /// A line that is left for another target at a random tick.
 struct Left {
     line: Plan,
-    from: [Axis; 3],
+    from: [AxisState; 3],
     at: u64,
     to: Position,
 }
 
 impl Left {
     fn new(random: &mut Random) -> Self {
-        let [from, to, other] = [0; 3].map(|_| random.place(&GROUND));
+        let [from, to, other] = [0; 3].map(|_| random.place(&CONSTRAINTS));
         let line = line(from, to);
         Self {
             at: (random.unit() * line.ticks() as f64) as u64,
@@ -34,7 +34,7 @@ impl Left {
     }
 
     /// The first slice: a plan, and what lies ahead of it.
-    fn first(&self, tries: &mut Tries) -> (Result<Plan, NoTransition>, Option<Ahead>) {
+    fn first(&self, tries: &mut Tries) -> (Result<Plan, RetargetError>, Option<Ahead>) {
         let mut ahead = None;
         let mut plan = Plan::default();
         let leave = Leave {
@@ -42,13 +42,21 @@ impl Left {
             from: &self.from,
             at: self.at,
         };
-        let tried = try_transition(&mut plan, 2, leave, self.to, &GROUND, tries, &mut ahead);
+        let tried = try_retarget(
+            &mut plan,
+            2,
+            leave,
+            self.to,
+            &CONSTRAINTS,
+            tries,
+            &mut ahead,
+        );
         (tried.map(|()| plan), ahead)
     }
 }
 
-/// All of it keeps the law: the head, which comes to rest by itself, and what takes over from it at any of its ticks, which is
-/// the very motion that is planned when there is all the time in the world.
+/// All of it keeps the law: the head, which comes to rest by itself, and what takes over from it at any of its ticks,
+/// which is the very motion that is planned when there is all the time in the world.
 #[test]
 fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
     let seed = setting("SEED", 20_261_121);
@@ -64,17 +72,17 @@ fn a_head_ends_inside_and_its_rest_is_the_same_motion() {
         heads += 1;
         let start = left.line.state_after(&left.from, left.at);
         let mut worst = Worst::default();
-        let end = worst.walk(&head, &start, &GROUND);
+        let end = worst.walk(&head, &start, &CONSTRAINTS);
         assert!(ends_at_rest(&head, &end), "{end:?} {head:?}");
         // As of any stop: while it releases an acceleration the speed goes on to rise.
         let pivots = worst.pivot_rate.max(worst.pivot_acceleration);
         assert!(pivots <= 1.001 && worst.is_inside(), "{worst:?} {head:?}");
-        let whole = plan_transition(2, &left.line, &left.from, left.at, left.to, &GROUND);
+        let whole = plan_retarget(2, &left.line, &left.from, left.at, left.to, &CONSTRAINTS);
         for at in TAKEN_OVER {
             if !ahead.follows(2, at) {
                 continue;
             }
-            let Ok(rest) = ahead.go_on(3, at, &GROUND, &mut { tries }) else {
+            let Ok(rest) = ahead.go_on(3, at, &CONSTRAINTS, &mut { tries }) else {
                 continue;
             };
             rests += 1;
@@ -116,10 +124,10 @@ fn tries_are_no_more_than_three() {
             assert!(count <= 3);
             let (plan, ahead) = left.first(&mut tries);
             let looked = match &ahead {
-                Some(ahead) => ahead.go_on(3, 0, &GROUND, &mut tries).map(drop),
+                Some(ahead) => ahead.go_on(3, 0, &CONSTRAINTS, &mut tries).map(drop),
                 None => plan.map(drop),
             };
-            if looked != Err(NoTransition::TooFast) {
+            if looked != Err(RetargetError::TooFast) {
                 found += usize::from(count > 1 && looked.is_ok());
                 break;
             }

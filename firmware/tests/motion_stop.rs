@@ -2,14 +2,14 @@
 
 mod motion_bench;
 
-use firmware::motion::{Plan, Position, Start, Stop, plan_jog, plan_line, plan_stop};
+use firmware::motion::{Plan, PlanStart, Position, Stop, plan_jog, plan_line, plan_stop};
+use motion_bench::constraints::{any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
-use motion_bench::grounds::{grounds, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
 
 fn stop(of: &Plan, from: Position, at: u64, how: Stop) -> Option<Plan> {
-    plan_stop(8, of, &at_rest(from), at, &GROUND, how)
+    plan_stop(8, of, &at_rest(from), at, &CONSTRAINTS, how)
 }
 
 /// A move, and a tick of it: at which it can be stopped, unless the plan comes to rest as soon.
@@ -56,7 +56,7 @@ proptest! {
     fn urgent_is_as_hard_as_the_pivots_can_follow_and_not_longer((from, _, plan, at) in moves_under_way()) {
         let Some(urgent) = stop(&plan, from, at, Stop::Urgent) else { return Ok(()) };
         let mut worst = Worst::default();
-        worst.walk(&urgent, &plan.state_after(&at_rest(from), at), &GROUND);
+        worst.walk(&urgent, &plan.state_after(&at_rest(from), at), &CONSTRAINTS);
         prop_assert!(worst.jerk <= LIMITS.stop_factor.powi(2) * SLACK, "{worst:?}");
         prop_assert!(worst.outside <= 1e-6 && worst.pivot_rate <= 1.001 && worst.pivot_acceleration <= 1.001, "{worst:?}");
         // Without a smooth stop the plan itself is as soon.
@@ -93,17 +93,17 @@ proptest! {
 
     /// Out of lines and of jogs that end at an edge or a bound, with strong and weak drives, about any point.
     #[test]
-    fn on_any_ground_pivots_and_workspace_are_kept(
-        platform in positions(0.3), target in positions(0.3), ground in grounds(), velocity in velocities(), [jogs, late] in any::<[bool; 2]>(), part in 0.0..1.0_f64,
+    fn under_any_constraints_pivots_and_workspace_are_kept(
+        platform in positions(0.3), target in positions(0.3), constraints in any_constraints(), velocity in velocities(), [jogs, late] in any::<[bool; 2]>(), part in 0.0..1.0_f64,
     ) {
-        let [from, to] = [platform, target].map(|platform| rest(platform, &ground));
+        let [from, to] = [platform, target].map(|platform| rest(platform, &constraints));
         let (Some(from), Some(to)) = (from, to) else { return Ok(()) };
         let to = to.map(|axis| axis.rounded());
         let at_start = from.map(|axis| axis.rounded());
         let plan = if jogs {
-            plan_jog(7, Start::Rest(at_start), &from, &velocity, &ground).ok()
+            plan_jog(7, PlanStart::Rest(at_start), &from, &velocity, &constraints).ok()
         } else {
-            plan_line(7, at_start, to, &ground).ok()
+            plan_line(7, at_start, to, &constraints).ok()
         };
         let Some(plan) = plan else { return Ok(()) };
         // Anywhere, or in the last 40 ms: there an axis may brake to an edge while theta goes on.
@@ -115,11 +115,11 @@ proptest! {
         };
         let seam = plan.state_after(&from, at);
         for how in [Stop::Smooth, Stop::Urgent] {
-            let Some(stop) = plan_stop(8, &plan, &from, at, &ground, how) else { continue };
+            let Some(stop) = plan_stop(8, &plan, &from, at, &constraints, how) else { continue };
             let mut worst = Worst::default();
-            let end = worst.walk(&stop, &seam, &ground);
+            let end = worst.walk(&stop, &seam, &constraints);
             let kept = worst.pivot_rate.max(worst.pivot_acceleration) <= 1.001 && worst.is_inside();
-            prop_assert!(kept && ends_at_rest(&stop, &end), "{how:?} {worst:?} {stop:?} {ground:?}");
+            prop_assert!(kept && ends_at_rest(&stop, &end), "{how:?} {worst:?} {stop:?} {constraints:?}");
         }
     }
 }
@@ -136,8 +136,8 @@ fn from_full_speed_a_stop_takes_what_the_limits_ask() {
             (stop.end[0] - start) as f64 / UNIT * GEOMETRY.radius_mm,
         )
     };
-    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm. Urgent: the pivots allow 28 m/s^2 here, more than the 17.9 m/s^2
-    // that 1,600 m/s^3 lead to; 2 sqrt(v / j) = 22.4 ms, 2.24 mm.
+    // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm. Urgent: the pivots allow 28 m/s^2 here, more than
+    // the 17.9 m/s^2 that 1,600 m/s^3 lead to; 2 sqrt(v / j) = 22.4 ms, 2.24 mm.
     let (ticks, mm) = way(Stop::Smooth);
     assert!(
         ticks.abs_diff(1_200) <= 2 && (mm - 6.0).abs() < 0.02,

@@ -2,7 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{Clock, End, Ground, NotTaken, Position, Refusal, Stream};
+use firmware::motion::{Clock, Constraints, Position, PushError, Refusal, Stream, StreamEnd};
 use motion_bench::streaming::{Run, Sender, run};
 use motion_bench::*;
 use std::f64::consts::{PI, TAU};
@@ -51,7 +51,8 @@ fn spiral(t: f64) -> [f64; 3] {
     [radius * angle.cos(), radius * angle.sin(), 0.3 * done]
 }
 
-/// Lines of 20 mm at 100 mm/s, 1 mm apart, turned round in 0.1 s without a step in acceleration, which reaches 3.1 m/s^2.
+/// Lines of 20 mm at 100 mm/s, 1 mm apart, turned round in 0.1 s without a step in acceleration, which reaches 3.1
+/// m/s^2.
 fn raster(t: f64) -> [f64; 3] {
     const SPEED: f64 = 100.0;
     const LINE: f64 = 0.2;
@@ -139,10 +140,10 @@ fn sampled_paths_are_followed() {
                 position(path(0.0)),
                 targets(path, period),
                 &own(period),
-                &GROUND,
+                &CONSTRAINTS,
                 false,
             );
-            assert_eq!(run.end, Some(End::Done), "{name} {hz}");
+            assert_eq!(run.end, Some(StreamEnd::Done), "{name} {hz}");
             assert_eq!(run.rest, position(path(SECONDS)), "{name} {hz}");
             let [um, urad] = errors(&run, path, period);
             let latency =
@@ -198,8 +199,14 @@ fn jitter_and_a_foreign_clock_do_not_show() {
                 clock: Clock::Sender,
             };
             let start = position([50.0, 0.0, 0.0]);
-            let run = run(start, circles(period, seconds), &sender, &GROUND, false);
-            assert_eq!(run.end, Some(End::Done), "{hz} {ppm}");
+            let run = run(
+                start,
+                circles(period, seconds),
+                &sender,
+                &CONSTRAINTS,
+                false,
+            );
+            assert_eq!(run.end, Some(StreamEnd::Done), "{hz} {ppm}");
             let um = off_circle(&run);
             println!("{hz} Hz {ppm} ppm: {um:.4} um, waiting {:?}", run.waiting);
             assert!(um < most_um, "{hz} {ppm}: {um}");
@@ -219,8 +226,14 @@ fn a_stream_that_dries_up_stops_by_itself() {
     for hz in [100.0, 500.0, 1_000.0, 2_000.0] {
         let period = period(hz);
         let targets = targets(circle, period).take((1.3 * hz) as usize);
-        let run = run(position(circle(0.0)), targets, &own(period), &GROUND, true);
-        assert_eq!(run.end, Some(End::Dry), "{hz}");
+        let run = run(
+            position(circle(0.0)),
+            targets,
+            &own(period),
+            &CONSTRAINTS,
+            true,
+        );
+        assert_eq!(run.end, Some(StreamEnd::Starved), "{hz}");
         assert!(run.worst.is_kept_but_for_jerk(), "{:?}", run.worst);
         // 188 mm/s take 4.4 mm of acceleration, and jerk.
         let last = circle(1.3 - 4.0 / hz);
@@ -240,25 +253,25 @@ fn a_target_that_comes_too_late_is_one_that_is_missing() {
     let targets = || circles(period(500.0), 4.0);
     let late = |k| if k > 800 { 8.0 * 40.0 } else { 0.0 };
     assert_eq!(
-        run(start, targets(), &sender(late), &GROUND, false).end,
-        Some(End::Dry)
+        run(start, targets(), &sender(late), &CONSTRAINTS, false).end,
+        Some(StreamEnd::Starved)
     );
     let late = |k| if k > 800 { 1.9 * 40.0 } else { 0.0 };
     assert_eq!(
-        run(start, targets(), &sender(late), &GROUND, false).end,
-        Some(End::Done)
+        run(start, targets(), &sender(late), &CONSTRAINTS, false).end,
+        Some(StreamEnd::Done)
     );
 }
 
 /// What ends a stream of poses, and that the stage is at rest inside then, all limits kept.
-fn end_of(poses: impl Iterator<Item = [f64; 3]>, ground: &Ground) -> Option<End> {
+fn end_of(poses: impl Iterator<Item = [f64; 3]>, constraints: &Constraints) -> Option<StreamEnd> {
     let mut poses = poses.peekable();
     let start = position(*poses.peek().unwrap());
     let run = run(
         start,
         poses.map(position),
         &own(period(500.0)),
-        ground,
+        constraints,
         false,
     );
     assert!(run.worst.is_kept_but_for_jerk(), "{:?}", run.worst);
@@ -268,20 +281,23 @@ fn end_of(poses: impl Iterator<Item = [f64; 3]>, ground: &Ground) -> Option<End>
 #[test]
 fn targets_that_ask_for_too_much_end_the_stream() {
     let eased = |rate: f64| (0..1_500).map(move |k| rate * gone(k as f64 / 500.0, 3.0));
-    let end = |poses: &mut dyn Iterator<Item = [f64; 3]>| end_of(poses, &GROUND);
+    let end = |poses: &mut dyn Iterator<Item = [f64; 3]>| end_of(poses, &CONSTRAINTS);
     // Along a line from (-60, 0): 190 mm/s are possible, 205 are not.
     let line = |mm_s: f64| {
         eased(mm_s)
             .map(|mm| [mm - 75.0, 0.0, 0.0])
             .take_while(|p| p[0] < 60.0)
     };
-    assert_eq!(end(&mut line(205.0)), Some(End::Refused(Refusal::Velocity)));
+    assert_eq!(
+        end(&mut line(205.0)),
+        Some(StreamEnd::Refused(Refusal::Velocity))
+    );
     // Stopping dead after 60 mm is not.
     let dead = end(&mut line(190.0));
     assert!(
         matches!(
             dead,
-            Some(End::Refused(
+            Some(StreamEnd::Refused(
                 Refusal::Acceleration | Refusal::Jerk | Refusal::Pivots
             ))
         ),
@@ -290,50 +306,58 @@ fn targets_that_ask_for_too_much_end_the_stream() {
     let outside = end(&mut line(90.0).chain([[80.1, 0.0, 0.0]]));
     let is_outside = |refusal| matches!(refusal, Refusal::OutsideDisk { .. });
     assert!(
-        matches!(outside, Some(End::Refused(refusal)) if is_outside(refusal)),
+        matches!(outside, Some(StreamEnd::Refused(refusal)) if is_outside(refusal)),
         "{outside:?}"
     );
     // A jump of 0.1 mm at rest.
     let jump = [[0.0; 3]; 20].into_iter().chain([[0.1, 0.0, 0.0]; 20]);
     assert!(matches!(
         end(&mut jump.into_iter()),
-        Some(End::Refused(Refusal::Acceleration | Refusal::Jerk))
+        Some(StreamEnd::Refused(Refusal::Acceleration | Refusal::Jerk))
     ));
     // A turn a second at 70 mm is too fast for a pivot, at 40 mm it is not.
     let turn = |mm: f64| eased(0.99).map(move |turns| [mm, 0.0, turns]);
-    assert_eq!(end(&mut turn(70.0)), Some(End::Refused(Refusal::Pivots)));
-    assert_eq!(end(&mut turn(40.0)), Some(End::Done));
+    assert_eq!(
+        end(&mut turn(70.0)),
+        Some(StreamEnd::Refused(Refusal::Pivots))
+    );
+    assert_eq!(end(&mut turn(40.0)), Some(StreamEnd::Done));
     // Round the rim: the stop from there would leave the disk. A millimetre inside it would not.
     let round = |mm: f64| {
         eased(0.25).map(move |turns| [mm * (TAU * turns).cos(), mm * (TAU * turns).sin(), 0.0])
     };
-    assert_eq!(end(&mut round(79.99)), Some(End::Refused(Refusal::NoStop)));
-    assert_eq!(end(&mut round(79.0)), Some(End::Done));
+    assert_eq!(
+        end(&mut round(79.99)),
+        Some(StreamEnd::Refused(Refusal::NoRoomToStop))
+    );
+    assert_eq!(end(&mut round(79.0)), Some(StreamEnd::Done));
 }
 
 #[test]
 fn bounds_and_a_centre_of_rotation_hold_for_streams() {
-    let mut ground = GROUND;
-    ground.bounds[1] = [-(1 << 30), 1 << 30];
+    let mut constraints = CONSTRAINTS;
+    constraints.bounds[1] = [-(1 << 30), 1 << 30];
     let line =
         |mm: f64| (0..1_500).map(move |k| [0.0, mm * gone(k as f64 / 500.0, 3.0) / 2.5, 0.0]);
-    assert_eq!(end_of(line(24.9), &ground), Some(End::Done));
+    assert_eq!(end_of(line(24.9), &constraints), Some(StreamEnd::Done));
     assert_eq!(
-        end_of(line(25.1), &ground),
-        Some(End::Refused(Refusal::OutOfBounds { axis: 1 }))
+        end_of(line(25.1), &constraints),
+        Some(StreamEnd::Refused(Refusal::OutOfBounds { axis: 1 }))
     );
     // About a point 60 mm from the platform's centre, at first in the middle: a third of a turn is too much.
-    let mut ground = GROUND;
-    ground.centre = [0.6, 0.0];
+    let mut constraints = CONSTRAINTS;
+    constraints.rotation_centre = [0.6, 0.0];
     let turn = |turns: f64| {
         (0..1_500).map(move |k| [60.0, 0.0, turns * gone(k as f64 / 500.0, 3.0) / 2.5])
     };
-    assert_eq!(end_of(turn(0.2), &ground), Some(End::Done));
-    let end = end_of(turn(0.33), &ground);
+    assert_eq!(end_of(turn(0.2), &constraints), Some(StreamEnd::Done));
+    let end = end_of(turn(0.33), &constraints);
     assert!(
         matches!(
             end,
-            Some(End::Refused(Refusal::OutsideDisk { .. } | Refusal::NoStop))
+            Some(StreamEnd::Refused(
+                Refusal::OutsideDisk { .. } | Refusal::NoRoomToStop
+            ))
         ),
         "{end:?}"
     );
@@ -344,17 +368,17 @@ fn what_a_stream_does_not_take() {
     assert!(Stream::new([0; 3], 9.9, Clock::Sender).is_none());
     assert!(Stream::new([0; 3], f64::NAN, Clock::Sender).is_none());
     let mut stream = Stream::new([0; 3], 20.0, Clock::Sender).expect("1 kHz");
-    while stream.room() > 0 {
-        assert_eq!(stream.push([0; 3], &GROUND), Ok(()));
+    while stream.free_places() > 0 {
+        assert_eq!(stream.push([0; 3], &CONSTRAINTS), Ok(()));
     }
-    assert_eq!(stream.push([0; 3], &GROUND), Err(NotTaken::Full));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Full));
     stream.finish();
-    assert_eq!(stream.push([0; 3], &GROUND), Err(NotTaken::Over));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Over));
     let mut stream = Stream::new([0; 3], 20.0, Clock::Sender).expect("1 kHz");
-    let outside = stream.push(at(90.0, 0.0, 0.0), &GROUND);
+    let outside = stream.push(at(90.0, 0.0, 0.0), &CONSTRAINTS);
     assert!(matches!(
         outside,
-        Err(NotTaken::Refused(Refusal::OutsideDisk { .. }))
+        Err(PushError::Refused(Refusal::OutsideDisk { .. }))
     ));
-    assert_eq!(stream.push([0; 3], &GROUND), Err(NotTaken::Over));
+    assert_eq!(stream.push([0; 3], &CONSTRAINTS), Err(PushError::Over));
 }

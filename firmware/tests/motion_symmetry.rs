@@ -3,23 +3,23 @@
 mod motion_bench;
 
 use firmware::motion::{
-    Axis, Centre, Ground, Motion, NoTransition, Plan, Position, Start, Stop, plan_jog, plan_line,
-    plan_stop, plan_transition,
+    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
+    Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
-use motion_bench::grounds::{grounds, rest, velocities};
+use motion_bench::constraints::{any_constraints, rest, velocities};
 use motion_bench::*;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
-/// A line of any size on any ground, if it can be moved along.
-fn lines() -> impl Strategy<Value = (Position, Position, Ground)> {
-    (moves(), grounds()).prop_filter_map("no line", |((a, b), ground)| {
-        let ends = [rest(a, &ground)?, rest(b, &ground)?];
+/// A line of any size on any constraints, if it can be moved along.
+fn lines() -> impl Strategy<Value = (Position, Position, Constraints)> {
+    (moves(), any_constraints()).prop_filter_map("no line", |((a, b), constraints)| {
+        let ends = [rest(a, &constraints)?, rest(b, &constraints)?];
         let [from, to] = ends.map(|axes| axes.map(|axis| axis.rounded()));
-        plan_line(7, from, to, &ground).ok()?;
-        Some((from, to, ground))
+        plan_line(7, from, to, &constraints).ok()?;
+        Some((from, to, constraints))
     })
 }
 
@@ -28,9 +28,9 @@ proptest! {
 
     /// To a tick, to a unit of position, and to what rounding the jerks makes of velocity.
     #[test]
-    fn backwards_is_forwards_backwards((from, to, ground) in lines()) {
-        let there = plan_line(7, from, to, &ground).unwrap();
-        let back = plan_line(7, to, from, &ground);
+    fn backwards_is_forwards_backwards((from, to, constraints) in lines()) {
+        let there = plan_line(7, from, to, &constraints).unwrap();
+        let back = plan_line(7, to, from, &constraints);
         prop_assert!(back.is_ok(), "{back:?}");
         let back = back.unwrap();
         let ticks = there.ticks();
@@ -48,23 +48,23 @@ proptest! {
 
     /// A plan that began earlier and is in the same state now leads to the very same one.
     #[test]
-    fn it_is_the_same_whenever_it_is_planned((from, to, ground) in lines(), other in positions(0.3), velocity in velocities(), [early, late] in prop::array::uniform2(0.0..1.0_f64)) {
-        let plan = plan_line(7, from, to, &ground).unwrap();
+    fn it_is_the_same_whenever_it_is_planned((from, to, constraints) in lines(), other in positions(0.3), velocity in velocities(), [early, late] in prop::array::uniform2(0.0..1.0_f64)) {
+        let plan = plan_line(7, from, to, &constraints).unwrap();
         let at = (late * plan.ticks() as f64) as u64;
         let since = (early * at as f64) as u64;
         let (rest_of, start) = begun_at(&plan, &at_rest(from), since);
         let state = plan.state_after(&at_rest(from), at);
         prop_assert_eq!(rest_of.state_after(&start, at - since), state);
-        let other = Centre::new(ground.centre).unwrap().of_platform(&other);
+        let other = RotationCentre::new(constraints.rotation_centre).unwrap().from_platform(&other);
         let both = [(&plan, at_rest(from), at), (&rest_of, start, at - since)];
-        let [one, shifted] = both.map(|(plan, start, at)| plan_transition(8, plan, &start, at, other, &ground).map(unshifted));
+        let [one, shifted] = both.map(|(plan, start, at)| plan_retarget(8, plan, &start, at, other, &constraints).map(unshifted));
         prop_assert_eq!(one, shifted);
         for how in [Stop::Smooth, Stop::Urgent] {
-            let [one, shifted] = both.map(|(plan, start, at)| plan_stop(8, plan, &start, at, &ground, how).map(unshifted));
+            let [one, shifted] = both.map(|(plan, start, at)| plan_stop(8, plan, &start, at, &constraints, how).map(unshifted));
             prop_assert_eq!(one, shifted);
         }
         let [one, shifted] = both.map(|(_, _, tick)| {
-            plan_jog(8, Start::Splice { plan: 7, tick }, &state, &velocity, &ground).map(unshifted)
+            plan_jog(8, PlanStart::Splice { plan: 7, tick }, &state, &velocity, &constraints).map(unshifted)
         });
         prop_assert_eq!(one, shifted);
     }
@@ -74,7 +74,7 @@ proptest! {
     fn the_tick_plays_it_the_same_whenever_it_begins((from, to) in moves(), late in 0..5_000) {
         let plan = line(from, to);
         let mut motions = [0, late].map(|wait| {
-            let mut motion = Motion::default();
+            let mut motion = PlanFollower::default();
             motion.rest_at(from);
             for _ in 0..wait {
                 motion.advance();
@@ -83,22 +83,22 @@ proptest! {
             motion
         });
         for _ in 0..plan.ticks() {
-            motions.iter_mut().for_each(Motion::advance);
-            let [one, shifted] = motions.each_ref().map(Motion::position);
+            motions.iter_mut().for_each(PlanFollower::advance);
+            let [one, shifted] = motions.each_ref().map(PlanFollower::position);
             prop_assert_eq!(one, shifted);
         }
     }
 
     /// Whole turns change nothing, up to ten thousand of them.
     #[test]
-    fn whole_turns_change_nothing((from, to, mut ground) in lines(), other in positions(0.3), part in 0.0..1.0_f64, turns in -10_000..10_000_i64) {
-        ground.bounds = GROUND.bounds;
-        let other = Centre::new(ground.centre).unwrap().of_platform(&other);
+    fn whole_turns_change_nothing((from, to, mut constraints) in lines(), other in positions(0.3), part in 0.0..1.0_f64, turns in -10_000..10_000_i64) {
+        constraints.bounds = CONSTRAINTS.bounds;
+        let other = RotationCentre::new(constraints.rotation_centre).unwrap().from_platform(&other);
         let [one, turned] = [0, turns].map(|turns| {
             let on = |[x, y, theta]: Position| [x, y, theta + (turns << 32)];
-            let plan = plan_line(7, on(from), on(to), &ground).expect("without bounds");
+            let plan = plan_line(7, on(from), on(to), &constraints).expect("without bounds");
             let at = (part * plan.ticks() as f64) as u64;
-            let next = plan_transition(8, &plan, &at_rest(on(from)), at, on(other), &ground);
+            let next = plan_retarget(8, &plan, &at_rest(on(from)), at, on(other), &constraints);
             (plan.pieces, next.map(|next| (next.pieces, next.nudge)))
         });
         prop_assert_eq!(one, turned);
@@ -106,7 +106,7 @@ proptest! {
 }
 
 /// The same motion from tick `since` on, as a plan of its own, and where that starts.
-fn begun_at(plan: &Plan, start: &[Axis; 3], since: u64) -> (Plan, [Axis; 3]) {
+fn begun_at(plan: &Plan, start: &[AxisState; 3], since: u64) -> (Plan, [AxisState; 3]) {
     let mut rest_of = plan.clone();
     let mut past = since;
     for piece in &mut rest_of.pieces {
@@ -119,12 +119,12 @@ fn begun_at(plan: &Plan, start: &[Axis; 3], since: u64) -> (Plan, [Axis; 3]) {
 
 /// A plan but for the tick at which it begins.
 fn unshifted(mut plan: Plan) -> Plan {
-    plan.start = Start::Rest([0; 3]);
+    plan.start = PlanStart::Rest([0; 3]);
     plan
 }
 
-/// A symmetry of the mechanism: the whole turned about the track's centre by an angle, mirrored in x or not, and the guides
-/// taken for one another.
+/// A symmetry of the mechanism: the whole turned about the track's centre by an angle, mirrored in x or not, and the
+/// guides taken for one another.
 #[derive(Clone, Copy, Debug)]
 struct Symmetry {
     angle: f64,
@@ -171,21 +171,21 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 struct Plans {
     line: Plan,
     at: u64,
-    next: Result<Plan, NoTransition>,
+    next: Result<Plan, RetargetError>,
 }
 
 impl Plans {
-    fn new([from, to, other]: [Position; 3], ground: &Ground, part: f64) -> Option<Self> {
-        let line = plan_line(7, from, to, ground).ok()?;
+    fn new([from, to, other]: [Position; 3], constraints: &Constraints, part: f64) -> Option<Self> {
+        let line = plan_line(7, from, to, constraints).ok()?;
         let at = (part * line.ticks() as f64) as u64;
-        let next = plan_transition(8, &line, &at_rest(from), at, other, ground);
+        let next = plan_retarget(8, &line, &at_rest(from), at, other, constraints);
         Some(Self { line, at, next })
     }
 }
 
-/// How far apart two plans from rest are that should be images of each other: durations, as a part; and places, track radii
-/// or turns.
-fn apart(one: &Plan, image: &Plan, starts: [&[Axis; 3]; 2], symmetry: &Symmetry) -> [f64; 2] {
+/// How far apart two plans from rest are that should be images of each other: durations, as a part; and places, track
+/// radii or turns.
+fn apart(one: &Plan, image: &Plan, starts: [&[AxisState; 3]; 2], symmetry: &Symmetry) -> [f64; 2] {
     let (ticks, ticks_image) = (one.ticks(), image.ticks());
     let mut furthest = 0_u64;
     for k in 0..=40 {
@@ -200,36 +200,37 @@ fn apart(one: &Plan, image: &Plan, starts: [&[Axis; 3]; 2], symmetry: &Symmetry)
     [part, furthest as f64 / UNIT]
 }
 
-/// Lines and new targets take as long, and are at the same places, on the turned and mirrored mechanism. Not to the bit: single
-/// precision rounds differently, and where it does, another of nearly equal motions may be taken. How often is counted.
+/// Lines and new targets take as long, and are at the same places, on the turned and mirrored mechanism. Not to the
+/// bit: single precision rounds differently, and where it does, another of nearly equal motions may be taken. How often
+/// is counted.
 #[test]
 fn the_mechanism_is_the_same_all_round() {
     let all = (
         prop::array::uniform3(positions(0.3)),
-        grounds(),
+        any_constraints(),
         (-PI..PI, any::<bool>(), 0..3_i64),
         0.0..1.0_f64,
     );
     let differences = Cell::new([Vec::new(), Vec::new()]);
     let only_one = Cell::new(0);
     let result =
-        TestRunner::new(settings(1_500)).run(&all, |(places, mut ground, symmetry, part)| {
-            ground.bounds = GROUND.bounds;
+        TestRunner::new(settings(1_500)).run(&all, |(places, mut constraints, symmetry, part)| {
+            constraints.bounds = CONSTRAINTS.bounds;
             let (angle, mirrored, guides) = symmetry;
             let symmetry = Symmetry {
                 angle,
                 mirrored,
                 guides,
             };
-            let image = Ground {
-                centre: symmetry.centre(ground.centre),
-                ..ground
+            let image = Constraints {
+                rotation_centre: symmetry.centre(constraints.rotation_centre),
+                ..constraints
             };
-            let centre = Centre::new(ground.centre).unwrap();
-            let places = places.map(|platform| centre.of_platform(&platform));
+            let centre = RotationCentre::new(constraints.rotation_centre).unwrap();
+            let places = places.map(|platform| centre.from_platform(&platform));
             let images = places.map(|place| symmetry.position(place));
             let both = [
-                Plans::new(places, &ground, part),
+                Plans::new(places, &constraints, part),
                 Plans::new(images, &image, part),
             ];
             let [Some(plans), Some(images_plans)] = &both else {

@@ -1,8 +1,12 @@
-//! Theta is exact at any number of turns: ten thousand of them in odd steps and back, tick by tick, and jogging besides.
+//! Theta is exact at any number of turns: ten thousand of them in odd steps and back, tick by tick, and jogging
+//! besides.
 
 mod motion_bench;
 
-use firmware::motion::{Axis, Centre, Ground, Motion, Plan, Position, Start, plan_jog, plan_line};
+use firmware::motion::{
+    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RotationCentre, plan_jog,
+    plan_line,
+};
 use firmware::number::Fixed;
 use kinematics::{Angle, Pose, inverse};
 use motion_bench::*;
@@ -12,36 +16,36 @@ const TURNS: i64 = 10_000;
 const ENCODER_BITS: u32 = 26;
 
 /// As fast as the integers allow, so that twenty thousand turns are eleven million ticks and not four hundred million.
-fn fast() -> Ground {
-    let mut ground = GROUND;
-    let limits = &mut ground.limits;
+fn fast() -> Constraints {
+    let mut constraints = CONSTRAINTS;
+    let limits = &mut constraints.limits;
     limits.turn_speed_deg_s = 36.0 * 360.0;
     limits.turn_acceleration_deg_s2 = 36.0 * 7_200.0;
     limits.turn_jerk_deg_s3 = 36.0 * 720_000.0;
     limits.pivot_rate_rad_s = 1e3;
     limits.pivot_acceleration_rad_s2 = 1e6;
-    ground.centre = Centre::new([0.1, -0.2]).expect("near").point();
-    ground
+    constraints.rotation_centre = RotationCentre::new([0.1, -0.2]).expect("near").point();
+    constraints
 }
 
 /// The setpoint's motion, tick by tick.
 struct Stage {
-    motion: Motion,
-    ground: Ground,
+    motion: PlanFollower,
+    constraints: Constraints,
     id: u32,
 }
 
 impl Stage {
     fn new() -> Self {
-        let ground = fast();
-        let mut motion = Motion::default();
+        let constraints = fast();
+        let mut motion = PlanFollower::default();
         motion
-            .set_centre(Centre::new(ground.centre).expect("near"))
+            .set_centre(RotationCentre::new(constraints.rotation_centre).expect("near"))
             .expect("at rest");
         motion.rest_at(at(7.0, -5.0, 33.0 / 360.0));
         Self {
             motion,
-            ground,
+            constraints,
             id: 0,
         }
     }
@@ -62,27 +66,36 @@ impl Stage {
         self.id += 1;
         let from = self.motion.position();
         let to = [from[0], from[1], theta];
-        let plan = plan_line(self.id, from, to, &self.ground).expect("inside");
+        let plan = plan_line(self.id, from, to, &self.constraints).expect("inside");
         self.follow(&plan, plan.ticks());
-        assert_eq!((self.motion.position(), self.motion.moving()), (to, false));
+        assert_eq!(
+            (self.motion.position(), self.motion.is_moving()),
+            (to, false)
+        );
     }
 
     /// Jogs for a while and stops.
     fn jog(&mut self, deg_s: f64, ticks: u64) {
-        let axes = self.motion.position().map(Axis::at_rest);
-        let start = Start::Rest(self.motion.position());
-        let jog = plan_jog(self.id + 1, start, &axes, &[0.0, 0.0, deg_s], &self.ground);
+        let axes = self.motion.position().map(AxisState::at_rest);
+        let start = PlanStart::Rest(self.motion.position());
+        let jog = plan_jog(
+            self.id + 1,
+            start,
+            &axes,
+            &[0.0, 0.0, deg_s],
+            &self.constraints,
+        );
         let jog = jog.expect("room");
         self.follow(&jog, ticks);
         let state = jog.state_after(&axes, ticks);
-        let splice = Start::Splice {
+        let splice = PlanStart::Splice {
             plan: jog.id,
             tick: ticks,
         };
         self.id += 2;
-        let stop = plan_jog(self.id, splice, &state, &[0.0; 3], &self.ground).expect("a stop");
+        let stop = plan_jog(self.id, splice, &state, &[0.0; 3], &self.constraints).expect("a stop");
         self.follow(&stop, stop.ticks());
-        assert!(!self.motion.moving());
+        assert!(!self.motion.is_moving());
     }
 
     fn pivots(&self) -> [Angle; 3] {

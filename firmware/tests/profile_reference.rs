@@ -1,7 +1,8 @@
 //! Axis profiles against rsruckig: random states and limits, extremes included.
 //!
 //! `cargo test` draws 20,000; the full run is
-//! `PROFILE_CASES=200000 cargo test --release -p firmware --test profile_reference -- --nocapture`, and another seed `PROFILE_SEED`.
+//! `PROFILE_CASES=200000 cargo test --release -p firmware --test profile_reference -- --nocapture`, and another seed
+//! `PROFILE_SEED`.
 
 #[path = "motion_bench/setting.rs"]
 mod setting;

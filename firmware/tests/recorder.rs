@@ -2,10 +2,11 @@
 
 use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
-use firmware::link::Mode;
+use firmware::mode::Mode;
 use firmware::motion::Setpoint;
 use firmware::recorder::{
-    PanelRecorder, Progress, Recorder, Sample, Setup, TickRecorder, Watch, Word,
+    LevelTrigger, Progress, RawSignal, RecordSetup, Recorder, RecorderReader, RecorderWriter,
+    Sample,
 };
 use kinematics::Angle;
 use proptest::prelude::*;
@@ -18,8 +19,8 @@ const TURN: i64 = 1 << 28;
 
 /// A recorder whose tick is fed by hand.
 struct Bench {
-    tick: TickRecorder<'static>,
-    panel: PanelRecorder<'static>,
+    tick: RecorderWriter<'static>,
+    panel: RecorderReader<'static>,
     now: u64,
 }
 
@@ -30,7 +31,7 @@ fn sample(now: u64) -> Sample {
         mode: Mode::Holding,
         fault: None,
         setpoint: Setpoint::default(),
-        point: Setpoint::default(),
+        reference_point: Setpoint::default(),
         pivot_setpoints: [Angle::ZERO; 3],
         pivot_rates: [now as f32 - 50.0, 0.0, 0.0],
         pivots: [Angle::ZERO; 3],
@@ -53,8 +54,8 @@ impl Bench {
     }
 
     fn feed(&mut self, sample: &Sample) {
-        if self.tick.is_wanted() {
-            self.tick.record(sample);
+        if self.tick.is_active() {
+            self.tick.observe(sample);
         }
     }
 
@@ -71,7 +72,7 @@ impl Bench {
     }
 
     /// The first word of every row.
-    fn rows(&self, setup: &Setup) -> Vec<i64> {
+    fn rows(&self, setup: &RecordSetup) -> Vec<i64> {
         let mut cursor = self.panel.seek(setup, 0);
         (0..self.progress().rows)
             .map(|_| self.panel.next(setup, &mut cursor)[0])
@@ -79,14 +80,14 @@ impl Bench {
     }
 }
 
-fn setup(rows: u32) -> Setup {
-    let mut setup = Setup {
+fn setup(rows: u32) -> RecordSetup {
+    let mut setup = RecordSetup {
         number: 1,
         every: 1,
         rows,
-        ..Setup::default()
+        ..RecordSetup::default()
     };
-    setup.words.push(Word::Duty(0)).unwrap();
+    setup.signals.push(RawSignal::Duty(0)).unwrap();
     setup
 }
 
@@ -94,41 +95,41 @@ fn setup(rows: u32) -> Setup {
 fn at_once() {
     let mut bench = Bench::new();
     bench.run_to(10);
-    let setup = Setup {
+    let setup = RecordSetup {
         now: true,
         ..setup(5)
     };
-    bench.panel.record(&setup).unwrap();
+    bench.panel.start(&setup).unwrap();
     assert_eq!(bench.progress().rows, 0);
     bench.run_to(13);
     // What is complete can be read while the rest is being written.
     assert_eq!(bench.rows(&setup), [11, 12, 13]);
     bench.run_to(30);
     assert_eq!(bench.rows(&setup), [11, 12, 13, 14, 15]);
-    assert!(!bench.tick.is_wanted());
+    assert!(!bench.tick.is_active());
 }
 
 #[test]
 fn nothing_is_recorded_without_a_trigger() {
     let mut bench = Bench::new();
-    bench.panel.record(&setup(5)).unwrap();
+    bench.panel.start(&setup(5)).unwrap();
     bench.run_to(100);
     assert_eq!(bench.progress().rows, 0);
-    assert!(bench.tick.is_wanted());
+    assert!(bench.tick.is_active());
     bench.panel.stop().unwrap();
     bench.run_to(101);
-    assert!(!bench.tick.is_wanted());
+    assert!(!bench.tick.is_active());
 }
 
 #[test]
 fn every_third_tick() {
     let mut bench = Bench::new();
-    let setup = Setup {
+    let setup = RecordSetup {
         every: 3,
         now: true,
         ..setup(4)
     };
-    bench.panel.record(&setup).unwrap();
+    bench.panel.start(&setup).unwrap();
     bench.run_to(100);
     assert_eq!(bench.rows(&setup), [1, 4, 7, 10]);
 }
@@ -138,11 +139,11 @@ fn a_command_that_is_expected() {
     for expected in [true, false] {
         let mut bench = Bench::new();
         let setup = setup(3);
-        bench.panel.record(&setup).unwrap();
+        bench.panel.start(&setup).unwrap();
         bench.run_to(10);
-        bench.panel.expect(Some(7)).unwrap();
+        bench.panel.trigger_at(Some(7)).unwrap();
         if !expected {
-            bench.panel.expect(None).unwrap();
+            bench.panel.trigger_at(None).unwrap();
         }
         bench.run_to(20);
         assert_eq!(bench.progress().rows, 0);
@@ -158,12 +159,12 @@ fn a_command_that_is_expected() {
 }
 
 /// The first rows of a record that watches a word for a value.
-fn crossing(word: Word, value: f64, rising: bool) -> Vec<i64> {
+fn crossing(word: RawSignal, value: f64, rising: bool) -> Vec<i64> {
     let mut bench = Bench::new();
     let mut setup = setup(2);
-    let watch = Watch::new(word, value, rising);
-    setup.watches.push(watch).unwrap();
-    bench.panel.record(&setup).unwrap();
+    let watch = LevelTrigger::new(word, value, rising);
+    setup.level_triggers.push(watch).unwrap();
+    bench.panel.start(&setup).unwrap();
     bench.run_to(100);
     bench.rows(&setup)
 }
@@ -171,16 +172,16 @@ fn crossing(word: Word, value: f64, rising: bool) -> Vec<i64> {
 #[test]
 fn a_value_that_is_crossed() {
     // Integers.
-    assert_eq!(crossing(Word::Duty(0), 40.0, true), [40, 41]);
-    assert_eq!(crossing(Word::Duty(0), 39.5, true), [40, 41]);
+    assert_eq!(crossing(RawSignal::Duty(0), 40.0, true), [40, 41]);
+    assert_eq!(crossing(RawSignal::Duty(0), 39.5, true), [40, 41]);
     // The other way, out of reach, or already there: nothing is crossed.
-    assert_eq!(crossing(Word::Duty(0), 40.0, false), []);
-    assert_eq!(crossing(Word::Duty(0), 101.0, true), []);
-    assert_eq!(crossing(Word::Duty(0), 1.0, true), []);
+    assert_eq!(crossing(RawSignal::Duty(0), 40.0, false), []);
+    assert_eq!(crossing(RawSignal::Duty(0), 101.0, true), []);
+    assert_eq!(crossing(RawSignal::Duty(0), 1.0, true), []);
     // Floats, negative ones too.
-    assert_eq!(crossing(Word::PivotRate(0), -20.0, true), [30, 31]);
-    assert_eq!(crossing(Word::PivotRate(0), 0.0, true), [50, 51]);
-    assert_eq!(crossing(Word::PivotRate(0), -20.0, false), []);
+    assert_eq!(crossing(RawSignal::PivotRate(0), -20.0, true), [30, 31]);
+    assert_eq!(crossing(RawSignal::PivotRate(0), 0.0, true), [50, 51]);
+    assert_eq!(crossing(RawSignal::PivotRate(0), -20.0, false), []);
 }
 
 #[test]
@@ -188,9 +189,9 @@ fn a_value_that_is_crossed_downwards() {
     for (start, rows) in [(50, &[51_i64, 52][..]), (20, &[])] {
         let mut bench = Bench::new();
         let mut setup = setup(2);
-        let watch = Watch::new(Word::Current(0), 30.0, false);
-        setup.watches.push(watch).unwrap();
-        bench.panel.record(&setup).unwrap();
+        let watch = LevelTrigger::new(RawSignal::Current(0), 30.0, false);
+        setup.level_triggers.push(watch).unwrap();
+        bench.panel.start(&setup).unwrap();
         for now in 1..=70_u64 {
             let counts = (80 - now).min(start) as u16;
             bench.feed(&Sample {
@@ -207,12 +208,12 @@ fn a_fault() {
     // One that comes, none, and one that was there before.
     for (from, rows) in [(21, &[21_i64, 22, 23][..]), (99, &[]), (1, &[])] {
         let mut bench = Bench::new();
-        let mut setup = Setup {
+        let mut setup = RecordSetup {
             fault: true,
             ..setup(3)
         };
-        setup.words.push(Word::Fault).unwrap();
-        bench.panel.record(&setup).unwrap();
+        setup.signals.push(RawSignal::Fault).unwrap();
+        bench.panel.start(&setup).unwrap();
         for now in 1..60 {
             let faulted = now >= from;
             bench.feed(&Sample {
@@ -238,13 +239,13 @@ fn rows_before_the_trigger() {
         (3, 2, [1, 2, 3, 4, 5, 6]),
     ] {
         let mut bench = Bench::new();
-        let mut setup = Setup {
+        let mut setup = RecordSetup {
             before: 4,
             ..setup(6)
         };
-        let watch = Watch::new(Word::Duty(0), at as f64, true);
-        setup.watches.push(watch).unwrap();
-        bench.panel.record(&setup).unwrap();
+        let watch = LevelTrigger::new(RawSignal::Duty(0), at as f64, true);
+        setup.level_triggers.push(watch).unwrap();
+        bench.panel.start(&setup).unwrap();
         bench.run_to(at - 1);
         assert_eq!(bench.progress().rows, 0);
         bench.run_to(at);
@@ -261,14 +262,14 @@ fn rows_before_the_trigger() {
 #[test]
 fn rows_before_the_trigger_at_a_lower_rate() {
     let mut bench = Bench::new();
-    let mut setup = Setup {
+    let mut setup = RecordSetup {
         before: 3,
         every: 10,
         ..setup(6)
     };
-    let watch = Watch::new(Word::Duty(0), 75.0, true);
-    setup.watches.push(watch).unwrap();
-    bench.panel.record(&setup).unwrap();
+    let watch = LevelTrigger::new(RawSignal::Duty(0), 75.0, true);
+    setup.level_triggers.push(watch).unwrap();
+    bench.panel.start(&setup).unwrap();
     bench.run_to(200);
     // Equally far apart; the trigger's row is the first one after it.
     assert_eq!(bench.rows(&setup), [51, 61, 71, 81, 91, 101]);
@@ -278,18 +279,18 @@ fn rows_before_the_trigger_at_a_lower_rate() {
 #[test]
 fn a_record_that_waits_leaves_the_last_one_alone() {
     let mut bench = Bench::new();
-    let first = Setup {
+    let first = RecordSetup {
         now: true,
         ..setup(3)
     };
-    bench.panel.record(&first).unwrap();
+    bench.panel.start(&first).unwrap();
     bench.run_to(10);
-    let second = Setup {
+    let second = RecordSetup {
         number: 2,
         commands: Some(1),
         ..setup(3)
     };
-    bench.panel.record(&second).unwrap();
+    bench.panel.start(&second).unwrap();
     bench.run_to(20);
     assert_eq!(bench.rows(&first), [1, 2, 3]);
     assert_eq!(bench.panel.progress(2), Progress::default());
@@ -305,9 +306,9 @@ fn a_record_that_waits_leaves_the_last_one_alone() {
 fn a_full_queue_is_told_and_nothing_is_lost() {
     let mut bench = Bench::new();
     let setup = setup(3);
-    bench.panel.record(&setup).unwrap();
-    bench.panel.expect(None).unwrap();
-    bench.panel.expect(Some(0)).unwrap();
+    bench.panel.start(&setup).unwrap();
+    bench.panel.trigger_at(None).unwrap();
+    bench.panel.trigger_at(Some(0)).unwrap();
     assert!(bench.panel.stop().is_err());
     bench.run_to(1);
     assert_eq!(bench.rows(&setup), [1]);
@@ -317,12 +318,12 @@ fn a_full_queue_is_told_and_nothing_is_lost() {
 #[test]
 fn a_record_that_is_too_long_leaves_rows_out_and_does_no_harm() {
     let mut bench = Bench::new();
-    let mut setup = Setup {
+    let mut setup = RecordSetup {
         now: true,
         ..setup(40)
     };
-    setup.words.push(Word::Mode).unwrap();
-    bench.panel.record(&setup).unwrap();
+    setup.signals.push(RawSignal::Mode).unwrap();
+    bench.panel.start(&setup).unwrap();
     bench.run_to(100);
     let rows = bench.rows(&setup);
     assert_eq!(rows[..32], (1..=32).collect::<Vec<_>>());
@@ -350,15 +351,15 @@ fn turns_are_put_back() {
     runner
         .run(&cases, |(start, step, before, trigger, from)| {
             let mut bench = Bench::new();
-            let mut setup = Setup {
+            let mut setup = RecordSetup {
                 before,
                 commands: Some(1),
                 ..setup(WORDS as u32 / 2)
             };
-            setup.words.clear();
-            setup.words.push(Word::Pivot(1)).unwrap();
-            setup.words.push(Word::Theta).unwrap();
-            bench.panel.record(&setup).unwrap();
+            setup.signals.clear();
+            setup.signals.push(RawSignal::Pivot(1)).unwrap();
+            setup.signals.push(RawSignal::Theta).unwrap();
+            bench.panel.start(&setup).unwrap();
             let at = |row: u64| start + row as i64 * step;
             for row in 0..trigger + 64 {
                 let mut setpoint = Setpoint::default();

@@ -1,8 +1,8 @@
 //! The servo of one pivot: duties that are right on average, no windup, and a loop that is stable on a simple plant.
 
+use firmware::control::servo::{PivotServo, PivotSetpoint, ServoConfig};
 use firmware::drivers::bridge::Duty;
 use firmware::parameters::{Drive, Parameters};
-use firmware::servo::{AxisServo, PivotSetpoint, ServoConfig};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
 
@@ -54,7 +54,7 @@ proptest! {
     fn duty_is_right_on_average(torque_n_m in -20.0..20.0_f32) {
         let config = config();
         let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
-        let mut servo = AxisServo::default();
+        let mut servo = PivotServo::default();
         let mut duty = || servo.step(&config, &asking(torque_n_m, 0.0), per_volt).0;
         // The first tick sees the torque jump, and looks ahead.
         duty();
@@ -75,7 +75,7 @@ proptest! {
     fn full_is_never_passed(torque_n_m in -1e3..1e3_f32, error_rad in -1e-2..1e-2_f64) {
         let config = config();
         let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
-        let mut servo = AxisServo::default();
+        let mut servo = PivotServo::default();
         for _ in 0..200 {
             let Duty(counts) = servo.step(&config, &asking(torque_n_m, error_rad), per_volt);
             // 98 % of 4,200.
@@ -89,7 +89,7 @@ fn saturation_does_not_wind_up() {
     let config = config();
     let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
     for sign in [1.0, -1.0] {
-        let mut servo = AxisServo::default();
+        let mut servo = PivotServo::default();
         for _ in 0..20_000 {
             let Duty(counts) = servo.step(&config, &asking(0.0, sign * 0.01), per_volt);
             assert_eq!(f64::from(counts), -sign * 4_116.0);
@@ -105,7 +105,7 @@ fn saturation_does_not_wind_up() {
 fn an_error_that_stays_is_collected_below_saturation() {
     let config = config();
     let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
-    let mut servo = AxisServo::default();
+    let mut servo = PivotServo::default();
     // 1 urad: 400 / s of it for 1 s times 14,000 V/rad is 5.6 V, where proportional action gives 16 mV.
     for _ in 0..20_000 {
         servo.step(&config, &asking(0.0, 1e-6), per_volt);
@@ -122,7 +122,7 @@ fn an_error_that_stays_is_collected_below_saturation() {
 fn duty_follows_the_supply() {
     let config = config();
     let first = |supply: f32| {
-        let mut servo = AxisServo::default();
+        let mut servo = PivotServo::default();
         servo
             .step(&config, &asking(0.5, 0.0), config.counts_per_volt(supply))
             .0
@@ -139,7 +139,7 @@ fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
     let per_volt = with.counts_per_volt(SUPPLY_COUNTS);
     for torque_n_m in [6.0, -6.0] {
         let settled = |config: &ServoConfig| {
-            let mut servo = AxisServo::default();
+            let mut servo = PivotServo::default();
             let duties =
                 (0..2_000).map(|_| servo.step(config, &asking(torque_n_m, 0.0), per_volt).0);
             duties.last().unwrap_or_default()
@@ -155,7 +155,7 @@ fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
 fn the_loop_is_stable_on_a_ring() {
     let config = config();
     let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
-    let mut servo = AxisServo::default();
+    let mut servo = PivotServo::default();
     let (mut angle, mut rate, mut current) = (100e-6, 0.0, 0.0);
     let mut pending = 0.0;
     let step_s = 50e-6 / 8.0;
@@ -195,7 +195,7 @@ fn what_is_no_number_asks_for_no_drive() {
         },
         asking(f32::NAN, 1e-5),
     ] {
-        let mut servo = AxisServo::default();
+        let mut servo = PivotServo::default();
         servo.step(&config, &asking(1.0, 1e-5), per_volt);
         for _ in 0..3 {
             let duty = servo.step(&config, &broken, per_volt).0;
@@ -210,14 +210,14 @@ fn what_was_learnt_leads_as_the_model_does() {
     let config = config();
     let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
     let lead = (65e-6 + 0.7e-3 / 2.1) * 20e3;
-    let mut learnt = AxisServo::default();
+    let mut learnt = PivotServo::default();
     for _ in 0..4_000 {
         // It comes 1 urad short of what 6 N m should do.
         learnt.step(&config, &asking(6.0, -1e-6), per_volt);
         learnt.learn(&config);
     }
     let mut torques = Vec::new();
-    for mut servo in [AxisServo::default(), learnt] {
+    for mut servo in [PivotServo::default(), learnt] {
         servo.restart();
         let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), per_volt).0);
         let ratio = f64::from(first) / f64::from(then);

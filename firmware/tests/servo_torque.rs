@@ -1,7 +1,7 @@
 //! Torque feedforward against the Lagrangian of the carried body, built here from its kinetic energy alone.
 
+use firmware::control::servo::{Presliding, ServoConfig, platform_torques};
 use firmware::parameters::{Parameters, Platform};
-use firmware::servo::{Presliding, ServoConfig, platform_torques};
 use kinematics::{Acceleration, Pose, Twist, in_platform_axes, inverse};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};

@@ -5,7 +5,7 @@ mod flash_bench;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
+use firmware::settings_store::SettingsStore;
 use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
 
 const SECTOR: usize = 1024;
@@ -25,7 +25,7 @@ fn used() -> KeptBench<SECTOR> {
 
 fn restored(flash: &Flash<SECTOR>) -> (Option<FaultKind>, Kept) {
     let mut panel = fresh();
-    let problem = Keeper::new(flash.powered()).restore(&mut panel);
+    let problem = SettingsStore::new(flash.powered()).restore(&mut panel);
     let found = kept(&panel, panel.parameters());
     (problem, found)
 }
@@ -195,7 +195,7 @@ fn any_content_at_all_leaves_parameters_that_go_together() {
             }
         }
         let mut panel = fresh();
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         let problem = keeper.restore(&mut panel);
         assert!(panel.parameters().are_sound(), "case {case}");
         if problem.is_some() {

@@ -1,11 +1,11 @@
-//! Power cuts: whenever the power fails while settings are written, all of the old ones are there afterwards or all of the new
-//! ones. Cut off in the middle of every word and every erase of a random sequence of changes.
+//! Power cuts: whenever the power fails while settings are written, all of the old ones are there afterwards or all of
+//! the new ones. Cut off in the middle of every word and every erase of a random sequence of changes.
 //!
 //! `CHANGES=500 SEED=7 cargo test -p firmware --test store_power_cut` makes it longer, or another one.
 
 mod flash_bench;
 
-use firmware::store::Keeper;
+use firmware::settings_store::SettingsStore;
 use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
 
 /// Small, so that the journal goes round it often.
@@ -58,7 +58,7 @@ fn macro_change(random: &mut Random, bench: &mut KeptBench<SECTOR>) {
 /// What a start with this flash finds, which is no damage.
 fn found(flash: &Flash<SECTOR>, context: &str) -> Kept {
     let mut panel = fresh();
-    let problem = Keeper::new(flash.powered()).restore(&mut panel);
+    let problem = SettingsStore::new(flash.powered()).restore(&mut panel);
     assert_eq!(problem, None, "{context}");
     kept(&panel, panel.parameters())
 }
@@ -83,7 +83,7 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
         bench.bench.run(3);
         // Not carried out yet: this is what it will be.
         let panel = bench.bench.panel();
-        let new = kept(panel, panel.parameters_to_keep());
+        let new = kept(panel, panel.parameters_to_store());
         let mut survivor = None;
         for step in 0.. {
             let mut ended = false;
@@ -92,7 +92,7 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
                 let mut flash = before.powered();
                 let tear_seed = random.bits();
                 flash.cut_in(step, tear_seed);
-                let mut keeper = Keeper::new(flash);
+                let mut keeper = SettingsStore::new(flash);
                 keeper.restore(&mut fresh());
                 ended = keeper.write(panel).is_ok();
                 cuts += u64::from(!ended);
@@ -106,7 +106,7 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
                 old_found += u64::from(now == old);
                 new_found += u64::from(now == new);
                 // Going on from there.
-                let mut keeper = Keeper::new(after.clone());
+                let mut keeper = SettingsStore::new(after.clone());
                 keeper.restore(&mut fresh());
                 assert_eq!(keeper.write(panel), Ok(()), "{context}");
                 assert_eq!(found(&keeper.flash().powered(), &context), new, "{context}");

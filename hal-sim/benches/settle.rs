@@ -7,9 +7,9 @@
 use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{RunOptions, controller_parameters, stage_parameters};
+use hal_sim::front::Host;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 
 const MOVES: usize = 200;
 const UNIT: f64 = 4_294_967_296.0;
@@ -160,8 +160,8 @@ fn moves(mismatch_percent: f64) -> Rest {
     };
     let parameters: Parameters = controller_parameters(&options);
     let ground = Constraints::new(parameters.limits, parameters.geometry);
-    let mut link = Queues::new();
-    let (tick_queues, commands) = link.split();
+    let mut queues = Queues::new();
+    let (tick_queues, commands) = queues.split();
     let mut bench = Bench {
         host: Host::new(&stage_parameters(&options), &parameters),
         tick_queues,

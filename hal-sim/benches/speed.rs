@@ -3,18 +3,17 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use firmware::control::config::Config;
-use firmware::control::{Inputs, State, tick};
+use firmware::control::Inputs;
 use firmware::drivers::biss::RawFrame;
-use firmware::gcs::{Interpreter, Session};
+use firmware::gcs::Session;
 use firmware::parameters::Parameters;
-use firmware::queues::{CommandQueues, Queues, TickQueues};
-use hal_sim::devices::{BridgeState, Stage, StageParameters};
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
-use hal_sim::run::{IDENTITY, RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::front::{ControlLoop, Front, Host};
+use hal_sim::machine::devices::{BridgeState, SettingsFlash, Stage, StageParameters};
+use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Batches; the fastest counts, since what disturbs a timing only ever adds to it.
 const BATCHES: u32 = 10;
@@ -52,20 +51,14 @@ fn main() {
 fn controller_alone() {
     let inputs = recorded_inputs();
     let replayed = || {
-        let mut rig = Rig::new();
-        let (mut config, mut state) = (Config::new(&Parameters::REFERENCE), State::new());
+        let mut commanded = Commanded::new(ControlLoop::new);
         for (index, inputs) in inputs.iter().enumerate() {
-            rig.command(index);
-            black_box(tick(
-                &mut config,
-                &mut state,
-                inputs,
-                &mut rig.tick_queues,
-                &mut rig.record,
-            ));
+            commanded.command(index);
+            commanded.rig.front.inputs = inputs.clone();
+            black_box(commanded.rig.tick(&mut commanded.record));
         }
-        assert_eq!(state.fault(), None);
-        rig.record.hash
+        assert_eq!(commanded.rig.front.fault(), None);
+        commanded.record.hash
     };
     let (mut fastest_s, mut hash) = (f64::INFINITY, None);
     for _ in 0..BATCHES {
@@ -89,14 +82,15 @@ fn controller_alone() {
 
 /// What the controller is given in that move, tick by tick.
 fn recorded_inputs() -> Vec<Inputs> {
-    let mut host = Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE);
-    let mut rig = Rig::new();
+    let mut commanded =
+        Commanded::new(|parameters| Host::new(&StageParameters::REFERENCE, parameters));
     (0..MOVE_TICKS)
         .map(|index| {
-            rig.command(index);
-            let (current_counts, supply_counts) = host.stage.analog();
+            commanded.command(index);
+            let stage = &mut commanded.rig.front.stage;
+            let (current_counts, supply_counts) = stage.analog();
             let inputs = Inputs {
-                frames: host.stage.frames().map(RawFrame),
+                frames: stage.frames().map(RawFrame),
                 bridge_fault: [false; 3],
                 emergency_stop: false,
                 current_counts,
@@ -104,29 +98,27 @@ fn recorded_inputs() -> Vec<Inputs> {
                 tick_cycles: 0,
                 late: false,
             };
-            host.tick(&mut rig.tick_queues, &mut rig.record);
+            commanded.rig.tick(&mut commanded.record);
             inputs
         })
         .collect()
 }
 
-/// What stands around a tick.
-struct Rig {
-    tick_queues: TickQueues<'static>,
-    command_queues: CommandQueues<'static>,
-    panel: Interpreter,
+/// A controller and who commands it.
+struct Commanded<F> {
+    rig: Rig<'static, F>,
     session: Session,
     record: TickRecord,
 }
 
-impl Rig {
-    fn new() -> Self {
-        // As long as the process: a few of them are made.
-        let (tick_queues, command_queues) = Box::leak(Box::new(Queues::new())).split();
+impl<F: Front> Commanded<F> {
+    fn new(front: impl FnOnce(&Parameters) -> F) -> Self {
+        let (queues, flash) = (
+            ControllerMemory::endless().split(),
+            SettingsFlash::in_memory(),
+        );
         Self {
-            tick_queues,
-            command_queues,
-            panel: Interpreter::new(&Parameters::REFERENCE, IDENTITY),
+            rig: Rig::new(queues, &Parameters::REFERENCE, flash, front),
             session: Session::new(),
             record: TickRecord::default(),
         }
@@ -145,7 +137,7 @@ impl Rig {
         }
         let mut answers = Vec::new();
         // Writing to a vector does not fail.
-        let _ = (self.panel).service(&mut self.session, &mut self.command_queues, &mut answers);
+        let _ = self.rig.service(&mut self.session, &mut answers);
     }
 }
 

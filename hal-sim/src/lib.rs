@@ -1,27 +1,17 @@
-//! One simulated stage in front of the firmware: on the host, through embedded-hal, and of an emulated STM32F427.
+//! One simulated stage in front of the firmware library, and what drives it.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`machine`] | bodies, drives and devices |
+//! | [`front`] | the firmware's loop and drivers between its encoders and bridges |
+//! | [`rig`] | controller and machine together, under a script or a client |
+//! | [`campaign`] | many runs in each of which something breaks |
+//! | [`report`] | what a run leaves behind |
+//! | [`random`] | random numbers from a seed |
 
-mod assets;
-#[cfg(feature = "chip")]
-pub mod chip;
-pub mod cli;
-pub mod client;
-#[cfg(feature = "chip")]
-pub mod cost;
-pub mod devices;
-pub mod faults;
-pub mod host;
-pub mod observer;
-pub mod plant;
-#[cfg(feature = "chip")]
-pub mod proof;
-#[cfg(unix)]
-pub mod record;
+pub mod campaign;
+pub mod front;
+pub mod machine;
+pub mod random;
 pub mod report;
-pub mod run;
-pub mod script;
-#[cfg(unix)]
-pub mod serve;
-#[cfg(unix)]
-pub mod settings;
-#[cfg(unix)]
-pub mod web;
+pub mod rig;

@@ -1,6 +1,8 @@
 //! What the machine does as a machine: friction holds and slips, motors reach their speeds and currents, guides end.
 
-use hal_sim::plant::{AXES, Broken, Drive, External, Imperfections, Plant, PlantParameters};
+use hal_sim::machine::plant::{
+    AXES, Broken, Drive, External, Imperfections, Plant, PlantParameters,
+};
 
 const STEP_S: f64 = 12.5e-6;
 

@@ -6,12 +6,13 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::pwm::SetDutyCycle;
 use embedded_hal::spi::SpiBus;
 use firmware::drivers::biss::{self, FrameError};
-use hal_sim::devices::biss::COUNTS_PER_TURN;
-use hal_sim::devices::{
-    Bridge, BridgeParameters, BridgeState, Encoder, EncoderFault, EncoderParameters, Noise, Stage,
+use hal_sim::machine::devices::biss::COUNTS_PER_TURN;
+use hal_sim::machine::devices::{
+    Bridge, BridgeParameters, BridgeState, Encoder, EncoderFault, EncoderParameters, Stage,
     StageParameters,
 };
-use hal_sim::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
+use hal_sim::random::Random;
 
 /// Position and flags as a driver would find them: behind the start bit, which follows the acknowledge.
 fn decode(frame: u64) -> (u32, bool, bool) {
@@ -83,7 +84,7 @@ fn encoder_bus_repeats_the_latched_frame() {
 #[test]
 fn the_firmware_reads_what_the_encoder_says() {
     let mut encoder = ideal(EncoderParameters::REFERENCE);
-    let mut noise = Noise::new(5);
+    let mut noise = Random::new(5);
     let mut read = |encoder: &mut Encoder| {
         encoder.latch(noise.normal(), 0.0);
         biss::decode(&biss::read(encoder).unwrap())

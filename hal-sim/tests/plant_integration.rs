@@ -3,7 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use hal_sim::plant::{AXES, Drive, External, Imperfections, Payload, Plant, PlantParameters};
+use hal_sim::machine::plant::{
+    AXES, Drive, External, Imperfections, Payload, Plant, PlantParameters,
+};
 use kinematics::Pose;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -6,6 +6,18 @@
 //! No heap, no `std`, no I/O, no panics: bad input is an error that says what is bad. Generic over the number type: the
 //! position equations ([`inverse()`], [`direct()`]) need a [`Scalar`], which may be fixed-point; everything else a [`Real`].
 //!
+//! | file | what is in it |
+//! |---|---|
+//! | [`mod@inverse`] | pose to pivots and guides |
+//! | [`mod@direct`] | pivots to pose, with rates |
+//! | [`rates`] | twist and acceleration to those of the pivots |
+//! | [`mod@jacobian`] | the Jacobian, its inverse, dexterity |
+//! | [`mod@feasibility`] | whether a pose keeps to the mechanism's limits, and by how much |
+//! | [`geometry`] | sizes of the mechanism, and what follows from them |
+//! | [`guide`], [`pose`] | a guide; pose, twist, acceleration |
+//! | [`angle`] | multi-turn angles without rounding |
+//! | [`scalar`], `float` | what a number type must do; `f32` and `f64` |
+//!
 //! # Frames and symbols
 //!
 //! ```text

@@ -12,7 +12,7 @@ __all__ = ["Live", "OnChip", "OnTerminal", "Report"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    for name in ("program", "report", "pictures"):
+    for name in ("program", "report", "pictures", "image"):
         parser.add_argument(f"--{name}", required=True)
     rest = parser.parse_known_args(namespace=ARGUMENTS)[1]
     unittest.main(argv=["drive.py", *rest])

@@ -52,4 +52,4 @@ class OnChip(View, OnPage):
     """The image `stage` on the emulated chip, which is some times slower than the real one."""
 
     def controller(self):
-        return ChipLine(ARGUMENTS.program)
+        return ChipLine(ARGUMENTS.image)

@@ -10,8 +10,8 @@ from pipython import GCSDevice, GCSError, datarectools, gcserror, pitools
 from pipython.pidevice.interfaces.piserial import PISerial
 from pipython.pidevice.interfaces.pisocket import PISocket
 
+from gcs_page import GcsPage
 from programs import Programs
-from readme import Readme
 from wire import overheard
 
 AXES = ["X", "Y", "Z", "U", "V", "W"]
@@ -444,6 +444,6 @@ if __name__ == "__main__":
     parser.add_argument("--chip", type=int)
     parser.add_argument("--transcript", required=True)
     ARGUMENTS, rest = parser.parse_known_args()
-    Readme.port = ARGUMENTS.port
+    GcsPage.port = ARGUMENTS.port
     open(ARGUMENTS.transcript, "w", encoding="utf-8").close()
     unittest.main(argv=["drive.py", *rest], verbosity=2)

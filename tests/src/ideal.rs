@@ -1,18 +1,17 @@
 //! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
 //! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
-use firmware::control::config::Config;
-use firmware::control::{Inputs, Outputs, State, tick};
+use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::RawFrame;
-use firmware::gcs::{Interpreter, Session};
+use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, CommandQueues, QueueFull, Queues, TickQueues};
+use firmware::queues::{Command, QueueFull};
 use firmware::recorder::{Sample, TickObserver};
-use firmware::settings_store::SettingsStore;
-use hal_sim::devices::SettingsFlash;
-use hal_sim::devices::biss::{Preamble, encode};
-use hal_sim::run::IDENTITY;
+use hal_sim::front::ControlLoop;
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::machine::devices::biss::{Preamble, encode};
+use hal_sim::rig::{ControllerMemory, Rig};
 use kinematics::Angle;
 
 /// 48 V at the ADC.
@@ -47,20 +46,15 @@ pub struct Connection {
 struct Last(Option<Sample>);
 
 impl TickObserver for Last {
-    fn record(&mut self, sample: &Sample) {
+    fn observe(&mut self, sample: &Sample) {
         self.0 = Some(sample.clone());
     }
 }
 
 /// See the module.
 pub struct Ideal {
-    /// What the tick computes with.
-    pub config: Config,
-    state: State,
-    /// All that the connections share.
-    pub panel: Interpreter,
-    /// Keeps its settings, in memory.
-    pub keeper: SettingsStore<SettingsFlash>,
+    /// The controller; its settings are kept in memory.
+    pub rig: Rig<'static, ControlLoop>,
     /// The connections.
     pub connections: Vec<Connection>,
     /// What is wrong with the hardware.
@@ -69,8 +63,6 @@ pub struct Ideal {
     pub flicker: bool,
     /// What the last tick put out.
     pub outputs: Outputs,
-    tick_queues: TickQueues<'static>,
-    command_queues: CommandQueues<'static>,
     last: Last,
     /// What the encoders show.
     counts: [u32; 3],
@@ -82,26 +74,20 @@ impl Ideal {
     #[must_use]
     pub fn new(connections: usize) -> Self {
         let parameters = Parameters::REFERENCE;
-        let config = Config::new(&parameters);
-        // The queues live as long as the process: some kilobytes for each stage.
-        let (tick_queues, command_queues) = Box::leak(Box::new(Queues::new())).split();
+        let (queues, flash) = (
+            ControllerMemory::endless().split(),
+            SettingsFlash::in_memory(),
+        );
+        let rig = Rig::new(queues, &parameters, flash, ControlLoop::new);
         let third =
             |i: usize| Angle::from_degrees(-30.0 + 120.0 * i as f64).expect("within a turn");
-        let counts = [0, 1, 2].map(|i| config.encoders[i].counts_at(third(i)));
-        let mut panel = Interpreter::new(&parameters, IDENTITY);
-        let mut keeper = SettingsStore::new(SettingsFlash::in_memory());
-        keeper.restore(&mut panel);
+        let counts = [0, 1, 2].map(|i| rig.front.config.encoders[i].ideal_counts_at(third(i)));
         Self {
-            config,
-            state: State::new(),
-            panel,
-            keeper,
+            rig,
             connections: (0..connections).map(|_| Connection::default()).collect(),
             trouble: Trouble::default(),
             flicker: false,
             outputs: Outputs::default(),
-            tick_queues,
-            command_queues,
             last: Last::default(),
             counts,
             last_bit: 0,
@@ -111,14 +97,8 @@ impl Ideal {
     /// One tick, and a turn of the panel for every connection.
     pub fn tick(&mut self) {
         let before = self.last.0.take();
-        let inputs = self.inputs();
-        self.outputs = tick(
-            &mut self.config,
-            &mut self.state,
-            &inputs,
-            &mut self.tick_queues,
-            &mut self.last,
-        );
+        self.rig.front.inputs = self.inputs();
+        self.outputs = self.rig.tick(&mut self.last);
         self.follow(before.as_ref());
         self.last_bit = u32::from(self.flicker) & (self.last_bit ^ 1);
         for number in 0..self.connections.len() {
@@ -139,14 +119,12 @@ impl Ideal {
         let taken = connection.session.receive(&connection.input);
         connection.input.drain(..taken);
         // Writing to a vector does not fail.
-        let _ = self.panel.service(
-            &mut connection.session,
-            &mut self.command_queues,
-            &mut connection.output,
-        );
-        self.keeper.store_pending(&mut self.panel);
-        if self.panel.wants_restart() {
-            self.restart();
+        let _ = (self.rig).service(&mut connection.session, &mut connection.output);
+        self.rig.keep();
+        if self.rig.restart_if_wanted() {
+            for connection in &mut self.connections {
+                connection.session.start_again();
+            }
         }
     }
 
@@ -163,26 +141,13 @@ impl Ideal {
     /// # Errors
     /// [`QueueFull`]
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
-        self.command_queues.send(command)
+        self.rig.command_queues.send(command)
     }
 
     /// What the last tick computed, once one has run.
     #[must_use]
     pub fn sample(&self) -> Option<&Sample> {
         self.last.0.as_ref()
-    }
-
-    /// What `RBT` asks for.
-    fn restart(&mut self) {
-        self.panel = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
-        self.state =
-            (self.keeper.restore(&mut self.panel)).map_or_else(State::new, State::with_fault);
-        self.config = Config::new(self.panel.parameters());
-        self.tick_queues.clear();
-        self.command_queues.clear();
-        for connection in &mut self.connections {
-            connection.session.start_again();
-        }
     }
 
     fn inputs(&self) -> Inputs {
@@ -225,7 +190,8 @@ impl Ideal {
                 .map_or(Angle::ZERO, |before| {
                     now.pivot_setpoints[i] - before.pivot_setpoints[i]
                 });
-            self.counts[i] = self.config.encoders[i].counts_at(now.pivot_setpoints[i] + step);
+            self.counts[i] =
+                self.rig.front.config.encoders[i].ideal_counts_at(now.pivot_setpoints[i] + step);
         }
     }
 }

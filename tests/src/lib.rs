@@ -5,20 +5,19 @@
 
 pub mod fuzz;
 pub mod ideal;
+pub mod measured;
 pub mod trouble;
 
 use firmware::control::Outputs;
 use firmware::fault::{Fault, FaultKind};
-use firmware::fault_record::RetainedMemory;
-use firmware::gcs::{Interpreter, Session};
+use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::recorder::Sample;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{IDENTITY, RunOptions, stage_parameters};
+use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
+use hal_sim::rig::{ControllerMemory, Rig};
 
 /// Encoder counts in 2^-32 turns.
 const UNITS_PER_COUNT: i64 = 64;
@@ -27,14 +26,11 @@ const PATIENCE: u32 = 4_000_000;
 
 /// A simulated stage, its controller, and a connection to it.
 pub struct Bench {
-    /// Stage and controller.
-    pub host: Host,
+    /// Stage and controller: `rig.front` is the machine with the loop.
+    pub rig: Rig<'static>,
     /// What the last tick put out.
     pub outputs: Outputs,
-    panel: Interpreter,
     session: Session,
-    tick_queues: TickQueues<'static>,
-    command_queues: CommandQueues<'static>,
     record: TickRecord,
     answers: Vec<u8>,
     /// Largest following error of a pivot since [`Bench::forget_errors`], encoder counts.
@@ -51,18 +47,13 @@ impl Bench {
     /// A stage that has just been switched on.
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
-        // The queues live as long as the process: a test has a few of them.
-        let black_box = Box::leak(Box::new(RetainedMemory::new()));
-        let (tick_queues, command_queues) =
-            Box::leak(Box::new(Queues::new())).split_with_retained(black_box);
-        let parameters = Parameters::REFERENCE;
+        // A test has a few of them.
+        let queues = ControllerMemory::endless();
+        let flash = SettingsFlash::in_memory();
         Self {
-            host: Host::new(stage, &parameters),
+            rig: Rig::simulated(queues, stage, &Parameters::REFERENCE, flash),
             outputs: Outputs::default(),
-            panel: Interpreter::new(&parameters, IDENTITY),
             session: Session::new(),
-            tick_queues,
-            command_queues,
             record: TickRecord::default(),
             answers: Vec::new(),
             worst_error_counts: 0,
@@ -71,13 +62,8 @@ impl Bench {
 
     /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the black box.
     pub fn reset(&mut self, cause: &'static str) {
-        let parameters = Parameters::REFERENCE;
-        self.host.restart(&parameters, None);
-        self.panel = Interpreter::new(&parameters, IDENTITY);
-        self.panel.set_start_cause(cause);
+        self.rig.reset(cause);
         self.session = Session::new();
-        self.tick_queues.clear();
-        self.command_queues.clear();
     }
 
     /// Referenced, holding and settled.
@@ -94,16 +80,13 @@ impl Bench {
 
     /// One tick, and one turn of the command side.
     pub fn tick(&mut self) {
-        self.outputs = self.host.tick(&mut self.tick_queues, &mut self.record);
+        self.outputs = self.rig.tick(&mut self.record);
         if matches!(self.mode(), Mode::Holding | Mode::Moving | Mode::Stopping) {
             self.worst_error_counts = self.worst_error_counts.max(self.error_counts());
         }
         // Writing to a vector does not fail.
-        let _ = (self.panel).service(
-            &mut self.session,
-            &mut self.command_queues,
-            &mut self.answers,
-        );
+        let _ = (self.rig).service(&mut self.session, &mut self.answers);
+        self.rig.keep();
     }
 
     /// So many ticks.
@@ -192,7 +175,7 @@ impl Bench {
     /// The latched fault.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
-        self.host.fault()
+        self.rig.front.fault()
     }
 
     /// Its kind.

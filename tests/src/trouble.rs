@@ -1,6 +1,6 @@
 //! What is done to a stage that is to notice it, and how one is made to.
 
-use hal_sim::plant::External;
+use hal_sim::machine::plant::External;
 
 use crate::Bench;
 
@@ -47,7 +47,7 @@ impl Bench {
     pub fn push(&mut self, torque_n_m: f64) {
         let mut external = External::default();
         external.ring_torque_n_m[PIVOT] = torque_n_m;
-        self.host.stage.plant.set_external(external);
+        self.rig.front.stage.plant.set_external(external);
     }
 
     /// Pushes it for so many ticks.
@@ -60,8 +60,8 @@ impl Bench {
     /// Jams it where it is from now on, until it is pushed.
     pub fn jam(&mut self) {
         let mut external = External::default();
-        external.jammed_at_rad[PIVOT] = Some(self.host.stage.plant.pivots_rad()[PIVOT]);
-        self.host.stage.plant.set_external(external);
+        external.jammed_at_rad[PIVOT] = Some(self.rig.front.stage.plant.pivots_rad()[PIVOT]);
+        self.rig.front.stage.plant.set_external(external);
     }
 
     /// Jams it for so many ticks.

@@ -5,23 +5,23 @@ use firmware::motion::{Constraints, RotationCentre, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, Queues, Snapshot};
 use firmware::recorder::Sample;
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
 
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
 
-/// A host, its link, and the last tick.
+/// A host, its queues, and the last tick.
 struct Run {
     host: Host,
-    link: Link,
+    queues: Queues,
     record: TickRecord,
 }
 
 impl Run {
     fn ticks(&mut self, command: Option<Command>, ticks: u32) -> Snapshot {
-        let (mut tick_queues, mut commands) = self.link.split();
+        let (mut tick_queues, mut commands) = self.queues.split();
         if let Some(command) = command {
             commands.send(command).expect("room");
         }
@@ -51,7 +51,7 @@ fn the_machine_turns_about_the_chosen_point() {
     let parameters = Parameters::REFERENCE;
     let mut run = Run {
         host: Host::new(&StageParameters::REFERENCE, &parameters),
-        link: Queues::new(),
+        queues: Queues::new(),
         record: TickRecord::default(),
     };
     run.ticks(None, 10);
@@ -80,7 +80,7 @@ fn the_machine_turns_about_the_chosen_point() {
 
     // Two thirds of a turn: the point stays where it is, the platform's centre goes round it.
     let ground = Constraints {
-        centre: centre.point(),
+        rotation_centre: centre.point(),
         ..Constraints::new(parameters.limits, parameters.geometry)
     };
     let mut to = held.setpoint;
@@ -108,6 +108,6 @@ fn the_machine_turns_about_the_chosen_point() {
     println!("the point strayed {worst_um} um");
     assert!(worst_um < 0.135, "{worst_um} um");
     assert!(furthest_mm > 53.8, "the platform's centre went round");
-    assert_eq!(run.sample().point.position, to);
+    assert_eq!(run.sample().reference_point.position, to);
     assert_eq!(run.sample().setpoint.position, centre.to_platform(&to));
 }

@@ -1,7 +1,7 @@
 //! The demonstration, whole. Promised are 0.5 um, 5 urad and 30 ms; it is held to what it does, and a tenth more.
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
 
 #[test]
 fn the_demonstration_keeps_its_promises() {

@@ -3,7 +3,7 @@
 
 use firmware::fault::{FaultKind, Reaction};
 use firmware::mode::Mode;
-use hal_sim::devices::EncoderFault;
+use hal_sim::machine::devices::EncoderFault;
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;
@@ -22,7 +22,8 @@ fn assert_fault(bench: &Bench, kind: FaultKind, pivot: Option<u8>) {
     let fault = bench.fault().unwrap_or_else(|| panic!("no {kind:?}"));
     assert_eq!((fault.kind, fault.pivot), (kind, pivot), "{fault}");
     // In so short a time a controlled stop is not over.
-    let stops = kind.is_of_encoder() || matches!(kind, FaultKind::MotorHot | FaultKind::LoopLate);
+    let stops =
+        kind.concerns_encoder() || matches!(kind, FaultKind::MotorHot | FaultKind::LoopLate);
     if !stops {
         assert_brakes(bench);
     }
@@ -41,7 +42,7 @@ fn assert_brakes(bench: &Bench) {
 /// At rest, under servo or braked.
 fn assert_at_rest(bench: &mut Bench) {
     bench.run(2_000);
-    let rates = bench.host.stage.plant.pivot_rates_rad_s();
+    let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
     assert!(rates.iter().all(|rate| rate.abs() < 0.0052), "{rates:?}");
 }
 
@@ -64,7 +65,7 @@ fn the_following_error_may_be_larger_the_faster_it_goes() {
 fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
     for (deg_s, most_ticks) in [(300.0, 6), (30.0, 6), (3.0, 6), (0.3, 1_000)] {
         let mut bench = Bench::turning(&[], deg_s);
-        bench.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+        bench.rig.front.stage.encoders[1].set_fault(EncoderFault::Frozen);
         let before = bench.sample().tick;
         bench.run_until("found", |bench| bench.fault().is_some());
         assert_fault(&bench, FaultKind::EncoderFrozen, Some(1));
@@ -78,9 +79,9 @@ fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
         // The twin: frozen for as many frames as are bridged.
         let mut twin = Bench::turning(&[], deg_s);
         for _ in 0..20 {
-            twin.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+            twin.rig.front.stage.encoders[1].set_fault(EncoderFault::Frozen);
             twin.run(4);
-            twin.host.stage.encoders[1].set_fault(None);
+            twin.rig.front.stage.encoders[1].set_fault(None);
             twin.run(100);
         }
         assert_eq!(twin.fault(), None, "{deg_s} deg/s");
@@ -91,7 +92,7 @@ fn an_encoder_that_freezes_is_found_whatever_the_pivot_does() {
 fn an_encoder_that_has_frozen_at_rest_is_found_when_something_is_to_move() {
     for line in ["MOV X 10", "MOV W 0.02", "JOG W 0.01"] {
         let mut bench = Bench::ready();
-        bench.host.stage.encoders[1].set_fault(EncoderFault::Frozen);
+        bench.rig.front.stage.encoders[1].set_fault(EncoderFault::Frozen);
         // Much longer, and the integral alone tells: the error that was there stays.
         bench.run(2_000);
         assert_eq!(bench.fault(), None, "as far as can be known");
@@ -99,7 +100,7 @@ fn an_encoder_that_has_frozen_at_rest_is_found_when_something_is_to_move() {
         bench.run_until("found", |bench| bench.fault().is_some());
         assert_fault(&bench, FaultKind::EncoderFrozen, Some(1));
         assert_at_rest(&mut bench);
-        let [x, y, theta] = bench.host.stage.plant.pose();
+        let [x, y, theta] = bench.rig.front.stage.plant.pose();
         assert!(
             x.hypot(y) < 5.2e-6 && theta.abs() < 1.9e-5,
             "{line}: {x} {y} {theta}"
@@ -115,7 +116,7 @@ fn an_encoder_that_has_frozen_at_rest_is_found_when_something_is_to_move() {
 fn an_encoder_that_jumps() {
     let jump = |counts: i32| {
         let mut bench = Bench::ready();
-        bench.host.stage.encoders[2].set_fault(EncoderFault::Jump { counts });
+        bench.rig.front.stage.encoders[2].set_fault(EncoderFault::Jump { counts });
         bench.run(1_000);
         bench
     };
@@ -214,9 +215,9 @@ fn a_motor_that_gets_too_hot() {
 fn a_loop_that_is_late() {
     let late = |ticks: u32| {
         let mut bench = Bench::turning(&[(LATE, 7.0)], 90.0);
-        bench.host.late = true;
+        bench.rig.front.late = true;
         bench.run(ticks);
-        bench.host.late = false;
+        bench.rig.front.late = false;
         bench.run(1);
         bench
     };
@@ -231,9 +232,9 @@ fn a_loop_that_is_late() {
     let mut twin = late(7);
     for _ in 0..50 {
         twin.run(100);
-        twin.host.late = true;
+        twin.rig.front.late = true;
         twin.run(1);
-        twin.host.late = false;
+        twin.rig.front.late = false;
     }
     assert_eq!(twin.fault(), None);
 }
@@ -242,9 +243,9 @@ fn a_loop_that_is_late() {
 fn a_supply_that_sags() {
     let sagged = |supply_v: f64, ticks: u32| {
         let mut bench = Bench::turning(&[], 90.0);
-        bench.host.stage.set_supply_v(supply_v);
+        bench.rig.front.stage.set_supply_v(supply_v);
         bench.run(ticks);
-        bench.host.stage.set_supply_v(48.0);
+        bench.rig.front.stage.set_supply_v(48.0);
         bench.run(1);
         bench
     };
@@ -266,9 +267,9 @@ fn assert_fault_below(bench: &Bench, kind: FaultKind) {
 #[test]
 fn a_warning_is_told_as_an_event() {
     let mut bench = Bench::ready();
-    bench.host.stage.encoders[2].set_fault(EncoderFault::WarningBit);
+    bench.rig.front.stage.encoders[2].set_fault(EncoderFault::WarningBit);
     bench.run(10);
-    bench.host.stage.encoders[2].set_fault(None);
+    bench.rig.front.stage.encoders[2].set_fault(None);
     bench.run(10);
     let events = bench.say("EVT?\n");
     assert!(events.contains("encoder warns, pivot 3 \n"), "{events}");
@@ -288,9 +289,9 @@ fn a_controlled_stop_stays_on_its_path() {
     bench.run(3_000);
     let speed_mm_s = 100.0 * f64::from(bench.sample().setpoint.twist.x) / 2.0_f64.sqrt();
     assert!(speed_mm_s > 50.0, "{speed_mm_s}");
-    bench.host.late = true;
+    bench.rig.front.late = true;
     bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
-    bench.host.late = false;
+    bench.rig.front.late = false;
     let start = bench.sample().setpoint;
     let mut last = start;
     let mut ticks = 0;

@@ -1,15 +1,14 @@
 //! The same seed and script give the same run, byte for byte.
 
-use std::fs;
-use std::path::Path;
-
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, Queues};
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
-use hal_sim::observer::TickRecord;
-use hal_sim::run::{RunOptions, RunOutcome, run};
-use hal_sim::script::Script;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::observer::TickRecord;
+use hal_sim::rig::run::{RunOptions, RunOutcome, run};
+use hal_sim::rig::script::Script;
+use std::fs;
+use std::path::Path;
 
 const SCRIPT: &str = "FRF\nWAC ONT? W = 1\nMOV X 20 Y -10 W 30\nDEL 60\nHLT\nWAC ONT? W = 1\nPOS? X W\nMVR Y 3\nWAC ONT? Y = 1\n";
 
@@ -52,8 +51,8 @@ fn a_seed_is_a_run() {
 /// The ticks of the snapshots of a stage that is referenced and switched, when the command side looks after every so many ticks.
 fn snapshot_ticks(every: u32) -> Vec<u64> {
     let mut host = Host::new(&StageParameters::REFERENCE, &Parameters::REFERENCE);
-    let (mut link, mut record) = (Queues::new(), TickRecord::default());
-    let (mut tick_queues, mut commands) = link.split();
+    let (mut queues, mut record) = (Queues::new(), TickRecord::default());
+    let (mut tick_queues, mut commands) = queues.split();
     let mut ticks = Vec::new();
     for tick in 0..600 {
         let command = match tick {

@@ -87,9 +87,9 @@ fn assert_stop_on_path(
 
     let mut bench = start();
     bench.forget_errors();
-    bench.host.late = true;
+    bench.rig.front.late = true;
     bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
-    bench.host.late = false;
+    bench.rig.front.late = false;
     let first = place(&bench);
     let (mut ticks, mut off) = (0, 0.0_f64);
     let mut last = bench.sample().clone();
@@ -125,7 +125,7 @@ fn assert_stop_on_path(
         bench.worst_error_counts()
     );
     bench.run(2_000);
-    let rates = bench.host.stage.plant.pivot_rates_rad_s();
+    let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
     assert!(rates.iter().all(|rate| rate.abs() < 1.2e-4), "{rates:?}");
 }
 

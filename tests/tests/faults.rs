@@ -5,9 +5,9 @@ use firmware::drivers::bridge::Duty;
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::plant::External;
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::machine::plant::External;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
 
 /// Bad frames in a row that are bridged.
@@ -31,10 +31,10 @@ const BAD_FRAMES: [(EncoderFault, FaultKind); 5] = [
 /// So many bad frames in a row from one encoder; the loop has seen all of them afterwards, and no good one since.
 fn bad_frames(bench: &mut Bench, encoder: usize, fault: EncoderFault, frames: u32) {
     for _ in 0..frames {
-        bench.host.stage.encoders[encoder].set_fault(fault);
+        bench.rig.front.stage.encoders[encoder].set_fault(fault);
         bench.tick();
     }
-    bench.host.stage.encoders[encoder].set_fault(None);
+    bench.rig.front.stage.encoders[encoder].set_fault(None);
     bench.tick();
 }
 
@@ -74,7 +74,7 @@ fn assert_safe_until_acknowledged(mut bench: Bench, kind: FaultKind, awake: bool
             ([Duty(0); 3], awake),
             "{kind:?}"
         );
-        for bridge in &bench.host.bridges {
+        for bridge in &bench.rig.front.bridges {
             assert_eq!((bridge.state().pulse, bridge.state().awake), (0.0, awake));
         }
     }
@@ -152,7 +152,7 @@ fn a_line_that_loses_every_other_frame_keeps_moving() {
 fn a_bridge_that_pulls_its_fault_pin() {
     for axis in 0..3 {
         let mut bench = moving();
-        bench.host.bridges[axis].set_fault(true);
+        bench.rig.front.bridges[axis].set_fault(true);
         bench.tick();
         let fault = bench.fault().expect("a fault");
         assert_eq!(
@@ -160,7 +160,7 @@ fn a_bridge_that_pulls_its_fault_pin() {
             (FaultKind::BridgeFault, Some(axis as u8))
         );
         assert!(!bench.outputs.awake, "in the same tick");
-        bench.host.bridges[axis].set_fault(false);
+        bench.rig.front.bridges[axis].set_fault(false);
         // All bridges let go: the stage coasts into friction or its end stops.
         bench.run(60_000);
         if axis == 0 {
@@ -173,7 +173,7 @@ fn a_bridge_that_pulls_its_fault_pin() {
 fn a_bridge_fault_matters_only_while_driving() {
     let mut bench = Bench::default();
     bench.run(100);
-    bench.host.bridges[1].set_fault(true);
+    bench.rig.front.bridges[1].set_fault(true);
     bench.run(100);
     assert_eq!((bench.mode(), bench.fault()), (Mode::Off, None));
 }
@@ -181,7 +181,7 @@ fn a_bridge_fault_matters_only_while_driving() {
 #[test]
 fn the_emergency_stop() {
     let mut bench = moving();
-    bench.host.emergency_stop = true;
+    bench.rig.front.emergency_stop = true;
     bench.tick();
     assert_eq!(bench.fault_kind(), Some(FaultKind::EmergencyStop));
     assert_eq!(
@@ -194,7 +194,7 @@ fn the_emergency_stop() {
     assert_eq!(bench.error_after("FLC"), "1024");
     bench.run(10);
     assert_eq!(bench.mode(), Mode::Fault);
-    bench.host.emergency_stop = false;
+    bench.rig.front.emergency_stop = false;
     bench.run(1_000);
     assert_eq!(bench.error_after(""), "0");
     // Latched, pressed or not.
@@ -208,7 +208,7 @@ fn the_emergency_stop() {
 #[test]
 fn the_emergency_stop_holds_before_referencing_too() {
     let mut bench = Bench::default();
-    bench.host.emergency_stop = true;
+    bench.rig.front.emergency_stop = true;
     bench.run(10);
     assert_eq!(bench.fault_kind(), Some(FaultKind::EmergencyStop));
     assert_eq!(bench.error_after("FRF"), "1024");
@@ -251,12 +251,17 @@ fn a_push_that_the_motors_cannot_hold() {
     let push = |torque_n_m: f64| {
         let mut bench = Bench::ready();
         bench.forget_errors();
-        bench.host.stage.plant.set_external(External {
+        bench.rig.front.stage.plant.set_external(External {
             ring_torque_n_m: [0.0, torque_n_m, 0.0],
             ..External::default()
         });
         bench.run(4_000);
-        bench.host.stage.plant.set_external(External::default());
+        bench
+            .rig
+            .front
+            .stage
+            .plant
+            .set_external(External::default());
         bench
     };
     // 98 % of 48 V over 2.1 ohm at 2.4 N m/A (20 % under its model) is 53.8 N m.
@@ -280,7 +285,7 @@ fn silent_encoders_cannot_be_referenced() {
     for encoders in [&[0, 1, 2][..], &[1]] {
         let mut bench = Bench::default();
         for &i in encoders {
-            bench.host.stage.encoders[i].set_fault(EncoderFault::StuckHigh);
+            bench.rig.front.stage.encoders[i].set_fault(EncoderFault::StuckHigh);
         }
         bench.run(100);
         assert_eq!(bench.error_after("FRF"), "45");
@@ -296,7 +301,7 @@ fn silent_encoders_cannot_be_referenced() {
         assert_eq!(bench.say("FRF? X\n"), "X=0\n");
         // The twin: the same stage with its encoders back.
         for &i in encoders {
-            bench.host.stage.encoders[i].set_fault(None);
+            bench.rig.front.stage.encoders[i].set_fault(None);
         }
         bench.run(10);
         assert_eq!(bench.error_after("FRF"), "0");
@@ -308,7 +313,7 @@ fn silent_encoders_cannot_be_referenced() {
 #[test]
 fn a_warning_is_no_fault() {
     let mut bench = moving();
-    for encoder in &mut bench.host.stage.encoders {
+    for encoder in &mut bench.rig.front.stage.encoders {
         encoder.set_fault(EncoderFault::WarningBit);
     }
     bench.settle();
@@ -323,9 +328,9 @@ fn an_encoder_lost_during_a_fault_takes_the_reference_and_one_that_is_bridged_do
         // Past where a single turn of the encoders would put it.
         assert_eq!(bench.error_after("MOV W 400"), "0");
         bench.settle();
-        bench.host.emergency_stop = true;
+        bench.rig.front.emergency_stop = true;
         bench.tick();
-        bench.host.emergency_stop = false;
+        bench.rig.front.emergency_stop = false;
         assert_eq!(bench.fault_kind(), Some(FaultKind::EmergencyStop));
         bad_frames(&mut bench, 0, BAD_CRC, frames);
         bench.run(10);

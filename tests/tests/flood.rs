@@ -3,7 +3,7 @@
 
 use firmware::mode::Mode;
 use firmware::recorder::Sample;
-use tests::fuzz::Random;
+use hal_sim::random::Random;
 use tests::ideal::Ideal;
 
 const FLOODING: usize = 3;
@@ -17,16 +17,16 @@ const STOP: u8 = 24;
 fn flood(random: &mut Random) -> Vec<u8> {
     let mut bytes = Vec::new();
     while bytes.len() < BURST {
-        match random.below(6) {
+        match random.index(6) {
             0 => bytes.extend(b"HLP?\n"),
             1 => bytes.extend(b"POS?\nSPA?\nHPA?\nEVT?\n"),
             2 => bytes.extend([3, 4, 5, 6, 7, 8, 9]),
             3 => bytes.extend(b"MOV X 1000\nMOV\nSVO Q 1\nJOG X 99999\nVLS -1\n"),
-            4 => bytes.extend(std::iter::repeat_n(b'?', random.below(BURST))),
+            4 => bytes.extend(std::iter::repeat_n(b'?', random.index(BURST))),
             _ => {
                 // Never a command: no line begins with it.
                 bytes.push(b'?');
-                let noise = (0..random.below(300)).map(|_| random.bits() as u8);
+                let noise = (0..random.index(300)).map(|_| random.bits() as u8);
                 bytes.extend(noise.filter(|&byte| byte != STOP && byte != b'\n'));
                 bytes.push(b'\n');
             }

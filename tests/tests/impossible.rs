@@ -5,8 +5,8 @@ use firmware::mode::Mode;
 use firmware::motion::{Constraints, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
 use firmware::queues::{Command, Queues, Snapshot};
-use hal_sim::devices::StageParameters;
-use hal_sim::host::Host;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
 use tests::Bench;
 
 const HALF_TURN_COUNTS: u32 = 1 << 25;
@@ -76,8 +76,8 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
     let mut host = Host::new(&StageParameters::REFERENCE, parameters);
     let start_m = places_mm[0] / 1e3;
     (host.stage).set_pose_at_rest([start_m, 0.0, theta_deg.to_radians()]);
-    let mut link = Queues::new();
-    let (mut tick_queues, mut commands) = link.split();
+    let mut queues = Queues::new();
+    let (mut tick_queues, mut commands) = queues.split();
     for _ in 0..10 {
         host.tick(&mut tick_queues, &mut ());
     }
@@ -163,8 +163,8 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
         let mut parameters = Parameters::REFERENCE;
         parameters.servo.velocity_v_s_rad = velocity_v_s_rad;
         let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-        let mut link = Queues::new();
-        let (mut tick_queues, mut commands) = link.split();
+        let mut queues = Queues::new();
+        let (mut tick_queues, mut commands) = queues.split();
         for _ in 0..10 {
             host.tick(&mut tick_queues, &mut ());
         }
@@ -194,8 +194,8 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
 fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
     let parameters = Parameters::REFERENCE;
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
-    let mut link = Queues::new();
-    let (mut tick_queues, mut commands) = link.split();
+    let mut queues = Queues::new();
+    let (mut tick_queues, mut commands) = queues.split();
     let mut after = |host: &mut Host, command: Option<Command>| {
         if let Some(command) = command {
             commands.send(command).expect("room");

@@ -3,11 +3,11 @@
 //! `CASES=1000 cargo test -p tests --test lost_encoder -- --nocapture` prints how far it is off.
 
 use firmware::mode::Mode;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::random::Random;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
-use tests::fuzz::Random;
 
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
@@ -24,7 +24,7 @@ const LOST: [EncoderFault; 3] = [
 
 /// How far the platform is from its setpoint: mm and deg.
 fn off(bench: &Bench) -> [f64; 2] {
-    let [x, y, theta] = bench.host.stage.latched_pose();
+    let [x, y, theta] = bench.rig.front.stage.latched_pose();
     let [sx, sy, st] = bench.sample().setpoint.position.map(|units| units as f64);
     let xy = (x * 1e3 - sx / TURN * RADIUS_MM).hypot(y * 1e3 - sy / TURN * RADIUS_MM);
     [xy, (theta.to_degrees() - st / TURN * 360.0).abs()]
@@ -42,7 +42,7 @@ impl Worst {
     fn look(&mut self, bench: &Bench) {
         let now = off(bench);
         self.off = [self.off[0].max(now[0]), self.off[1].max(now[1])];
-        let [x, y, _] = bench.host.stage.latched_pose();
+        let [x, y, _] = bench.rig.front.stage.latched_pose();
         self.from_centre_mm = self.from_centre_mm.max(x.hypot(y) * 1e3);
     }
 }
@@ -50,7 +50,7 @@ impl Worst {
 fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
     let mut bench = Bench::new(stage);
     let (radius, angle) = (random.between(0.0, 79.0), random.between(0.0, TAU));
-    bench.host.stage.set_pose_at_rest([
+    bench.rig.front.stage.set_pose_at_rest([
         radius * 1e-3 * angle.cos(),
         radius * 1e-3 * angle.sin(),
         random.between(-3.0, 3.0),
@@ -64,15 +64,15 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         random.between(-400.0, 400.0)
     );
     assert_eq!(bench.error_after(&line), "0");
-    for _ in 0..random.below(12_000) {
+    for _ in 0..random.index(12_000) {
         bench.tick();
     }
     if bench.mode() != Mode::Moving {
         return;
     }
     let fault = *random.pick(&LOST);
-    let encoder = random.below(3);
-    bench.host.stage.encoders[encoder].set_fault(fault);
+    let encoder = random.index(3);
+    bench.rig.front.stage.encoders[encoder].set_fault(fault);
     let mut ticks = 0;
     while bench.mode() != Mode::Fault && ticks < 40_000 {
         bench.tick();
@@ -86,7 +86,10 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         }
     }
     let latched = bench.fault().expect("a fault");
-    assert!(latched.kind.is_of_encoder(), "{line}, {fault:?}: {latched}");
+    assert!(
+        latched.kind.concerns_encoder(),
+        "{line}, {fault:?}: {latched}"
+    );
     assert_eq!(latched.pivot, Some(encoder as u8), "{line}: {latched}");
     worst.ticks = worst.ticks.max(ticks);
     // Braked, with what speed is left.
@@ -94,7 +97,7 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         bench.tick();
         worst.look(&bench);
     }
-    let at_rest = bench.host.stage.plant.pivot_rates_rad_s();
+    let at_rest = bench.rig.front.stage.plant.pivot_rates_rad_s();
     assert!(
         at_rest.iter().all(|rate| rate.abs() < 6.8e-4),
         "{at_rest:?}"

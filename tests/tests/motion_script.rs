@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
 
 #[test]
 fn every_line_of_the_motion_script_is_carried_out() {

@@ -34,7 +34,7 @@ fn a_move_ends_where_it_was_sent() {
         let off = (bench.value(query) - target).abs();
         assert!(off < 9.1e-6, "{query}: off by {off}");
     }
-    let truth = bench.host.stage.plant.pose();
+    let truth = bench.rig.front.stage.plant.pose();
     assert!(
         (truth[0] - 0.030).abs() < 4.2e-9 && (truth[1] + 0.020).abs() < 4.2e-9,
         "{truth:?}"

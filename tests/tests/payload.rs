@@ -1,7 +1,7 @@
 //! A load that the controller knows nothing of: the stage goes slower into its window, and nothing else happens.
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::Script;
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::Script;
 
 const SCRIPT: &str = "FRF
 WAC ONT? W = 1

@@ -17,7 +17,7 @@ struct Truth {
 
 /// One tick; the true pose is that at the encoders' latch, before it.
 fn tick(bench: &mut Bench) -> Truth {
-    let [x, y, theta] = bench.host.stage.latched_pose();
+    let [x, y, theta] = bench.rig.front.stage.latched_pose();
     bench.tick();
     let sample = bench.sample();
     let [px, py, turns] = sample.setpoint.position.map(|units| units as f64 / TURN);

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use hal_sim::run::{RunOptions, run};
-use hal_sim::script::{Script, ScriptError};
+use hal_sim::rig::run::{RunOptions, run};
+use hal_sim::rig::script::{Script, ScriptError};
 
 /// Line, column and GCS error of a bad script.
 fn place(text: &str) -> (usize, usize, u16) {

@@ -6,11 +6,11 @@
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::run::{RunOptions, stage_parameters};
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
+use hal_sim::random::Random;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use std::f64::consts::TAU;
 use tests::Bench;
-use tests::fuzz::Random;
 
 const BRIDGED: u32 = Parameters::REFERENCE.supervision.bridged_frames as u32;
 /// Ticks of a controlled stop.
@@ -19,11 +19,11 @@ const STOP_TICKS: u32 = 1_200;
 const CASES: usize = 30;
 
 fn lose(bench: &mut Bench, encoder: usize) {
-    bench.host.stage.encoders[encoder].set_fault(Some(EncoderFault::StuckHigh));
+    bench.rig.front.stage.encoders[encoder].set_fault(Some(EncoderFault::StuckHigh));
 }
 
 fn mend(bench: &mut Bench) {
-    for encoder in &mut bench.host.stage.encoders {
+    for encoder in &mut bench.rig.front.stage.encoders {
         encoder.set_fault(None);
     }
     bench.run(2_000);
@@ -51,7 +51,8 @@ fn a_second_encoder_that_is_lost_in_the_stop_brakes_and_is_told() {
         bench.run(1);
         assert_eq!(bench.mode(), Mode::Fault, "{after}");
         assert!(bench.outputs.awake && bench.outputs.duty.iter().all(|duty| duty.0 == 0));
-        let [first, worse] = [bench.host.fault(), bench.host.stop_ended_by()].map(Option::unwrap);
+        let [first, worse] =
+            [bench.rig.front.fault(), bench.rig.front.stop_ended_by()].map(Option::unwrap);
         assert_eq!(
             (first.kind, first.pivot),
             (FaultKind::EncoderSilent, Some(0))
@@ -67,7 +68,7 @@ fn a_second_encoder_that_is_lost_in_the_stop_brakes_and_is_told() {
             "{told}"
         );
         bench.run(2_000);
-        let rates = bench.host.stage.plant.pivot_rates_rad_s();
+        let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
         assert!(rates.iter().all(|rate| rate.abs() < 0.0019), "{rates:?}");
     }
 }
@@ -79,17 +80,17 @@ fn a_second_encoder_that_is_bridged_does_not_end_the_stop() {
     bench.run(300);
     lose(&mut bench, 2);
     bench.run(BRIDGED);
-    bench.host.stage.encoders[2].set_fault(None);
+    bench.rig.front.stage.encoders[2].set_fault(None);
     // The first one comes back, and has lost its turns all the same.
-    bench.host.stage.encoders[0].set_fault(None);
+    bench.rig.front.stage.encoders[0].set_fault(None);
     bench.run(STOP_TICKS - 400);
     assert_eq!(
-        (bench.mode(), bench.host.stop_ended_by()),
+        (bench.mode(), bench.rig.front.stop_ended_by()),
         (Mode::Stopping, None)
     );
     bench.run(200);
     assert_eq!(
-        (bench.mode(), bench.host.stop_ended_by()),
+        (bench.mode(), bench.rig.front.stop_ended_by()),
         (Mode::Fault, None)
     );
     assert_eq!(bench.say("FRF? W\n"), "W=0\n");
@@ -99,11 +100,11 @@ fn a_second_encoder_that_is_bridged_does_not_end_the_stop() {
 #[test]
 fn a_lost_encoder_is_not_watched_any_more() {
     let mut bench = Bench::turning(&[], 30.0);
-    bench.host.stage.encoders[1].set_fault(Some(EncoderFault::Frozen));
+    bench.rig.front.stage.encoders[1].set_fault(Some(EncoderFault::Frozen));
     bench.run_until("found", |bench| bench.mode() != Mode::Moving);
     for _ in 1..STOP_TICKS {
         assert_eq!(
-            (bench.mode(), bench.host.stop_ended_by()),
+            (bench.mode(), bench.rig.front.stop_ended_by()),
             (Mode::Stopping, None)
         );
         bench.tick();
@@ -132,7 +133,7 @@ fn a_fault_leaves_nothing_behind_for_the_next_one() {
         bench.run_until("stopped", |bench| bench.mode() != Mode::Stopping);
         assert_eq!(bench.sample().tick - before, u64::from(STOP_TICKS));
         assert_eq!(
-            (bench.mode(), bench.host.stop_ended_by()),
+            (bench.mode(), bench.rig.front.stop_ended_by()),
             (Mode::Fault, None)
         );
         mend(&mut bench);
@@ -140,13 +141,13 @@ fn a_fault_leaves_nothing_behind_for_the_next_one() {
     // Let go by one fault, braked by the next.
     bench.say("ERR?\nFLC\nFRF\n");
     bench.settle();
-    bench.host.bridges[1].set_fault(true);
+    bench.rig.front.bridges[1].set_fault(true);
     bench.run(2);
     assert!(!bench.outputs.awake);
-    bench.host.bridges[1].set_fault(false);
+    bench.rig.front.bridges[1].set_fault(false);
     bench.say("ERR?\nFLC\nFRF\n");
     bench.settle();
-    bench.host.emergency_stop = true;
+    bench.rig.front.emergency_stop = true;
     bench.run(2);
     assert!(bench.outputs.awake);
 }
@@ -156,7 +157,7 @@ fn a_fault_leaves_nothing_behind_for_the_next_one() {
 fn a_fault_that_is_there_at_the_start_lets_go() {
     for kind in [FaultKind::SettingsDamaged, FaultKind::SettingsNewer] {
         let mut bench = Bench::default();
-        bench.host.restart(&Parameters::REFERENCE, Some(kind));
+        bench.rig.front.restart(&Parameters::REFERENCE, Some(kind));
         bench.run(10);
         assert_eq!(
             (bench.mode(), bench.fault_kind()),
@@ -172,7 +173,7 @@ fn what_the_pivot_was_off_when_its_encoder_was_lost_does_not_jerk_it() {
     let mut bench = Bench::turning(&[], 60.0);
     bench.push(25.0);
     bench.run(60);
-    bench.host.stage.encoders[1].set_fault(Some(EncoderFault::StuckHigh));
+    bench.rig.front.stage.encoders[1].set_fault(Some(EncoderFault::StuckHigh));
     bench.run(BRIDGED);
     bench.run_until("found", |bench| bench.mode() == Mode::Stopping);
     let first = i32::from(bench.outputs.duty[1].0);
@@ -185,7 +186,7 @@ fn what_the_pivot_was_off_when_its_encoder_was_lost_does_not_jerk_it() {
 fn off_after_two(stage: &StageParameters, random: &mut Random) -> Option<f64> {
     let mut bench = Bench::new(stage);
     let (radius, angle) = (random.between(0.0, 75.0), random.between(0.0, TAU));
-    bench.host.stage.set_pose_at_rest([
+    bench.rig.front.stage.set_pose_at_rest([
         radius * 1e-3 * angle.cos(),
         radius * 1e-3 * angle.sin(),
         random.between(-3.0, 3.0),
@@ -195,10 +196,10 @@ fn off_after_two(stage: &StageParameters, random: &mut Random) -> Option<f64> {
     let (x, y) = (radius * angle.cos(), radius * angle.sin());
     let w = random.between(-400.0, 400.0);
     assert_eq!(bench.error_after(&format!("MOV X {x} Y {y} W {w}")), "0");
-    bench.run(random.below(8_000) as u32);
-    let first = random.below(3);
+    bench.run(random.index(8_000) as u32);
+    let first = random.index(3);
     lose(&mut bench, first);
-    bench.run(1 + random.below(STOP_TICKS as usize) as u32);
+    bench.run(1 + random.index(STOP_TICKS as usize) as u32);
     if bench.mode() != Mode::Stopping {
         return None;
     }
@@ -207,7 +208,7 @@ fn off_after_two(stage: &StageParameters, random: &mut Random) -> Option<f64> {
     let mut guides_mm: f64 = 0.0;
     for _ in 0..4_000 {
         bench.tick();
-        let [x, y, _] = bench.host.stage.latched_pose();
+        let [x, y, _] = bench.rig.front.stage.latched_pose();
         let [sx, sy, _] = bench.sample().setpoint.position;
         let [sx, sy] = [sx, sy].map(|units| units as f64 / 4_294_967_296.0 * 100.0);
         worst = worst.max((x * 1e3 - sx).hypot(y * 1e3 - sy));
@@ -248,15 +249,15 @@ fn two_lost_encoders_leave_the_stage_inside_its_limits() {
 #[test]
 fn an_encoder_lost_while_coasting_is_ready_again_before_the_stage_can_be_held() {
     let mut bench = Bench::turning(&[], 300.0);
-    bench.host.bridges[1].set_fault(true);
+    bench.rig.front.bridges[1].set_fault(true);
     bench.run(2);
     assert!(!bench.outputs.awake);
-    bench.host.bridges[1].set_fault(false);
+    bench.rig.front.bridges[1].set_fault(false);
     lose(&mut bench, 0);
     bench.run(2 * BRIDGED);
-    bench.host.stage.encoders[0].set_fault(None);
+    bench.rig.front.stage.encoders[0].set_fault(None);
     bench.run(10);
-    let rate = |bench: &Bench| bench.host.stage.plant.pivot_rates_rad_s()[0].abs();
+    let rate = |bench: &Bench| bench.rig.front.stage.plant.pivot_rates_rad_s()[0].abs();
     assert!(rate(&bench) > 4.0, "{}", rate(&bench));
     bench.say("ERR?\nFLC\n");
     assert_eq!(bench.error_after("FRF"), "45");

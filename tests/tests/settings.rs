@@ -126,12 +126,12 @@ fn the_loop_takes_settings_only_at_rest_and_mountings_only_off() {
             stage.run(10);
             stage.ask(0, line);
             stage.run(100);
-            let before = stage.config.clone();
+            let before = stage.rig.front.config.clone();
             assert_eq!(stage.sample().map(|sample| sample.mode), Some(mode));
             assert_eq!(stage.send(Command::Configure(config.clone())), Ok(()));
             stage.run(2);
             let wanted = if taken { config } else { &before };
-            assert_eq!(&stage.config, wanted, "{mode:?}");
+            assert_eq!(&stage.rig.front.config, wanted, "{mode:?}");
         }
     }
 }

@@ -2,15 +2,15 @@
 //! What is expected is written here once more, and not read from the table: a change of the table fails until it is made here too.
 
 use firmware::control::config::Config;
-use firmware::control::{Event, Outcome, STATES, TABLE};
+use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
 use firmware::mode::Mode;
 use firmware::motion::{
     AxisState, Constraints, Plan, PlanStart, RotationCentre, Stop, plan_line, plan_stop,
 };
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
-use hal_sim::devices::{EncoderFault, StageParameters};
-use hal_sim::host::Host;
+use hal_sim::front::Host;
+use hal_sim::machine::devices::{EncoderFault, StageParameters};
 
 /// Ticks in which a command is taken and told.
 const SOON: u32 = 4;
@@ -175,8 +175,8 @@ impl Run {
 
 #[test]
 fn the_table_is_what_is_expected() {
-    assert_eq!(STATES, COLUMNS);
-    for (row, expected) in TABLE.into_iter().zip(EXPECTED) {
+    assert_eq!(MODES, COLUMNS);
+    for (row, expected) in TRANSITIONS.into_iter().zip(EXPECTED) {
         assert_eq!(row, expected);
     }
 }

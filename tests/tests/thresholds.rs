@@ -3,7 +3,7 @@
 
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
-use hal_sim::devices::EncoderFault;
+use hal_sim::machine::devices::EncoderFault;
 use tests::Bench;
 use tests::trouble::PIVOT;
 
@@ -28,7 +28,7 @@ const SLACK: u32 = 14;
 
 fn freeze(bench: &mut Bench, frozen: bool) {
     let fault = frozen.then_some(EncoderFault::Frozen);
-    bench.host.stage.encoders[PIVOT].set_fault(fault);
+    bench.rig.front.stage.encoders[PIVOT].set_fault(fault);
 }
 
 /// Ticks until there is a fault, which is of this kind.
@@ -97,7 +97,7 @@ fn a_step_over_a_tick_that_did_not_come_is_no_overspeed() {
     ];
     let mut bench = Bench::turning(&limits, 300.0);
     for _ in 0..12 {
-        bench.host.miss_tick();
+        bench.rig.front.miss_tick();
         bench.run(200);
     }
     assert_eq!(bench.fault(), None);
@@ -206,9 +206,9 @@ fn a_late_tick_is_forgiven_in_a_hundred() {
     let late_every = |ticks: u32| {
         let mut bench = Bench::turning(&[(LATE, 7.0)], 90.0);
         for _ in 0..60 {
-            bench.host.late = true;
+            bench.rig.front.late = true;
             bench.run(1);
-            bench.host.late = false;
+            bench.rig.front.late = false;
             bench.run(ticks - 1);
         }
         bench.fault_kind()
@@ -221,14 +221,14 @@ fn a_late_tick_is_forgiven_in_a_hundred() {
 fn a_supply_is_low_only_in_ticks_in_a_row_and_while_it_is_used() {
     let mut bench = Bench::turning(&[], 90.0);
     for _ in 0..10 {
-        bench.host.stage.set_supply_v(35.0);
+        bench.rig.front.stage.set_supply_v(35.0);
         bench.run(3);
-        bench.host.stage.set_supply_v(48.0);
+        bench.rig.front.stage.set_supply_v(48.0);
         bench.run(1);
     }
     assert_eq!(bench.fault(), None);
     let mut bench = Bench::default();
-    bench.host.stage.set_supply_v(30.0);
+    bench.rig.front.stage.set_supply_v(30.0);
     bench.run(100);
     assert_eq!((bench.mode(), bench.fault()), (Mode::Off, None));
     bench.say("FRF\n");

@@ -5,7 +5,7 @@ use tests::Bench;
 
 /// Where a point of the platform (mm, in its axes) is on the machine: x and y, mm.
 fn point(bench: &Bench, [a, b]: [f64; 2]) -> [f64; 2] {
-    let [x, y, theta] = bench.host.stage.plant.pose();
+    let [x, y, theta] = bench.rig.front.stage.plant.pose();
     let (sin, cos) = theta.sin_cos();
     [x * 1e3 + cos * a - sin * b, y * 1e3 + sin * a + cos * b]
 }

@@ -6,8 +6,8 @@
 //!      idle  ack   1   0                  low: error, warning
 //! ```
 //!
-//! The acknowledge is as long as the encoder needs, so the frame is aligned on the bits themselves. The CRC (polynomial 0x43,
-//! start value 0, sent inverted) covers position and flags.
+//! The acknowledge is as long as the encoder needs, so the frame is aligned on the bits themselves. The CRC (polynomial
+//! 0x43, start value 0, sent inverted) covers position and flags.
 
 use embedded_hal::spi::SpiBus;
 
@@ -20,8 +20,8 @@ const HEAD_BITS: u32 = 2;
 /// The zero bit, where the start bit is bit 31.
 const ZERO_BIT: u32 = 1 << 30;
 
-/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the CRC,
-/// not inverted, of the seven bits n at bit 7 k.
+/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the
+/// CRC, not inverted, of the seven bits n at bit 7 k.
 static CRC_OF_SEVEN_BITS: [u32; 128] = crc_table();
 const CRC_MASK: u32 = 0x3F;
 const CRC_POLYNOMIAL: u32 = 0x43;
@@ -93,20 +93,20 @@ pub enum FrameError {
 /// Decodes one frame.
 #[inline]
 pub fn decode(frame: &RawFrame) -> Result<Reading, FrameError> {
-    whole(frame).and_then(Whole::reading)
+    check_frame(frame).and_then(CheckedFrame::reading)
 }
 
 /// What the CRC of a frame covers, and fits: position, error and warning, 28 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Whole(u32);
+pub struct CheckedFrame(u32);
 
-impl Whole {
+impl CheckedFrame {
     /// Error and warning, both active low.
     const FLAGS: u32 = 0b11;
 
     /// The position, if the encoder has nothing else to say.
     #[inline]
-    pub fn plain(self) -> Option<u32> {
+    pub fn plain_position(self) -> Option<u32> {
         (self.0 & Self::FLAGS == Self::FLAGS).then_some(self.0 >> 2)
     }
 
@@ -123,10 +123,10 @@ impl Whole {
     }
 }
 
-/// Finds a frame in the bits and checks its CRC. One that is whole starts in the first 28 bits, so the chip looks for it in one
-/// register.
+/// Finds a frame in the bits and checks its CRC. One that is whole starts in the first 28 bits, so the chip looks for
+/// it in one register.
 #[inline]
-pub fn whole(frame: &RawFrame) -> Result<Whole, FrameError> {
+pub fn check_frame(frame: &RawFrame) -> Result<CheckedFrame, FrameError> {
     let [a, b, c, d, e, f, g, h] = frame.0;
     let (first, second) = (
         u32::from_be_bytes([a, b, c, d]),
@@ -147,7 +147,7 @@ pub fn whole(frame: &RawFrame) -> Result<Whole, FrameError> {
     if head & ZERO_BIT != 0 || (crc(covered) ^ sent) & CRC_MASK != CRC_MASK {
         return Err(FrameError::Crc);
     }
-    Ok(Whole(covered))
+    Ok(CheckedFrame(covered))
 }
 
 /// Reads a frame over a blocking bus: the host's way, and that of boards that have no DMA to spare.

@@ -1,6 +1,7 @@
 //! Phase/enable H-bridge (DRV8874 class): a PWM, a direction, a sleep and a fault pin.
 //!
-//! PWM low brakes (both low sides on), so a duty of zero holds the motor by its own back-EMF; only sleep low lets it coast.
+//! PWM low brakes (both low sides on), so a duty of zero holds the motor by its own back-EMF; only sleep low lets it
+//! coast.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::pwm::SetDutyCycle;
@@ -71,7 +72,7 @@ where
 
     /// Whether the bridge reports a fault (pin low).
     #[inline]
-    pub fn faulty(&mut self) -> Result<bool, F::Error> {
+    pub fn reports_fault(&mut self) -> Result<bool, F::Error> {
         self.fault.is_low()
     }
 }

@@ -1,7 +1,6 @@
 //! Limits of motion, as a user states them and as a line meets them.
 
-use super::Position;
-use super::float::Order;
+use crate::number::float::FloatMinMax;
 
 /// Limits of a motion. Translation is limited along the path (a diagonal is no faster than a straight).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,16 +38,9 @@ pub struct PathLimits {
     pub jerk: f32,
 }
 
-/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30 instructions more
-/// than.
+/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30
+/// instructions more than.
 const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
-
-const UNIT: f64 = 1.0 / 4_294_967_296.0;
-
-/// x and y of a position in track radii.
-pub(super) fn centre(position: &Position) -> [f64; 2] {
-    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
-}
 
 impl Limits {
     /// Whether every limit is a positive number: along a line the smallest counts, which would hide one that is not.
@@ -78,9 +70,9 @@ impl Limits {
     }
 
     /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
-    pub fn along(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
+    pub fn for_line(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
         let least = |translation: f64, rotation: f64| {
-            (translation as f32 / length_mm).smaller(rotation as f32 / turn_deg.abs())
+            (translation as f32 / length_mm).fmin(rotation as f32 / turn_deg.abs())
         };
         PathLimits {
             rate: least(self.speed_mm_s, self.turn_speed_deg_s),

@@ -19,7 +19,7 @@ pub enum Refusal {
         /// Radius of the usable disk.
         usable_mm: f64,
         /// Where: the part of the way that is done by then, 0 to 1.
-        share: f64,
+        fraction: f64,
     },
     /// An axis of the target (0 x, 1 y, 2 theta) lies outside the bounds of the point that is moved.
     OutOfBounds {
@@ -29,7 +29,7 @@ pub enum Refusal {
     /// Theta would pass what [`Position`](super::Position) is meant to hold.
     TooManyTurns,
     /// The limits leave no finite duration.
-    Limits,
+    InvalidLimits,
     /// A velocity is over the limits of speed.
     Velocity,
     /// The pivots can not follow a velocity as far out as the stage is.
@@ -44,9 +44,9 @@ pub enum Refusal {
     /// A streamed target asks the pivots for more than their rate or acceleration.
     Pivots,
     /// A stop after a streamed target would leave the workspace, or ask too much of the pivots.
-    NoStop,
+    NoRoomToStop,
     /// A jog would meet the edge of the workspace, or a bound, at once.
-    NoWay,
+    NoRoom,
 }
 
 impl fmt::Display for Refusal {
@@ -62,11 +62,11 @@ impl fmt::Display for Refusal {
             Self::LeavesDisk {
                 radius_mm,
                 usable_mm,
-                share,
+                fraction,
             } => write!(
                 f,
                 "after {:.1} % of the way the platform centre would be {radius_mm:.3} mm from the track's, the usable disk ends at {usable_mm:.3} mm",
-                share * 100.0
+                fraction * 100.0
             ),
             Self::OutOfBounds { axis } => {
                 let name = ["x", "y", "theta"].get(*axis).unwrap_or(&"an axis");
@@ -83,9 +83,9 @@ impl fmt::Display for Refusal {
             Self::Pivots => {
                 f.write_str("asks more of the pivots than their rate or acceleration allows")
             }
-            Self::NoStop => f.write_str("there would be no room to stop after it"),
-            Self::NoWay => f.write_str("no way left in that direction"),
-            Self::Limits => {
+            Self::NoRoomToStop => f.write_str("there would be no room to stop after it"),
+            Self::NoRoom => f.write_str("no way left in that direction"),
+            Self::InvalidLimits => {
                 f.write_str("the limits of speed, acceleration and jerk allow no motion")
             }
         }
@@ -93,3 +93,14 @@ impl fmt::Display for Refusal {
 }
 
 impl core::error::Error for Refusal {}
+
+/// Why there is no transition. Nothing has changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RetargetError {
+    /// The target can not be moved to at all.
+    Refused(Refusal),
+    /// It can, but not without a stop before, or not as soon.
+    NeedsStop,
+    /// Not so fast: the next of the [`Tries`](super::Tries) may find one.
+    TooFast,
+}

@@ -1,12 +1,13 @@
 //! Arcsine, with the cosine that belongs to it.
 //!
 //! For d^2 <= 1/2, asin(d) = d P(d^2); beyond, asin(d) = +-(90 deg - c P(c^2)) with c = sqrt(1 - d^2), which the
-//! velocity equations need anyway. P gives turns; it is a minimax polynomial of degree 9 on [0, 1/2], found with the Remez
-//! exchange in 50-digit arithmetic (largest error of P 5.2e-11 turns).
+//! velocity equations need anyway. P gives turns; it is a minimax polynomial of degree 9 on [0, 1/2], found with the
+//! Remez exchange in 50-digit arithmetic (largest error of P 5.2e-11 turns).
 //!
 //! Three at a time: a coefficient takes two instructions to load and one to use.
 
-use super::{Fixed, multiply, root};
+use super::fixed::Fixed;
+use super::{multiply, root};
 use kinematics::Angle;
 
 /// P(z), coefficients times 2^33 (z carries 32 fraction bits: the point stays).
@@ -29,8 +30,8 @@ const ONE_SQUARED: i64 = 1 << 58;
 const ROOT_OF_HALF: u32 = 379_625_062;
 const QUARTER_TURN: i32 = 1 << 30;
 
-/// asin(d) and sqrt(1 - d^2) of three; `None` unless every |d| < 1. Error of the angles under 4e-9 rad, the conditioning of the
-/// second form near |d| = 1 aside.
+/// asin(d) and sqrt(1 - d^2) of three; `None` unless every |d| < 1. Error of the angles under 4e-9 rad, the
+/// conditioning of the second form near |d| = 1 aside.
 #[inline]
 pub(super) fn asin_cos(d: [Fixed; 3]) -> Option<[(Angle, Fixed); 3]> {
     let [Some(one), Some(two), Some(three)] = d.map(Argument::new) else {
@@ -40,8 +41,8 @@ pub(super) fn asin_cos(d: [Fixed; 3]) -> Option<[(Angle, Fixed); 3]> {
     let turns = horner(arguments.map(|argument| argument.square));
     Some([0, 1, 2].map(|i| {
         let Argument { s, offset, .. } = arguments[i];
-        // With the sign of `s` in the second form, 90 deg less the angle for one and more for the other is one difference. The
-        // two bits that `s` has to spare bring the product to where its upper half is the angle.
+        // With the sign of `s` in the second form, 90 deg less the angle for one and more for the other is one
+        // difference. The two bits that `s` has to spare bring the product to where its upper half is the angle.
         let angle = multiply::add_high_rounded(offset, s << 2, turns[i]);
         (Angle::from_units(i64::from(angle)), arguments[i].cosine)
     }))
@@ -83,7 +84,8 @@ impl Argument {
     }
 }
 
-/// The second form's part. In the outer third of the disk, and there for one pivot at a time as a rule: so it is branched to.
+/// The second form's part. In the outer third of the disk, and there for one pivot at a time as a rule: so it is
+/// branched to.
 #[cold]
 fn across(d: Fixed, cosine: Fixed, rest: i64) -> (i32, i32, i64) {
     if d.bits() < 0 {

@@ -1,15 +1,14 @@
 //! A fixed-point number with 29 fraction bits, for lengths in track radii, sines and cosines.
 
-use super::{arcsine, multiply, polar, trigonometric};
+use super::multiply;
 use core::ops::{Add, Mul, Neg, Sub};
-use kinematics::{Angle, Scalar};
 
 /// A number in [-4, 4) with a resolution of 2^-29 = 1.9e-9 (0.19 nm on a track of 100 mm).
 ///
 /// The range holds what position kinematics makes of poses inside the track: coordinates within 1, guides within 2, the
 /// symmetrical components of the pivots within 3. Arithmetic wraps beyond it, so callers check ranges first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Fixed(i32);
+pub struct Fixed(pub(super) i32);
 
 impl Fixed {
     /// Bits after the point.
@@ -59,7 +58,7 @@ impl Fixed {
 
     /// From 58 fraction bits, rounded down.
     #[inline]
-    const fn from_product(product: i64) -> Self {
+    pub(super) const fn from_product(product: i64) -> Self {
         Self((product >> Self::FRACTION_BITS) as i32)
     }
 
@@ -83,7 +82,7 @@ impl Fixed {
 }
 
 /// Half of the last bit, with 58 fraction bits: what makes rounding down rounding to nearest.
-const HALF_LSB: i64 = 1 << (Fixed::FRACTION_BITS - 1);
+pub(super) const HALF_LSB: i64 = 1 << (Fixed::FRACTION_BITS - 1);
 
 impl Add for Fixed {
     type Output = Self;
@@ -115,58 +114,5 @@ impl Mul for Fixed {
     #[inline]
     fn mul(self, other: Self) -> Self {
         Self::from_product(Self::add_product(HALF_LSB, self, other))
-    }
-}
-
-impl Scalar for Fixed {
-    type Angle = Angle;
-    const ZERO: Self = Self(0);
-    const ONE: Self = Self(1 << Self::FRACTION_BITS);
-    const HALF: Self = Self(1 << (Self::FRACTION_BITS - 1));
-    const THIRD: Self = Self::from_f64(1.0 / 3.0);
-    const SIN_60: Self = Self::from_f64(0.866_025_403_784_438_6);
-    const ANGLE_ZERO: Angle = Angle::ZERO;
-    const ANGLE_30: Angle = Angle::DEG_30;
-    const ANGLE_120: Angle = Angle::DEG_120;
-
-    #[inline]
-    fn half(self) -> Self {
-        Self(self.0.wrapping_add(1) >> 1)
-    }
-
-    /// Rounded to nearest, once. Two products of numbers under 2 apiece at least fit.
-    #[inline]
-    fn sum_of_products((a, b): (Self, Self), (c, d): (Self, Self)) -> Self {
-        Self::from_product(Self::add_product(Self::add_product(HALF_LSB, a, b), c, d))
-    }
-
-    #[inline]
-    fn sin_cos(angle: Angle) -> (Self, Self) {
-        trigonometric::sin_cos(angle.fraction())
-    }
-
-    #[inline]
-    fn asin_cos(sines: [Self; 3]) -> Option<[(Angle, Self); 3]> {
-        arcsine::asin_cos(sines)
-    }
-
-    #[inline]
-    fn polar(re: Self, im: Self) -> Option<(Angle, Self, Self)> {
-        polar::polar(re, im)
-    }
-
-    #[inline]
-    fn near(angle: Angle, reference: Angle) -> Angle {
-        angle.near(reference)
-    }
-
-    #[inline]
-    fn is_finite(self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn angle_is_finite(_: Angle) -> bool {
-        true
     }
 }

@@ -1,9 +1,19 @@
-//! The tick's numbers: [`Fixed`] for positions, [`kinematics::Angle`] for angles, `f32` for rates and what follows them.
+//! The tick's numbers: [`Fixed`] for positions, [`kinematics::Angle`] for angles, `f32` for rates and what follows
+//! them.
 //!
-//! An `f32` of a few radians is coarser than a quarter of an encoder LSB (DESIGN section 4), so nothing that ends in a
+//! An `f32` of a few radians is coarser than a quarter of an encoder LSB, so nothing that ends in a
 //! pivot setpoint may pass through one. A Cortex-M4 multiplies 32 by 32 bits into 64 in one instruction, as fast as its
 //! FPU multiplies floats, so fixed point costs nothing here and has 29 fraction bits where a float has at most 24.
-//! Rates, accelerations and torques are differences and corrections: there a float's range is worth more than its last bits.
+//! Rates, accelerations and torques are differences and corrections: there a float's range is worth more than its last
+//! bits.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `fixed`, `scalar` | the fixed-point number, and what the kinematics ask of it |
+//! | `multiply`, `root` | products, square and cube roots: one instruction each where the chip has one |
+//! | `trigonometric`, `arcsine`, `polar` | sine and cosine, and back |
+//! | `float` | conversions and comparisons of floats that are cheap on the chip; the float that profiles are computed in |
+//! | `wide_integer` | products and quotients of 128 bits |
 //!
 //! # The same bits on chip and desktop
 //!
@@ -23,15 +33,20 @@
 //!
 //! `cargo chip` compares the chip's run with the host's at every tick by a hash of state, setpoints and duties
 //! ([`crate::recorder::RunningHash`]); `cargo chip --ticks` does for as many ticks of motion from a seed, and with
-//! `--flip` it shows that a single bit is found. How far all of it is from exact: tests `exactness`, `fifty_digits` and `all_inputs`.
+//! `--flip` it shows that a single bit is found. How far all of it is from exact: tests `exactness`, `fifty_digits` and
+//! `all_inputs`.
+
+pub(crate) mod float;
+pub(crate) mod wide_integer;
 
 mod arcsine;
 mod fixed;
 mod multiply;
 mod polar;
 mod root;
+mod scalar;
 mod trigonometric;
 
 pub use fixed::Fixed;
-pub(crate) use root::round;
+pub(crate) use root::round_ties_even;
 pub use root::{cbrt_f32, sqrt_f32};

@@ -1,7 +1,8 @@
 //! Products of 32-bit integers, one instruction each on the chip.
 //!
 //! Rust has an expression for each, and the compiler knows the instructions. But where it can tell that a factor is not
-//! negative, as a square, it takes the product for one of 64 by 64 bits, which is three instructions. So they are named here.
+//! negative, as a square, it takes the product for one of 64 by 64 bits, which is three instructions. So they are named
+//! here.
 
 /// `sum` plus the upper half of the product (SMMLA).
 #[inline(always)]

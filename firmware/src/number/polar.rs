@@ -1,6 +1,7 @@
 //! Direction of a vector: a coarse arctangent in floats, corrected once in fixed point.
 
-use super::{Fixed, root, trigonometric};
+use super::fixed::Fixed;
+use super::{root, trigonometric};
 use kinematics::Angle;
 
 /// Shorter vectors have no direction worth the name (no feasible pose comes near: the sum of the three guides, at least
@@ -10,13 +11,13 @@ const SHORTEST: u32 = 1 << 20;
 /// Units of angle in a radian.
 const UNITS_PER_RADIAN: f32 = (4_294_967_296.0 / core::f64::consts::TAU) as f32;
 
-/// atan(t) / t for t in [0, 1], a polynomial in t^2: Hastings' (Approximations for Digital Computers, 1955, sheet 9), off
-/// by 1e-5 rad at most.
+/// atan(t) / t for t in [0, 1], a polynomial in t^2: Hastings' (Approximations for Digital Computers, 1955, sheet 9),
+/// off by 1e-5 rad at most.
 const ARCTANGENT: [f32; 5] = [0.999_866, -0.330_299_5, 0.180_141, -0.085_133, 0.020_835_1];
 
 /// Angle of (`re`, `im`) in 2^-32 turns, good to 1.1e-5 rad.
 #[inline]
-fn rough_angle(re: Fixed, im: Fixed) -> u32 {
+fn coarse_angle(re: Fixed, im: Fixed) -> u32 {
     const QUARTER_TURN: u32 = 1 << 30;
     let (width, height) = (re.bits().unsigned_abs(), im.bits().unsigned_abs());
     let steep = height > width;
@@ -55,17 +56,18 @@ pub(super) fn polar(re: Fixed, im: Fixed) -> Option<(Angle, Fixed, Fixed)> {
     {
         return None;
     }
-    let rough = rough_angle(re, im);
+    let rough = coarse_angle(re, im);
     let (s, c) = trigonometric::sin_cos(rough);
-    // What is left is found by turning the vector back by the rough angle. It is under 1.2e-5 rad, its square under 2e-10.
+    // What is left is found by turning the vector back by the rough angle. It is under 1.2e-5 rad, its square under
+    // 2e-10.
     let along = Fixed::add_product(Fixed::add_product(0, re, c), im, s);
     let across = Fixed::add_product(Fixed::add_product(0, im, c), -re, s);
     let across = (across >> 20) as i32 as f32;
     let along = (along >> 32) as i32 as f32 * 4096.0;
     let tangent = across / along;
-    let (rest, _) = root::round(tangent * UNITS_PER_RADIAN);
+    let (rest, _) = root::round_ties_even(tangent * UNITS_PER_RADIAN);
     let turn = |a: Fixed, b: Fixed| {
-        let (change, _) = root::round(tangent * b.bits() as f32);
+        let (change, _) = root::round_ties_even(tangent * b.bits() as f32);
         Fixed::from_bits(a.bits().wrapping_add(change))
     };
     let angle = Angle::from_units(i64::from((rough as i32).wrapping_add(rest)));

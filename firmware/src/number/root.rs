@@ -1,11 +1,12 @@
 //! Square roots: one instruction in f32 on the chip, and a corrected one in fixed point.
 
-use super::{Fixed, multiply};
+use super::fixed::Fixed;
+use super::multiply;
 
 #[cfg(target_arch = "arm")]
 mod chip {
-    // `core` has no square root on stable Rust, and libm's takes 60 instructions. Inline assembly can not name the FPU's
-    // single registers on this target, so the instruction stands in a function of its own.
+    // `core` has no square root on stable Rust, and libm's takes 60 instructions. Inline assembly can not name the
+    // FPU's single registers on this target, so the instruction stands in a function of its own.
     core::arch::global_asm!(
         ".fpu fpv4-sp-d16",
         ".section .text.tripivot_sqrt_f32,\"ax\",%progbits",
@@ -45,8 +46,8 @@ pub fn cbrt_f32(value: f32) -> f32 {
     root
 }
 
-/// Square root of `square` / 2^58, for 2^28 <= `square` <= 2^58: a float's root and one Newton step, to about one LSB of
-/// [`Fixed`] for results over 0.05.
+/// Square root of `square` / 2^58, for 2^28 <= `square` <= 2^58: a float's root and one Newton step, to about one LSB
+/// of [`Fixed`] for results over 0.05.
 #[inline]
 pub(super) fn sqrt_fixed(square: i64) -> Fixed {
     const UP_TO_FIXED: f32 = (1u32 << 14) as f32;
@@ -55,14 +56,14 @@ pub(super) fn sqrt_fixed(square: i64) -> Fixed {
     let root = rough as i32;
     let residue = multiply::add_product(square, -root, root);
     let correction = (residue >> 8) as i32 as f32 * 128.0 / rough;
-    Fixed::from_bits(root.wrapping_add(round(correction).0))
+    Fixed::from_bits(root.wrapping_add(round_ties_even(correction).0))
 }
 
 /// Nearest integer (of two, the even one), as an integer and as a float, for values within +-2^21.
 ///
 /// So far up the floats are the integers: adding the offset rounds, and the low bits of the sum are the result.
 #[inline]
-pub(crate) fn round(value: f32) -> (i32, f32) {
+pub(crate) fn round_ties_even(value: f32) -> (i32, f32) {
     const OFFSET: f32 = 12_582_912.0; // 1.5 times 2^23
     const SPARE_BITS: u32 = 10;
     let sum = value + OFFSET;
@@ -80,9 +81,12 @@ mod tests {
     fn rounds_to_the_nearest_even_up_to_its_range() {
         for k in -2_097_151..2_097_151 {
             let value = k as f32 + 0.25;
-            assert_eq!(round(value), (k, k as f32), "{value}");
+            assert_eq!(round_ties_even(value), (k, k as f32), "{value}");
         }
-        assert_eq!([0.5, 1.5, -0.5, -1.5].map(|v| round(v).0), [0, 2, 0, -2]);
+        assert_eq!(
+            [0.5, 1.5, -0.5, -1.5].map(|v| round_ties_even(v).0),
+            [0, 2, 0, -2]
+        );
     }
 
     #[test]

@@ -7,11 +7,12 @@
 //! sin(pi/4 y) = y S(z),  cos(pi/4 y) = C(z)
 //! ```
 //!
-//! S and C are minimax polynomials of degree 4 in z, found with the Remez exchange in 50-digit arithmetic (largest error
-//! 3.4e-12 and 4.7e-11). Coefficient k is stored times 2^(s0 + 2k): z carries 30 fraction bits and a multiplication keeps
-//! the upper 32 of 64, so each Horner step moves the point by two.
+//! S and C are minimax polynomials of degree 4 in z, found with the Remez exchange in 50-digit arithmetic (largest
+//! error 3.4e-12 and 4.7e-11). Coefficient k is stored times 2^(s0 + 2k): z carries 30 fraction bits and a
+//! multiplication keeps the upper 32 of 64, so each Horner step moves the point by two.
 
-use super::{Fixed, multiply};
+use super::fixed::Fixed;
+use super::multiply;
 
 /// S(z), coefficient k times 2^(31 + 2k).
 const SINE: [i32; 5] = [1_686_629_713, -693_598_667, 85_569_259, -5_026_472, 169_873];

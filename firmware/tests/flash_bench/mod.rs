@@ -1,17 +1,17 @@
 //! A flash that loses its power in the middle of a word or of an erase, and a panel whose settings it keeps.
 #![allow(dead_code)] // Each test file uses its part.
 
-#[path = "../panel_bench/mod.rs"]
-pub mod panel_bench;
+#[path = "../gcs_bench/mod.rs"]
+pub mod gcs_bench;
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
-use firmware::panel::{Identity, PARAMETERS, Panel};
+use firmware::gcs::{Identity, Interpreter, PARAMETERS};
 use firmware::parameters::Parameters;
-use firmware::store::Keeper;
-use panel_bench::Bench;
+use firmware::settings_store::SettingsStore;
+use gcs_bench::Bench;
 
 pub const SECTORS: usize = 4;
 const WORD: usize = 4;
@@ -181,7 +181,7 @@ pub struct Kept {
 }
 
 /// What a panel has of it now.
-pub fn kept(panel: &Panel, parameters: &Parameters) -> Kept {
+pub fn kept(panel: &Interpreter, parameters: &Parameters) -> Kept {
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     let mut macros: Vec<_> = (panel.macros())
         .map(|(name, lines)| (name.to_string(), text(lines)))
@@ -195,25 +195,25 @@ pub fn kept(panel: &Panel, parameters: &Parameters) -> Kept {
     }
 }
 
-pub fn fresh() -> Panel {
+pub fn fresh() -> Interpreter {
     let identity = Identity {
         serial: "4711",
         version: "0.1.0",
     };
-    Panel::new(&Parameters::REFERENCE, identity)
+    Interpreter::new(&Parameters::REFERENCE, identity)
 }
 
 /// A panel whose settings are kept, with its tick.
 pub struct KeptBench<const SECTOR: usize> {
     pub bench: Bench,
-    pub keeper: Keeper<Flash<SECTOR>>,
+    pub keeper: SettingsStore<Flash<SECTOR>>,
 }
 
 impl<const SECTOR: usize> KeptBench<SECTOR> {
     /// Started with this flash, referenced.
     pub fn start(flash: Flash<SECTOR>) -> Self {
         let mut panel = fresh();
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         assert_eq!(keeper.restore(&mut panel), None);
         let mut bench = Bench::with(panel);
         bench.run(2);
@@ -227,7 +227,7 @@ impl<const SECTOR: usize> KeptBench<SECTOR> {
         assert!(self.bench.offer(0, bytes.as_bytes()), "no room");
         for _ in 0..6 {
             self.bench.run(1);
-            self.keeper.carry_on(self.bench.panel_mut());
+            self.keeper.store_pending(self.bench.panel_mut());
         }
         let answers = self.bench.answers_of(0);
         answers.iter().map(|&byte| char::from(byte)).collect()

@@ -1,13 +1,13 @@
 //! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
 
-use super::{AXIS_UNIT, GROUND, UNIT, corners};
-use firmware::motion::{Axis, Ground, Plan};
+use super::{AXIS_UNIT, CONSTRAINTS, UNIT, corners};
+use firmware::motion::{AxisState, Constraints, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
 
-/// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of position
-/// and a speed under 2 nm/s.
-pub fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
+/// Whether the integers end a plan at rest by themselves, where it says: what is dropped there is less than a unit of
+/// position and a speed under 2 nm/s.
+pub fn ends_at_rest(plan: &Plan, end: &[AxisState; 3]) -> bool {
     end.iter().zip(&plan.end).all(|(axis, &place)| {
         let off = axis.position - (i128::from(place) << 40);
         (-(1_i128 << 36)..1 << 41).contains(&off)
@@ -16,7 +16,8 @@ pub fn ends_at_rest(plan: &Plan, end: &[Axis; 3]) -> bool {
     })
 }
 
-/// Pose and motion of a platform whose point `centre` is at a place and has these velocities and accelerations: track radii, rad.
+/// Pose and motion of a platform whose point `centre` is at a place and has these velocities and accelerations: track
+/// radii, rad.
 pub fn platform(
     [x, y, theta]: [f64; 3],
     v: [f64; 3],
@@ -43,7 +44,8 @@ pub fn platform(
     (pose, twist, acceleration)
 }
 
-/// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or turns.
+/// Largest part of its limit that anything reaches; the disk and the bounds as what is beyond them, track radii or
+/// turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     pub speed: f64,
@@ -57,9 +59,9 @@ pub struct Worst {
 
 impl Worst {
     /// Takes another state.
-    pub fn look(&mut self, axes: &[Axis; 3], ground: &Ground) {
-        let limits = &ground.limits;
-        let (mm, hz) = (ground.geometry.radius_mm, limits.rate_hz);
+    pub fn look(&mut self, axes: &[AxisState; 3], constraints: &Constraints) {
+        let limits = &constraints.limits;
+        let (mm, hz) = (constraints.geometry.radius_mm, limits.rate_hz);
         let rate = |i: usize| axes[i].velocity as f64 / AXIS_UNIT * hz;
         let force = |i: usize| axes[i].acceleration as f64 / AXIS_UNIT * hz * hz;
         let at = [0, 1].map(|i| axes[i].position as f64 / AXIS_UNIT);
@@ -87,10 +89,11 @@ impl Worst {
             &mut self.acceleration,
         );
 
-        let (pose, twist, acceleration) = platform([at[0], at[1], theta], v, a, ground.centre);
+        let (pose, twist, acceleration) =
+            platform([at[0], at[1], theta], v, a, constraints.rotation_centre);
         self.outside = self
             .outside
-            .max(pose.x.hypot(pose.y) - ground.geometry.usable_radius());
+            .max(pose.x.hypot(pose.y) - constraints.geometry.usable_radius());
         let guides = inverse(&pose).expect("inside the track").guides;
         let pivots = pivot_motion(&guides, &twist, &acceleration);
         for i in 0..3 {
@@ -105,7 +108,7 @@ impl Worst {
                 &mut self.pivot_acceleration,
             );
         }
-        for (axis, &[low, high]) in axes.iter().zip(&ground.bounds) {
+        for (axis, &[low, high]) in axes.iter().zip(&constraints.bounds) {
             let here = axis.rounded();
             let beyond = low.saturating_sub(here).max(here.saturating_sub(high));
             self.out_of_bounds = self.out_of_bounds.max(beyond as f64 / UNIT);
@@ -113,49 +116,54 @@ impl Worst {
     }
 
     /// Of one state.
-    pub fn of(axes: &[Axis; 3], ground: &Ground) -> Self {
+    pub fn of(axes: &[AxisState; 3], constraints: &Constraints) -> Self {
         let mut worst = Self::default();
-        worst.look(axes, ground);
+        worst.look(axes, constraints);
         worst
     }
 
-    fn look_at_jerk(&mut self, jerk: &[i64; 3], ground: &Ground) {
-        let limits = &ground.limits;
+    fn look_at_jerk(&mut self, jerk: &[i64; 3], constraints: &Constraints) {
+        let limits = &constraints.limits;
         let jerk = jerk.map(|jerk| jerk as f64 / AXIS_UNIT * limits.rate_hz.powi(3));
-        let path = jerk[0].hypot(jerk[1]) * ground.geometry.radius_mm / limits.jerk_mm_s3;
+        let path = jerk[0].hypot(jerk[1]) * constraints.geometry.radius_mm / limits.jerk_mm_s3;
         let turn = jerk[2].abs() * 360.0 / limits.turn_jerk_deg_s3;
         self.jerk = self.jerk.max(path).max(turn);
     }
 
-    /// Of a plan on the usual ground, looked at where its pieces meet and in their middles only.
-    pub fn of_corners(plan: &Plan, start: [Axis; 3]) -> Self {
+    /// Of a plan within the usual constraints, looked at where its pieces meet and in their middles only.
+    pub fn of_corners(plan: &Plan, start: [AxisState; 3]) -> Self {
         let mut worst = Self::default();
         for axes in corners(plan, start) {
-            worst.look(&axes, &GROUND);
+            worst.look(&axes, &CONSTRAINTS);
         }
         for piece in &plan.pieces {
-            worst.look_at_jerk(&piece.jerk, &GROUND);
+            worst.look_at_jerk(&piece.jerk, &CONSTRAINTS);
         }
         worst
     }
 
     /// Takes every tick of a plan from `start`; the state at its end, as the integers give it.
-    pub fn walk(&mut self, plan: &Plan, start: &[Axis; 3], ground: &Ground) -> [Axis; 3] {
-        self.walk_ends(plan, start, ground, u64::MAX)
+    pub fn walk(
+        &mut self,
+        plan: &Plan,
+        start: &[AxisState; 3],
+        constraints: &Constraints,
+    ) -> [AxisState; 3] {
+        self.walk_ends(plan, start, constraints, u64::MAX)
     }
 
     /// The same, of a piece longer than `most` ticks only so many: half of them at its start, half at its end.
     pub fn walk_ends(
         &mut self,
         plan: &Plan,
-        start: &[Axis; 3],
-        ground: &Ground,
+        start: &[AxisState; 3],
+        constraints: &Constraints,
         most: u64,
-    ) -> [Axis; 3] {
+    ) -> [AxisState; 3] {
         let mut axes = *start;
-        self.look(&axes, ground);
+        self.look(&axes, constraints);
         for piece in &plan.pieces {
-            self.look_at_jerk(&piece.jerk, ground);
+            self.look_at_jerk(&piece.jerk, constraints);
             let skipped = piece.ticks.saturating_sub(most);
             for tick in 0..piece.ticks - skipped {
                 for (i, axis) in axes.iter_mut().enumerate() {
@@ -164,7 +172,7 @@ impl Worst {
                     }
                     axis.advance(piece.jerk[i], plan.nudge[i]);
                 }
-                self.look(&axes, ground);
+                self.look(&axes, constraints);
             }
         }
         axes
@@ -189,8 +197,8 @@ impl Worst {
             && self.out_of_bounds == 0.0
     }
 
-    /// Whether everything is kept as plans in motion have to: speed, acceleration and jerk to 1e-4, pivots to 1e-3, the disk to
-    /// 0.1 um.
+    /// Whether everything is kept as plans in motion have to: speed, acceleration and jerk to 1e-4, pivots to 1e-3, the
+    /// disk to 0.1 um.
     pub fn is_kept_but_for_a_thousandth(&self) -> bool {
         const OWN: f64 = 1.0 + 2e-4;
         const PIVOTS: f64 = 1.0 + 1e-3;

@@ -1,13 +1,13 @@
 //! What the motion tests share: random positions and moves, and the limits that every tick is held against.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub mod constraints;
 pub mod exact;
-pub mod grounds;
 pub mod random;
 pub mod setting;
 pub mod streaming;
 
-use firmware::motion::{Axis, Ground, Limits, Plan, Position, plan_line};
+use firmware::motion::{AxisState, Constraints, Limits, Plan, Position, plan_line};
 use firmware::parameters::Parameters;
 use kinematics::Geometry;
 use proptest::prelude::*;
@@ -16,14 +16,14 @@ use std::f64::consts::PI;
 
 /// 2^32: units of a position in a track radius or a turn.
 pub const UNIT: f64 = 4_294_967_296.0;
-/// 2^72: units of an [`Axis`].
+/// 2^72: units of an [`AxisState`].
 pub const AXIS_UNIT: f64 = 4_722_366_482_869_645_213_696.0;
 /// Room for the roundings of f64 when a limit is checked.
 pub const SLACK: f64 = 1.0 + 1e-6;
 
 pub const GEOMETRY: Geometry = Geometry::REFERENCE;
 pub const LIMITS: Limits = Parameters::REFERENCE.limits;
-pub const GROUND: Ground = Ground::new(LIMITS, GEOMETRY);
+pub const CONSTRAINTS: Constraints = Constraints::new(LIMITS, GEOMETRY);
 
 /// Fixed seed, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
 pub fn settings(cases: u32) -> Config {
@@ -68,16 +68,16 @@ pub fn moves() -> impl Strategy<Value = (Position, Position)> {
 }
 
 pub fn line(from: Position, to: Position) -> Plan {
-    plan_line(7, from, to, &GROUND).expect("a move inside the disk")
+    plan_line(7, from, to, &CONSTRAINTS).expect("a move inside the disk")
 }
 
-pub fn at_rest(position: Position) -> [Axis; 3] {
-    position.map(Axis::at_rest)
+pub fn at_rest(position: Position) -> [AxisState; 3] {
+    position.map(AxisState::at_rest)
 }
 
-/// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that the
-/// tick drops at the end.
-pub fn states(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+/// Every state of a plan from its start to the end of its last piece, as the integers give it: without the rest that
+/// the tick drops at the end.
+pub fn states(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     let mut axes = start;
     let mut all = vec![axes];
     for piece in &plan.pieces {
@@ -92,7 +92,7 @@ pub fn states(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
 }
 
 /// The states where pieces meet, and in the middle of each; enough for what is monotonic or linear in a piece.
-pub fn corners(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
+pub fn corners(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     let mut axes = start;
     let mut all = vec![axes];
     for piece in &plan.pieces {
@@ -106,12 +106,12 @@ pub fn corners(plan: &Plan, start: [Axis; 3]) -> Vec<[Axis; 3]> {
 }
 
 /// Velocity in track radii and turns per second.
-pub fn velocity(axes: &[Axis; 3]) -> [f64; 3] {
+pub fn velocity(axes: &[AxisState; 3]) -> [f64; 3] {
     axes.map(|axis| axis.velocity as f64 / AXIS_UNIT * LIMITS.rate_hz)
 }
 
 /// Distance of a state from the line `from` -> `to`, units: how far its axes disagree on how much of the way is done.
-pub fn off_line(axes: &[Axis; 3], from: &Position, to: &Position) -> f64 {
+pub fn off_line(axes: &[AxisState; 3], from: &Position, to: &Position) -> f64 {
     let way = [0, 1, 2].map(|i| (to[i] - from[i]) as f64);
     // Units with their fraction, relative to the start: small enough for f64.
     let done = [0, 1, 2]
@@ -131,7 +131,8 @@ pub fn off_line(axes: &[Axis; 3], from: &Position, to: &Position) -> f64 {
 }
 
 /// Duration in ticks of the fastest motion over a path parameter of 1, in continuous time, after the textbook's cases
-/// (Biagiotti and Melchiorri, 2008, section 3.4: `tj` is the time of constant jerk, `ta` that of the whole acceleration).
+/// (Biagiotti and Melchiorri, 2008, section 3.4: `tj` is the time of constant jerk, `ta` that of the whole
+/// acceleration).
 pub fn optimum_ticks(rate: f64, acceleration: f64, jerk: f64) -> f64 {
     let (tj, ta) = if rate * jerk >= acceleration * acceleration {
         let tj = acceleration / jerk;

@@ -1,7 +1,7 @@
 //! Numbers that are the same everywhere.
 
 use super::UNIT;
-use firmware::motion::{Ground, Position};
+use firmware::motion::{Constraints, Position};
 use std::f64::consts::TAU;
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).
@@ -22,10 +22,10 @@ impl Random {
     }
 
     /// A position of the moved point that puts the platform centre anywhere in the disk, at any orientation.
-    pub fn place(&mut self, ground: &Ground) -> Position {
-        let r = ground.geometry.usable_radius() * self.unit().sqrt();
+    pub fn place(&mut self, constraints: &Constraints) -> Position {
+        let r = constraints.geometry.usable_radius() * self.unit().sqrt();
         let (direction, theta) = (TAU * self.unit(), TAU * self.unit());
-        let [p, q] = ground.centre;
+        let [p, q] = constraints.rotation_centre;
         let (sin, cos) = theta.sin_cos();
         let x = r * direction.cos() + cos * p - sin * q;
         let y = r * direction.sin() + sin * p + cos * q;

@@ -3,7 +3,8 @@
 use super::exact::Worst;
 use super::{AXIS_UNIT, LIMITS, at_rest};
 use firmware::motion::{
-    Axis, Clock, End, Ground, Motion, Next, NotTaken, Plan, Position, Progress, Stream,
+    AxisState, Clock, Constraints, Plan, PlanFollower, PlanProgress, Position, PushError, Stream,
+    StreamEnd, StreamStep,
 };
 
 /// How targets arrive.
@@ -35,7 +36,7 @@ pub struct Run {
     pub path: Vec<[f64; 3]>,
     /// Tick at which the motion started.
     pub started: u64,
-    pub end: Option<End>,
+    pub end: Option<StreamEnd>,
     /// Everything that was set, against exact kinematics.
     pub worst: Worst,
     /// Largest steps of velocity and acceleration between ticks: of x, y and theta, per tick.
@@ -51,15 +52,15 @@ pub fn run(
     start: Position,
     targets: impl Iterator<Item = Position>,
     sender: &Sender,
-    ground: &Ground,
+    constraints: &Constraints,
     quiet: bool,
 ) -> Run {
     let mut targets = targets.peekable();
     let mut stream = Stream::new(start, sender.period, sender.clock).expect("a period");
-    let mut motion = Motion::default();
+    let mut motion = PlanFollower::default();
     motion.rest_at(start);
-    let mut course: Option<(Plan, [Axis; 3])> = None;
-    let mut pending: Option<(Plan, [Axis; 3])> = None;
+    let mut course: Option<(Plan, [AxisState; 3])> = None;
+    let mut pending: Option<(Plan, [AxisState; 3])> = None;
     let mut out = Run {
         path: Vec::new(),
         started: 0,
@@ -76,10 +77,10 @@ pub fn run(
         while targets.peek().is_some()
             && sent as f64 * sender.true_period + (sender.late)(sent) <= tick as f64
         {
-            match stream.push(*targets.peek().unwrap(), ground) {
-                Ok(()) | Err(NotTaken::Refused(_)) => {}
-                Err(NotTaken::Full) => panic!("full after {sent}"),
-                Err(NotTaken::Over) => {}
+            match stream.push(*targets.peek().unwrap(), constraints) {
+                Ok(()) | Err(PushError::Refused(_)) => {}
+                Err(PushError::Full) => panic!("full after {sent}"),
+                Err(PushError::Over) => {}
             }
             targets.next();
             sent += 1;
@@ -88,14 +89,14 @@ pub fn run(
             }
         }
         let (plan, done) = motion.progress();
-        let progress = Progress {
+        let progress = PlanProgress {
             plan,
             tick: done,
-            moving: motion.moving(),
+            moving: motion.is_moving(),
         };
-        match stream.next(out.plans + 1, &progress, ground) {
-            Next::Wait => {}
-            Next::Send(plan, start) => {
+        match stream.next(out.plans + 1, &progress, constraints) {
+            StreamStep::Wait => {}
+            StreamStep::Send(plan, start) => {
                 out.plans += 1;
                 if out.plans == 1 {
                     out.started = tick;
@@ -103,13 +104,13 @@ pub fn run(
                 motion.accept(&plan).expect("in time");
                 // What the tick would do if nothing came any more.
                 if out.plans % 7 == 1 {
-                    out.worst.walk(&plan, &start, ground);
+                    out.worst.walk(&plan, &start, constraints);
                 }
                 pending = Some((plan, start));
             }
-            Next::Over(end) => {
+            StreamStep::Over(end) => {
                 out.end = Some(end);
-                if !motion.moving() {
+                if !motion.is_moving() {
                     break;
                 }
             }
@@ -128,7 +129,7 @@ pub fn run(
         assert_eq!(state.map(|axis| axis.rounded()), motion.position());
         // What is worst lasts longer than a millisecond.
         if tick % 8 == 0 {
-            out.worst.look(&state, ground);
+            out.worst.look(&state, constraints);
         }
         for i in 0..3 {
             let step = (state[i].velocity - last[i].velocity) as f64 / AXIS_UNIT * LIMITS.rate_hz;
@@ -140,7 +141,7 @@ pub fn run(
         out.path
             .push(state.map(|axis| axis.position as f64 / AXIS_UNIT));
         if out.started > 0 && tick > out.started + 20_000 && targets.peek().is_some() {
-            let waiting = firmware::motion::CAPACITY - stream.room();
+            let waiting = firmware::motion::STREAM_CAPACITY - stream.free_places();
             out.waiting = [out.waiting[0].min(waiting), out.waiting[1].max(waiting)];
         }
     }

@@ -12,7 +12,7 @@
 
 use super::motion_bench::exact::platform;
 use super::motion_bench::{UNIT, optimum_ticks};
-use firmware::motion::{Ground, Position};
+use firmware::motion::{Constraints, Position};
 use kinematics::{inverse, pivot_motion};
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ const PLACES: usize = 2000;
 type Demand = [(f64, f64); 3];
 
 impl Optimum {
-    pub fn new(from: &Position, to: &Position, ground: &Ground) -> Self {
+    pub fn new(from: &Position, to: &Position, ground: &Constraints) -> Self {
         let limits = &ground.limits;
         let way = [0, 1, 2].map(|i| (to[i] - from[i]) as f64 / UNIT);
         let mm = way[0].hypot(way[1]) * ground.geometry.radius_mm;
@@ -40,7 +40,14 @@ impl Optimum {
         let start = from.map(|value| value as f64 / UNIT);
         let plane = Plane {
             demands: (0..=PLACES)
-                .map(|k| demand(&start, &way, k as f64 / PLACES as f64, ground.centre))
+                .map(|k| {
+                    demand(
+                        &start,
+                        &way,
+                        k as f64 / PLACES as f64,
+                        ground.rotation_centre,
+                    )
+                })
                 .collect(),
             rate,
             acceleration,

@@ -3,10 +3,10 @@
 use contour::{Contour, ContourBuilder};
 use kinematics::Geometry;
 
-use super::colour;
 use super::mechanism::Plane;
-use super::scale::{Steps, Ticks};
-use super::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
+use drawing::colour;
+use drawing::scale::{Steps, Ticks};
+use drawing::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
 
 /// What to draw.
 pub struct ContourMap<'a> {
@@ -88,7 +88,7 @@ fn draw_areas(svg: &mut Svg, map: &ContourMap<'_>, plane: &Plane) {
     svg.clipped_to_circle(origin, radius, |svg| {
         svg.circle(origin, radius, &fill(map, 0), None);
         for (index, contour) in contours.iter().enumerate() {
-            let edge = Stroke::new("#ffffff", 1.2);
+            let edge = Stroke::new(colour::PANEL, 1.2);
             svg.rings(&rings(contour, plane), &fill(map, index + 1), Some(&edge));
         }
     });
@@ -167,7 +167,7 @@ fn draw_numbers(svg: &mut Svg, map: &ContourMap<'_>, contours: &[Contour], plane
 fn draw_number(svg: &mut Svg, [x, y]: Point, turned_deg: f64, text: &str) {
     let font = Font {
         turned_deg,
-        halo: Some("#ffffff"),
+        halo: Some(colour::PANEL),
         ..Font::new(15.0, colour::INK, Anchor::Middle).bold()
     };
     // Across the line, not above it.
@@ -227,7 +227,7 @@ fn draw_key(svg: &mut Svg, map: &ContourMap<'_>) {
         svg.rect(
             &field,
             &fill(map, index),
-            Some(&Stroke::new("#ffffff", 1.2)),
+            Some(&Stroke::new(colour::PANEL, 1.2)),
         );
         if let Some(&level) = map.levels.get(index) {
             let label = Font::new(15.0, colour::INK, Anchor::Start);

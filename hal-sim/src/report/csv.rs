@@ -7,7 +7,7 @@ use ::csv::Writer;
 
 use super::sample::{Move, Sample};
 use super::trace::Trace;
-use super::{ReportError, unwritable};
+use drawing::{ReportError, unwritable};
 
 const TRACE_COLUMNS: [&str; 28] = [
     "time_s",

@@ -7,9 +7,8 @@ use kinematics::Geometry;
 use serde::Serialize;
 
 use super::Run;
-use super::envelope::Bin;
-use super::sample::Move;
-use crate::assets::{bundle, text};
+use drawing::assets::{bundle, text};
+use drawing::envelope::Bin;
 
 /// What the live page and the document have in common, in the order of their dependence.
 const SHARED: &[&str] = &[
@@ -19,24 +18,27 @@ const SHARED: &[&str] = &[
     "/js/view.js",
     "/js/ticks.js",
     "/js/envelope.js",
+    "/js/sizes.js",
     "/js/mechanism.js",
     "/js/zoom.js",
     "/js/plot.js",
 ];
 
-const TEMPLATE: &str = include_str!("../../page/report.html");
-const SCRIPT: &str = include_str!("../../page/js/report.js");
-const STYLE: &str = include_str!("../../page/css/report.css");
+const TEMPLATE: &str = include_str!("document/report.html");
+const SCRIPT: &str = include_str!("document/report.js");
+const STYLE: &str = include_str!("document/report.css");
 
 /// What the document's script gets besides the channels.
 #[derive(Serialize)]
 struct Facts<'a> {
     name: &'a str,
     summary: String,
+    /// In one line.
+    conditions: String,
     ticks: u64,
     geometry: Lengths,
     moves: Vec<Leg>,
-    /// Start of each bin, s.
+    /// End of each bin, s: a plot on the live page has them so, too.
     times: String,
     /// Lowest and highest of each channel, bin by bin.
     channels: Vec<[String; 2]>,
@@ -56,14 +58,17 @@ struct Lengths {
 struct Leg {
     start_s: f64,
     end_s: f64,
-    /// Ms; none when it never settled.
+    /// Ms; none when it had not settled before the next move or the end of the run.
     settle_ms: Option<f64>,
+    /// It had the time to.
+    never: bool,
     target: [f64; 3],
 }
 
 /// The document.
 pub(super) fn write(run: &Run) -> String {
-    let style = [text("/css/theme.css"), text("/css/controls.css"), STYLE].concat();
+    let shared = ["/css/colours.css", "/css/theme.css", "/css/controls.css"];
+    let style = [&shared.map(text).concat(), STYLE].concat();
     let script = [&bundle(SHARED), SCRIPT].concat();
     let title = run.name.replace('&', "&amp;").replace('<', "&lt;");
     let data = serde_json::to_string(&facts(run)).unwrap_or_default();
@@ -93,7 +98,7 @@ fn fill(template: &str, parts: &[(&str, String)]) -> String {
 
 fn facts(run: &Run) -> Facts<'_> {
     let plots = run.trace.plots();
-    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.start_s).collect();
+    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.end_s).collect();
     let mut channels = Vec::new();
     add(&mut channels, plots.pose.bins(), &[0, 1, 2]);
     add(&mut channels, plots.error.bins(), &[0, 1]);
@@ -104,9 +109,10 @@ fn facts(run: &Run) -> Facts<'_> {
     Facts {
         name: &run.name,
         summary: run.summary().to_string(),
+        conditions: run.conditions.to_string(),
         ticks: run.trace.statistics().ticks,
         geometry: lengths(&run.geometry),
-        moves: run.moves.iter().map(leg).collect(),
+        moves: (0..run.moves.len()).map(|index| leg(run, index)).collect(),
         times: packed(times.into_iter()),
         channels,
     }
@@ -122,11 +128,13 @@ fn lengths(geometry: &Geometry) -> Lengths {
     }
 }
 
-fn leg(one: &Move) -> Leg {
+fn leg(run: &Run, index: usize) -> Leg {
+    let one = &run.moves[index];
     Leg {
         start_s: one.start_s,
         end_s: one.profile_end_s,
         settle_ms: one.settle_s().map(|s| 1e3 * s),
+        never: run.never_settles(index),
         target: one.target,
     }
 }

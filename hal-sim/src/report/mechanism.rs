@@ -2,8 +2,9 @@
 
 use kinematics::{Geometry, Guide, Inverse, Pose, inverse};
 
-use super::colour;
-use super::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
+use drawing::colour;
+use drawing::mechanism::SIZES;
+use drawing::svg::{Anchor, Font, Point, Rect, Stroke, Svg};
 
 /// The stage's plane, in track radii, laid on a square of the sheet.
 pub(super) struct Plane {
@@ -43,7 +44,7 @@ pub(super) fn draw_track(svg: &mut Svg, plane: &Plane, geometry: &Geometry) {
     let rim = Stroke::new(colour::FAINT, 1.2).dashed();
     let disk = plane.length(geometry.usable_radius());
     svg.circle(origin, disk, colour::TINT, Some(&rim));
-    let width = plane.length(0.045).max(4.0);
+    let width = plane.length(SIZES.track_width).max(SIZES.track_least_px);
     let track = Stroke::new(colour::STEEL, width);
     svg.circle(origin, plane.length(1.0), "none", Some(&track));
     let cross = Stroke::new(colour::FAINT, 1.2);
@@ -105,7 +106,7 @@ fn draw_guide(
 ) {
     let end = geometry.guide_start + geometry.guide_length;
     let at = |rho: f64| plane.pixel(along(centre, guide, rho));
-    let width = plane.length(0.10).max(6.0);
+    let width = plane.length(SIZES.guide_width).max(SIZES.guide_least_px);
     svg.line(
         at(0.0),
         at(geometry.guide_start),
@@ -113,7 +114,11 @@ fn draw_guide(
     );
     let (start, end) = (at(geometry.guide_start), at(end));
     svg.line(start, end, &Stroke::new(colour, width));
-    svg.line(start, end, &Stroke::new(colour::PANEL, width - 4.0));
+    svg.line(
+        start,
+        end,
+        &Stroke::new(colour::PANEL, width - SIZES.guide_walls_px),
+    );
 }
 
 fn draw_platform(
@@ -123,10 +128,10 @@ fn draw_platform(
     centre: Point,
     guides: &[Guide<f64>; 3],
 ) {
-    let corners =
-        guides.map(|guide| plane.pixel(along(centre, &guide, geometry.guide_start + 0.05)));
+    let out = geometry.guide_start + SIZES.corner_beyond_start;
+    let corners = guides.map(|guide| plane.pixel(along(centre, &guide, out)));
     let edge = Stroke::new(colour::INK, 2.0);
-    svg.path(corners, true, "#d5dde6", Some(&edge));
+    svg.path(corners, true, colour::PLATFORM, Some(&edge));
 }
 
 /// An arrow along the platform's x' axis from the centre.
@@ -139,17 +144,20 @@ fn draw_orientation(svg: &mut Svg, plane: &Plane, centre: Point, theta_rad: f64)
         ])
     };
     let shaft = Stroke::new(colour::THETA, 3.0);
-    svg.line(at(0.0, 0.0), at(0.40, 0.0), &shaft);
-    let head = [at(0.52, 0.0), at(0.38, 0.055), at(0.38, -0.055)];
+    svg.line(at(0.0, 0.0), at(SIZES.arrow_shaft, 0.0), &shaft);
+    let (back, half) = (SIZES.arrow_back, SIZES.arrow_half_width);
+    let head = [at(SIZES.arrow_tip, 0.0), at(back, half), at(back, -half)];
     svg.path(head, true, colour::THETA, None);
     let name = Font {
         halo: Some(colour::TINT),
         ..Font::new(16.0, colour::THETA, Anchor::Middle).bold()
     };
-    let [x, y] = at(0.62, 0.0);
+    let [x, y] = at(SIZES.arrow_name, 0.0);
     svg.text([x, y + 5.0], "x\u{2032}", &name);
     let dot = Stroke::new(colour::PANEL, 1.5);
-    svg.circle(plane.pixel(centre), 6.0, colour::CENTRE, Some(&dot));
+    let radius = plane.length(SIZES.centre_radius);
+    let radius = radius.max(SIZES.centre_least_px);
+    svg.circle(plane.pixel(centre), radius, colour::CENTRE, Some(&dot));
 }
 
 /// The carriages sit on the track, turned with their guides.
@@ -164,7 +172,7 @@ fn draw_carriages(svg: &mut Svg, plane: &Plane, solution: &Inverse<f64>) {
                 place[1] + forward * guide.sin + left * guide.cos,
             ])
         };
-        let (long, wide) = (0.15, 0.115);
+        let (long, wide) = (SIZES.carriage_half_length, SIZES.carriage_half_width);
         let block = [
             corner(long, wide),
             corner(-long, wide),
@@ -172,8 +180,30 @@ fn draw_carriages(svg: &mut Svg, plane: &Plane, solution: &Inverse<f64>) {
             corner(long, -wide),
         ];
         svg.path(block, true, colour::PIVOTS[index], Some(&outline));
-        let number = Font::new(15.0, colour::PANEL, Anchor::Middle).bold();
+        let height = plane.length(SIZES.number_height);
+        let height = height.max(SIZES.number_least_px);
+        let number = Font::new(height, colour::ON_PIVOT, Anchor::Middle).bold();
         let [x, y] = plane.pixel(place);
-        svg.text([x, y + 5.5], &(index + 1).to_string(), &number);
+        svg.text([x, y + 0.36 * height], &(index + 1).to_string(), &number);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn guides_are_drawn_where_the_kinematics_has_them() {
+        let pose = Pose {
+            x: 0.0,
+            y: 0.0,
+            theta: 0.0,
+        };
+        let solution = inverse(&pose).expect("the centre is in reach");
+        for (guide, deg) in solution.guides.iter().zip(SIZES.guides_deg) {
+            let (sin, cos) = deg.to_radians().sin_cos();
+            let off = (guide.cos - cos).hypot(guide.sin - sin);
+            assert!(off < 1e-12, "{deg} deg: {off}");
+        }
     }
 }

@@ -1,14 +1,14 @@
 //! The picture of a run: its path, its last pose, and what it did over time.
 
 use super::Run;
-use super::chart::{Chart, Series, TimeAxis, draw_time_labels};
-use super::colour;
 use super::mechanism::{Plane, draw_mechanism, draw_track};
 use super::sample::Move;
-use super::scale::{Scale, Steps, Ticks};
 use super::statistics::Spread;
-use super::svg::{Anchor, Font, Rect, Stroke, Svg};
 use super::trace::Plots;
+use drawing::chart::{Chart, Series, TimeAxis, draw_time_labels};
+use drawing::colour;
+use drawing::scale::{Scale, Steps, Ticks};
+use drawing::svg::{Anchor, Font, Rect, Stroke, Svg};
 
 const WIDTH: f64 = 1600.0;
 const HEIGHT: f64 = 1000.0;
@@ -45,6 +45,14 @@ fn draw_heading(svg: &mut Svg, run: &Run) {
     );
     let facts = Font::new(17.0, colour::FAINT, Anchor::End);
     svg.text([CHART_LEFT + CHART_WIDTH, 46.0], &facts_line(run), &facts);
+    draw_conditions(svg, run);
+}
+
+/// What the run was made under, below the heading.
+pub(super) fn draw_conditions(svg: &mut Svg, run: &Run) {
+    let font = Font::new(13.0, colour::FAINT, Anchor::Start);
+    let place = [VIEW_LEFT - 40.0, 70.0];
+    svg.text(place, &run.conditions.to_string(), &font);
 }
 
 fn facts_line(run: &Run) -> String {

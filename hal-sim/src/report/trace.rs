@@ -1,9 +1,9 @@
 //! The recorder of a run: every tick goes in; statistics, plots and table rows come out.
 
-use super::envelope::Envelope;
 use super::path::Path;
 use super::sample::Sample;
 use super::statistics::Statistics;
+use drawing::envelope::Envelope;
 
 /// Rows of the trace file at the default 20 kHz: one a millisecond.
 pub const DEFAULT_EVERY: u32 = 20;

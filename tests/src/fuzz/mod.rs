@@ -8,12 +8,11 @@
 //!
 //! A case is its seed: the same one does the same everywhere.
 
-mod random;
 mod settings;
 mod watch;
 mod words;
 
-pub use random::Random;
+use hal_sim::random::Random;
 pub use settings::run as run_settings;
 
 use crate::ideal::{Connection, Ideal, Trouble};
@@ -85,16 +84,16 @@ fn names(help: &str) -> Vec<String> {
 
 impl Case {
     fn step(&mut self) {
-        match self.random.below(20) {
+        match self.random.index(20) {
             0 => self.trouble(),
             1 => self.reconnect(),
             2..=7 => self.check_line(),
             _ => self.send(),
         }
-        let ticks = match self.random.below(6) {
+        let ticks = match self.random.index(6) {
             0 => 400,
             1 | 2 => 60,
-            _ => self.random.below(8) as u32,
+            _ => self.random.index(8) as u32,
         };
         self.ticks(ticks);
     }
@@ -108,12 +107,12 @@ impl Case {
 
     /// Sends lines to a connection, in pieces.
     fn send(&mut self) {
-        let number = self.random.below(CONNECTIONS);
-        for _ in 0..=self.random.below(3) {
+        let number = self.random.index(CONNECTIONS);
+        for _ in 0..=self.random.index(3) {
             let mut line = words::line(&mut self.random, &self.names);
             self.watch.note(&line);
             while !line.is_empty() {
-                let cut = 1 + self.random.below(line.len());
+                let cut = 1 + self.random.index(line.len());
                 let piece: Vec<u8> = line.drain(..cut).collect();
                 self.stage.connections[number].input.extend(piece);
                 if self.random.once_in(3) {
@@ -125,21 +124,21 @@ impl Case {
 
     /// A client goes, another comes.
     fn reconnect(&mut self) {
-        let number = self.random.below(CONNECTIONS);
+        let number = self.random.index(CONNECTIONS);
         self.stage.connections[number] = Connection::default();
     }
 
     /// Something is wrong with the hardware for a while.
     fn trouble(&mut self) {
         let mut trouble = Trouble::default();
-        match self.random.below(4) {
+        match self.random.index(4) {
             0 => trouble.emergency_stop = true,
-            1 => trouble.silent[self.random.below(3)] = true,
+            1 => trouble.silent[self.random.index(3)] = true,
             2 => trouble.bridge = true,
             _ => trouble.no_supply = true,
         }
         self.stage.trouble = trouble;
-        let ticks = 1 + self.random.below(10) as u32;
+        let ticks = 1 + self.random.index(10) as u32;
         self.ticks(ticks);
         self.stage.trouble = Trouble::default();
     }

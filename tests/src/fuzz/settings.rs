@@ -3,14 +3,14 @@
 //! Nothing panics, parameters are sound and each in its range, macros can be printed; what cannot be used leaves the
 //! controller's own settings; and settings can be kept afterwards, whatever was there.
 
-use super::Random;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
 use firmware::gcs::{Interpreter, PARAMETERS};
 use firmware::parameters::Parameters;
 use firmware::settings_store::SettingsStore;
-use hal_sim::devices::SettingsFlash;
-use hal_sim::run::IDENTITY;
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::random::Random;
+use hal_sim::rig::IDENTITY;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const SECTOR: usize = 16 << 10;
@@ -22,15 +22,15 @@ const SECTOR: usize = 16 << 10;
 pub fn run(seed: u64) {
     let mut random = Random::new(seed);
     let mut content = Vec::new();
-    for _ in 0..=random.below(4) {
+    for _ in 0..=random.index(4) {
         let image = image(&mut random);
         content.extend(record(&mut random, &image));
         if random.once_in(4) {
             content.resize(content.len().next_multiple_of(SECTOR), 0xFF);
         }
     }
-    for _ in 0..random.below(4) {
-        let at = random.below(content.len());
+    for _ in 0..random.index(4) {
+        let at = random.index(content.len());
         content[at] = random.bits() as u8;
     }
     let mut keeper = SettingsStore::new(SettingsFlash::holding(&content));
@@ -40,7 +40,7 @@ pub fn run(seed: u64) {
     let (again, problem) = started(&mut keeper);
     assert_eq!(problem, None);
     for parameter in PARAMETERS {
-        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_keep()));
+        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_store()));
         assert_eq!(now, before, "{:x}", parameter.id);
     }
     assert!(again.macros().eq(panel.macros()));
@@ -74,9 +74,9 @@ fn check(panel: &Interpreter, problem: Option<FaultKind>) {
 
 /// An image in an envelope that is whole, as a rule.
 fn record(random: &mut Random, image: &[u8]) -> Vec<u8> {
-    let generation = match random.below(8) {
+    let generation = match random.index(8) {
         0 => random.bits() as u32,
-        _ => random.below(10) as u32,
+        _ => random.index(10) as u32,
     };
     let words = [0x3153_5054, generation, image.len() as u32];
     let mut head: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -96,7 +96,7 @@ fn image(random: &mut Random) -> Vec<u8> {
         1
     };
     let mut image = version.to_le_bytes().to_vec();
-    let count = random.below(12);
+    let count = random.index(12);
     image.extend((count as u16).to_le_bytes());
     for _ in 0..count {
         let parameter = random.pick(PARAMETERS);
@@ -106,7 +106,7 @@ fn image(random: &mut Random) -> Vec<u8> {
             parameter.id
         };
         let [lowest, highest] = parameter.range;
-        let value = match random.below(40) {
+        let value = match random.index(40) {
             0 => f64::from_bits(random.bits()),
             1 => highest * 2.0,
             2 => lowest,
@@ -116,18 +116,18 @@ fn image(random: &mut Random) -> Vec<u8> {
         image.extend(id.to_le_bytes());
         image.extend(value.to_le_bytes());
     }
-    let count = random.below(20);
+    let count = random.index(20);
     image.push(count as u8);
     for _ in 0..count {
-        let name = format!("macro_{}", random.below(40));
-        let text = "MOV X 1\n".repeat(random.below(100));
+        let name = format!("macro_{}", random.index(40));
+        let text = "MOV X 1\n".repeat(random.index(100));
         image.push(name.len() as u8);
         image.extend(name.as_bytes());
         image.extend((text.len() as u16).to_le_bytes());
         image.extend(text.as_bytes());
     }
-    for _ in 0..random.below(2) {
-        let at = random.below(image.len());
+    for _ in 0..random.index(2) {
+        let at = random.index(image.len());
         image[at] = random.bits() as u8;
     }
     image

@@ -1,7 +1,7 @@
 //! Lines to send: some that mean something, some nearly, some nothing at all.
 
-use super::random::Random;
 use firmware::gcs::PARAMETERS;
+use hal_sim::random::Random;
 
 /// Lines that mean something; `{x}` a length, `{w}` an angle, `{n}` any number, `{p}` a parameter, `{v}` a variable, `{m}` a
 /// macro, `{a}` an axis, `{c}` a condition, `{i}` a small whole number.
@@ -128,7 +128,7 @@ pub fn line(random: &mut Random, names: &[String]) -> Vec<u8> {
 /// Any command with anything behind it.
 fn jumble(random: &mut Random, names: &[String]) -> String {
     let mut text = random.pick(names).clone();
-    for _ in 0..random.below(6) {
+    for _ in 0..random.index(6) {
         let pattern = *random.pick(&[
             "{a}", "{n}", "{x}", "{p}", "{v}", "{m}", "{i}", "{c}", "${v}",
         ]);
@@ -153,7 +153,7 @@ fn value(random: &mut Random, kind: &str) -> String {
     match kind {
         "x" => format!("{:.3}", random.between(-60.0, 60.0)),
         "w" => format!("{:.2}", random.between(-720.0, 720.0)),
-        "i" => format!("{}", random.below(8) as i32 - 2),
+        "i" => format!("{}", random.index(8) as i32 - 2),
         "a" => (*random.pick(AXES)).to_owned(),
         "v" | "m" => (*random.pick(NAMES)).to_owned(),
         "p" => parameter(random),
@@ -177,13 +177,13 @@ fn parameter(random: &mut Random) -> String {
 }
 
 fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
-    for _ in 0..=random.below(4) {
-        let at = random.below(bytes.len() + 1);
-        match random.below(5) {
+    for _ in 0..=random.index(4) {
+        let at = random.index(bytes.len() + 1);
+        match random.index(5) {
             0 => bytes.insert(at, *random.pick(BYTES)),
             1 => bytes.insert(at, random.bits() as u8),
             2 => bytes.truncate(at),
-            3 => drop(bytes.drain(at.saturating_sub(random.below(6))..at)),
+            3 => drop(bytes.drain(at.saturating_sub(random.index(6))..at)),
             _ => {
                 let piece = bytes[..at].to_vec();
                 bytes.extend(piece);

@@ -7,8 +7,8 @@ use crate::{
     flash::SettingsFlash,
     latch::LatchTimer,
     pwm::{self, PwmChannel, PwmTimer},
+    reset_cause::ResetCause,
     serial::{self, Receiver, Transmitter},
-    watchdog::ResetCause,
 };
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -63,8 +63,13 @@ impl Bridges {
     /// Which bridges report a fault.
     #[inline(always)]
     pub fn faults(&mut self) -> [bool; 3] {
-        let Ok(faults) =
-            (|| Ok::<_, Infallible>([self.0.faulty()?, self.1.faulty()?, self.2.faulty()?]))();
+        let Ok(faults) = (|| {
+            Ok::<_, Infallible>([
+                self.0.reports_fault()?,
+                self.1.reports_fault()?,
+                self.2.reports_fault()?,
+            ])
+        })();
         faults
     }
 

@@ -121,7 +121,8 @@ impl Port {
         if self.receive.is_running() || self.transmit.is_running() {
             return;
         }
-        // SAFETY: the buffers are statics in RAM that only this port uses, and it reads its own once the stream is done.
+        // SAFETY: the buffers are statics in RAM that only this port uses, and it reads its own once the stream is
+        // done.
         unsafe {
             self.receive
                 .start(self.buffer.0.get().cast(), FRAME_BYTES as u16);

@@ -1,18 +1,18 @@
 //! The flash that settings are kept in: the four sectors of 16 KiB at the beginning of bank 2.
 //!
-//! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task does,
-//! with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered; what
-//! comes in gathers in the receiver's ring of 1 KiB.
+//! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task
+//! does, with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered;
+//! what comes in gathers in the receiver's ring of 2 KiB.
 //!
-//! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a sector
-//! is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
+//! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a
+//! sector is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
 
 use crate::watchdog;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
-use firmware::store::RECORD_BYTES;
+use firmware::gcs::STORED_BYTES;
 use stm32f4xx_hal::pac;
 
 /// Where it begins, after the code's memory.
@@ -25,7 +25,7 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Every error flag of `SR`, cleared by writing it.
 const ERRORS: u32 = 0b1_1111_0010;
 
-const _: () = assert!(RECORD_BYTES <= SECTOR_BYTES);
+const _: () = assert!(STORED_BYTES <= SECTOR_BYTES);
 
 /// See the module.
 pub struct SettingsFlash(pac::FLASH);
@@ -98,7 +98,8 @@ impl ReadNorFlash for SettingsFlash {
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         check_read(self, offset, bytes.len()).map_err(FlashError::Place)?;
         for (at, byte) in (BEGIN + offset as usize..).zip(bytes) {
-            // SAFETY: in the flash, which can be read at any address. Volatile: the compiler does not know who writes it.
+            // SAFETY: in the flash, which can be read at any address. Volatile: the compiler does not know who writes
+            // it.
             *byte = unsafe { (at as *const u8).read_volatile() };
         }
         Ok(())

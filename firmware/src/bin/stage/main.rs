@@ -30,20 +30,19 @@
 //!
 //! From the encoders' latch to the PWM period in which the answer acts: 40 us. A duty takes over with a whole PWM
 //! period. Phase and sleep pins change inside the tick: the enable pulse stands at the beginning of the period, so with
-//! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase does
-//! not matter until the new duty comes.
+//! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase
+//! does not matter until the new duty comes.
 //!
 //! # Priorities
 //!
 //! Latch and tick share the highest priority, 0 in the hardware, which no BASEPRI mask holds back; they never meet. All
-//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides are
-//! lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a full
-//! buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
+//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides
+//! are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a
+//! full buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
 #![no_std]
 #![no_main]
 
 mod analog;
-mod black_box;
 mod board;
 mod clocks;
 mod dma;
@@ -52,9 +51,11 @@ mod flash;
 mod latch;
 mod panic;
 mod pwm;
+mod reset_cause;
 mod restart;
+mod retained_memory;
 mod serial;
-mod stopwatch;
+mod tick_timing;
 mod trace;
 mod watchdog;
 
@@ -64,24 +65,22 @@ use defmt_rtt as _;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use crate::{
-        black_box::BLACK_BOX,
         board::{Board, Loop},
         flash::SettingsFlash,
         restart,
+        retained_memory::RETAINED_MEMORY,
         serial::{Receiver, Transmitter},
-        stopwatch::Stopwatch,
-        trace::{self, TRACE, Tracer},
+        tick_timing::TickTiming,
+        trace::{self, TRACE, TraceWriter},
         watchdog,
     };
     use core::mem::MaybeUninit;
-    use firmware::{
-        config::Config,
-        controller::{Inputs, State, tick},
-        link::{Link, PanelLink, TickLink},
-        panel::{Identity, Panel, Session},
-        parameters::Parameters,
-        store::Keeper,
-    };
+    use firmware::control::config::Config;
+    use firmware::control::{Inputs, State, tick};
+    use firmware::gcs::{Identity, Interpreter, Session};
+    use firmware::parameters::Parameters;
+    use firmware::queues::{CommandQueues, Queues, TickQueues};
+    use firmware::settings_store::SettingsStore;
 
     const IDENTITY: Identity = Identity {
         serial: "0",
@@ -99,21 +98,21 @@ mod app {
     struct Local {
         config: Config,
         state: &'static mut State,
-        tracer: Tracer,
-        stopwatch: Stopwatch,
-        tick_link: TickLink<'static>,
-        panel: &'static mut Panel,
+        trace_writer: TraceWriter,
+        tick_timing: TickTiming,
+        tick_queues: TickQueues<'static>,
+        panel: &'static mut Interpreter,
         session: &'static mut Session,
-        keeper: Keeper<SettingsFlash>,
-        panel_link: PanelLink<'static>,
+        keeper: SettingsStore<SettingsFlash>,
+        command_queues: CommandQueues<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
     }
 
     // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
     #[init(local = [
-        link: Link = Link::new(),
-        panel_place: MaybeUninit<Panel> = MaybeUninit::uninit(),
+        queues: Queues = Queues::new(),
+        panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
     ])]
@@ -129,16 +128,17 @@ mod app {
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
         let mut core = context.core;
-        let (tick_link, panel_link) = context.local.link.split_keeping(&BLACK_BOX);
+        let (tick_queues, command_queues) =
+            context.local.queues.split_with_retained(&RETAINED_MEMORY);
         let panel = context
             .local
             .panel_place
-            .write(Panel::new(&PARAMETERS, IDENTITY));
+            .write(Interpreter::new(&PARAMETERS, IDENTITY));
         if let Some(cause) = reset_cause.unasked() {
-            panel.note_start(cause);
+            panel.set_start_cause(cause);
         }
         // Before anything can move.
-        let mut keeper = Keeper::new(flash);
+        let mut keeper = SettingsStore::new(flash);
         let state = match keeper.restore(panel) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
@@ -146,13 +146,13 @@ mod app {
         let local = Local {
             config: Config::new(panel.parameters()),
             state: context.local.state_place.write(state),
-            tracer: Tracer::default(),
-            stopwatch: Stopwatch::new(&mut core.DCB, &mut core.DWT),
-            tick_link,
+            trace_writer: TraceWriter::default(),
+            tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
+            tick_queues,
             panel,
             session: context.local.session_place.write(Session::new()),
             keeper,
-            panel_link,
+            command_queues,
             receiver,
             transmitter,
         };
@@ -174,11 +174,11 @@ mod app {
 
     /// The control task, every 50 us. If it takes longer than 35 us, the next latch and with it the next frames are
     /// late, and the library takes them for missing; if it never ends, the watchdog resets the chip.
-    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_link, tracer, stopwatch])]
+    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_queues, trace_writer, tick_timing])]
     fn control(context: control::Context) {
         let control = context.shared.control;
         control.pwm.disarm_tick();
-        let (tick_cycles, late) = context.local.stopwatch.begin();
+        let (tick_cycles, late) = context.local.tick_timing.begin();
         let counts = control.analog.counts();
         let inputs = Inputs {
             frames: control.encoders.frames(),
@@ -193,22 +193,22 @@ mod app {
             context.local.config,
             context.local.state,
             &inputs,
-            context.local.tick_link,
-            context.local.tracer,
+            context.local.tick_queues,
+            context.local.trace_writer,
         );
         control.bridges.set(outputs.duty, outputs.awake);
         control.pwm.connect(outputs.awake);
-        context.local.stopwatch.end();
+        context.local.tick_timing.end();
         trace::mark_end_of_tick();
     }
 
     /// The command interface, the settings and the watchdog.
-    #[idle(local = [panel, session, keeper, panel_link, receiver, transmitter])]
+    #[idle(local = [panel, session, keeper, command_queues, receiver, transmitter])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
         let mut received = 0u32;
         loop {
-            if local.receiver.look() {
+            if local.receiver.poll() {
                 local.session.lose();
             }
             local.receiver.pass_to(|bytes| {
@@ -217,12 +217,13 @@ mod app {
                 taken
             });
             local.session.set_room(local.transmitter.room());
-            let Ok(()) = local
-                .panel
-                .service(local.session, local.panel_link, local.transmitter);
-            TRACE.note_service(received, local.panel.tick() as u32);
+            let Ok(()) =
+                local
+                    .panel
+                    .service(local.session, local.command_queues, local.transmitter);
+            TRACE.record_service(received, local.panel.tick() as u32);
             local.transmitter.send();
-            local.keeper.carry_on(local.panel);
+            local.keeper.store_pending(local.panel);
             if local.panel.wants_restart() {
                 restart::now();
             }

@@ -1,7 +1,7 @@
 //! USART1: the command interface, 921,600 baud, both directions by DMA and without an interrupt.
 //!
-//! Received bytes land in a ring that the command side empties whenever it runs, within 50 us as a rule. At full rate half of
-//! it holds 11 ms, and so long the command side may be away; what it loses then, it is told.
+//! Received bytes land in a ring that the command side empties whenever it runs, within 50 us as a rule. At full rate
+//! half of it holds 11 ms, and so long the command side may be away; what is lost then is reported to it.
 
 use crate::{
     clocks,
@@ -39,7 +39,7 @@ pub struct Receiver {
     stream: Stream,
     /// Where the next byte to hand out lies.
     next: usize,
-    /// Where the stream was going to put the next byte when it was looked at.
+    /// Where the stream was going to put the next byte when it was polled.
     head: usize,
 }
 
@@ -82,9 +82,9 @@ pub fn configure(
 }
 
 impl Receiver {
-    /// Looks how far the bytes have come. Returns whether some are lost or damaged: then all that has not been handed out is
-    /// thrown away, and so has to be what was handed out of a line and what comes of it.
-    pub fn look(&mut self) -> bool {
+    /// Finds how far the bytes have come. Returns whether some are lost or damaged: then all that has not been handed
+    /// out is thrown away, and so has to be what was handed out of a line and what comes of it.
+    pub fn poll(&mut self) -> bool {
         // Both marks passed: half a ring has come, or that and whole ones more.
         let [half, end] = self.stream.take_marks();
         let head = (RING_BYTES - usize::from(self.stream.remaining())) % RING_BYTES;
@@ -102,8 +102,8 @@ impl Receiver {
         lost
     }
 
-    /// Offers what had come when it was looked, in pieces, to `take`, which says how many bytes of a piece it took; the rest
-    /// stays.
+    /// Offers what had come when it was polled, in pieces, to `take`, which says how many bytes of a piece it took; the
+    /// rest stays.
     pub fn pass_to(&mut self, mut take: impl FnMut(&[u8]) -> usize) {
         let mut piece = [0; PIECE_BYTES];
         loop {

@@ -1,11 +1,12 @@
 //! What a bench or a debugger reads by symbol: `TRACE`, written by the tick, by the command interface and at start.
 //!
-//! What the command interface sends depends on the bytes and the snapshot that it has at hand, and how long it takes depends
-//! on the chip. With a record of both, whoever repeats the run elsewhere can give its own command interface the same.
+//! What the command interface sends depends on the bytes and the snapshot that it has at hand, and how long it takes
+//! depends on the chip. With a record of both, whoever repeats the run elsewhere can give its own command interface the
+//! same.
 
-use crate::watchdog::ResetCause;
+use crate::reset_cause::ResetCause;
 use core::sync::atomic::{AtomicU32, Ordering};
-use firmware::recorder::{Record, RunningHash, Sample};
+use firmware::recorder::{RunningHash, Sample, TickObserver};
 
 /// The record.
 #[repr(C)]
@@ -44,14 +45,14 @@ impl Trace {
         self.ticks.load(Ordering::Relaxed)
     }
 
-    /// Notes why the chip started.
+    /// Keeps why the chip started.
     pub fn set_reset_cause(&self, cause: ResetCause) {
         self.reset_cause.store(cause as u32, Ordering::Relaxed);
     }
 
-    /// Notes a run of the command interface: bytes taken since start, the last ones right before it, and the tick of the
-    /// snapshot it has had. To be called by the command interface alone.
-    pub fn note_service(&self, bytes: u32, tick: u32) {
+    /// Keeps a run of the command interface: bytes taken since start, the last ones right before it, and the tick of
+    /// the snapshot it has had. To be called by the command interface alone.
+    pub fn record_service(&self, bytes: u32, tick: u32) {
         let served = self.served.load(Ordering::Relaxed);
         let [bytes_place, tick_place] = &self.services[served as usize % SERVICES];
         bytes_place.store(bytes, Ordering::Relaxed);
@@ -60,14 +61,14 @@ impl Trace {
     }
 }
 
-/// The tick's recorder: keeps [`TRACE`] up to date.
+/// What the tick hands its samples to: keeps [`TRACE`] up to date.
 #[derive(Default)]
-pub struct Tracer(RunningHash);
+pub struct TraceWriter(RunningHash);
 
-impl Record for Tracer {
+impl TickObserver for TraceWriter {
     #[inline]
-    fn record(&mut self, sample: &Sample) {
-        self.0.record(sample);
+    fn observe(&mut self, sample: &Sample) {
+        self.0.observe(sample);
         TRACE.hash.store(self.0.0, Ordering::Relaxed);
         TRACE.commands.store(sample.commands, Ordering::Relaxed);
         TRACE.ticks.store(sample.tick as u32, Ordering::Relaxed);

@@ -1,186 +1,35 @@
 //! Jogging: from any state to a constant velocity, held until somebody changes it, or up to the workspace's edge.
 //!
 //! ```text
-//! speed of    ________________________                 The velocity is changed (see `change`), held, and given up in time:
+//! speed of    ________________________                 The velocity is changed (see `brake`), held, and given up in time:
 //! the point  /                        \                a plan that ends at rest like any other, exactly where it can stop.
 //!          _/                          \______         Theta alone never meets an edge: its plan ends at a thousand million
 //! of theta   ______________________________..          turns, 30 years away at a turn a second.
 //!          _/
 //! ```
 //!
-//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (see `swing`): the faster
-//! the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it is too fast.
-//! Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point beside its centre,
-//! its centre goes in circles: the point then stays where every orientation is possible, or, where it is not, point and theta
-//! stop together before the centre meets the edge.
+//! The edge is that of the disk in which the pivots can follow this velocity at any orientation (`check/pivot_bounds`):
+//! the faster the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it
+//! is too fast. Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point
+//! beside its centre, its centre goes in circles: the point then stays where every orientation is possible, or, where
+//! it is not, point and theta stop together before the centre meets the edge.
 //!
 //! Near an edge there may be no room to reach the velocity and to stop again: from rest a lower one is taken.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `planner` | velocities tried until one can be reached and given up again |
+//! | `request` | the velocity wanted, the limits, the state that is left |
+//! | `travel_time` | how long a steady motion can go before the edge or a bound |
+//! | `trajectory` | the way to the velocity, the velocity held, the way to rest |
+//! | `hold_time` | how long it is held, and how much slower it has to be |
+//! | `hold_then_stop` | point and theta, each held and stopped for itself |
 
-mod end;
-mod hold;
-mod reach;
-mod start;
+mod hold_then_stop;
+mod hold_time;
+mod planner;
+mod request;
+mod trajectory;
+mod travel_time;
 
-use self::end::End;
-use self::start::{Setting, State};
-use super::axis::Axis;
-use super::change::{Force, Ramp, release};
-use super::envelope::{Envelope, Legs, Looks};
-use super::ground::Ground;
-use super::plan::{Piece, Plan, Start, after_all};
-use super::refusal::Refusal;
-use super::swing::{Pace, per_second};
-use super::tracks::Pieces;
-use super::transition::NoTransition;
-use super::units::UnitLimits;
-
-/// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where `start`
-/// says. Zero is a velocity as any other: that axis stops smoothly.
-///
-/// # Errors
-/// [`NoTransition::Refused`] when there is no such jog, with the reason; [`NoTransition::NeedsStop`] when there is, but not
-/// without a stop before.
-#[inline(never)]
-pub fn plan_jog(
-    id: u32,
-    start: Start,
-    state: &[Axis; 3],
-    velocity: &[f64; 3],
-    ground: &Ground,
-) -> Result<Plan, NoTransition> {
-    // Written where it stays: a plan has a thousand bytes.
-    let mut planned = Ok(Plan {
-        id,
-        start,
-        ..Plan::default()
-    });
-    if let Ok(plan) = &mut planned
-        && let Err(no) = write(plan, state, velocity, ground)
-    {
-        planned = Err(no);
-    }
-    planned
-}
-
-fn write(
-    plan: &mut Plan,
-    state: &[Axis; 3],
-    velocity: &[f64; 3],
-    ground: &Ground,
-) -> Result<(), NoTransition> {
-    let setting = Setting::new(velocity, ground).map_err(NoTransition::Refused)?;
-    let now = State::new(state, &setting);
-    let from_rest = matches!(plan.start, Start::Rest(_));
-    let mut wanted = setting.velocity;
-    for _ in 0..ATTEMPTS {
-        if from_rest && wanted == [0; 3] && setting.velocity != wanted {
-            return Err(NoTransition::Refused(Refusal::NoWay));
-        }
-        let jog = Jog::new(state, &now, wanted, &setting, &mut plan.pieces)?;
-        match jog.hold(state, &setting, from_rest) {
-            Ok(hold) => {
-                // From rest the way there is the first part of the way on, which was looked at for the time that it is held.
-                if !from_rest {
-                    check(&plan.pieces, state, ground)?;
-                }
-                jog.finish(plan, hold);
-                return Ok(());
-            }
-            Err(_) if !from_rest => return Err(NoTransition::NeedsStop),
-            Err(short) => wanted = jog.slower(&short, &setting),
-        }
-    }
-    Err(NoTransition::Refused(Refusal::NoWay))
-}
-
-/// The point may be too near to an edge, theta to a bound, and once more for what a lower velocity changes.
-const ATTEMPTS: usize = 4;
-
-/// Looks at the way to the velocity as at any other.
-fn check(pieces: &Pieces, state: &[Axis; 3], ground: &Ground) -> Result<(), NoTransition> {
-    let envelope = Envelope::new(ground, UnitLimits::new(ground), state);
-    let mut legs = Legs::new();
-    envelope.legs(pieces, state, &mut legs);
-    envelope
-        .check(&legs, &mut { Looks::ALL })
-        .map_err(|_| NoTransition::NeedsStop)
-}
-
-/// A jog from the state on in which its velocity is reached.
-struct Jog {
-    /// 2^-72 units a tick.
-    wanted: [i64; 3],
-    /// Where the velocity is reached.
-    steady: [Axis; 3],
-    /// Ticks of the change of velocity, release not counted.
-    ramp: u64,
-    /// Brings the velocity back to zero.
-    brake: Ramp,
-    force: Force,
-    radius: f32,
-}
-
-impl Jog {
-    /// Writes the pieces of the way there, too.
-    fn new(
-        state: &[Axis; 3],
-        now: &State,
-        wanted: [i64; 3],
-        setting: &Setting,
-        pieces: &mut Pieces,
-    ) -> Result<Self, NoTransition> {
-        let hz = setting.hz;
-        let target = per_second(&wanted, hz);
-        let (radius, force) = setting.force(now, &target)?;
-        pieces.clear();
-        let released = release(state, Pace::of(&now.acceleration), force.jerk, hz, pieces);
-        let change = [0, 1, 2].map(|i| wanted[i] - released[i]);
-        let ramp = Ramp::new(Pace::of(&per_second(&change, hz)), &force, hz);
-        for piece in ramp.pieces(change) {
-            // Release and ramp are five.
-            let _ = pieces.push(piece);
-        }
-        Ok(Self {
-            wanted,
-            steady: after_all(state, pieces, &[0; 3]),
-            ramp: ramp.ticks(),
-            brake: Ramp::new(Pace::of(&target), &force, hz),
-            force,
-            radius,
-        })
-    }
-
-    /// Adds pieces for the velocities held for `hold` ticks and given up, the point's and theta's for themselves.
-    fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
-        let begun = plan.pieces.len();
-        let change = [0, 1, 2].map(|i| match self.wanted[i] {
-            0 => 0,
-            _ => -self.steady[i].velocity,
-        });
-        let brakes = self.brake.pieces(change);
-        let mut ends = [
-            End::new(change[..2] != [0, 0], point),
-            End::new(change[2] != 0, turn),
-        ];
-        // Whatever begins or ends somewhere begins a piece.
-        while let Some(ticks) = ends[0].soonest(&ends[1]) {
-            let jerks = [0, 1].map(|i| ends[i].jerk(&brakes));
-            if ticks > 0 {
-                // Room for the ramp's five and eight for two ends.
-                let _ = plan.pieces.push(Piece {
-                    ticks,
-                    jerk: [jerks[0][0], jerks[0][1], jerks[1][2]],
-                });
-            }
-            for end in &mut ends {
-                end.go_on(ticks, &brakes);
-            }
-        }
-        let rest = after_all(&self.steady, &plan.pieces[begun..], &[0; 3]);
-        plan.pieces.retain(|piece| piece.ticks > 0);
-        // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes on.
-        plan.nudge = rest.map(|axis| -axis.velocity);
-        let ticks = plan.ticks();
-        plan.end = rest.map(|axis| axis.end(ticks, -axis.velocity));
-    }
-}
+pub use planner::plan_jog;

@@ -1,7 +1,8 @@
-//! From a state to a given one in a given number of ticks: three pieces of constant jerk, which there is exactly one way to choose.
+//! From a state to a given one in a given number of ticks: three pieces of constant jerk, which there is exactly one
+//! way to choose.
 //!
-//! With `n` ticks in the first and the last piece, `m` in the middle one and `T` in all, the jerks j1, j2, j3 make up what is
-//! missing when the state is left alone: in acceleration, velocity and position
+//! With `n` ticks in the first and the last piece, `m` in the middle one and `T` in all, the jerks j1, j2, j3 make up
+//! what is missing when the state is left alone: in acceleration, velocity and position
 //!
 //! ```text
 //! A =  j1 n                             + j2 m                           + j3 n
@@ -9,10 +10,10 @@
 //! P =  j1 (n^3/6 + n^2/2 (m + n) + n (m + n)^2/2) + j2 (m^3/6 + m^2/2 n + m n^2/2) + j3 n^3/6
 //! ```
 //!
-//! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece is made
-//! up in the next: nothing accumulates.
+//! What is missing is taken from the very integers that the tick will hold, so what rounding has left of the last piece
+//! is made up in the next: nothing accumulates.
 
-use super::super::axis::{Axis, JERK_STEP};
+use crate::motion::plan::axis_state::{AxisState, JERK_STEP};
 
 /// The three pieces' lengths, and the inverse of the above with times in units of T.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +52,7 @@ impl Knot {
     }
 
     /// The jerks that lead from `from` to `to`, of which the position may be off by what half a jerk step makes.
-    pub fn jerks(&self, from: &Axis, to: &Axis) -> [i64; 3] {
+    pub fn jerks(&self, from: &AxisState, to: &AxisState) -> [i64; 3] {
         let alone = from.after(self.whole(), 0, 0);
         let t = self.whole;
         let missing = [
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn three_pieces_arrive() {
-        let from = Axis {
+        let from = AxisState {
             position: 5 << 60,
             velocity: 3 << 40,
             acceleration: -(6 << 30),
@@ -97,7 +98,7 @@ mod tests {
             let knot = Knot::new(ticks);
             assert_eq!(knot.whole(), u64::from(ticks));
             let t = i64::from(ticks);
-            let to = Axis {
+            let to = AxisState {
                 position: from.position + i128::from(t * (7 << 39)),
                 velocity: -(2 << 40),
                 acceleration: 6 << 31,

@@ -8,227 +8,37 @@
 //!  curve          ~~~~~~~~~~~              a spline through them (`spline`)
 //!                  |   |   |
 //!  plans          [k k k|stop]             knots on the curve, three pieces of constant jerk each (`knot`), and a stop
-//!                       [k k k|stop]       that the next plan takes the place of (`halt`)
+//!                       [k k k|stop]       that the next plan takes the place of (`final_stop`)
 //! ```
 //!
-//! Every plan ends in a stop of its own. A stream that dries up comes to rest by itself, with nobody's help, within the limits
-//! and the workspace; so does one whose next target asks for too much, which is refused.
+//! Every plan ends in a stop of its own. A stream that dries up comes to rest by itself, with nobody's help, within the
+//! limits and the workspace; so does one whose next target asks for too much, which is refused.
 //!
-//! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held against
-//! the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth. Jerk is the
-//! sender's own business within [`JERK_TOLERANCE`] times its limit: samples that are rounded, or a path with corners in its
-//! acceleration, have no better.
+//! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held
+//! against the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth.
+//! Jerk is the sender's own business within [`JERK_TOLERANCE`] times its limit: samples that are rounded, or a path
+//! with corners in its acceleration, have no better.
 //!
-//! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock differs a little
-//! (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
+//! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock
+//! differs a little (up to 0.05 %) is followed: the curve is passed as much faster or slower as keeps the reserve.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `messages` | what goes between a stream, its sender and the tick |
+//! | `state` | the targets that wait, and what has been sent of them |
+//! | `sequence` | which plan is sent when; the sender's clock |
+//! | `plans` | a plan: knots along the curve, each held against every limit |
+//! | `spline` | the curve through the targets |
+//! | `knot` | from a state to a given one in three pieces |
+//! | `final_stop` | the stop at the end of every plan |
 
-mod course;
-mod kinds;
+mod final_stop;
 mod knot;
+mod messages;
+mod plans;
+mod sequence;
 mod spline;
+mod state;
 
-pub use self::kinds::{Clock, End, Next, NotTaken, Progress};
-
-use self::knot::Knot;
-use self::spline::WINDOW;
-use super::axis::Axis;
-use super::check::check_target;
-use super::ground::Ground;
-use super::plan::Position;
-use heapless::Deque;
-
-/// Targets that can wait.
-pub const CAPACITY: usize = 32;
-/// Ticks between two targets: from 2 kHz at a control rate of 20 kHz down to a target in 100 ms.
-pub const PERIODS: core::ops::RangeInclusive<f64> = 10.0..=2_000.0;
-/// By how much the jerk that targets ask for may be over its limit.
-pub const JERK_TOLERANCE: f32 = 10.0;
-
-/// Ticks that a plan lasts at least before its stop: time to send the next.
-const LEAST_AHEAD: u32 = 60;
-/// Knots of a plan at most: three pieces each, and five of the stop, have to fit.
-const MOST_KNOTS: u32 = 6;
-/// Targets that may be late.
-const RESERVE: usize = 2;
-/// Copies of the start in the window at first: the curve then leaves it at rest.
-const BEFORE: usize = WINDOW - 1;
-/// Fraction bits of a place between two targets.
-const PART_BITS: u32 = 48;
-
-/// A clock of the sender's own: how much faster the curve is passed for a target too many, as a share; how much at most; and
-/// over how many plans the number of targets is averaged.
-const FOLLOWING: f32 = 5e-4;
-const MOST_FOLLOWING: f32 = 2e-3;
-const AVERAGED: f32 = 32.0;
-
-/// A plan that was sent.
-#[derive(Clone, Copy, Debug)]
-struct Sent {
-    id: u32,
-    /// Its tick at which the stop begins, or the next plan.
-    splice: u64,
-    /// The axes there.
-    state: [Axis; 3],
-}
-
-/// A stream of targets, from rest.
-#[derive(Clone, Debug)]
-pub struct Stream {
-    /// The window of the curve in front.
-    targets: Deque<Position, CAPACITY>,
-    knot: Knot,
-    knots: u32,
-    clock: Clock,
-    /// Targets a tick, 2^-48: what the sender says, and as it is followed.
-    nominal: u64,
-    rate: u64,
-    /// Place between the window's third target and the fourth, 2^-48.
-    part: u64,
-    /// Targets more than there should be, averaged.
-    surplus: f32,
-    sent: Option<Sent>,
-    before: Option<Sent>,
-    announced: bool,
-    /// The curve has come to its last target.
-    complete: bool,
-    end: Option<End>,
-}
-
-impl Stream {
-    /// A stream from rest at `start`, of targets `period` ticks apart; `None` unless that is in [`PERIODS`].
-    pub fn new(start: Position, period: f64, clock: Clock) -> Option<Self> {
-        if !PERIODS.contains(&period) {
-            return None;
-        }
-        let ticks = libm::rint(period) as u32;
-        let nominal = ((1_u64 << PART_BITS) as f64 / period) as u64;
-        let mut targets = Deque::new();
-        for _ in 0..BEFORE {
-            // There is room.
-            let _ = targets.push_back(start);
-        }
-        Some(Self {
-            targets,
-            knot: Knot::new(ticks),
-            knots: LEAST_AHEAD.div_ceil(ticks).clamp(1, MOST_KNOTS),
-            clock,
-            nominal,
-            rate: nominal,
-            part: 0,
-            surplus: 0.0,
-            sent: None,
-            before: None,
-            announced: false,
-            complete: false,
-            end: None,
-        })
-    }
-
-    /// Targets that have to wait before the motion starts: two plans' worth, and the reserve.
-    pub fn start_at(&self) -> usize {
-        2 * self.knots as usize + 1 + RESERVE
-    }
-
-    /// From the arrival of a target to the setpoint's passing it, in periods.
-    pub fn latency(&self) -> usize {
-        // The curve is three samples behind the newest of its window.
-        self.start_at() + 2
-    }
-
-    /// Room for targets.
-    pub fn room(&self) -> usize {
-        CAPACITY - self.targets.len()
-    }
-
-    /// Takes a target.
-    pub fn push(&mut self, target: Position, ground: &Ground) -> Result<(), NotTaken> {
-        if self.announced || self.end.is_some() {
-            return Err(NotTaken::Over);
-        }
-        if let Err(refusal) = check_target(&target, ground) {
-            self.end = Some(End::Refused(refusal));
-            return Err(NotTaken::Refused(refusal));
-        }
-        self.targets.push_back(target).map_err(|_| NotTaken::Full)
-    }
-
-    /// The last target has been sent: the motion ends there.
-    pub fn finish(&mut self) {
-        self.announced = true;
-    }
-
-    /// What is to be done, `id` being the identity of a plan to come. To be asked whenever there is news of the tick.
-    pub fn next(&mut self, id: u32, progress: &Progress, ground: &Ground) -> Next {
-        if let Some(end) = self.end {
-            return Next::Over(end);
-        }
-        let Some(sent) = self.sent else {
-            let waiting = self.targets.len() - BEFORE;
-            return if waiting >= self.start_at() || (self.announced && waiting > 0) {
-                self.send(id, None, ground)
-            } else if self.announced {
-                self.over(End::Done)
-            } else {
-                Next::Wait
-            };
-        };
-        if progress.plan != sent.id {
-            // On the plan before. Once that is past its end the last one has come too late.
-            let late = |before: Sent| progress.plan == before.id && progress.tick > before.splice;
-            return if self.before.is_some_and(late) {
-                self.over(End::Dry)
-            } else {
-                Next::Wait
-            };
-        }
-        if self.complete {
-            return if progress.moving {
-                Next::Wait
-            } else {
-                self.over(End::Done)
-            };
-        }
-        if progress.tick > sent.splice || !progress.moving {
-            return self.over(End::Dry);
-        }
-        self.follow(sent.splice - progress.tick);
-        self.send(id, Some(sent), ground)
-    }
-
-    fn over(&mut self, end: End) -> Next {
-        self.end = Some(end);
-        Next::Over(end)
-    }
-
-    /// Follows the sender's clock by the number of targets that are left `ticks` before the end of what is planned.
-    fn follow(&mut self, ticks: u64) {
-        if self.clock == Clock::Own || self.announced {
-            return;
-        }
-        const ONE: f32 = (1_u64 << PART_BITS) as f32;
-        let ahead = self.targets.len() as f32
-            + (ticks as f32 * self.rate as f32 - self.part as f32) / ONE
-            - (BEFORE + self.start_at()) as f32;
-        self.surplus += (ahead - self.surplus) / AVERAGED;
-        let faster = (self.surplus * FOLLOWING).clamp(-MOST_FOLLOWING, MOST_FOLLOWING);
-        // Of a small share single precision is enough.
-        let more = (self.nominal as f32 * faster) as i64;
-        self.rate = self.nominal.wrapping_add_signed(more);
-    }
-
-    /// The next plan, if there are targets enough for it.
-    fn send(&mut self, id: u32, sent: Option<Sent>, ground: &Ground) -> Next {
-        let ahead = self.part + u64::from(self.knots) * self.knot.whole() * self.rate;
-        let needed = (ahead >> PART_BITS) as usize + WINDOW;
-        if self.targets.len() < needed && !self.announced {
-            return Next::Wait;
-        }
-        match self.plan(id, sent, ground) {
-            Ok((plan, start, sent)) => {
-                self.before = self.sent.replace(sent);
-                Next::Send(plan, start)
-            }
-            Err(refusal) => self.over(End::Refused(refusal)),
-        }
-    }
-}
+pub use messages::{Clock, PlanProgress, PushError, StreamEnd, StreamStep};
+pub use state::{JERK_TOLERANCE, PERIOD_RANGE, STREAM_CAPACITY, Stream};

@@ -1,0 +1,96 @@
+//! Encoders, servo and the tick as a whole.
+
+mod frames;
+mod tick;
+
+use crate::bench::{Bench, no_result};
+use core::hint::black_box;
+use firmware::control::config::Config;
+use firmware::control::encoder::Encoder;
+use firmware::control::servo::{PivotServo, PivotSetpoint};
+use firmware::drivers::{biss::RawFrame, bridge::Duty};
+use firmware::parameters::Parameters;
+use firmware_cost::random::Random;
+use frames::frames;
+use kinematics::Angle;
+
+/// 48 V, the supply of the reference stage, in counts of the ADC.
+const SUPPLY_COUNTS: u16 = 2979;
+
+/// Counts encoder decoding, the servo and the tick.
+#[inline(never)]
+pub fn run(bench: &mut Bench) {
+    let config = Config::new(&Parameters::REFERENCE);
+    // Derived from parameters, as far as the compiler knows.
+    let config = black_box(&config);
+    decoding(bench, config);
+    servo(bench, config);
+    tick::run(bench, config);
+}
+
+fn decoding(bench: &mut Bench, config: &Config) {
+    let mut memory = ([Encoder::default(); 3], Rings::default());
+    bench.part_with(
+        "encoder decoding, three",
+        Bench::SHORT,
+        &mut memory,
+        |(_, rings), random| rings.turned(random),
+        |(encoders, _), frames| {
+            for (i, encoder) in encoders.iter_mut().enumerate() {
+                encoder.update(&config.encoders[i], &frames[i]);
+            }
+            encoders.each_ref().map(Encoder::angle)
+        },
+        no_result,
+    );
+}
+
+/// The rings under the encoders, which turn at 2 rad/s (over 2.5 an encoder does not become ready), a few counts more
+/// or less from tick to tick.
+#[derive(Default)]
+struct Rings([Angle; 3]);
+
+impl Rings {
+    /// The frames a tick later; one in 64 times one of them is missing.
+    fn turned(&mut self, random: &mut Random) -> [RawFrame; 3] {
+        const STEP: f64 = 2.0 / core::f64::consts::TAU / 20_000.0 * 4_294_967_296.0;
+        for pivot in &mut self.0 {
+            *pivot += Angle::from_units((STEP + random.within(-250.0, 250.0)) as i64);
+        }
+        let mut frames = frames(&self.0);
+        if random.once_in(64) {
+            frames[1] = RawFrame::MISSING;
+        }
+        frames
+    }
+}
+
+fn servo(bench: &mut Bench, config: &Config) {
+    bench.part_with(
+        "servo, three",
+        Bench::SHORT,
+        &mut [PivotServo::default(); 3],
+        |_, random| [0; 3].map(|_| pivot(random)),
+        |servo, pivots| {
+            let counts_per_volt = config.servo.counts_per_volt(f32::from(SUPPLY_COUNTS));
+            let mut duty = [Duty(0); 3];
+            for i in 0..3 {
+                duty[i] = servo[i].step(&config.servo, &pivots[i], counts_per_volt);
+                if i == 0 {
+                    servo[i].learn(&config.servo);
+                }
+            }
+            duty
+        },
+        no_result,
+    );
+}
+
+fn pivot(random: &mut Random) -> PivotSetpoint {
+    PivotSetpoint {
+        error: random.within(-3e4, 3e4) as i32,
+        rate: random.within(-10.0, 10.0) as f32,
+        acceleration: random.within(-100.0, 100.0) as f32,
+        platform_torque: random.within(-6.0, 6.0) as f32,
+    }
+}

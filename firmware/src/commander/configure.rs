@@ -1,0 +1,74 @@
+//! Other parameters, for the plans to come and for the tick.
+
+use super::coordinates::travel;
+use super::error::CommandError;
+use super::in_flight::InFlight;
+use super::state::Commander;
+use crate::control::config::Config;
+use crate::mode::Mode;
+use crate::motion::{Constraints, Limits};
+use crate::parameters::Parameters;
+use crate::queues::{Command, CommandQueues};
+
+impl Commander {
+    /// Goes over from the parameters `now` to those `wanted`; the tick is told when what it computes with changes. To
+    /// be called only at rest, and only when [`Commander::current_snapshot`] is known.
+    ///
+    /// # Errors
+    /// [`CommandError::SoftLimitsInvalid`] when the travel leaves nothing of the soft limits, [`CommandError::Busy`]
+    /// when the tick can not be told, [`CommandError::RadiusWithToolFrame`] for another radius of the track while a
+    /// point beside the platform centre is moved. Nothing has changed then.
+    pub fn configure(
+        &mut self,
+        now: &Parameters,
+        wanted: &Parameters,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        let moved = self.active_frames.tool.origin() != [0.0; 2];
+        if moved && now.geometry.radius_mm != wanted.geometry.radius_mm {
+            // The tick knows that point in track radii.
+            return Err(CommandError::RadiusWithToolFrame);
+        }
+        let soft = self
+            .soft_limits
+            .narrowed_to(&travel(&self.active_frames, &wanted.geometry));
+        let soft = soft.ok_or(CommandError::SoftLimitsInvalid)?;
+        let config = Config::new(wanted);
+        if config != Config::new(now) {
+            self.send(Command::Configure(config), InFlight::Configure, queues)?;
+        }
+        self.soft_limits = soft;
+        self.use_parameters(wanted);
+        Ok(())
+    }
+
+    /// Plans with these from now on.
+    pub fn use_parameters(&mut self, parameters: &Parameters) {
+        self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
+        self.targets = parameters.targets;
+        self.set_limits(parameters.limits);
+    }
+
+    /// Whether the tick has refused the parameters that were set last; asked once.
+    pub fn take_configuration_refused(&mut self) -> bool {
+        core::mem::take(&mut self.configuration_refused)
+    }
+
+    /// Whether the servo is on.
+    pub fn is_held(&self) -> bool {
+        matches!(self.mode(), Mode::Holding | Mode::Moving)
+    }
+
+    /// Other limits of motion. The velocity stays, as far as they allow it.
+    fn set_limits(&mut self, limits: Limits) {
+        let mm_s = self
+            .base_constraints
+            .limits
+            .speed_mm_s
+            .min(limits.speed_mm_s);
+        self.full_limits = limits;
+        self.base_constraints.limits = limits;
+        // Not refused: it is inside the new limits, which are far over the slowest.
+        let _ = self.set_velocity(mm_s);
+    }
+}

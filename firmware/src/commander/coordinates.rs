@@ -1,0 +1,112 @@
+//! Between mm and deg of the interface and the [`Position`]s of the motion layer, through the frames in force.
+
+use super::axis::{Axis, Coordinates, Travel};
+use super::error::CommandError;
+use super::frames::{ActiveFrames, Transform};
+use crate::motion::{Constraints, Position, check_target};
+use kinematics::{Angle, Geometry, direct};
+
+/// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
+const W_TRAVEL_DEG: f64 = 3_600_000.0;
+
+/// 2^32: units of a [`Position`] in a track radius.
+pub(crate) const UNITS_PER_RADIUS: f64 = 4_294_967_296.0;
+
+/// How far the commanded point gets from the track's centre, at whatever orientation, mm.
+pub(crate) fn max_distance_mm(active_frames: &ActiveFrames, geometry: &Geometry) -> f64 {
+    geometry.usable_radius() * geometry.radius_mm + active_frames.arm_mm()
+}
+
+/// What the axes reach, each at some place of the others, as
+/// [`ActiveFrames::travel_coordinates`] counts it.
+pub(crate) fn travel(active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let [x, y] = active_frames.zero;
+    travel_around([-x, -y, 0.0], active_frames, geometry)
+}
+
+/// The same as targets.
+pub(crate) fn target_travel(active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let at = active_frames.target_of(&Transform::IDENTITY);
+    travel_around(
+        [
+            at[Axis::X.index()],
+            at[Axis::Y.index()],
+            at[Axis::W.index()],
+        ],
+        active_frames,
+        geometry,
+    )
+}
+
+fn travel_around(middle: [f64; 3], active_frames: &ActiveFrames, geometry: &Geometry) -> Travel {
+    let far = max_distance_mm(active_frames, geometry);
+    Axis::ALL.map(|axis| match axis.component() {
+        // Adding 0 turns -0 into 0.
+        Some(i) => {
+            let reach = if axis == Axis::W { W_TRAVEL_DEG } else { far };
+            [middle[i] - reach + 0.0, middle[i] + reach + 0.0]
+        }
+        None => [0.0; 2],
+    })
+}
+
+/// The position of a target, if the motion layer can go there: frozen axes at 0, the platform centre inside the usable
+/// disk, theta inside the travel of W (but for a target that keeps the theta of `last`, which a jog may have taken
+/// further).
+pub(crate) fn position(
+    target: &Coordinates,
+    last: &Coordinates,
+    active_frames: &ActiveFrames,
+    constraints: &Constraints,
+) -> Result<Position, CommandError> {
+    let frozen = |axis: Axis| axis.component().is_none() && target[axis.index()] != 0.0;
+    let point = active_frames.point_of(target);
+    let turned = target[Axis::W.index()] != last[Axis::W.index()];
+    let far = turned && point.w_deg.abs() > W_TRAVEL_DEG;
+    // Sums of huge numbers may be none.
+    let numbers = point.x_mm.is_finite() && point.y_mm.is_finite();
+    if let Some(axis) = Axis::ALL.into_iter().find(|&axis| frozen(axis)) {
+        return Err(CommandError::FrozenAxis(axis));
+    }
+    if far || !numbers {
+        return Err(CommandError::OutsideTravel);
+    }
+    let length =
+        |mm: f64| libm::rint(mm / constraints.geometry.radius_mm * UNITS_PER_RADIUS) as i64;
+    let theta = Angle::from_degrees(point.w_deg).ok_or(CommandError::OutsideTravel)?;
+    let position = [length(point.x_mm), length(point.y_mm), theta.units()];
+    check_target(&position, constraints)?;
+    Ok(position)
+}
+
+/// The target at a position: one that [`position`] turns into the same.
+pub(crate) fn coordinates(
+    position: &Position,
+    active_frames: &ActiveFrames,
+    geometry: &Geometry,
+) -> Coordinates {
+    let mm = |units: i64| units as f64 / UNITS_PER_RADIUS * geometry.radius_mm;
+    active_frames.target_of(&Transform {
+        x_mm: mm(position[0]),
+        y_mm: mm(position[1]),
+        w_deg: Angle::from_units(position[2]).degrees(),
+    })
+}
+
+/// The target at the pose that the pivots set; `None` when they are no pose of the mechanism.
+pub(crate) fn measured(
+    pivots: &[Angle; 3],
+    active_frames: &ActiveFrames,
+    geometry: &Geometry,
+) -> Option<Coordinates> {
+    // Whole turns go around the floating point: they would cost it digits.
+    let turns = pivots[0].turns();
+    let whole = Angle::from_units(i64::from(turns) << 32);
+    let pose = direct::<f64>(&pivots.map(|pivot| (pivot - whole).radians())).ok()?;
+    let mm = |radii: f64| radii * geometry.radius_mm;
+    Some(active_frames.target_at(&Transform {
+        x_mm: mm(pose.x),
+        y_mm: mm(pose.y),
+        w_deg: pose.theta.to_degrees() + f64::from(turns) * 360.0,
+    }))
+}

@@ -1,0 +1,112 @@
+//! Why a request was refused, or came to nothing later.
+
+use super::axis::Axis;
+use super::frames::FrameError;
+use super::wave::WaveError;
+use crate::motion::Refusal;
+use core::fmt;
+
+/// Why a request was refused, and then nothing of it was done; or what became of one that had been accepted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CommandError {
+    /// A command is on its way to the tick, or the queue to it is full: the same request may do later.
+    Busy,
+    /// The stage is not referenced, or its servo is off.
+    NotReady,
+    /// A fault is latched, which has to be acknowledged first.
+    Faulted,
+    /// The stage moves, or is about to.
+    InMotion,
+    /// Targets are being streamed.
+    Streaming,
+    /// Wave generators run.
+    GeneratorsRunning,
+    /// A stream begins at rest only.
+    StreamNotAtRest,
+    /// An encoder does not answer, or the pivots are no pose.
+    ReferencingFailed,
+    /// The axis can not move: its coordinate is 0 and stays 0.
+    FrozenAxis(Axis),
+    /// No position: not finite, or an angle beyond the travel.
+    OutsideTravel,
+    /// A soft limit lies before the target.
+    OutsideSoftLimits,
+    /// A velocity is over its limit, or too slow for a move to have a duration that can be counted.
+    VelocityOutOfRange {
+        /// Of which axis; `None`: of the whole.
+        axis: Option<Axis>,
+    },
+    /// A time between streamed targets, or ticks of a wave table's point, for which there are no plans.
+    PeriodOutOfRange,
+    /// Soft limits beyond the travel, that cross, or that leave out where the stage is.
+    SoftLimitsInvalid,
+    /// No motion can be made in that direction from where the stage is.
+    NoMotion,
+    /// The planner refuses.
+    Refused(Refusal),
+    /// Another track radius while a point beside the platform's centre is moved: the tick knows that point in track
+    /// radii.
+    RadiusWithToolFrame,
+    /// Streamed targets did not come in time: the stage has stopped.
+    StreamDry,
+    /// Streamed targets come faster than their cycle time: this one was not taken.
+    StreamFull,
+    /// Parameters that had been accepted were refused by the tick.
+    ConfigurationRefused,
+    /// About frames and the centre of rotation.
+    Frame(FrameError),
+    /// About waveforms.
+    Wave(WaveError),
+}
+
+impl From<Refusal> for CommandError {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+impl From<FrameError> for CommandError {
+    fn from(error: FrameError) -> Self {
+        Self::Frame(error)
+    }
+}
+
+impl From<WaveError> for CommandError {
+    fn from(error: WaveError) -> Self {
+        Self::Wave(error)
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FrozenAxis(axis) => write!(f, "axis {} can not move", axis.letter()),
+            Self::VelocityOutOfRange { axis: Some(axis) } => {
+                write!(f, "the velocity of axis {} is out of range", axis.letter())
+            }
+            Self::Refused(refusal) => refusal.fmt(f),
+            Self::Frame(error) => error.fmt(f),
+            Self::Wave(error) => error.fmt(f),
+            Self::Busy => f.write_str("a command is on its way"),
+            Self::NotReady => f.write_str("not referenced, or the servo is off"),
+            Self::Faulted => f.write_str("a fault is latched"),
+            Self::InMotion => f.write_str("in motion"),
+            Self::Streaming => f.write_str("targets are being streamed"),
+            Self::GeneratorsRunning => f.write_str("wave generators run"),
+            Self::StreamNotAtRest => f.write_str("a stream begins at rest"),
+            Self::ReferencingFailed => f.write_str("referencing has failed"),
+            Self::OutsideTravel => f.write_str("outside the travel"),
+            Self::OutsideSoftLimits => f.write_str("outside the soft limits"),
+            Self::VelocityOutOfRange { axis: None } => f.write_str("the velocity is out of range"),
+            Self::PeriodOutOfRange => f.write_str("the period is out of range"),
+            Self::SoftLimitsInvalid => f.write_str("no soft limits for this place and travel"),
+            Self::NoMotion => f.write_str("no motion can be made in that direction"),
+            Self::RadiusWithToolFrame => f.write_str("a tool frame is in force"),
+            Self::StreamDry => f.write_str("streamed targets did not come in time"),
+            Self::StreamFull => f.write_str("streamed targets come too fast"),
+            Self::ConfigurationRefused => f.write_str("the control loop refuses the parameters"),
+        }
+    }
+}
+
+impl core::error::Error for CommandError {}

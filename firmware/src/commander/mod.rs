@@ -1,0 +1,80 @@
+//! The stage as the command side sees it: what is known of it, what is in flight to it, what is asked of it.
+//!
+//! A [`Commander`] takes requests (a move, a jog, a stop, a stream of targets, referencing, other frames or
+//! parameters), checks each as a whole, plans, and sends commands to the tick. It runs at low priority and meets the
+//! tick only through the queues of [`crate::queues`]. It knows no language: who calls it gets values and a
+//! [`CommandError`].
+//!
+//! ```text
+//! let mut commander = Commander::new(&parameters);
+//! loop {
+//!     if let Some(snapshot) = queues.snapshot() {
+//!         commander.update(snapshot);
+//!     }
+//!     commander.advance_pending(&mut queues);
+//!     // requests: commander.move_to(&values, &mut queues)?, ...
+//!     // what came to nothing later: commander.take_late_error()
+//! }
+//! ```
+//!
+//! One command is in flight at most. What a command does is known when the tick has counted it
+//! ([`Snapshot::commands`](crate::queues::Snapshot::commands)), a tick later; until then nothing that depends on it is
+//! decided: most requests need [`Commander::current_snapshot`]. What has to wait (a stop for the tick at which it takes
+//! over, a move for the stop before it) waits in the state machine of `pending.rs`, and [`Commander::advance_pending`]
+//! goes on with it.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `state` | what is known and asked, and how snapshots change it |
+//! | `pending` | **the state machine**: what is asked and not handed over yet |
+//! | `advance` | from what is pending to the next plan |
+//! | `in_flight` | the command that the tick has not counted yet |
+//! | `sent_plan` | a plan that was sent, with what it takes to leave it |
+//! | `moves` | moves, stops, the servo, faults, soft limits |
+//! | `jog` | constant velocities |
+//! | `streaming`, `stream_source` | streamed targets and running waveforms |
+//! | `referencing` | referencing |
+//! | `configure` | other parameters |
+//! | `velocities` | of the whole and of single axes |
+//! | `constraints` | what plans keep to now |
+//! | `soft_limits` | travel as the user narrows it |
+//! | `frames`, `frame_changes` | coordinate systems of the user's own, and the centre of rotation |
+//! | `wave`, `wave_changes` | waveforms: tables and generators |
+//! | `queries`, `quantity` | what can be asked |
+//! | `furthest_target` | how far a target can go in a direction |
+//! | `coordinates` | between mm and deg and the motion layer's positions |
+//! | `axis` | axes, sets of them, values for them |
+//! | `error` | why a request was refused |
+
+pub mod axis;
+pub mod frames;
+pub mod wave;
+
+pub(crate) mod coordinates;
+
+mod advance;
+mod configure;
+mod constraints;
+mod error;
+mod frame_changes;
+mod furthest_target;
+mod in_flight;
+mod jog;
+mod moves;
+mod pending;
+mod quantity;
+mod queries;
+mod referencing;
+mod sent_plan;
+mod soft_limits;
+mod state;
+mod stream_source;
+mod streaming;
+mod velocities;
+mod wave_changes;
+
+pub use error::CommandError;
+pub use quantity::Quantity;
+pub use referencing::Referencing;
+pub use soft_limits::SoftLimitChange;
+pub use state::Commander;

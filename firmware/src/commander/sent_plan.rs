@@ -1,0 +1,151 @@
+//! A plan as the command side knows it: with the state it starts from, so that it can be left from outside the tick.
+
+use super::error::CommandError;
+use crate::motion::{
+    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, RetargetError, Stop, Tries,
+    plan_jog, plan_line, plan_stop, try_retarget,
+};
+
+/// What a motion is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Goal {
+    /// Rest at a position.
+    Position(Position),
+    /// A velocity, kept as long as it can be: of x and y in the base frame (mm/s) and of theta (deg/s).
+    Velocity([f64; 3]),
+    /// What a stream's targets say.
+    Stream,
+}
+
+/// A plan that was sent to the tick.
+#[derive(Clone, Debug)]
+pub(crate) struct SentPlan {
+    /// The plan.
+    pub plan: Plan,
+    /// What it is for; of a stop, what the motion before it was for.
+    pub goal: Goal,
+    /// Of a stop, how it brakes.
+    pub stop: Option<Stop>,
+    /// The three axes at its first tick.
+    start: [AxisState; 3],
+}
+
+impl SentPlan {
+    /// From rest at `from`.
+    pub fn from_rest(
+        id: u32,
+        from: Position,
+        goal: Goal,
+        constraints: &Constraints,
+    ) -> Result<Self, CommandError> {
+        let start = from.map(AxisState::at_rest);
+        let plan = match goal {
+            // It makes its plans itself.
+            Goal::Stream => Err(CommandError::Busy),
+            Goal::Position(to) => {
+                plan_line(id, from, to, constraints).map_err(CommandError::Refused)
+            }
+            Goal::Velocity(velocity) => {
+                plan_jog(id, PlanStart::Rest(from), &start, &velocity, constraints).map_err(|no| {
+                    match no {
+                        RetargetError::Refused(refusal) => CommandError::Refused(refusal),
+                        // At rest there is nothing to stop.
+                        RetargetError::NeedsStop | RetargetError::TooFast => CommandError::NoMotion,
+                    }
+                })
+            }
+        };
+        Ok(Self {
+            plan: plan?,
+            goal,
+            stop: None,
+            start,
+        })
+    }
+
+    /// A plan of a stream, from these axes.
+    pub const fn streamed(plan: Plan, start: [AxisState; 3]) -> Self {
+        Self {
+            plan,
+            goal: Goal::Stream,
+            stop: None,
+            start,
+        }
+    }
+
+    /// The way to another goal that leaves this plan at its tick `at`, by the next of `tries`; what of it is not
+    /// planned yet is left `ahead`.
+    pub fn retargeted(
+        &self,
+        goal: Goal,
+        id: u32,
+        at: u64,
+        constraints: &Constraints,
+        tries: &mut Tries,
+        ahead: &mut Option<Ahead>,
+    ) -> Result<Self, RetargetError> {
+        let mut next = Self {
+            plan: Plan::default(),
+            goal,
+            stop: None,
+            start: self.plan.state_after(&self.start, at),
+        };
+        match goal {
+            // It makes its plans itself.
+            Goal::Stream => Err(RetargetError::NeedsStop),
+            Goal::Position(to) => {
+                let (of, from) = (&self.plan, &self.start);
+                let leave = Leave { of, from, at };
+                try_retarget(&mut next.plan, id, leave, to, constraints, tries, ahead)
+            }
+            // A plan that has ended by then leaves nothing to leave.
+            Goal::Velocity(_) if at >= self.plan.ticks() => Err(RetargetError::NeedsStop),
+            Goal::Velocity(velocity) => {
+                let splice = PlanStart::Splice {
+                    plan: self.plan.id,
+                    tick: at,
+                };
+                plan_jog(id, splice, &next.start, &velocity, constraints)
+                    .map(|plan| next.plan = plan)
+            }
+        }?;
+        Ok(next)
+    }
+
+    /// What lies `ahead` of this plan, which is its head, from tick `at` on.
+    pub fn continued(
+        &self,
+        ahead: &Ahead,
+        id: u32,
+        at: u64,
+        constraints: &Constraints,
+        tries: &mut Tries,
+    ) -> Result<Self, RetargetError> {
+        Ok(Self {
+            plan: ahead.go_on(id, at, constraints, tries)?,
+            start: self.plan.state_after(&self.start, at),
+            ..*self
+        })
+    }
+
+    /// Whether it takes over from another one in motion.
+    pub fn takes_over(&self) -> bool {
+        matches!(self.plan.start, PlanStart::Splice { .. })
+    }
+
+    /// The stop that leaves this plan at its tick `at`; `None` when it comes to rest by itself as soon.
+    pub fn with_stop(
+        &self,
+        id: u32,
+        at: u64,
+        constraints: &Constraints,
+        stop: Stop,
+    ) -> Option<Self> {
+        Some(Self {
+            plan: plan_stop(id, &self.plan, &self.start, at, constraints, stop)?,
+            start: self.plan.state_after(&self.start, at),
+            stop: Some(stop),
+            goal: self.goal,
+        })
+    }
+}

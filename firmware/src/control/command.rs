@@ -1,0 +1,28 @@
+//! What the command side asks of the tick.
+
+use super::config::Config;
+use crate::motion::{Plan, RotationCentre};
+
+/// What the command side asks of the tick.
+#[derive(Clone, Debug, PartialEq)]
+// A plan is by far the largest command and the most frequent; there is no heap to box it in.
+#[allow(clippy::large_enum_variant)]
+pub enum Command {
+    /// Take theta and the pivots' turns from the absolute encoders and hold the pose found there.
+    Reference,
+    /// Hold the measured pose, or switch the drives off (the stage coasts).
+    Servo(bool),
+    /// Execute a plan. Refused by the tick (and counted) when its start is no longer where the motion is.
+    Move(Plan),
+    /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or
+    /// not; the platform does not move.
+    Centre(RotationCentre),
+    /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the
+    /// encoders' readings mean; such a change takes the reference.
+    Configure(Config),
+    /// Acknowledge the latched fault.
+    Acknowledge,
+}
+
+// Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
+const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());

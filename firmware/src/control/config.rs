@@ -1,0 +1,111 @@
+//! What the tick computes with, derived once from the parameters.
+
+use crate::control::encoder::EncoderConfig;
+use crate::control::inspection::INSPECTION_PERIOD_TICKS;
+use crate::control::servo::ServoConfig;
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::motion::{FaultStop, SetpointScale};
+use crate::parameters::Parameters;
+
+/// The tick's constants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// Encoders, pivot by pivot.
+    pub encoders: [EncoderConfig; 3],
+    /// Setpoint integers to rates.
+    pub scale: SetpointScale,
+    /// Servo.
+    pub servo: ServoConfig,
+    /// Supervision.
+    pub limits: SupervisionConfig,
+    /// The controlled stop of a fault.
+    pub fault_stop: FaultStop,
+}
+
+/// Thresholds in the tick's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupervisionConfig {
+    /// Largest following error at rest, 2^-32 turns.
+    pub following_error: i32,
+    /// What is allowed besides for each rad/s of the setpoint, 2^-32 turns.
+    pub following_error_per_rate: f32,
+    /// Window of a settled pivot, 2^-32 turns.
+    pub settling_window: i32,
+    /// Ticks inside the window that count as settled.
+    pub settling_ticks: u32,
+    /// Lowest supply in ADC counts.
+    pub min_supply_counts: u16,
+    /// Ticks that may be late, one in a hundred forgiven.
+    pub late_ticks: u32,
+    /// Largest step of a pivot in a tick, 2^-32 turns.
+    pub max_step: u32,
+    /// Smallest angle between two pivots, 2^-32 turns.
+    pub min_separation: u32,
+    /// Range of a pivot's place on its guide, track radii.
+    pub guide_range: [f32; 2],
+    /// Square of the largest distance of the platform's centre from the track's, track radii.
+    pub max_radius_squared: f32,
+    /// Longest time at the largest duty (saturated), ticks.
+    pub max_saturated_ticks: u32,
+    /// Square of the current that a motor bears, ADC counts.
+    pub max_mean_square_current: f32,
+    /// Share of the way to a new temperature that a winding goes from one inspection to the next.
+    pub winding_smoothing: f32,
+    /// Distance of a setpoint in which a reading must change, 2^-32 turns.
+    pub frozen_distance: u64,
+    /// Change of a duty that must change a reading, PWM counts.
+    pub frozen_duty: u16,
+    /// Ticks in a second.
+    pub rate_hz: f32,
+}
+
+impl Config {
+    /// Derives the tick's constants.
+    pub fn new(parameters: &Parameters) -> Self {
+        let rate_hz = parameters.limits.rate_hz;
+        let period_s = 1.0 / rate_hz;
+        let supervision = &parameters.supervision;
+        let window = &parameters.window;
+        let (geometry, drive) = (&parameters.geometry, &parameters.drive);
+        let margin = supervision.guide_margin;
+        let reach = geometry.usable_radius() + supervision.disk_margin_mm / geometry.radius_mm;
+        let bearable = supervision.motor_current_a / CURRENT_A_PER_COUNT;
+        let fastest = parameters.limits.pivot_rate_rad_s * supervision.overspeed_factor;
+        Self {
+            encoders: parameters
+                .encoders
+                .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),
+            scale: SetpointScale::new(rate_hz),
+            servo: ServoConfig::new(parameters),
+            limits: SupervisionConfig {
+                following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,
+                // A count is 64 units; the half lets a setpoint between two counts be met.
+                settling_window: ((window.counts + 0.5) * 64.0) as i32,
+                settling_ticks: libm::ceil(window.dwell_s * rate_hz) as u32,
+                following_error_per_rate: (supervision.following_error_s * UNITS_PER_RAD) as f32,
+                min_supply_counts: (supervision.supply_min_v / SUPPLY_V_PER_COUNT) as u16,
+                late_ticks: supervision.late_ticks,
+                max_step: (fastest * period_s * UNITS_PER_RAD) as u32,
+                min_separation: ((geometry.separation_rad - supervision.separation_margin_rad)
+                    * UNITS_PER_RAD) as u32,
+                guide_range: [
+                    (geometry.guide_start - margin) as f32,
+                    (geometry.guide_start + geometry.guide_length + margin) as f32,
+                ],
+                max_radius_squared: (reach * reach) as f32,
+                max_saturated_ticks: libm::ceil(supervision.max_saturation_s * rate_hz) as u32,
+                max_mean_square_current: (bearable * bearable) as f32,
+                winding_smoothing: (1.0
+                    - libm::exp(
+                        -f64::from(INSPECTION_PERIOD_TICKS) * period_s
+                            / supervision.motor_heating_s,
+                    )) as f32,
+                frozen_distance: (supervision.frozen_rad * UNITS_PER_RAD) as u64,
+                frozen_duty: (supervision.frozen_v / drive.supply_v * f64::from(drive.pwm_counts))
+                    as u16,
+                rate_hz: rate_hz as f32,
+            },
+            fault_stop: FaultStop::new(supervision.stop_s, rate_hz),
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! From encoder frames to a multi-turn pivot angle: which frame is believed, what bridges one that is not.
+
+use crate::drivers::biss::{
+    CheckedFrame, FrameError, POSITION_BITS, RawFrame, check_frame, decode,
+};
+use crate::fault::FaultKind;
+use crate::parameters::{EncoderMounting, Supervision};
+use kinematics::Angle;
+
+/// Bits by which an encoder count is left-aligned in a 32-bit fraction of a turn.
+const ALIGN_SHIFT: u32 = 32 - POSITION_BITS;
+
+/// How one encoder is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderConfig {
+    zero: u32,
+    /// 1, or -1 where the encoder counts against the pivot's direction.
+    direction: i32,
+    max_bridged_frames: u8,
+    /// Largest believable change of the step from tick to tick, 2^-32 turns.
+    max_step_change: u32,
+}
+
+impl EncoderConfig {
+    /// For a tick of `period_s`.
+    pub fn new(setup: &EncoderMounting, supervision: &Supervision, period_s: f64) -> Self {
+        let radians = supervision.plausible_acceleration_rad_s2 * period_s * period_s;
+        Self {
+            zero: setup.zero_counts << ALIGN_SHIFT,
+            direction: if setup.reversed { -1 } else { 1 },
+            max_bridged_frames: supervision.bridged_frames,
+            max_step_change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
+        }
+    }
+}
+
+impl EncoderConfig {
+    /// Whether a reading means the same angle to both.
+    pub fn has_same_mounting(&self, other: &Self) -> bool {
+        self.zero == other.zero && self.direction == other.direction
+    }
+
+    /// What an ideal encoder shows at a pivot angle: for machines that are simulated.
+    pub fn ideal_counts_at(&self, angle: Angle) -> u32 {
+        // To the nearest count.
+        (angle.fraction())
+            .wrapping_mul(self.direction as u32)
+            .wrapping_add(self.zero)
+            .wrapping_add(1 << (ALIGN_SHIFT - 1))
+            >> ALIGN_SHIFT
+    }
+
+    /// The fraction of a turn that a reading means, 2^-32 turns.
+    #[inline]
+    fn fraction(&self, counts: u32) -> u32 {
+        (counts << ALIGN_SHIFT)
+            .wrapping_sub(self.zero)
+            .wrapping_mul(self.direction as u32)
+    }
+}
+
+/// One encoder's state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encoder {
+    angle: Angle,
+    step: i32,
+    /// Good frames in a row, up to [`READY_FRAMES`].
+    good_frames: u8,
+    /// Bad frames in a row.
+    bad_frames: u8,
+    warning: bool,
+    /// Ready, with no bad frame to make up for and no warning: the next frame need only be plausible.
+    fast_path: bool,
+    /// Why it is not ready, if it is not.
+    unusable: Option<FaultKind>,
+    /// The last reading that decoded.
+    reading: u32,
+    /// Frames since then that have repeated it, and were believed.
+    repeats: u16,
+}
+
+impl Default for Encoder {
+    fn default() -> Self {
+        Self {
+            angle: Angle::ZERO,
+            step: 0,
+            good_frames: 0,
+            bad_frames: 0,
+            warning: false,
+            fast_path: false,
+            // Until a frame says otherwise.
+            unusable: Some(FaultKind::EncoderSilent),
+            reading: 0,
+            repeats: 0,
+        }
+    }
+}
+
+/// Good frames in a row, each plausible after the one before, that make an encoder ready.
+const READY_FRAMES: u8 = 4;
+/// The step, 2^-32 turns, from which on a reading that repeats the last one to the bit is none: 16 counts, 0.03 rad/s.
+/// To stop so suddenly takes 600 rad/s^2, and an encoder's noise shows even then.
+const FROZEN_STEP: u32 = 16 << ALIGN_SHIFT;
+
+impl Encoder {
+    /// Takes the frame of this tick.
+    ///
+    /// A frame is believed when it decodes and its step differs from the last one's by no more than the plausible
+    /// acceleration, times the square of the ticks since the last good frame, and does not repeat the last one while
+    /// the pivot turns. A frame that is not believed is never used: the angle goes on by the last step, up to
+    /// [`EncoderConfig`]'s count of them in a row.
+    #[inline]
+    pub fn update(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+        if let (true, Some(counts)) = (
+            self.fast_path,
+            check_frame(frame)
+                .ok()
+                .and_then(CheckedFrame::plain_position),
+        ) {
+            let fraction = config.fraction(counts);
+            let (moved, innovation) = self.moved(fraction);
+            if innovation <= config.max_step_change && !self.is_frozen(fraction) {
+                self.count_repeats(fraction);
+                self.advance_by(moved);
+                self.step = moved;
+                return;
+            }
+        }
+        self.update_checked(config, frame);
+    }
+
+    /// Takes a frame of any kind.
+    #[cold]
+    #[inline(never)]
+    fn update_checked(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+        match decode(frame) {
+            Ok(reading) => {
+                self.warning = reading.warning;
+                let fraction = config.fraction(reading.counts);
+                if self.is_frozen(fraction) {
+                    self.bridge_missing(config, FaultKind::EncoderFrozen);
+                } else {
+                    self.count_repeats(fraction);
+                    self.accept_reading(config, fraction);
+                }
+            }
+            Err(error) => self.bridge_missing(
+                config,
+                match error {
+                    FrameError::Silent => FaultKind::EncoderSilent,
+                    FrameError::Crc => FaultKind::EncoderCrc,
+                    FrameError::Error => FaultKind::EncoderError,
+                },
+            ),
+        }
+        self.fast_path = self.good_frames == READY_FRAMES && self.bad_frames == 0 && !self.warning;
+    }
+
+    /// Whether a reading repeats the last one while the pivot turns.
+    #[inline]
+    fn is_frozen(&self, fraction: u32) -> bool {
+        fraction == self.reading && self.step.unsigned_abs() > FROZEN_STEP
+    }
+
+    #[inline]
+    fn count_repeats(&mut self, fraction: u32) {
+        if fraction == self.reading {
+            self.repeats = self.repeats.saturating_add(1);
+        } else {
+            self.repeats = 0;
+            self.reading = fraction;
+        }
+    }
+
+    /// How far a reading is from the angle, and the innovation: how far that is from the last step. After bridged
+    /// frames the angle has gone on by itself: then it is from where it was expected to be.
+    #[inline]
+    fn moved(&self, fraction: u32) -> (i32, u32) {
+        let moved = fraction.wrapping_sub(self.angle.fraction()) as i32;
+        (moved, moved.wrapping_sub(self.step).unsigned_abs())
+    }
+
+    /// Takes a reading that may be one of the first, or after a bad one.
+    fn accept_reading(&mut self, config: &EncoderConfig, fraction: u32) {
+        let (moved, innovation) = self.moved(fraction);
+        if self.bad_frames == 0
+            && self.good_frames == READY_FRAMES
+            && innovation <= config.max_step_change
+        {
+            self.advance_by(moved);
+            self.step = moved;
+        } else {
+            self.reacquire(config, fraction, moved, innovation);
+        }
+    }
+
+    /// Takes a frame after a bad one, or one of the first.
+    #[cold]
+    fn reacquire(&mut self, config: &EncoderConfig, fraction: u32, moved: i32, innovation: u32) {
+        let ticks = u32::from(self.bad_frames) + 1;
+        let allowed = config
+            .max_step_change
+            .saturating_mul(ticks.saturating_mul(ticks));
+        if self.good_frames == 0 {
+            self.angle = Angle::from_units(i64::from(fraction));
+            self.step = 0;
+            self.good_frames = 1;
+        } else if innovation <= allowed {
+            self.advance_by(moved);
+            // The mean over the ticks since the last good frame: a line that loses every other one keeps up with the
+            // rate.
+            self.step = self
+                .step
+                .wrapping_add(moved.wrapping_sub(self.step) / ticks as i32);
+            self.good_frames = (self.good_frames + 1).min(READY_FRAMES);
+        } else {
+            self.bridge_missing(config, FaultKind::EncoderJump);
+            return;
+        }
+        self.bad_frames = 0;
+        if self.good_frames == READY_FRAMES {
+            self.unusable = None;
+        }
+    }
+
+    #[inline]
+    fn advance_by(&mut self, step: i32) {
+        self.angle = Angle::from_units(self.angle.units().wrapping_add(i64::from(step)));
+    }
+
+    #[cold]
+    fn bridge_missing(&mut self, config: &EncoderConfig, reason: FaultKind) {
+        self.bad_frames = self.bad_frames.saturating_add(1);
+        if self.bad_frames > config.max_bridged_frames || self.good_frames < READY_FRAMES {
+            self.good_frames = 0;
+            self.unusable = Some(reason);
+        } else {
+            self.advance_by(self.step);
+        }
+    }
+
+    /// Why the encoder can not be used; `None` when it can (a few bad frames are bridged).
+    #[inline]
+    pub fn unusable(&self) -> Option<FaultKind> {
+        self.unusable
+    }
+
+    /// Takes it for lost, whatever its frames say, until it has been ready anew.
+    pub fn mark_unusable(&mut self, reason: FaultKind) {
+        self.unusable = Some(reason);
+        self.good_frames = 0;
+        self.repeats = 0;
+        self.fast_path = false;
+    }
+
+    /// How often in a row it has repeated one reading to the bit, and was believed: it may be at rest.
+    #[inline]
+    pub fn repeated_readings(&self) -> u16 {
+        self.repeats
+    }
+
+    /// What the pivot has moved in the last tick, 2^-32 turns.
+    #[inline]
+    pub fn step(&self) -> i32 {
+        self.step
+    }
+
+    /// The pivot's angle.
+    #[inline]
+    pub fn angle(&self) -> Angle {
+        self.angle
+    }
+
+    /// Whether the encoder warns.
+    pub fn warning(&self) -> bool {
+        self.warning
+    }
+
+    /// Moves the angle by whole turns to the one nearest to `reference`.
+    pub fn unwrap_near(&mut self, reference: Angle) {
+        self.angle = self.angle.near(reference);
+    }
+}

@@ -1,0 +1,34 @@
+//! Inspection of one pivot a tick: in which tick which, what an inspection is given, and what is kept until the next.
+
+use crate::drivers::bridge::Duty;
+use kinematics::Angle;
+
+/// Ticks from one inspection of a pivot to the next.
+pub(super) const INSPECTION_PERIOD_TICKS: u32 = 4;
+/// The slot in which no pivot is inspected and a snapshot is due.
+pub(super) const SNAPSHOT_SLOT: usize = 3;
+const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);
+
+/// What is kept of a pivot from one inspection to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct PivotWatch {
+    /// Square of the motor's current, ADC counts, smoothed.
+    pub mean_square_current: f32,
+    /// Ticks at its largest duty.
+    pub saturated_ticks: u32,
+    /// Duty when the encoder last showed something new.
+    pub duty: i16,
+    /// Setpoint at the first inspection since then.
+    pub setpoint: Option<Angle>,
+    /// Ticks since then in which it has been far from that.
+    pub driven_ticks: u16,
+}
+
+/// The pivot that is inspected in this tick, what belongs to it, and the next one.
+pub(super) struct Inspection {
+    pub pivot: usize,
+    pub setpoint: Angle,
+    pub angle: Angle,
+    pub next: Angle,
+    pub duty: Duty,
+}

@@ -1,0 +1,43 @@
+//! The control loop: encoder frames in, duties out, at a fixed rate.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `tick` | one period of the loop, from frames to duties |
+//! | `state` | what a tick is given, what it gives, what it remembers |
+//! | `config` | what it computes with, derived from the parameters |
+//! | `units` | counts of the converter and units of an angle |
+//! | `encoder` | frames to a multi-turn angle: which frame is believed, what bridges one that is not |
+//! | `referencing` | turns for theta and the pivots from single-turn encoders |
+//! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
+//! | `servo/` | pivot setpoints and measured pivots to duties |
+//! | `settling` | whether the stage has settled |
+//! | `supervisor/` | which commands are taken in which state, and what is a fault |
+//! | `inspection` | which pivot is inspected in which tick |
+//! | `command`, `snapshot` | what the command side asks, and what is reported to it |
+//! | `report` | when and how a snapshot is sent |
+//! | `tick_queues` | the tick's ends of the queues and recorders |
+//! | `loop_counters` | what the loop counts between two snapshots |
+
+mod command;
+pub mod config;
+pub mod encoder;
+mod inspection;
+pub mod loop_counters;
+mod pivot_setpoints;
+mod referencing;
+mod report;
+pub mod servo;
+mod settling;
+mod snapshot;
+mod state;
+mod supervisor;
+mod tick;
+mod tick_queues;
+pub mod units;
+
+pub use command::Command;
+pub use snapshot::{SNAPSHOT_SLOTS, Snapshot};
+pub use state::{Inputs, Outputs, State};
+pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
+pub use tick::tick;
+pub use tick_queues::TickQueues;

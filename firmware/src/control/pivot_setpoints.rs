@@ -1,0 +1,43 @@
+//! From the pose's setpoint to those of the three pivots.
+
+use super::config::Config;
+use super::servo::platform_torques;
+use crate::motion::{Position, Setpoint};
+use crate::number::Fixed;
+use kinematics::{
+    Angle, Guide, Inverse, PivotMotion, Pose, in_platform_axes, inverse,
+    pivot_motion_in_platform_axes,
+};
+
+/// Setpoints of the three pivots.
+pub(super) struct PivotSetpoints {
+    pub angles: [Angle; 3],
+    pub motion: PivotMotion<f32>,
+    pub torques: [f32; 3],
+    /// Distances along the guides, track radii: all that is used of the guides later.
+    pub lengths: [f32; 3],
+}
+
+/// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
+#[inline(never)]
+pub(super) fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {
+    let Inverse { pivots, guides } = inverse(&pose(&setpoint.position)?).ok()?;
+    let guides = guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
+    let (twist, acceleration) = in_platform_axes(&guides, &setpoint.twist, &setpoint.acceleration);
+    Some(PivotSetpoints {
+        angles: pivots,
+        motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
+        torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
+        lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
+    })
+}
+
+/// The pose of a position, as far as it is one of the mechanism.
+#[inline]
+fn pose(position: &Position) -> Option<Pose<Fixed>> {
+    Some(Pose {
+        x: Fixed::from_position(position[0])?,
+        y: Fixed::from_position(position[1])?,
+        theta: Angle::from_units(position[2]),
+    })
+}

@@ -1,0 +1,32 @@
+//! From pivot setpoints and measured pivots to duties.
+//!
+//! ```text
+//!  setpoint --> feedforward: torque model, back-EMF, friction; scaled by what has been learnt ----+
+//!      |                                                                                          v
+//!      +--(-)--> e --> r = e' + Kp e --> Kv r + Ki integral(r) ------------------------------(+)--> volts --> duty
+//!      measured                    \--> learning
+//! ```
+//!
+//! Feedforward carries the motion; feedback only sees what the model has wrong. What it has wrong is mostly a few
+//! constants a drive (motor constant, moved inertia, friction), and it shows in the very same signal r that the
+//! integral collects. So the integral gets company: `w_k' = g_k f_k r` for a few signals f_k of the setpoint (rate,
+//! torque, friction, each scaled to about 1, and led by what the drive takes to follow), and `sum w_k f_k` is added to
+//! the voltage. The integral itself is the case f = 1. This is the desired compensation adaptation law of Sadegh and
+//! Horowitz (1990), stable for what the velocity loop is stable for as long as the gains together stay in the
+//! integral's order of magnitude; at rest all f_k but friction's vanish and nothing is learnt.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `pivot` | the servo of one pivot: feedback, feedforward, learning, saturation with anti-windup, whole counts |
+//! | `dead_time` | compensation of the bridges' dead time |
+//! | `presliding` | friction before a ring slides |
+//! | `platform_torque` | torque that platform and payload ask of the pivots |
+
+mod dead_time;
+mod pivot;
+mod platform_torque;
+mod presliding;
+
+pub use pivot::{PivotServo, PivotSetpoint, ServoConfig};
+pub use platform_torque::{Body, platform_torques};
+pub use presliding::Presliding;

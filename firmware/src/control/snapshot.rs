@@ -1,0 +1,54 @@
+//! What the tick reports to the command side.
+
+use super::loop_counters::LoopCounters;
+use crate::drivers::bridge::Duty;
+use crate::fault::{Fault, FaultKind};
+use crate::mode::Mode;
+use crate::motion::{Position, RotationCentre};
+use kinematics::Angle;
+
+/// Slots of the snapshot queue: one snapshot waiting.
+pub const SNAPSHOT_SLOTS: usize = 2;
+
+/// What is known at a tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// The tick, counted from start.
+    pub tick: u64,
+    /// State of the supervisor.
+    pub mode: Mode,
+    /// The latched fault.
+    pub fault: Option<Fault>,
+    /// The fault that has ended its controlled stop, if one has.
+    pub stop_ended_by: Option<Fault>,
+    /// Whether theta and the turns are known.
+    pub referenced: bool,
+    /// Whether all three encoders answer well, and, for those that do not, why (index: pivot).
+    pub encoder_faults: [Option<FaultKind>; 3],
+    /// Whether an encoder warns.
+    pub encoder_warnings: [bool; 3],
+    /// Measured pivot angles; valid once referenced.
+    pub pivots: [Angle; 3],
+    /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.
+    pub pivot_errors: [i32; 3],
+    /// Duties.
+    pub duty: [Duty; 3],
+    /// Setpoint of the point that is moved.
+    pub setpoint: Position,
+    /// That point.
+    pub centre: RotationCentre,
+    /// Identity of the plan under way, or of the last one.
+    pub plan: u32,
+    /// Ticks of it that are done.
+    pub plan_tick: u64,
+    /// Settled: at rest, and every pivot within the window for the dwell time.
+    pub settled: bool,
+    /// Commands taken so far, refused ones included.
+    pub commands: u32,
+    /// Plans refused by the tick so far.
+    pub refused: u32,
+    /// Largest following error of a pivot since the last start of a motion, rad.
+    pub peak_following_error_rad: f32,
+    /// What the loop has counted since the snapshot before.
+    pub loop_counters: LoopCounters,
+}

@@ -1,0 +1,124 @@
+//! What a tick is given, what it gives, and what the loop remembers between ticks.
+
+use super::encoder::Encoder;
+use super::inspection::PivotWatch;
+use super::loop_counters::LoopCounters;
+use super::servo::PivotServo;
+use super::settling::Settling;
+use crate::drivers::biss::RawFrame;
+use crate::drivers::bridge::Duty;
+use crate::fault::{Fault, FaultKind};
+use crate::mode::Mode;
+use crate::motion::PlanFollower;
+
+/// What the hardware gives a tick.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Frames of the three encoders, all latched at the same instant.
+    pub frames: [RawFrame; 3],
+    /// Fault pins of the bridges (true: fault).
+    pub bridge_fault: [bool; 3],
+    /// Emergency stop pressed.
+    pub emergency_stop: bool,
+    /// Motor currents, ADC counts.
+    pub current_counts: [u16; 3],
+    /// Supply, ADC counts.
+    pub supply_counts: u16,
+    /// Cost of the tick before, processor cycles; 0 where nobody counts them.
+    pub tick_cycles: u32,
+    /// The tick before ended after its deadline, or there should have been one more since.
+    pub late: bool,
+}
+
+/// What a tick gives the hardware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Duties; zero brakes.
+    pub duty: [Duty; 3],
+    /// Sleep pins: false lets the motors coast whatever the duty.
+    pub awake: bool,
+}
+
+/// All that the loop remembers.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    pub(super) tick: u64,
+    pub(super) mode: Mode,
+    pub(super) fault: Option<Fault>,
+    /// The fault that has ended the controlled stop of the one before.
+    pub(super) stop_ended_by: Option<Fault>,
+    /// A latched fault lets the motors coast.
+    pub(super) coasts: bool,
+    /// The pivot that has lost its encoder, until the fault is acknowledged.
+    pub(super) lost_pivot: Option<usize>,
+    pub(super) referenced: bool,
+    pub(super) encoders: [Encoder; 3],
+    pub(super) motion: PlanFollower,
+    pub(super) servo: [PivotServo; 3],
+    pub(super) settling: Settling,
+    pub(super) supply: f32,
+    pub(super) commands: u32,
+    pub(super) refused: u32,
+    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due
+    /// yet.
+    pub(super) last_mode_and_commands: (Mode, u32),
+    pub(super) report_due: bool,
+    pub(super) loop_counters: LoopCounters,
+    /// Late ticks, a hundred each, less those forgiven.
+    pub(super) lateness: u32,
+    /// Ticks in a row with a low supply.
+    pub(super) low_supply_ticks: u8,
+    /// Square of how far out the setpoint may be, track radii.
+    pub(super) max_radius_squared: f32,
+    /// The pivot that is inspected in this tick; in [`SNAPSHOT_SLOT`](super::inspection::SNAPSHOT_SLOT) none is.
+    pub(super) inspection_slot: usize,
+    pub(super) pivot_watches: [PivotWatch; 3],
+}
+
+impl State {
+    /// State at power-up.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// State at power-up, with a fault that was found before: latched, so that nothing drives until it is acknowledged.
+    pub fn with_fault(kind: FaultKind) -> Self {
+        let fault = Fault {
+            kind,
+            pivot: None,
+            tick: 0,
+            value: 0.0,
+            limit: 0.0,
+        };
+        Self {
+            mode: Mode::Fault,
+            fault: Some(fault),
+            coasts: true,
+            ..Self::new()
+        }
+    }
+
+    /// The latched fault.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// The fault that has ended the controlled stop of that one.
+    pub fn stop_ended_by(&self) -> Option<Fault> {
+        self.stop_ended_by
+    }
+
+    /// Whether the servo drives the motors.
+    pub(super) fn servo_on(&self) -> bool {
+        matches!(self.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
+    }
+
+    /// Whether the bridges drive or brake.
+    pub(super) fn bridges_awake(&self) -> bool {
+        match self.mode {
+            Mode::Off => false,
+            Mode::Fault => !self.coasts,
+            Mode::Holding | Mode::Moving | Mode::Stopping => true,
+        }
+    }
+}

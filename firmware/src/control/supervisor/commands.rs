@@ -1,0 +1,162 @@
+//! Commands: which are taken in which state, and what each does.
+
+use super::transitions::{Event, Outcome, outcome};
+use crate::control::command::Command;
+use crate::control::config::Config;
+use crate::control::encoder::Encoder;
+use crate::control::referencing;
+use crate::control::state::State;
+use crate::mode::Mode;
+use crate::motion::Position;
+use crate::number::Fixed;
+use kinematics::{Angle, Pose, direct};
+
+impl State {
+    /// Handles a command as the table of transitions has it.
+    pub(in crate::control) fn handle_command(
+        &mut self,
+        config: &mut Config,
+        command: &Command,
+        pivots: &[Angle; 3],
+    ) {
+        let event = event_of(config, command);
+        let done = match outcome(self.mode, event) {
+            Outcome::Nothing => return,
+            Outcome::Refused => false,
+            Outcome::To(mode) => {
+                self.apply(config, command);
+                self.mode = mode;
+                true
+            }
+            Outcome::If(mode) => {
+                let done = self.try_apply(command, pivots);
+                if done {
+                    self.mode = mode;
+                }
+                done
+            }
+        };
+        if !done {
+            self.refused = self.refused.wrapping_add(1);
+        }
+    }
+
+    /// What can not fail.
+    fn apply(&mut self, config: &mut Config, command: &Command) {
+        match command {
+            Command::Acknowledge => {
+                self.fault = None;
+                self.stop_ended_by = None;
+                self.lost_pivot = None;
+            }
+            Command::Configure(wanted) => self.configure(config, wanted),
+            Command::Centre(centre) => {
+                // Servo off in mid-motion leaves the motion as it was: there is nothing under way then.
+                if self.mode == Mode::Off {
+                    self.motion.rest_at(self.motion.position());
+                }
+                // At rest, as it is now, it is taken.
+                let _ = self.motion.set_centre(*centre);
+            }
+            // The servo is on already, or goes off, which is all there is to it.
+            Command::Reference | Command::Servo(_) | Command::Move(_) => {}
+        }
+    }
+
+    /// What the stage may not be ready for; nothing has changed then.
+    fn try_apply(&mut self, command: &Command, pivots: &[Angle; 3]) -> bool {
+        match command {
+            Command::Reference if !self.referenced => self.reference(pivots),
+            Command::Reference | Command::Servo(_) => self.hold(pivots),
+            Command::Move(plan) => {
+                let taken = self.motion.accept(plan).is_ok();
+                if taken {
+                    self.settling.start();
+                }
+                taken
+            }
+            Command::Centre(_) | Command::Configure(_) | Command::Acknowledge => false,
+        }
+    }
+
+    /// Takes theta and the pivots' turns from what single-turn encoders show, and holds.
+    fn reference(&mut self, pivots: &[Angle; 3]) -> bool {
+        let ready = self
+            .encoders
+            .iter()
+            .all(|encoder| encoder.unusable().is_none());
+        let (true, Ok(pose)) = (ready, direct::<Fixed>(pivots)) else {
+            return false;
+        };
+        let (theta, unwrapped) = referencing::within_one_turn(pose.theta, pivots);
+        for (encoder, angle) in self.encoders.iter_mut().zip(unwrapped) {
+            encoder.unwrap_near(angle);
+        }
+        self.referenced = true;
+        self.hold_at(&Pose { theta, ..pose });
+        true
+    }
+
+    /// Servo on, at the pose where the stage is.
+    fn hold(&mut self, pivots: &[Angle; 3]) -> bool {
+        let (true, Ok(pose)) = (self.referenced, direct(pivots)) else {
+            return false;
+        };
+        self.hold_at(&pose);
+        true
+    }
+
+    fn hold_at(&mut self, pose: &Pose<Fixed>) {
+        let platform = position(pose);
+        self.motion
+            .rest_at(self.motion.centre().from_platform(&platform));
+        self.settling.start();
+        self.set_radius_limit_from(&platform);
+        self.reset_watches();
+        for servo in &mut self.servo {
+            servo.restart();
+        }
+    }
+
+    /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that sends no snapshot.
+    fn configure(&mut self, config: &mut Config, wanted: &Config) {
+        let moved = [0, 1, 2].map(|i| !config.encoders[i].has_same_mounting(&wanted.encoders[i]));
+        config.clone_from(wanted);
+        for (encoder, moved) in self.encoders.iter_mut().zip(moved) {
+            if moved {
+                // The angle jumps by what the zero moved: that is no implausible step, it is a new start.
+                *encoder = Encoder::default();
+                self.referenced = false;
+            }
+        }
+    }
+}
+
+fn event_of(config: &Config, command: &Command) -> Event {
+    match command {
+        Command::Reference => Event::Reference,
+        Command::Servo(true) => Event::ServoOn,
+        Command::Servo(false) => Event::ServoOff,
+        Command::Move(_) => Event::Move,
+        Command::Centre(_) => Event::Centre,
+        Command::Configure(wanted) => {
+            let same = (config.encoders.iter().zip(&wanted.encoders))
+                .all(|(now, wanted)| now.has_same_mounting(wanted));
+            if same {
+                Event::Constants
+            } else {
+                Event::Mounting
+            }
+        }
+        Command::Acknowledge => Event::Acknowledge,
+    }
+}
+
+/// The platform's position in a pose.
+fn position(pose: &Pose<Fixed>) -> Position {
+    [
+        pose.x.to_position(),
+        pose.y.to_position(),
+        pose.theta.units(),
+    ]
+}

@@ -1,0 +1,107 @@
+//! Faults that the inputs show.
+
+use crate::control::config::Config;
+use crate::control::state::{Inputs, State};
+use crate::control::units::SUPPLY_V_PER_COUNT;
+use crate::fault::{FaultKind, Reaction};
+use crate::mode::Mode;
+
+/// Ticks in a row that a low supply is one: 0.2 ms, over which a converter's noise is none.
+const LOW_SUPPLY_TICKS: u8 = 4;
+/// Ticks over which one late tick is forgiven.
+const LATE_RECOVERY_TICKS: u32 = 100;
+
+impl State {
+    /// Checks the inputs. In a tick with nothing unusual that is one comparison for all of them.
+    #[inline]
+    pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
+        let [one, two, three] = inputs.bridge_fault;
+        let reported = inputs.emergency_stop | inputs.late | one | two | three;
+        let pending = self.lateness | u32::from(self.low_supply_ticks);
+        let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
+        let has_power = inputs.supply_counts >= config.limits.min_supply_counts;
+        if reported || pending != 0 || !is_well || !has_power || self.mode == Mode::Fault {
+            self.check_unusual_inputs(config, inputs);
+        }
+    }
+
+    #[cold]
+    fn check_unusual_inputs(&mut self, config: &Config, inputs: &Inputs) {
+        if self.mode == Mode::Fault {
+            // An encoder that is lost loses its turns, whatever else is wrong already.
+            self.referenced &= self.encoders.iter().all(|e| e.unusable().is_none());
+            return;
+        }
+        if inputs.emergency_stop {
+            self.raise_fault(FaultKind::EmergencyStop, None, 0.0, 0.0);
+            return;
+        }
+        self.check_lateness(config, inputs.late);
+        if self.servo_on() {
+            self.check_power(config, inputs);
+        }
+        if self.referenced || self.mode == Mode::Stopping {
+            self.check_encoders();
+        }
+    }
+
+    fn check_lateness(&mut self, config: &Config, late: bool) {
+        if late {
+            self.lateness = self.lateness.saturating_add(LATE_RECOVERY_TICKS);
+            let most = config.limits.late_ticks;
+            if self.lateness > most.saturating_mul(LATE_RECOVERY_TICKS) {
+                let value = self.lateness.div_ceil(LATE_RECOVERY_TICKS) as f32;
+                self.raise_fault(FaultKind::LoopLate, None, value, most as f32);
+            }
+        } else {
+            self.lateness = self.lateness.saturating_sub(1);
+        }
+    }
+
+    fn check_power(&mut self, config: &Config, inputs: &Inputs) {
+        for i in 0..3 {
+            if inputs.bridge_fault[i] {
+                self.raise_fault(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
+            }
+        }
+        if inputs.supply_counts >= config.limits.min_supply_counts {
+            self.low_supply_ticks = 0;
+            return;
+        }
+        self.low_supply_ticks += 1;
+        if self.low_supply_ticks >= LOW_SUPPLY_TICKS {
+            self.low_supply_ticks = 0;
+            let volts = |counts: u16| f32::from(counts) * SUPPLY_V_PER_COUNT as f32;
+            let limit = config.limits.min_supply_counts;
+            self.raise_fault(
+                FaultKind::SupplyLow,
+                None,
+                volts(inputs.supply_counts),
+                volts(limit),
+            );
+        }
+    }
+
+    fn check_encoders(&mut self) {
+        for i in 0..3 {
+            if self.lost_pivot == Some(i) {
+                continue;
+            }
+            if let Some(kind) = self.encoders[i].unusable() {
+                self.raise_fault(kind, Some(i), 0.0, 0.0);
+            }
+        }
+    }
+
+    /// An encoder that repeats itself, found out by what should have moved it. The servo has been misled by then, so
+    /// that its integral is nothing to go on blindly with; the pivot is slow, or it would have been found by its own
+    /// speed.
+    #[cold]
+    pub(in crate::control) fn fault_frozen_encoder(&mut self, pivot: usize) {
+        if let Some(encoder) = self.encoders.get_mut(pivot) {
+            encoder.mark_unusable(FaultKind::EncoderFrozen);
+        }
+        let kind = FaultKind::EncoderFrozen;
+        self.raise_fault_with(Reaction::Brake, kind, Some(pivot), [0.0; 2]);
+    }
+}

@@ -1,0 +1,140 @@
+//! The one table of the supervisor: what every event does in every mode.
+
+use crate::fault::Reaction;
+use crate::mode::Mode;
+
+/// A command, a fault, or the end of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Command: take theta and the turns from the encoders, and hold.
+    Reference,
+    /// Command: servo on.
+    ServoOn,
+    /// Command: servo off.
+    ServoOff,
+    /// Command: a plan.
+    Move,
+    /// Command: another centre of rotation.
+    Centre,
+    /// Command: other constants.
+    Constants,
+    /// Command: other constants, an encoder's mounting among them.
+    Mounting,
+    /// Command: acknowledge the fault.
+    Acknowledge,
+    /// The motion has come to its end.
+    AtRest,
+    /// A fault that is answered by a controlled stop.
+    StopFault,
+    /// A fault that is answered by braking.
+    BrakeFault,
+    /// A fault that is answered by letting go.
+    CoastFault,
+}
+
+/// What comes of an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// This state from now on, which may be the one there was.
+    To(Mode),
+    /// This state, if the stage is such that it can be had; else refused.
+    If(Mode),
+    /// A command is counted as refused, and nothing changes.
+    Refused,
+    /// Nothing: it does not matter in this state, or can not happen.
+    Nothing,
+}
+
+/// All states, in the order of the table.
+pub const MODES: [Mode; 5] = [
+    Mode::Off,
+    Mode::Holding,
+    Mode::Moving,
+    Mode::Stopping,
+    Mode::Fault,
+];
+
+/// All events with what they do in each of the [`MODES`].
+#[rustfmt::skip]
+pub const TRANSITIONS: [(Event, [Outcome; 5]); 12] = {
+    use Event::{Acknowledge, AtRest, BrakeFault, Centre, CoastFault, Constants, Mounting, Move, Reference, ServoOff, ServoOn, StopFault};
+    use Mode::{Fault, Holding, Moving, Off, Stopping};
+    use Outcome::{If, Nothing, Refused, To};
+    [
+        //            off          holding      moving        stopping   fault
+        (Reference,   [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
+        (ServoOn,     [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
+        (ServoOff,    [To(Off),     To(Off),     To(Off),      Refused,   Refused]),
+        (Move,        [Refused,     If(Moving),  If(Moving),   Refused,   Refused]),
+        (Centre,      [To(Off),     To(Holding), Refused,      Refused,   Refused]),
+        (Constants,   [To(Off),     To(Holding), Refused,      Refused,   To(Fault)]),
+        (Mounting,    [To(Off),     Refused,     Refused,      Refused,   To(Fault)]),
+        (Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   To(Off)]),
+        (AtRest,      [Nothing,     Nothing,     To(Holding),  To(Fault), Nothing]),
+        (StopFault,   [To(Fault),   To(Fault),   To(Stopping), Nothing,   Nothing]),
+        (BrakeFault,  [To(Fault),   To(Fault),   To(Fault),    To(Fault), Nothing]),
+        // A bridge that does not drive does not matter.
+        (CoastFault,  [Nothing,     To(Fault),   To(Fault),    To(Fault), Nothing]),
+    ]
+};
+
+impl Event {
+    /// A fault, by what is done about it.
+    pub(super) const fn of(reaction: Reaction) -> Self {
+        match reaction {
+            Reaction::Stop => Self::StopFault,
+            Reaction::Brake => Self::BrakeFault,
+            Reaction::Coast => Self::CoastFault,
+        }
+    }
+}
+
+/// What `event` does in a state.
+#[inline]
+pub(super) fn outcome(mode: Mode, event: Event) -> Outcome {
+    // Both enumerations are in the table's order, which the tests hold.
+    TRANSITIONS
+        .get(event as usize)
+        .and_then(|(_, outcomes)| outcomes.get(mode.row()))
+        .copied()
+        .unwrap_or(Outcome::Nothing)
+}
+
+impl Mode {
+    /// Its place in [`MODES`].
+    const fn row(self) -> usize {
+        match self {
+            Self::Off => 0,
+            Self::Holding => 1,
+            Self::Moving => 2,
+            Self::Stopping => 3,
+            Self::Fault => 4,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::control::supervisor::transitions::*;
+
+    #[test]
+    fn events_and_states_stand_where_they_are_looked_up() {
+        for (row, (event, _)) in TRANSITIONS.iter().enumerate() {
+            assert_eq!(*event as usize, row);
+        }
+        for (column, mode) in MODES.iter().enumerate() {
+            assert_eq!(mode.row(), column);
+        }
+    }
+
+    #[test]
+    fn a_fault_is_left_by_its_acknowledgement_alone() {
+        for (event, outcomes) in TRANSITIONS {
+            let left = !matches!(
+                outcomes[Mode::Fault.row()],
+                Outcome::To(Mode::Fault) | Outcome::Refused | Outcome::Nothing
+            );
+            assert_eq!(left, event == Event::Acknowledge, "{event:?}");
+        }
+    }
+}

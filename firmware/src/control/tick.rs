@@ -1,0 +1,234 @@
+//! The control loop: one function of state and inputs.
+
+use super::config::Config;
+use super::encoder::Encoder;
+use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
+use super::servo::PivotSetpoint;
+use super::state::{Inputs, Outputs, State};
+use super::tick_queues::TickQueues;
+use crate::drivers::biss::RawFrame;
+use crate::drivers::bridge::Duty;
+use crate::fault::FaultKind;
+use crate::mode::Mode;
+use crate::motion::Setpoint;
+use crate::recorder::{Sample, TickObserver};
+use kinematics::Angle;
+
+/// One period of the control loop, at 20 kHz by default.
+///
+/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update
+/// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
+/// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
+/// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
+/// cost on the chip stands in the README and is printed by `cargo chip`.
+#[inline]
+pub fn tick(
+    config: &mut Config,
+    state: &mut State,
+    inputs: &Inputs,
+    queues: &mut TickQueues<'_>,
+    recorder: &mut impl TickObserver,
+) -> Outputs {
+    state.tick = state.tick.wrapping_add(1);
+    state
+        .loop_counters
+        .count_tick(inputs.tick_cycles, inputs.late);
+    let mut pivots = decode(config, &mut state.encoders, inputs.frames);
+    // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
+    let supply = f32::from(inputs.supply_counts);
+    if state.supply == 0.0 {
+        state.supply = supply;
+    }
+    state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
+
+    // Handled where it lies: a plan is too long to be moved twice.
+    let command = queues.commands.peek();
+    let commanded = command.is_some();
+    // The tick that switches the servo on has measured the pose, which costs what driving does: it drives from the next
+    // one on.
+    let drives = state.servo_on();
+    if let Some(command) = command {
+        state.commands = state.commands.wrapping_add(1);
+        state.handle_command(config, command, &pivots);
+        let _ = queues.commands.dequeue();
+        // Once more: referencing gives the pivots their turns.
+        pivots = state.encoders.each_ref().map(Encoder::angle);
+    }
+    state.check_inputs(config, inputs);
+    state.check_motor_heat(config, inputs);
+
+    let point = advance(config, state);
+    let setpoint = state.motion.centre().platform_setpoint(&point);
+    let driven = if drives && state.servo_on() {
+        state.drive(config, &setpoint, &mut pivots)
+    } else {
+        None
+    };
+    // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
+    let (target, rates, duty) =
+        (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
+    let slot = state.inspection_slot;
+    state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
+    let outputs = Outputs {
+        duty,
+        awake: state.bridges_awake(),
+    };
+    let sample = || Sample {
+        tick: state.tick,
+        mode: state.mode,
+        fault: state.fault.map(|fault| fault.kind),
+        setpoint,
+        reference_point: point,
+        pivot_setpoints: target,
+        pivot_rates: rates,
+        pivots,
+        duty,
+        current_counts: inputs.current_counts,
+        supply_counts: inputs.supply_counts,
+        tick_cycles: inputs.tick_cycles,
+        commands: state.commands,
+    };
+    recorder.observe(&sample());
+    if let Some(fault_record) = &mut queues.fault_record {
+        fault_record.observe(&sample());
+    }
+    // Made anew, so that a tick that records nothing has it in registers only.
+    if queues.recorder.is_active() {
+        queues.recorder.observe(&sample());
+    }
+    // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
+    // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
+    // on when the command side reads.
+    let now = (state.mode, state.commands);
+    state.report_due |= now != state.last_mode_and_commands;
+    state.last_mode_and_commands = now;
+    if (slot == SNAPSHOT_SLOT || state.report_due) && !commanded {
+        state.report_due = false;
+        state.send_snapshot(queues, &point.position, &pivots, &target, duty);
+    }
+    outputs
+}
+
+// The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can
+// count each between its symbols.
+
+/// Encoder frames to pivot angles.
+#[inline(never)]
+fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -> [Angle; 3] {
+    for i in 0..3 {
+        encoders[i].update(&config.encoders[i], &frames[i]);
+    }
+    encoders.each_ref().map(Encoder::angle)
+}
+
+/// The motion generator's next setpoint, of the point that is moved.
+#[inline(never)]
+fn advance(config: &Config, state: &mut State) -> Setpoint {
+    let motion = &mut state.motion;
+    if state.mode == Mode::Stopping {
+        motion.advance_fault_stop(&config.fault_stop);
+        return motion.fault_stop_setpoint(&config.scale);
+    }
+    // With the servo off there is nothing under way.
+    if matches!(state.mode, Mode::Holding | Mode::Moving) {
+        motion.advance();
+    }
+    motion.setpoint(&config.scale)
+}
+
+/// Of the measured supply, from one tick to the next.
+const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
+
+/// Setpoints of the pivots, their rates (rad/s), and the duties.
+type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
+
+impl State {
+    /// Setpoint to duties; `None` when a fault came of it.
+    fn drive(
+        &mut self,
+        config: &Config,
+        setpoint: &Setpoint,
+        pivots: &mut [Angle; 3],
+    ) -> Option<DriveOutputs> {
+        if !self.is_in_disk(config, &setpoint.position) {
+            return None;
+        }
+        // Used where it lies.
+        let Some(wanted) = &pivot_setpoints(config, setpoint) else {
+            self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
+            return None;
+        };
+        let target = &wanted.angles;
+        if let Some(lost) = self.lost_pivot
+            && let (Some(pivot), Some(target)) = (pivots.get_mut(lost), target.get(lost))
+        {
+            // All that is known of it.
+            *pivot = *target;
+        }
+        let (errors, worst) = self.following_errors(config, pivots, wanted)?;
+        (self.settling).update(&config.limits, worst, self.motion.is_moving());
+        self.loop_counters.observe_error(worst);
+        if self.mode != Mode::Holding && !self.motion.is_moving() {
+            self.finish_motion();
+        }
+        let (duty, sum) = self.step_servos(config, &errors, wanted);
+        // Infinities add up to one, or to no number.
+        if !(sum.abs() <= f32::MAX) {
+            self.raise_fault(FaultKind::NotFinite, None, 0.0, 0.0);
+            return None;
+        }
+        let i = self.inspection_slot;
+        let after = if i < 2 { i + 1 } else { 0 };
+        // Each pivot in its slot; in the snapshot's slot none.
+        if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
+            wanted.lengths.get(i),
+            target.get(i),
+            pivots.get(i),
+            pivots.get(after),
+            duty.get(i),
+        ) {
+            let inspection = Inspection {
+                pivot: i,
+                setpoint,
+                angle,
+                next,
+                duty,
+            };
+            if !(self.is_in_guide_range(config, i, length)
+                && self.inspect_pivot(config, &inspection))
+            {
+                return None;
+            }
+        }
+        Some((wanted.angles, wanted.motion.rates, duty))
+    }
+
+    /// Duties of the three servos, and the sum of what they asked for. The one that is inspected in this tick learns.
+    #[inline(never)]
+    fn step_servos(
+        &mut self,
+        config: &Config,
+        errors: &[i32; 3],
+        wanted: &PivotSetpoints,
+    ) -> ([Duty; 3], f32) {
+        let counts_per_volt = config.servo.counts_per_volt(self.supply);
+        let mut duty = [Duty(0); 3];
+        let mut sum = 0.0;
+        for i in 0..3 {
+            let setpoint = PivotSetpoint {
+                error: errors[i],
+                rate: wanted.motion.rates[i],
+                acceleration: wanted.motion.accelerations[i],
+                platform_torque: wanted.torques[i],
+            };
+            let servo = &mut self.servo[i];
+            duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
+            if i == self.inspection_slot {
+                servo.learn(&config.servo);
+            }
+            sum += servo.requested_counts();
+        }
+        (duty, sum)
+    }
+}

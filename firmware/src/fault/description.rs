@@ -1,0 +1,144 @@
+//! What is known of each kind of fault, in words: `FAULTS.md` is made of it.
+
+use super::kind::FaultKind;
+
+/// A kind of fault, for people.
+#[derive(Clone, Copy, Debug)]
+pub struct FaultDescription {
+    /// Which.
+    pub kind: FaultKind,
+    /// How it is found out, and how soon.
+    pub detection: &'static str,
+    /// Parameters that set its threshold; empty where there is nothing to set.
+    pub thresholds: &'static [u32],
+    /// Why the reaction is the one it is.
+    pub reason: &'static str,
+}
+
+const LOST: &str =
+    "the other two pivots and the model of this one carry the motion to rest on its path, gently";
+const ENCODER: &[u32] = &[0x5450_0502];
+
+/// All kinds, in the order of their numbers.
+pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
+    FaultDescription {
+        kind: FaultKind::EncoderSilent,
+        detection: "no frame, or none that is whole, more ticks in a row than are bridged; once referenced, moving or not",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    FaultDescription {
+        kind: FaultKind::EncoderCrc,
+        detection: "the frame's check fails, more ticks in a row than are bridged; once referenced",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    FaultDescription {
+        kind: FaultKind::EncoderError,
+        detection: "the frame's error bit, more ticks in a row than are bridged; once referenced",
+        thresholds: ENCODER,
+        reason: LOST,
+    },
+    FaultDescription {
+        kind: FaultKind::EncoderJump,
+        detection: "a step that asks for an acceleration no pivot can have, more ticks in a row than are bridged; once referenced",
+        thresholds: &[0x5450_0503, 0x5450_0502],
+        reason: LOST,
+    },
+    FaultDescription {
+        kind: FaultKind::FollowingError,
+        detection: "measured minus setpoint of a pivot over a constant and a part that grows with the setpoint's rate; every tick while driven",
+        thresholds: &[0x5450_0500, 0x5450_0504],
+        reason: "the servo has lost the pivot: no setpoint will be followed, so none is asked for",
+    },
+    FaultDescription {
+        kind: FaultKind::BridgeFault,
+        detection: "a bridge pulls its fault pin; every tick while driven",
+        thresholds: &[],
+        reason: "over-current or over-temperature: braking would send the motor's current through the same switches, and the sleep pin is what resets them",
+    },
+    FaultDescription {
+        kind: FaultKind::EmergencyStop,
+        detection: "the emergency stop's input; every tick, in every state",
+        thresholds: &[],
+        reason: "the hardware cuts the pulses, which brakes; braking stops in the shortest way and needs neither encoders nor computation",
+    },
+    FaultDescription {
+        kind: FaultKind::SupplyLow,
+        detection: "the supply under its limit in four ticks in a row while driven",
+        thresholds: &[0x5450_0501],
+        reason: "there may be no power left for a controlled stop; braking takes none, and a bridge that loses its own supply lets go by itself",
+    },
+    FaultDescription {
+        kind: FaultKind::ImpossibleSetpoint,
+        detection: "no pivots belong to the setpoint; every tick while driven",
+        thresholds: &[],
+        reason: "the plan is wrong, and there is no other to stop along",
+    },
+    FaultDescription {
+        kind: FaultKind::EncoderFrozen,
+        detection: "the same reading to the last bit: from 0.03 rad/s on, more ticks in a row than are bridged; else for 20 ticks (3 more), if the setpoint has gone further than a threshold meanwhile, or for 20 ticks (3 more) in which the voltage exceeds by more than another what it was when the reading last changed (on the same side of zero or on the other), and then it brakes, since the servo has been misled. Less voltage need not move anything: friction holds what has come to rest. At rest nothing tells a frozen encoder from a quiet one, until something is to move. A pivot that is wedged so hard that not one bit changes is reported as this",
+        thresholds: &[0x5450_0502, 0x5450_0506, 0x5450_0507],
+        reason: LOST,
+    },
+    FaultDescription {
+        kind: FaultKind::Overspeed,
+        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every fourth tick while driven, but not while a late tick is unforgiven, which makes steps too long",
+        thresholds: &[0x5450_0505, 0x5450_0106],
+        reason: "what lets a pivot run away cannot be trusted to stop it",
+    },
+    FaultDescription {
+        kind: FaultKind::PivotsTooClose,
+        detection: "the measured angle between two neighbours under the smallest one less a margin; each pair every fourth tick while driven",
+        thresholds: &[0x5450_0203, 0x5450_050E],
+        reason: "the carriages are about to touch: the shortest way to rest is the best",
+    },
+    FaultDescription {
+        kind: FaultKind::GuideRange,
+        detection: "the setpoint's place on a guide out of the guide's range by more than a margin; each guide every fourth tick while driven",
+        thresholds: &[0x5450_0201, 0x5450_0202, 0x5450_050D],
+        reason: "the plan is wrong: its path leads on to the guide's end",
+    },
+    FaultDescription {
+        kind: FaultKind::WorkspaceLeft,
+        detection: "the setpoint out of the usable disk by more than a margin, and not on its way back into it from where the servo was switched on; every tick while driven",
+        thresholds: &[0x5450_050C],
+        reason: "the plan is wrong: its path leads on outwards",
+    },
+    FaultDescription {
+        kind: FaultKind::Stalled,
+        detection: "a bridge at its largest duty without a pause; each pivot every fourth tick while driven",
+        thresholds: &[0x5450_0508],
+        reason: "something holds the pivot, or the supply or the motor is too weak for the motion: a stop under control would need the same drive",
+    },
+    FaultDescription {
+        kind: FaultKind::MotorHot,
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 7.3 A the current is measured as 7.3 A",
+        thresholds: &[0x5450_0509, 0x5450_050A],
+        reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
+    },
+    FaultDescription {
+        kind: FaultKind::LoopLate,
+        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state. At full speed pivots that lead by what a few missed ticks were worth may be too far off before",
+        thresholds: &[0x5450_050B],
+        reason: "encoders and drives still work, a late duty is an old one for 25 us",
+    },
+    FaultDescription {
+        kind: FaultKind::NotFinite,
+        detection: "a duty that is not a number, where whatever else is none ends up; each drive every tick while driven",
+        thresholds: &[],
+        reason: "nothing that is computed can be trusted; braking needs no numbers",
+    },
+    FaultDescription {
+        kind: FaultKind::SettingsDamaged,
+        detection: "an item kept in flash fails its checks, or no store can be made of the flash; at the start, before anything drives",
+        thresholds: &[],
+        reason: "nothing has moved yet; the controller's own parameters are in force, which may not be those of this stage",
+    },
+    FaultDescription {
+        kind: FaultKind::SettingsNewer,
+        detection: "the store's version is newer than this firmware; at the start, before anything drives",
+        thresholds: &[],
+        reason: "nothing has moved yet; what is kept would be misread, and stays as it is",
+    },
+];

@@ -1,0 +1,40 @@
+//! The retained memory: events and the rows of the fault record.
+
+use super::checked_words::{CheckedEntries, EVENT_WORDS};
+use super::row;
+use core::sync::atomic::AtomicU32;
+
+/// Ticks that the fault record holds, those after the fault included: 12.8 ms.
+pub const FAULT_RECORD_ROWS: usize = 256;
+/// How many of them come after the fault.
+pub const ROWS_AFTER_FAULT: u32 = 64;
+/// Events that are kept.
+pub const RETAINED_EVENTS: usize = 64;
+
+/// Another one for each layout of the memory.
+pub(super) const LAYOUT_MAGIC: u32 = 0x5458_0001;
+
+/// The memory. All zero at first, and any content at all is a valid one.
+pub struct RetainedMemory {
+    pub(super) layout: AtomicU32,
+    /// Number of the start; its low byte is in every row.
+    pub(super) start: AtomicU32,
+    /// The fault record is complete and not overwritten before the servo is on.
+    pub(super) frozen: AtomicU32,
+    pub(crate) events: CheckedEntries<RETAINED_EVENTS, { EVENT_WORDS }>,
+    pub(super) rows: CheckedEntries<FAULT_RECORD_ROWS, { row::WORDS }>,
+}
+
+impl RetainedMemory {
+    /// Empty.
+    #[allow(clippy::new_without_default)] // A default of 14 KB is nothing to be made in passing.
+    pub const fn new() -> Self {
+        Self {
+            layout: AtomicU32::new(0),
+            start: AtomicU32::new(0),
+            frozen: AtomicU32::new(0),
+            events: CheckedEntries::new(),
+            rows: CheckedEntries::new(),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Events as words, for the retained memory: number, tick (two), what, three of its own, and the check.
+
+use super::event::{Event, START_CAUSES};
+use crate::fault::{FAULT_DESCRIPTIONS, Fault};
+
+/// Stands for no pivot, and for a cause that has no number.
+const NONE: u8 = 0xFF;
+
+/// The words of an event; the last is for the check.
+pub(super) fn words(number: u32, tick: u64, event: &Event) -> [u32; 8] {
+    let (code, small, [a, b, c]) = parts(event);
+    let what = u32::from_be_bytes([code, small[0], small[1], 0]);
+    [number, tick as u32, (tick >> 32) as u32, what, a, b, c, 0]
+}
+
+/// Kind of event, two bytes and three words.
+fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
+    let number = |value: f64| [value.to_bits() as u32, (value.to_bits() >> 32) as u32];
+    let bare = |code| (code, [0; 2], [0; 3]);
+    match event {
+        Event::Start(cause) => {
+            let known = |cause: &&str| START_CAUSES.iter().position(|known| known == cause);
+            let place = cause.as_ref().and_then(known);
+            (0, [place.map_or(NONE, |place| place as u8), 0], [0; 3])
+        }
+        Event::Fault(fault) => {
+            let small = [fault.kind as u8, fault.pivot.unwrap_or(NONE)];
+            (1, small, [fault.value.to_bits(), fault.limit.to_bits(), 0])
+        }
+        Event::Acknowledged => bare(2),
+        Event::Referenced => bare(3),
+        Event::ReferenceLost => bare(4),
+        Event::ServoOn => bare(5),
+        Event::ServoOff => bare(6),
+        Event::ParameterSet(id, value) => {
+            let [low, high] = number(*value);
+            (7, [0; 2], [*id, low, high])
+        }
+        Event::Stop => bare(8),
+        Event::Halt => bare(9),
+        Event::Refused(count) => (10, [0; 2], [*count, 0, 0]),
+        Event::HostSilent(ms) => {
+            let [low, high] = number(*ms);
+            (11, [0; 2], [0, low, high])
+        }
+        Event::Warning(pivot, warns) => (12, [*pivot, u8::from(*warns)], [0; 3]),
+        Event::Stored => bare(13),
+        Event::StoreFailed(number) => (14, [0; 2], [u32::from(*number), 0, 0]),
+        Event::Recalled => bare(15),
+        Event::UnknownParameters(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
+    }
+}
+
+/// Tick and event of words whose check was right; `None` for what another firmware has written.
+pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
+    let [_, low, high, what, a, b, c, _] = *words;
+    let tick = u64::from(high) << 32 | u64::from(low);
+    let [code, first, second, _] = what.to_be_bytes();
+    let number = f64::from_bits(u64::from(c) << 32 | u64::from(b));
+    let event = match code {
+        0 => Event::Start(START_CAUSES.get(usize::from(first)).copied()),
+        1 => Event::Fault(Fault {
+            kind: FAULT_DESCRIPTIONS.get(usize::from(first))?.kind,
+            pivot: (second != NONE).then_some(second),
+            tick,
+            value: f32::from_bits(a),
+            limit: f32::from_bits(b),
+        }),
+        2 => Event::Acknowledged,
+        3 => Event::Referenced,
+        4 => Event::ReferenceLost,
+        5 => Event::ServoOn,
+        6 => Event::ServoOff,
+        7 => Event::ParameterSet(a, number),
+        8 => Event::Stop,
+        9 => Event::Halt,
+        10 => Event::Refused(a),
+        11 => Event::HostSilent(number),
+        12 => Event::Warning(first, second != 0),
+        13 => Event::Stored,
+        14 => Event::StoreFailed(a as u16),
+        15 => Event::Recalled,
+        16 => Event::UnknownParameters(a as u16),
+        _ => return None,
+    };
+    Some((tick, event))
+}

@@ -1,0 +1,74 @@
+//! Something that happened.
+
+use crate::fault::Fault;
+use core::fmt;
+
+/// What may start a controller unasked: the watchdog, the program, the supply.
+pub const START_CAUSES: [&str; 3] = [
+    "the watchdog: the control loop stood still",
+    "a panic or a processor fault",
+    "a dip of the supply",
+];
+
+/// Something that happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::gcs) enum Event {
+    /// The controller started; by what, if that is worth telling.
+    Start(Option<&'static str>),
+    Fault(Fault),
+    Acknowledged,
+    Referenced,
+    ReferenceLost,
+    ServoOn,
+    ServoOff,
+    /// A parameter was set.
+    ParameterSet(u32, f64),
+    /// `STP` or `#24`.
+    Stop,
+    /// `HLT`
+    Halt,
+    /// The tick has refused commands: how many.
+    Refused(u32),
+    /// No host was heard for so many milliseconds.
+    HostSilent(f64),
+    /// The encoder of a pivot, counted from 0, has begun to warn, or has stopped.
+    Warning(u8, bool),
+    /// Settings were written to flash.
+    Stored,
+    /// They could not be: the error's number.
+    StoreFailed(u16),
+    /// `RPA`
+    Recalled,
+    /// So many parameters are stored that this firmware does not know.
+    UnknownParameters(u16),
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Start(None) => f.write_str("start"),
+            Self::Start(Some(cause)) => write!(f, "start by {cause}"),
+            Self::Fault(fault) => write!(f, "fault: {fault}"),
+            Self::Acknowledged => f.write_str("fault acknowledged"),
+            Self::Referenced => f.write_str("referenced"),
+            Self::ReferenceLost => f.write_str("reference lost"),
+            Self::ServoOn => f.write_str("servo on"),
+            Self::ServoOff => f.write_str("servo off"),
+            Self::ParameterSet(id, value) => write!(f, "parameter 0x{id:X} set to {value}"),
+            Self::Stop => f.write_str("stopped by command"),
+            Self::Halt => f.write_str("halted by command"),
+            Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
+            Self::Warning(pivot, true) => write!(f, "encoder warns, pivot {}", pivot + 1),
+            Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
+            Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
+            Self::Stored => f.write_str("settings kept"),
+            Self::StoreFailed(number) => {
+                write!(f, "settings could not be kept, error {number}")
+            }
+            Self::Recalled => f.write_str("parameters as they are kept"),
+            Self::UnknownParameters(count) => {
+                write!(f, "{count} kept parameters are unknown here and ignored")
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Carrying out what changes something.
+
+use super::error::ErrorCode;
+use super::events::Event;
+use super::interpreter::Interpreter;
+use super::request::Action;
+use super::request::MAX_DELAY_MS;
+use super::session::{Awaited, Session, Wait};
+use crate::commander::SoftLimitChange;
+use crate::commander::axis::{Axis, AxisValues};
+use crate::motion::Stop;
+use crate::queues::CommandQueues;
+
+impl Interpreter {
+    /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
+    /// [`ErrorCode::Stopped`].
+    pub(super) fn perform(
+        &mut self,
+        action: Action,
+        session: &mut Session,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        match action {
+            Action::Servo(values) => match servo(&values)? {
+                Some(on) => Ok(self.commander.set_servo(on, queues)?),
+                None => Ok(()),
+            },
+            // Whichever axes are named: the encoders give all of them at once.
+            Action::Reference(_) => {
+                if self.commander.begin_referencing(queues)? {
+                    self.wait(session, Awaited::Reference);
+                }
+                Ok(())
+            }
+            Action::Move(values) => Ok(self.commander.move_to(&values, queues)?),
+            Action::MoveRelative(values) | Action::Step(values) => {
+                Ok(self.commander.move_by(&values, queues)?)
+            }
+            Action::Record(action) => {
+                (self.recorder_state).change(&action, &mut self.parameters, &queues.recorder)
+            }
+            Action::MoveInTool(values) => Ok(self.commander.move_in_tool(&values, queues)?),
+            Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
+            Action::Jog(values) => Ok(self.commander.jog(&values, queues)?),
+            Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
+            Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
+            Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
+            Action::SoftLowest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
+            }
+            Action::SoftHighest(values) => {
+                Ok((self.commander).set_soft_limits(&SoftLimitChange::Highest(values))?)
+            }
+            Action::SoftActive(values) => {
+                let change = SoftLimitChange::Active(flags(&values)?);
+                Ok(self.commander.set_soft_limits(&change)?)
+            }
+            Action::Set(settings) => self.set(&settings, session, queues),
+            Action::Store(addresses) => {
+                self.store_parameters(&addresses)?;
+                self.wait(session, Awaited::Stored);
+                Ok(())
+            }
+            Action::Recall(addresses) => self.recall(&addresses, queues),
+            Action::Level(level, password) => Self::set_level(session, level, password),
+            Action::Velocity(mm_s) => Ok(self.commander.set_velocity(mm_s)?),
+            Action::Stop => {
+                self.events.add(self.commander.tick(), Event::Stop);
+                self.stop_all(Stop::Urgent, queues);
+                Err(ErrorCode::Stopped)
+            }
+            // Whichever axes are named: the axes of a line cannot stop apart.
+            Action::Halt(_) => {
+                self.events.add(self.commander.tick(), Event::Halt);
+                self.commander.stop(Stop::Smooth, queues);
+                Err(ErrorCode::Stopped)
+            }
+            Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
+            Action::RestartStatistics => {
+                self.restart_statistics();
+                Ok(())
+            }
+            Action::Restart => self.restart(),
+            Action::Acknowledge => Ok(self.commander.acknowledge_fault(queues)?),
+            Action::Delay(ms) => {
+                if !(0.0..=MAX_DELAY_MS).contains(&ms) {
+                    return Err(ErrorCode::OutOfRange);
+                }
+                let until = self.commander.tick() + self.commander.ticks(ms);
+                self.wait(session, Awaited::Tick(until));
+                Ok(())
+            }
+            Action::Wait(condition) => {
+                self.wait(session, Awaited::Condition(condition));
+                Ok(())
+            }
+            Action::Jump(by, condition) => self.jump_if(Some(by), &condition, session),
+            Action::Leave(condition) => self.jump_if(None, &condition, session),
+        }
+    }
+
+    /// Stops the motion, and with it every macro and every wait.
+    pub(super) fn stop_all(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
+        self.stops = self.stops.wrapping_add(1);
+        self.macros.stop();
+        self.commander.stop(stop, queues);
+    }
+
+    /// `RBT`: a stage in motion would be let go.
+    fn restart(&mut self) -> Result<(), ErrorCode> {
+        if self.commander.is_motion_commanded() {
+            return Err(ErrorCode::InMotion);
+        }
+        self.wants_restart = true;
+        Ok(())
+    }
+
+    fn wait(&self, session: &mut Session, what: Awaited) {
+        session.wait = Some(Wait {
+            what,
+            stops: self.stops,
+        });
+    }
+}
+
+/// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on.
+/// The frozen axes have none to switch.
+fn servo(values: &AxisValues) -> Result<Option<bool>, ErrorCode> {
+    let mut wanted = None;
+    for (axis, on) in Axis::ALL.into_iter().zip(flags(values)?) {
+        if let Some(on) = on
+            && axis.component().is_some()
+        {
+            wanted = Some(on && wanted != Some(false));
+        }
+    }
+    Ok(wanted)
+}
+
+/// Values that are 0 or 1.
+fn flags(values: &AxisValues) -> Result<[Option<bool>; 6], ErrorCode> {
+    let mut flags = [None; 6];
+    for (flag, value) in flags.iter_mut().zip(values) {
+        *flag = match *value {
+            None => None,
+            Some(0.0) => Some(false),
+            Some(1.0) => Some(true),
+            Some(_) => return Err(ErrorCode::OutOfRange),
+        };
+    }
+    Ok(flags)
+}

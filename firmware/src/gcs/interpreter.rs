@@ -1,0 +1,88 @@
+//! What all connections share.
+
+use super::error::ErrorCode;
+use super::events::EventLog;
+use super::heartbeat::Heartbeat;
+use super::macros::Macros;
+use super::persistence::Persistence;
+use super::recorder::RecorderState;
+use super::statistics::Statistics;
+use super::variables::Variables;
+use crate::commander::Commander;
+use crate::motion::Limits;
+use crate::parameters::Parameters;
+
+/// Who answers `*IDN?`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Serial number.
+    pub serial: &'static str,
+    /// Version of the firmware.
+    pub version: &'static str,
+}
+
+/// What all connections share.
+pub struct Interpreter {
+    pub(super) identity: Identity,
+    pub(super) parameters: Parameters,
+    /// Those before they were set last, in case the tick refuses.
+    pub(super) previous_parameters: Parameters,
+    /// Limits of motion that the stage was set up for, and those that level 1 has set over them.
+    pub(super) rated_limits: Limits,
+    pub(super) commander: Commander,
+    /// Why the controller started, if that is worth telling.
+    pub(super) start_cause: Option<&'static str>,
+    /// Times everything was stopped.
+    pub(super) stops: u32,
+    pub(super) recorder_state: RecorderState,
+    pub(super) events: EventLog,
+    pub(super) statistics: Statistics,
+    pub(super) heartbeat: Heartbeat,
+    pub(super) wants_restart: bool,
+    pub(super) macros: Macros,
+    pub(super) variables: Variables,
+    pub(super) persistence: Persistence,
+    /// Errors for every connection: how many so far, and the latest.
+    pub(super) reported: (u32, ErrorCode),
+}
+
+impl Interpreter {
+    /// For a stage of these parameters.
+    pub fn new(parameters: &Parameters, identity: Identity) -> Self {
+        Self {
+            identity,
+            parameters: parameters.clone(),
+            previous_parameters: parameters.clone(),
+            rated_limits: parameters.limits,
+            commander: Commander::new(parameters),
+            stops: 0,
+            recorder_state: RecorderState::new(),
+            events: EventLog::new(),
+            statistics: Statistics::default(),
+            heartbeat: Heartbeat::default(),
+            wants_restart: false,
+            macros: Macros::default(),
+            variables: Variables::default(),
+            persistence: Persistence::new(parameters),
+            reported: (0, ErrorCode::None),
+            start_cause: None,
+        }
+    }
+
+    /// Notes why the controller started (a watchdog reset, say): `FLT?` tells it while there is no fault, and `EVT?`.
+    /// The retained memory knows the [`START_CAUSES`](super::START_CAUSES) alone.
+    pub fn set_start_cause(&mut self, cause: &'static str) {
+        self.start_cause = Some(cause);
+        self.events.set_start_cause(cause);
+    }
+
+    /// The tick of the latest snapshot taken; 0 before the first.
+    pub fn tick(&self) -> u64 {
+        self.commander.tick()
+    }
+
+    /// Whether `RBT` has been given: the board is to start the controller again.
+    pub const fn wants_restart(&self) -> bool {
+        self.wants_restart
+    }
+}

@@ -1,0 +1,45 @@
+//! What queries about parameters answer.
+
+use super::address::{Address, Addresses};
+use super::descriptor::Parameter;
+use super::table::PARAMETERS;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::output::{Output, WriteFailed};
+use crate::gcs::reply_writer::ReplyWriter;
+
+impl Interpreter {
+    /// Answers `SPA?`.
+    pub(in crate::gcs) fn reply_parameters(
+        &self,
+        addresses: &Addresses,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        let mut reply = ReplyWriter::new(out);
+        for &Address { item, id } in addresses.iter().flatten() {
+            if let Some(parameter) = Parameter::find(id) {
+                let value = parameter.value(item, &self.parameters);
+                reply.line(format_args!("{item} 0x{id:X}={value}"))?;
+            }
+        }
+        if addresses[0].is_none() {
+            for parameter in PARAMETERS {
+                for item in parameter.items() {
+                    let (id, value) = (parameter.id, parameter.value(item, &self.parameters));
+                    reply.line(format_args!("{item} 0x{id:X}={value}"))?;
+                }
+            }
+        }
+        reply.end()
+    }
+}
+
+/// Answers `HPA?`.
+pub(in crate::gcs) fn parameter_help(out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
+    reply.line(format_args!("The following parameters are there:"))?;
+    for parameter in PARAMETERS {
+        reply.line(format_args!("{parameter}"))?;
+    }
+    reply.line(format_args!("end of help"))?;
+    reply.end()
+}

@@ -1,0 +1,213 @@
+//! The declaration of all parameters.
+//!
+//! Ranges are what a stage of this kind can be, and what the tick's arithmetic holds; what has to hold between several
+//! of them stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set
+//! up for; level 1 raises them further.
+
+use super::descriptor::{Kind, Parameter, ValueSource, When};
+use crate::commander::axis::Axis;
+use crate::drivers::biss::POSITION_BITS;
+use crate::gcs::request::MAX_DELAY_MS;
+use crate::motion::TurnDirection;
+use crate::recorder::RECORDER_WORDS;
+
+/// What the parameters of a group share.
+#[derive(Clone, Copy)]
+struct Group {
+    name: &'static str,
+    level: u8,
+    when: When,
+}
+
+const LIMIT: Group = group("limit", 0, When::AtRest);
+const TARGET: Group = group("target", 0, When::AtRest);
+const GEOMETRY: Group = group("geometry", 1, When::ServoOff);
+const SERVO: Group = group("servo", 1, When::AtRest);
+const WINDOW: Group = group("window", 0, When::AtRest);
+const SUPERVISION: Group = group("supervision", 1, When::AtRest);
+const ENCODER: Group = group("encoder", 1, When::ServoOff);
+const PLATFORM: Group = group("platform", 0, When::AtRest);
+const RECORDER: Group = group("recorder", 0, When::AtRest);
+const DRIVE: Group = group("drive", 1, When::AtRest);
+
+const fn group(name: &'static str, level: u8, when: When) -> Group {
+    Group { name, level, when }
+}
+
+impl Group {
+    const fn float(
+        self,
+        id: u32,
+        text: &'static str,
+        unit: &'static str,
+        range: [f64; 2],
+        source: ValueSource,
+    ) -> Parameter {
+        Parameter {
+            id,
+            kind: Kind::Float,
+            when: self.when,
+            level: self.level,
+            group: self.name,
+            text,
+            unit,
+            range,
+            source,
+        }
+    }
+
+    const fn int(
+        self,
+        id: u32,
+        text: &'static str,
+        range: [f64; 2],
+        source: ValueSource,
+    ) -> Parameter {
+        Parameter {
+            kind: Kind::Int,
+            ..self.float(id, text, "", range, source)
+        }
+    }
+}
+
+/// A parameter that can only be read.
+const fn read_only(
+    id: u32,
+    kind: Kind,
+    text: &'static str,
+    unit: &'static str,
+    source: ValueSource,
+) -> Parameter {
+    Parameter {
+        kind,
+        ..group("controller", 0, When::Never).float(id, text, unit, [0.0; 2], source)
+    }
+}
+
+/// A field of the parameters, as it is or as a number.
+macro_rules! at {
+    ($($field:tt)+) => { ValueSource::Settable(|p| p.$($field)+, |p, value| p.$($field)+ = value) };
+}
+macro_rules! whole {
+    ($number:ty: $($field:tt)+) => {
+        ValueSource::Settable(|p| p.$($field)+ as f64, |p, value| p.$($field)+ = value as $number)
+    };
+}
+macro_rules! flag {
+    ($($field:tt)+) => {
+        ValueSource::Settable(|p| f64::from(u8::from(p.$($field)+)), |p, value| p.$($field)+ = value != 0.0)
+    };
+}
+
+/// Largest count of an encoder.
+const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
+
+/// Most points that a record of one word has room for.
+const ROWS: f64 = RECORDER_WORDS as f64;
+/// By their numbers.
+const WAYS: [TurnDirection; 4] = [
+    TurnDirection::AsGiven,
+    TurnDirection::Shortest,
+    TurnDirection::Positive,
+    TurnDirection::Negative,
+];
+
+fn way_number(way: TurnDirection) -> f64 {
+    let place = WAYS.iter().position(|&other| other == way);
+    place.map_or(0.0, |place| place as f64)
+}
+
+/// Every parameter, in the order of `HPA?`. A static: a constant would stand in the image once for each use.
+#[rustfmt::skip]
+pub static PARAMETERS: &[Parameter] = &[
+    read_only(0x0700_0601, Kind::Char, "unit of the axis", "", ValueSource::Axis(Axis::unit)),
+    read_only(0x0E00_0200, Kind::Float, "servo update time", "s", ValueSource::ReadOnly(|p| 1.0 / p.limits.rate_hz)),
+    TARGET.int(0x1900_1900, "trajectory source: 0 moves to targets, 1 streamed targets", [0.0, 1.0], flag!(targets.streamed)),
+
+    RECORDER.int(0x1600_0201, "points of a record, as many as the tables leave room for", [1.0, ROWS], whole!(u32: recorder.points)),
+    RECORDER.int(0x5450_0900, "points of it from before the trigger", [0.0, ROWS], whole!(u32: recorder.before)),
+
+    LIMIT.float(0x5450_0100, "speed of the platform centre", "mm/s", [0.2, 2_000.0], at!(limits.speed_mm_s)),
+    LIMIT.float(0x5450_0101, "acceleration of the platform centre", "mm/s^2", [4.0, 50_000.0], at!(limits.acceleration_mm_s2)),
+    LIMIT.float(0x5450_0102, "jerk of the platform centre", "mm/s^3", [400.0, 5e6], at!(limits.jerk_mm_s3)),
+    LIMIT.float(0x5450_0103, "speed of rotation", "deg/s", [0.36, 5_000.0], at!(limits.turn_speed_deg_s)),
+    LIMIT.float(0x5450_0104, "acceleration of rotation", "deg/s^2", [7.2, 40_000.0], at!(limits.turn_acceleration_deg_s2)),
+    LIMIT.float(0x5450_0105, "jerk of rotation", "deg/s^3", [720.0, 5e6], at!(limits.turn_jerk_deg_s3)),
+    LIMIT.float(0x5450_0106, "rate of a pivot", "rad/s", [0.01, 100.0], at!(limits.pivot_rate_rad_s)),
+    LIMIT.float(0x5450_0107, "acceleration of a pivot", "rad/s^2", [0.3, 2_000.0], at!(limits.pivot_acceleration_rad_s2)),
+    Parameter { level: 1, ..LIMIT.float(0x5450_0108, "how much harder an urgent stop brakes", "", [1.0, 4.0], at!(limits.stop_factor)) },
+
+    TARGET.int(0x5450_0110, "way of W to a target: 0 literal, 1 shortest, 2 always positive, 3 always negative", [0.0, 3.0],
+        ValueSource::Settable(|p| way_number(p.targets.turn_direction), |p, number| p.targets.turn_direction = WAYS[number as usize & 3])),
+
+    GEOMETRY.float(0x5450_0200, "radius of the track", "mm", [20.0, 1_000.0], at!(geometry.radius_mm)),
+    GEOMETRY.float(0x5450_0201, "start of a guide", "track radii", [0.05, 0.95], at!(geometry.guide_start)),
+    GEOMETRY.float(0x5450_0202, "length of a guide", "track radii", [0.1, 2.0], at!(geometry.guide_length)),
+    GEOMETRY.float(0x5450_0203, "smallest angle between pivots", "deg", [0.0, 110.0],
+        ValueSource::Settable(|p| p.geometry.separation_rad.to_degrees(), |p, deg| p.geometry.separation_rad = deg.to_radians())),
+
+    SERVO.float(0x5450_0300, "position gain", "1/s", [0.0, 2_000.0], at!(servo.position_1_s)),
+    SERVO.float(0x5450_0301, "velocity gain", "V s/rad", [0.0, 500.0], at!(servo.velocity_v_s_rad)),
+    SERVO.float(0x5450_0302, "integral gain", "V/rad", [0.0, 200_000.0], at!(servo.integral_v_rad)),
+    SERVO.float(0x5450_0303, "learning, share of the integral gain", "", [0.0, 20.0], at!(servo.learning)),
+    SERVO.float(0x5450_0304, "learning of friction, share of learning", "", [0.0, 1.0], at!(servo.friction_learning)),
+    SERVO.float(0x5450_0305, "latency from latch to duty", "s", [0.0, 1e-3], at!(servo.latency_s)),
+
+    WINDOW.float(0x5450_0400, "settling window", "encoder counts", [0.5, 1_000.0], at!(window.counts)),
+    WINDOW.float(0x5450_0401, "settling dwell", "s", [5e-5, 10.0], at!(window.dwell_s)),
+
+    SUPERVISION.float(0x5450_0500, "largest following error", "rad", [2e-5, 0.2], at!(supervision.following_error_rad)),
+    SUPERVISION.float(0x5450_0501, "lowest supply", "V", [6.0, 60.0], at!(supervision.supply_min_v)),
+    SUPERVISION.int(0x5450_0502, "bad encoder frames that are bridged", [0.0, 20.0], whole!(u8: supervision.bridged_frames)),
+    SUPERVISION.float(0x5450_0503, "largest plausible acceleration of a pivot", "rad/s^2", [1_000.0, 500_000.0],
+        at!(supervision.plausible_acceleration_rad_s2)),
+    SUPERVISION.float(0x5450_0504, "following error allowed besides, by rate", "rad per rad/s", [0.0, 0.01], at!(supervision.following_error_s)),
+    SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
+    SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
+    SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
+    SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 10.0], at!(supervision.max_saturation_s)),
+    SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 7.3], at!(supervision.motor_current_a)),
+    SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 1_000.0], at!(supervision.motor_heating_s)),
+    SUPERVISION.int(0x5450_050B, "late ticks that are allowed, one in 100 ticks forgiven", [0.0, 1_000.0], whole!(u32: supervision.late_ticks)),
+    SUPERVISION.float(0x5450_050C, "how far out of the disk the setpoint is a fault", "mm", [0.01, 100.0], at!(supervision.disk_margin_mm)),
+    SUPERVISION.float(0x5450_050D, "how far out of a guide's range the setpoint is a fault", "track radii", [1e-4, 0.5], at!(supervision.guide_margin)),
+    SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 20.0],
+        ValueSource::Settable(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
+    SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
+    Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT); heard is any connection where none has sent HBT", "ms", [0.0, MAX_DELAY_MS], at!(supervision.host_silence_ms)) },
+
+    ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
+    ENCODER.int(0x5450_0601, "reading of encoder 2 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[1].zero_counts)),
+    ENCODER.int(0x5450_0602, "reading of encoder 3 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[2].zero_counts)),
+    ENCODER.int(0x5450_0610, "whether encoder 1 counts down", [0.0, 1.0], flag!(encoders[0].reversed)),
+    ENCODER.int(0x5450_0611, "whether encoder 2 counts down", [0.0, 1.0], flag!(encoders[1].reversed)),
+    ENCODER.int(0x5450_0612, "whether encoder 3 counts down", [0.0, 1.0], flag!(encoders[2].reversed)),
+
+    PLATFORM.float(0x5450_0700, "mass of the platform", "kg", [0.1, 50.0], at!(platform.mass_kg)),
+    PLATFORM.float(0x5450_0701, "inertia of the platform", "kg m^2", [1e-4, 2.0], at!(platform.inertia_kg_m2)),
+    PLATFORM.float(0x5450_0702, "mass of the payload", "kg", [0.0, 50.0], at!(platform.payload_kg)),
+    PLATFORM.float(0x5450_0703, "inertia of the payload about its own centre", "kg m^2", [0.0, 2.0], at!(platform.payload_inertia_kg_m2)),
+    PLATFORM.float(0x5450_0704, "x of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[0])),
+    PLATFORM.float(0x5450_0705, "y of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[1])),
+
+    DRIVE.float(0x5450_0800, "torque constant of a motor", "N m/A", [1e-3, 2.0], at!(drive.torque_constant_n_m_a)),
+    DRIVE.float(0x5450_0801, "motor turns per ring turn", "", [1.0, 1_000.0], at!(drive.gear_ratio)),
+    DRIVE.float(0x5450_0802, "winding resistance", "ohm", [0.05, 100.0], at!(drive.resistance_ohm)),
+    DRIVE.float(0x5450_0803, "winding inductance", "H", [1e-6, 0.1], at!(drive.inductance_h)),
+    DRIVE.float(0x5450_0804, "dead time of a leg", "s", [0.0, 2e-6], at!(drive.dead_time_s)),
+    DRIVE.float(0x5450_0805, "current from which the whole dead time counts", "A", [1e-3, 10.0], at!(drive.dead_time_knee_a)),
+    DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(drive.supply_v)),
+    DRIVE.float(0x5450_0807, "inertia of a ring with its drive", "kg m^2", [1e-5, 2.0], at!(drive.inertia_kg_m2)),
+    DRIVE.float(0x5450_0808, "viscous friction of a ring", "N m s/rad", [0.0, 5.0], at!(drive.viscous_n_m_s)),
+    DRIVE.float(0x5450_0809, "Coulomb friction of a ring", "N m", [0.0, 5.0], at!(drive.coulomb_n_m)),
+    DRIVE.float(0x5450_080A, "presliding of a ring", "rad", [1e-6, 0.1], at!(drive.presliding_rad)),
+    Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.drive.pwm_hz)) },
+    Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.drive.pwm_counts))) },
+];
+
+impl Parameter {
+    /// The parameter of an id.
+    pub fn find(id: u32) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| parameter.id == id)
+    }
+}

@@ -1,0 +1,151 @@
+//! What is stored: the parameters that are not what the controller has by itself, and all macros.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 2 | version of this table |
+//! | 2 | number of parameters |
+//! | each 4, 8 | id, value as a 64-bit float |
+//! | 1 | number of macros |
+//! | each 1, n, 2, n | length of the name, name, length of the text, text |
+//!
+//! Numbers begin with their lowest byte.
+
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::macros::{MACRO_BYTES, MAX_MACROS};
+use crate::gcs::parameter::{PARAMETERS, Parameter};
+use crate::gcs::text::{NAME_BYTES, Name};
+use crate::parameters::Parameters;
+use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, envelope_bytes};
+use embedded_storage::nor_flash::NorFlash;
+
+/// Version of the table above.
+const VERSION: u16 = 1;
+/// Bytes of a macro read at a time.
+const CHUNK_BYTES: usize = 64;
+
+/// Bytes that the longest settings take in the flash: a sector must have them.
+pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
+/// Bytes of the longest contents.
+const MAX_CONTENTS_BYTES: usize =
+    5 + PARAMETERS.len() * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES;
+
+/// Writes what is to be stored.
+fn write<S: Sink>(interpreter: &Interpreter, sink: &mut S) -> Result<(), S::Error> {
+    sink.put(&VERSION.to_le_bytes())?;
+    let (stored, defaults) = (
+        interpreter.parameters_to_store(),
+        interpreter.default_parameters(),
+    );
+    let count = settings(stored, defaults).count();
+    sink.put(&(count as u16).to_le_bytes())?;
+    for (id, value) in settings(stored, defaults) {
+        sink.put(&id.to_le_bytes())?;
+        sink.put(&value.to_le_bytes())?;
+    }
+    sink.put(&[interpreter.macros().count() as u8])?;
+    for (name, text) in interpreter.macros() {
+        let name = name.as_bytes();
+        sink.put(&[name.len() as u8])?;
+        sink.put(name)?;
+        sink.put(&(text.len() as u16).to_le_bytes())?;
+        sink.put(text)?;
+    }
+    Ok(())
+}
+
+/// The parameters in which `stored` is not what the controller has by itself.
+fn settings(stored: &Parameters, defaults: &Parameters) -> impl Iterator<Item = (u32, f64)> {
+    let settable = PARAMETERS.iter().filter(|p| !p.is_read_only());
+    settable.filter_map(|parameter| {
+        let (stored, defaults) = (parameter.number(stored)?, parameter.number(defaults)?);
+        (stored != defaults).then_some((parameter.id, stored))
+    })
+}
+
+/// Takes what is stored. With an error it has the default parameters and no macros.
+fn read<F: NorFlash>(
+    reader: &mut Reader<'_, F>,
+    interpreter: &mut Interpreter,
+) -> Result<(), Unusable> {
+    let version = u16::from_le_bytes(reader.take().ok_or(Unusable::Damaged)?);
+    if version > VERSION {
+        return Err(Unusable::Newer);
+    }
+    let (parameters, unknown) = read_parameters(reader, interpreter).ok_or(Unusable::Damaged)?;
+    if read_macros(reader, interpreter).is_none() || !reader.is_at_end() {
+        interpreter.forget_macros();
+        return Err(Unusable::Damaged);
+    }
+    interpreter.restore_parameters(parameters, unknown);
+    Ok(())
+}
+
+/// The parameters, and how many there are that this firmware does not know: they are left alone. A value that is out of
+/// its range is no such thing: `None`, as when they do not go together.
+fn read_parameters<F: NorFlash>(
+    reader: &mut Reader<'_, F>,
+    interpreter: &Interpreter,
+) -> Option<(Parameters, u16)> {
+    let mut parameters = interpreter.default_parameters().clone();
+    let mut unknown = 0;
+    for _ in 0..u16::from_le_bytes(reader.take()?) {
+        let id = u32::from_le_bytes(reader.take()?);
+        let value = f64::from_le_bytes(reader.take()?);
+        match Parameter::find(id) {
+            Some(parameter) => parameter.set(value, &mut parameters).ok()?,
+            None => unknown += 1,
+        }
+    }
+    parameters.are_sound().then_some((parameters, unknown))
+}
+
+fn read_macros<F: NorFlash>(
+    reader: &mut Reader<'_, F>,
+    interpreter: &mut Interpreter,
+) -> Option<()> {
+    let [count] = reader.take()?;
+    for _ in 0..count {
+        let [length] = reader.take()?;
+        let mut name = [0; NAME_BYTES];
+        let name = name.get_mut(..usize::from(length))?;
+        reader.fill(name)?;
+        let name = Name::named(name)?;
+        let mut left = usize::from(u16::from_le_bytes(reader.take()?));
+        while left > 0 {
+            let mut piece = [0; CHUNK_BYTES];
+            let piece = &mut piece[..CHUNK_BYTES.min(left)];
+            reader.fill(piece)?;
+            interpreter.add_macro_text(piece).then_some(())?;
+            left -= piece.len();
+        }
+        interpreter.end_macro_text(name).then_some(())?;
+    }
+    Some(())
+}
+
+impl StoredSettings for Interpreter {
+    fn needs_storing(&self) -> bool {
+        let persistence = &self.persistence;
+        let macros = persistence.macros_changed && !persistence.stored_is_invalid;
+        persistence.has_store
+            && (persistence.before.is_some() || macros)
+            && !self.commander.is_motion_commanded()
+    }
+
+    fn write<S: Sink>(&self, sink: &mut S) -> Result<(), S::Error> {
+        write(self, sink)
+    }
+
+    fn read<F: NorFlash>(&mut self, reader: &mut Reader<'_, F>) -> Result<(), Unusable> {
+        read(reader, self)
+    }
+
+    fn attach_store(&mut self, usable: bool) {
+        self.persistence.has_store = true;
+        self.persistence.stored_is_invalid = !usable;
+    }
+
+    fn finish_storing(&mut self, result: Result<(), StoreError>) {
+        self.storing_finished(result);
+    }
+}

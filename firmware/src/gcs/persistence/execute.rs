@@ -1,0 +1,143 @@
+//! `WPA` and `RPA`.
+
+use crate::gcs::error::ErrorCode;
+use crate::gcs::events::Event;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::parameter::{Addresses, Parameter};
+use crate::gcs::text::Name;
+use crate::parameters::{MAX_RECORD_ROWS, Parameters};
+use crate::queues::CommandQueues;
+use crate::settings_store::StoreError;
+
+impl Interpreter {
+    /// `WPA`: those named, or all parameters, as they are now, and the macros.
+    pub(in crate::gcs) fn store_parameters(
+        &mut self,
+        addresses: &Addresses,
+    ) -> Result<(), ErrorCode> {
+        self.check_store()?;
+        if self.persistence.before.is_some() {
+            return Err(ErrorCode::Busy);
+        }
+        let wanted = replaced(&self.persistence.stored, &self.parameters, addresses)?;
+        let before = core::mem::replace(&mut self.persistence.stored, wanted);
+        self.persistence.before = Some(before);
+        Ok(())
+    }
+
+    /// `RPA`: those named, or all parameters, as they are stored.
+    pub(in crate::gcs) fn recall(
+        &mut self,
+        addresses: &Addresses,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        self.check_store()?;
+        let wanted = replaced(&self.parameters, &self.persistence.stored, addresses)?;
+        self.check_change_allowed(&wanted)?;
+        self.apply_parameters(wanted, queues)?;
+        self.events.add(self.commander.tick(), Event::Recalled);
+        Ok(())
+    }
+
+    fn check_store(&self) -> Result<(), ErrorCode> {
+        if !self.persistence.has_store {
+            return Err(ErrorCode::NotForStage);
+        }
+        if self.commander.is_motion_commanded() {
+            return Err(ErrorCode::InMotion);
+        }
+        Ok(())
+    }
+
+    /// What came of it.
+    pub(super) fn storing_finished(&mut self, result: Result<(), StoreError>) {
+        let persistence = &mut self.persistence;
+        let asked_for = persistence.before.take();
+        persistence.macros_changed = false;
+        persistence.result = result.map_err(ErrorCode::from);
+        let code = persistence.result.err();
+        match (code, asked_for) {
+            (None, _) => persistence.stored_is_invalid = false,
+            (Some(_), Some(before)) => persistence.stored = before,
+            // Who recorded the macro does not wait for it.
+            (Some(code), None) => self.report_to_all(code),
+        }
+        let event = code.map_or(Event::Stored, |code| Event::StoreFailed(code.number()));
+        self.events.add(self.commander.tick(), event);
+    }
+
+    /// The parameters in force.
+    pub const fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The parameters that are stored, or about to be.
+    pub const fn parameters_to_store(&self) -> &Parameters {
+        &self.persistence.stored
+    }
+
+    /// The parameters that the controller has when nothing is stored.
+    pub const fn default_parameters(&self) -> &Parameters {
+        &self.persistence.defaults
+    }
+
+    /// All macros, with their lines, each ended by LF.
+    pub fn macros(&self) -> impl Iterator<Item = (Name, &[u8])> {
+        self.macros.all()
+    }
+
+    /// Starts with these parameters; `unknown` ones were stored besides.
+    pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
+        // As many as any choice of signals leaves room for: which they were is not kept.
+        let recorder = &mut parameters.recorder;
+        recorder.points = recorder.points.min(MAX_RECORD_ROWS as u32);
+        recorder.before = recorder.before.min(recorder.points - 1);
+        self.rated_limits = parameters.limits;
+        self.commander.use_parameters(&parameters);
+        // Not refused: it is their own.
+        let _ = self.commander.set_velocity(parameters.limits.speed_mm_s);
+        self.parameters.clone_from(&parameters);
+        self.previous_parameters.clone_from(&parameters);
+        self.persistence.stored = parameters;
+        if unknown > 0 {
+            self.events.add(0, Event::UnknownParameters(unknown));
+        }
+    }
+
+    /// Adds to the text of a macro that is stored; false when it is none, or there is no room.
+    pub(super) fn add_macro_text(&mut self, text: &[u8]) -> bool {
+        self.macros.add_text(text)
+    }
+
+    /// The text belongs to a macro of this name; false when there are too many.
+    pub(super) fn end_macro_text(&mut self, name: Name) -> bool {
+        self.macros.end_text(name)
+    }
+
+    /// Has no macros, and no text of one.
+    pub(super) fn forget_macros(&mut self) {
+        self.macros.clear();
+    }
+}
+
+/// `parameters` with those named from `others`, or all of `others` when none is.
+fn replaced(
+    parameters: &Parameters,
+    others: &Parameters,
+    addresses: &Addresses,
+) -> Result<Parameters, ErrorCode> {
+    if addresses[0].is_none() {
+        return Ok(others.clone());
+    }
+    let mut replaced = parameters.clone();
+    for address in addresses.iter().flatten() {
+        let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
+        let value = parameter.number(others).ok_or(ErrorCode::ReadOnly)?;
+        parameter.set(value, &mut replaced)?;
+    }
+    if replaced.are_sound() {
+        Ok(replaced)
+    } else {
+        Err(ErrorCode::OutOfRange)
+    }
+}

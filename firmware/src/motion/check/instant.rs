@@ -1,0 +1,168 @@
+//! One instant of a motion against every limit, in single precision: for motions that others shape, sample by sample.
+
+use super::platform::{Platform, greatest};
+use crate::motion::constraints::Constraints;
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::setpoint::{ACCELERATION_CUT, VELOCITY_CUT};
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT};
+use crate::motion::refusal::Refusal;
+use crate::motion::speeds::Speeds;
+use crate::number::Fixed;
+use crate::number::float::FloatMinMax;
+use kinematics::{Angle, Scalar};
+
+/// What is granted over a limit: the rounding of single precision, and of what a sender has computed to the limit
+/// itself.
+const STREAM_SLACK: f32 = 1.0 + 1e-3;
+
+/// The limits, per second, and the workspace, track radii.
+pub(crate) struct InstantCheck<'a> {
+    constraints: &'a Constraints,
+    pub hz: f32,
+    usable: f32,
+    centre: [f32; 2],
+    speed_limit: Speeds,
+    pub acceleration_limit: Speeds,
+    pub jerk_limit: Speeds,
+    pivot_rate: f32,
+    pivot_acceleration: f32,
+    /// Units of a velocity and of an acceleration that have been cut, per second.
+    velocity: f32,
+    acceleration: f32,
+}
+
+/// What there is to know of an instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct InstantState {
+    /// Velocity of the moved point and of theta.
+    pub velocity: Speeds,
+    /// Their acceleration.
+    pub acceleration: Speeds,
+    /// Distance of the platform's centre from the track's.
+    pub centre_distance: f32,
+    /// Acceleration of the platform's centre.
+    pub centre_acceleration: f32,
+    /// Largest parts of its limit that a pivot's rate and acceleration reach.
+    pub pivots: [f32; 2],
+}
+
+impl<'a> InstantCheck<'a> {
+    pub fn new(constraints: &'a Constraints) -> Self {
+        let limits = &constraints.limits;
+        let mm = constraints.geometry.radius_mm as f32;
+        let hz = limits.rate_hz as f32;
+        let speeds = |mm_s: f64, deg_s: f64| Speeds {
+            linear: mm_s as f32 / mm,
+            angular: deg_s as f32 * (core::f32::consts::PI / 180.0),
+        };
+        Self {
+            constraints,
+            hz,
+            usable: constraints.usable_radius as f32,
+            centre: constraints.rotation_centre.map(|radii| radii as f32),
+            speed_limit: speeds(limits.speed_mm_s, limits.turn_speed_deg_s),
+            acceleration_limit: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
+            jerk_limit: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
+            pivot_rate: limits.pivot_rate_rad_s as f32,
+            pivot_acceleration: limits.pivot_acceleration_rad_s2 as f32,
+            velocity: PER_AXIS_UNIT * (1_u64 << VELOCITY_CUT) as f32 * hz,
+            acceleration: PER_AXIS_UNIT * (1_u64 << ACCELERATION_CUT) as f32 * hz * hz,
+        }
+    }
+
+    /// Looks at a state; an error where the platform's centre is not inside the track or the point out of its bounds.
+    pub fn evaluate(&self, axes: &[AxisState; 3]) -> Result<InstantState, Refusal> {
+        let at = axes.each_ref().map(AxisState::rounded);
+        for (axis, (at, [low, high])) in at.iter().zip(&self.constraints.bounds).enumerate() {
+            if !(low..=high).contains(&at) {
+                return Err(Refusal::OutOfBounds { axis });
+            }
+        }
+        let v = rates(
+            axes.each_ref().map(|axis| axis.velocity >> VELOCITY_CUT),
+            self.velocity,
+        );
+        let a = rates(
+            axes.each_ref()
+                .map(|axis| axis.acceleration >> ACCELERATION_CUT),
+            self.acceleration,
+        );
+        let (sin, cos) = Fixed::sin_cos(Angle::from_units(at[2]));
+        let direction = (sin.to_f32(), cos.to_f32());
+        let point = [radii(at[0]), radii(at[1])];
+        let platform = Platform::new(point, direction, v, a, self.centre);
+        let centre_distance = platform.radius();
+        if !(centre_distance <= self.usable + STREAM_RIM) {
+            return Err(self.outside(centre_distance));
+        }
+        let [pivot_rates, pivot_accelerations] = platform.pivots();
+        Ok(InstantState {
+            velocity: Speeds::of(&v),
+            acceleration: Speeds::of(&a),
+            centre_distance,
+            centre_acceleration: platform.centre_acceleration(),
+            pivots: [
+                greatest(&pivot_rates) / self.pivot_rate,
+                greatest(&pivot_accelerations) / self.pivot_acceleration,
+            ],
+        })
+    }
+
+    /// Whether an instant, and the `seconds` since `before` with one jerk in between, keep to everything.
+    pub fn check(
+        &self,
+        before: &InstantState,
+        now: &InstantState,
+        seconds: f32,
+    ) -> Result<(), Refusal> {
+        let over = |value: Speeds, limit: Speeds| {
+            value.linear > limit.linear * STREAM_SLACK
+                || value.angular > limit.angular * STREAM_SLACK
+        };
+        if over(now.velocity, self.speed_limit) {
+            return Err(Refusal::Velocity);
+        }
+        if over(now.acceleration, self.acceleration_limit) {
+            return Err(Refusal::Acceleration);
+        }
+        if now.pivots.iter().any(|&part| part > STREAM_SLACK) {
+            return Err(Refusal::Pivots);
+        }
+        if !self.is_inside(before, now, seconds) {
+            return Err(self.outside(before.centre_distance.fmax(now.centre_distance)));
+        }
+        Ok(())
+    }
+
+    /// Whether the platform's centre stays inside between two instants: the way bulges over its chord by `a t^2 / 8` at
+    /// most.
+    pub fn is_inside(&self, before: &InstantState, now: &InstantState, seconds: f32) -> bool {
+        let segment =
+            before.centre_acceleration.fmax(now.centre_acceleration) * seconds * seconds / 8.0;
+        before.centre_distance.fmax(now.centre_distance) + segment <= self.usable + STREAM_RIM
+    }
+
+    fn outside(&self, centre_distance: f32) -> Refusal {
+        let mm = self.constraints.geometry.radius_mm;
+        Refusal::OutsideDisk {
+            radius_mm: f64::from(centre_distance) * mm,
+            usable_mm: f64::from(self.usable) * mm,
+        }
+    }
+}
+
+/// Rates of x and y in track radii, of theta in rad; cut to 32 bits, which a float loads in one instruction.
+fn rates(cut: [i64; 3], unit: f32) -> [f32; 3] {
+    let [x, y, theta] = cut.map(|rate| rate as i32 as f32 * unit);
+    [x, y, theta * core::f32::consts::TAU]
+}
+
+/// Track radii of a coordinate within two of them, which any inside the bounds is that can be.
+fn radii(units: i64) -> f32 {
+    const CUT: u32 = 2;
+    let most = i64::from(i32::MAX);
+    (units >> CUT).clamp(-most, most) as i32 as f32 * (PER_POSITION_UNIT * (1 << CUT) as f32)
+}
+
+/// 0.05 um on the reference stage.
+const STREAM_RIM: f32 = 5e-7;

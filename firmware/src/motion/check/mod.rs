@@ -1,0 +1,44 @@
+//! Whether a plan keeps to the workspace and to the limits that couple the axes, at every tick.
+//!
+//! A plan is looked at in intervals. Between the two ends of one, a quantity rises above the greater of its ends by no
+//! more than an eighth of the square of the duration times its second derivative: for position that is the
+//! acceleration, for velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are
+//! first bounded for any orientation; where that is not enough they are computed at both ends, and rise by what the
+//! products of velocity, acceleration and jerk can make of them in between. An interval that fails is taken in shorter
+//! ones.
+//!
+//! | checked | for |
+//! |---|---|
+//! | speed, acceleration, jerk | translation along the path and rotation; not of a stop, which has its own |
+//! | rate and acceleration of each pivot | the platform's motion about the centre of rotation |
+//! | disk | the platform's centre, and where a stop from here would end |
+//! | bounds | x, y and theta of the moved point, and where a stop from here would end |
+//!
+//! | file | idea |
+//! |---|---|
+//! | `plan_check` | the pieces of a plan against every limit, interval by interval |
+//! | `interval` | an interval: its ends, and how large everything is in between |
+//! | `budget` | how many intervals, and how far it has come |
+//! | `violation` | which limit is broken, and by how much |
+//! | `platform` | the platform at an instant: its centre's motion and the pivots' |
+//! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
+//! | `workspace` | disk and bounds, on the way and for a stop |
+//! | `target` | whether a target can be moved to |
+//! | `instant` | one instant against every limit: for streams |
+
+pub(super) mod budget;
+pub(crate) mod instant;
+pub(crate) mod interval;
+pub(super) mod pivot_bounds;
+pub(super) mod plan_check;
+pub(crate) mod platform;
+pub(crate) mod target;
+pub(super) mod violation;
+pub(super) mod workspace;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use budget::{CheckBudget, MIN_CHECKED_TICKS};
+pub(crate) use plan_check::{CheckedPieces, PlanCheck};
+pub(crate) use violation::Violation;

@@ -1,0 +1,164 @@
+//! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
+
+use super::interval::IntervalEnd;
+use super::violation::Violation;
+use crate::motion::brake::Brake;
+use crate::motion::constraints::{Bounds, Constraints};
+use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
+use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, TickLimits};
+use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
+use core::f32::consts::TAU;
+
+/// See the module.
+pub(crate) struct Workspace {
+    radius: f32,
+    bounds: Bounds,
+    /// The moved point in the platform's axes, and its distance from the platform's centre.
+    pub centre: [f32; 2],
+    pub arm: f32,
+}
+
+/// What translation and rotation brake with, per second.
+pub(crate) struct StopLimits {
+    /// Acceleration, and its inverse.
+    most: [f32; 2],
+    over_most: [f32; 2],
+    /// Inverse of the jerk.
+    over_jerk: [f32; 2],
+}
+
+impl StopLimits {
+    /// Of limits at `hz` ticks a second.
+    pub fn new(limits: &TickLimits, hz: f32) -> Self {
+        let units = [PER_AXIS_UNIT * hz * hz, PER_AXIS_UNIT * TAU * hz * hz];
+        let each = [&limits.translation, &limits.rotation];
+        let most = [0, 1].map(|i| each[i].acceleration * units[i]);
+        Self {
+            most,
+            over_most: most.map(|most| 1.0 / most),
+            over_jerk: [0, 1].map(|i| 1.0 / (each[i].jerk * units[i] * hz)),
+        }
+    }
+}
+
+/// Slack of single precision: 0.02 um on the reference stage.
+const PLAN_RIM: f32 = 2e-7;
+
+impl Workspace {
+    pub fn new(constraints: &Constraints) -> Self {
+        let centre = constraints.rotation_centre.map(|value| value as f32);
+        Self {
+            radius: constraints.usable_radius as f32,
+            bounds: constraints.bounds,
+            centre,
+            arm: hypot(centre[0], centre[1]),
+        }
+    }
+
+    /// How far each axis may go down and up from here, track radii and rad.
+    pub fn bound_distances(&self, axes: &[AxisState; 3]) -> [[f32; 2]; 3] {
+        let unit = [
+            PER_POSITION_UNIT,
+            PER_POSITION_UNIT,
+            TAU * PER_POSITION_UNIT,
+        ];
+        [0, 1, 2].map(|i| {
+            let here = axes[i].rounded();
+            self.bounds[i].map(|bound| i64_to_f32_fast(bound.saturating_sub(here)) * unit[i])
+        })
+    }
+
+    /// Holds an interval against the bounds; `rise` is how far translation and rotation can rise between its ends.
+    pub fn check_bounds(
+        &self,
+        bound_distances: &[[f32; 2]; 3],
+        from: &MotionState,
+        to: &MotionState,
+        rise: [f32; 2],
+    ) -> Result<(), Violation> {
+        for i in 0..3 {
+            let rise = rise[i / 2];
+            let (low, high) = (
+                from.displacement[i].fmin(to.displacement[i]) - rise,
+                from.displacement[i].fmax(to.displacement[i]) + rise,
+            );
+            if !(bound_distances[i][0] - PLAN_RIM <= low
+                && high <= bound_distances[i][1] + PLAN_RIM)
+            {
+                return Err(Violation::Workspace);
+            }
+        }
+        Ok(())
+    }
+
+    /// A distance of the platform's centre from the track's, if that is inside the disk.
+    pub fn check_disk(&self, distance: f32) -> Result<f32, Violation> {
+        if distance <= self.radius + PLAN_RIM {
+            Ok(distance)
+        } else {
+            Err(Violation::Workspace)
+        }
+    }
+
+    /// Of the platform's centre from the track's.
+    pub fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
+        if self.arm > 0.0 {
+            segment.platform(sample, self.centre).radius()
+        } else {
+            let [x, y] = segment.point(sample);
+            hypot(x, y)
+        }
+    }
+
+    /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few
+    /// operations.
+    pub fn stop_is_clear_of_edges(
+        &self,
+        bound_distances: &[[f32; 2]; 3],
+        at: &IntervalEnd,
+        braking: &StopLimits,
+    ) -> bool {
+        let release = [0, 1].map(|i| (at.a[i] + braking.most[i]) * braking.over_jerk[i]);
+        let gained = [0, 1].map(|i| at.v[i] + at.a[i] * release[i]);
+        let lasts = [0, 1].map(|i| 2.0 * release[i] + gained[i] * braking.over_most[i]);
+        let [way, turn] = gained.map(|speed| speed * lasts[0].fmax(lasts[1]));
+        let ways = [way, way, turn];
+        let here = &at.sample.displacement;
+        let clear = |i: usize| {
+            bound_distances[i][0] <= here[i] - ways[i] && here[i] + ways[i] <= bound_distances[i][1]
+        };
+        at.point_distance + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
+    }
+
+    /// Holds a stop from a state against disk and bounds: at the ends of its three segments.
+    pub fn check_stop(
+        &self,
+        segment: &CubicSegment,
+        bound_distances: &[[f32; 2]; 3],
+        at: &MotionState,
+        brake: &Brake,
+        hz: f32,
+    ) -> Result<(), Violation> {
+        let [t1, t2, t3] = brake.about().map(|ticks| ticks / hz);
+        let mut spots = [*at; 3];
+        for i in 0..3 {
+            let (v, a) = (at.v[i], at.a[i]);
+            let whole = t1 / 2.0 + t2 + t3 / 2.0;
+            if !(whole > 0.0) {
+                continue;
+            }
+            let peak = -(v + a * t1 / 2.0) / whole;
+            let v1 = v + (a + peak) * t1 / 2.0;
+            let v2 = v1 + peak * t2;
+            spots[0].displacement[i] = at.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
+            spots[1].displacement[i] = spots[0].displacement[i] + t2 * (v1 + peak * t2 / 2.0);
+            spots[2].displacement[i] = spots[1].displacement[i] + t3 * (v2 + peak * t3 / 3.0);
+        }
+        for spot in &spots {
+            self.check_bounds(bound_distances, spot, spot, [0.0; 2])?;
+            self.check_disk(self.centre_distance(segment, spot))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
+
+use super::Piece;
+use super::axis_state::AxisState;
+use super::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
+use crate::number::Fixed;
+use crate::number::float::{i64_to_f32_fast, truncate};
+use core::f32::consts::TAU;
+use kinematics::{Angle, Scalar};
+
+/// Position of the moved point relative to where its piece began, its velocity and acceleration; theta in rad.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MotionState {
+    pub displacement: [f32; 3],
+    pub v: [f32; 3],
+    pub a: [f32; 3],
+}
+
+/// A piece of constant jerk from its start on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CubicSegment {
+    /// x and y of its start.
+    pub from: [f32; 2],
+    /// Theta of its start, a fraction of a turn, 2^-32 turns.
+    pub theta: u32,
+    pub start: MotionState,
+    pub jerk: [f32; 3],
+}
+
+/// Radians of theta in what is a track radius of x and y.
+const RADIANS: [f32; 3] = [1.0, 1.0, TAU];
+
+impl CubicSegment {
+    /// A piece of a plan that starts from `axes`, at `hz` ticks a second.
+    pub fn new(axes: &[AxisState; 3], piece: &Piece, hz: f32) -> Self {
+        let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
+        let thrice = twice * hz;
+        Self {
+            from: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
+            theta: axes[2].rounded() as u32,
+            start: MotionState {
+                displacement: [0.0; 3],
+                v: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].velocity) * (once * RADIANS[i])),
+                a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
+            },
+            jerk: [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i])),
+        }
+    }
+
+    /// The state `t` seconds after its start.
+    pub fn at(&self, t: f32) -> MotionState {
+        let MotionState { v, a, .. } = self.start;
+        let j = self.jerk;
+        let half = t / 2.0;
+        let third = t * (1.0 / 3.0);
+        let mut sample = MotionState::default();
+        for i in 0..3 {
+            sample.displacement[i] = t * (v[i] + half * (a[i] + third * j[i]));
+            sample.v[i] = v[i] + t * (a[i] + half * j[i]);
+            sample.a[i] = a[i] + t * j[i];
+        }
+        sample
+    }
+
+    /// x and y of the moved point there.
+    pub fn point(&self, sample: &MotionState) -> [f32; 2] {
+        [
+            self.from[0] + sample.displacement[0],
+            self.from[1] + sample.displacement[1],
+        ]
+    }
+
+    /// Sine and cosine of theta after a way of so many radians.
+    pub fn sin_cos(&self, way: f32) -> (f32, f32) {
+        const UNITS_A_RADIAN: f32 = POSITION_UNITS / TAU;
+        let theta = i64::from(self.theta).wrapping_add(truncate(way * UNITS_A_RADIAN));
+        let (sin, cos) = Fixed::sin_cos(Angle::from_units(theta));
+        (sin.to_f32(), cos.to_f32())
+    }
+}

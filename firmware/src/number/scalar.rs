@@ -1,0 +1,58 @@
+//! [`Fixed`] as the number of the kinematics: rounding and the elementary functions.
+
+use super::fixed::{Fixed, HALF_LSB};
+use super::{arcsine, polar, trigonometric};
+use kinematics::{Angle, Scalar};
+
+impl Scalar for Fixed {
+    type Angle = Angle;
+    const ZERO: Self = Self(0);
+    const ONE: Self = Self(1 << Self::FRACTION_BITS);
+    const HALF: Self = Self(1 << (Self::FRACTION_BITS - 1));
+    const THIRD: Self = Self::from_f64(1.0 / 3.0);
+    const SIN_60: Self = Self::from_f64(0.866_025_403_784_438_6);
+    const ANGLE_ZERO: Angle = Angle::ZERO;
+    const ANGLE_30: Angle = Angle::DEG_30;
+    const ANGLE_120: Angle = Angle::DEG_120;
+
+    #[inline]
+    fn half(self) -> Self {
+        Self(self.0.wrapping_add(1) >> 1)
+    }
+
+    /// Rounded to nearest, once. Two products of numbers under 2 apiece at least fit.
+    #[inline]
+    fn sum_of_products((a, b): (Self, Self), (c, d): (Self, Self)) -> Self {
+        Self::from_product(Self::add_product(Self::add_product(HALF_LSB, a, b), c, d))
+    }
+
+    #[inline]
+    fn sin_cos(angle: Angle) -> (Self, Self) {
+        trigonometric::sin_cos(angle.fraction())
+    }
+
+    #[inline]
+    fn asin_cos(sines: [Self; 3]) -> Option<[(Angle, Self); 3]> {
+        arcsine::asin_cos(sines)
+    }
+
+    #[inline]
+    fn polar(re: Self, im: Self) -> Option<(Angle, Self, Self)> {
+        polar::polar(re, im)
+    }
+
+    #[inline]
+    fn near(angle: Angle, reference: Angle) -> Angle {
+        angle.near(reference)
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn angle_is_finite(_: Angle) -> bool {
+        true
+    }
+}

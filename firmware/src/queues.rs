@@ -1,0 +1,99 @@
+//! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
+//!
+//! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
+//! for one, every fourth tick or when mode or commands have changed, and not when it took a command: that tick is the
+//! longest as it is. What goes through is defined in [`crate::control`], which is at the other end.
+
+pub use crate::control::{Command, Snapshot, TickQueues};
+pub use crate::recorder::QueueFull;
+
+use crate::control::SNAPSHOT_SLOTS;
+use crate::fault_record::RetainedMemory;
+use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
+use heapless::spsc::{Consumer, Producer, Queue};
+
+/// Slots of the command queue (one is lost to the ring).
+pub const COMMAND_SLOTS: usize = 5;
+
+/// Storage of both queues, and of the data recorder.
+pub struct Queues {
+    commands: Queue<Command, COMMAND_SLOTS>,
+    snapshots: Queue<Snapshot, SNAPSHOT_SLOTS>,
+    recorder: Recorder<RECORDER_WORDS>,
+}
+
+/// The command side's ends.
+pub struct CommandQueues<'a> {
+    commands: Producer<'a, Command>,
+    snapshots: Consumer<'a, Snapshot>,
+    /// The data recorder's end outside the tick.
+    pub recorder: RecorderReader<'a>,
+    /// The memory that outlasts a reset, if there is one.
+    pub retained_memory: Option<&'a RetainedMemory>,
+}
+
+#[allow(clippy::new_without_default)] // A default of 100 KB is nothing to be made in passing.
+impl Queues {
+    /// Empty queues.
+    pub const fn new() -> Self {
+        Self {
+            commands: Queue::new(),
+            snapshots: Queue::new(),
+            recorder: Recorder::new(),
+        }
+    }
+
+    /// The two sides, without retained memory.
+    pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
+        self.split_with(None)
+    }
+
+    /// The two sides, with retained memory, in which a start is counted.
+    pub fn split_with_retained<'a>(
+        &'a mut self,
+        retained_memory: &'a RetainedMemory,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
+        self.split_with(Some(retained_memory))
+    }
+
+    fn split_with<'a>(
+        &'a mut self,
+        retained_memory: Option<&'a RetainedMemory>,
+    ) -> (TickQueues<'a>, CommandQueues<'a>) {
+        let (command_in, command_out) = self.commands.split();
+        let (snapshot_in, snapshot_out) = self.snapshots.split();
+        let (recorder_writer, recorder_reader) = self.recorder.split();
+        (
+            TickQueues {
+                commands: command_out,
+                snapshots: snapshot_in,
+                recorder: recorder_writer,
+                fault_record: retained_memory.map(RetainedMemory::begin),
+            },
+            CommandQueues {
+                commands: command_in,
+                snapshots: snapshot_out,
+                recorder: recorder_reader,
+                retained_memory,
+            },
+        )
+    }
+}
+
+impl CommandQueues<'_> {
+    /// Throws away the snapshots that wait: the controller starts again.
+    pub fn clear(&mut self) {
+        while self.snapshots.dequeue().is_some() {}
+    }
+
+    /// Queues a command.
+    pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
+        self.commands.enqueue(command).map_err(|_| QueueFull)
+    }
+
+    /// The oldest snapshot waiting, if any. The tick refills the slot within four; a caller that wants the present
+    /// and not the past empties the slot first and comes back.
+    pub fn snapshot(&mut self) -> Option<Snapshot> {
+        self.snapshots.dequeue()
+    }
+}

@@ -1,0 +1,49 @@
+//! What a tick offers at its end.
+
+use crate::drivers::bridge::Duty;
+use crate::fault::FaultKind;
+use crate::mode::Mode;
+use crate::motion::Setpoint;
+use kinematics::Angle;
+
+/// All that a tick computed.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The tick.
+    pub tick: u64,
+    /// State of the supervisor.
+    pub mode: Mode,
+    /// The latched fault.
+    pub fault: Option<FaultKind>,
+    /// Setpoint of the platform.
+    pub setpoint: Setpoint,
+    /// Setpoint of the point that is moved: the platform's unless a centre of rotation has been chosen.
+    pub reference_point: Setpoint,
+    /// Setpoint of the pivots; the measured angles while the servo is off.
+    pub pivot_setpoints: [Angle; 3],
+    /// Their rates, rad/s.
+    pub pivot_rates: [f32; 3],
+    /// Measured pivots.
+    pub pivots: [Angle; 3],
+    /// Duties.
+    pub duty: [Duty; 3],
+    /// Motor currents, ADC counts.
+    pub current_counts: [u16; 3],
+    /// Supply, ADC counts.
+    pub supply_counts: u16,
+    /// What the tick before cost, cycles.
+    pub tick_cycles: u32,
+    /// Commands taken so far.
+    pub commands: u32,
+}
+
+/// Observes every tick. Runs inside it: no allocation, no blocking, no unbounded work.
+pub trait TickObserver {
+    /// Takes the sample of one tick.
+    fn observe(&mut self, sample: &Sample);
+}
+
+impl TickObserver for () {
+    #[inline]
+    fn observe(&mut self, _: &Sample) {}
+}

@@ -1,0 +1,204 @@
+//! A tick that moves exactly as commanded.
+#![allow(dead_code)] // Each test file uses its part.
+
+use firmware::control::config::Config;
+use firmware::control::loop_counters::LoopCounters;
+use firmware::drivers::bridge::Duty;
+use firmware::fault::{Fault, FaultKind};
+use firmware::mode::Mode;
+use firmware::motion::{PlanFollower, Setpoint, SetpointScale};
+use firmware::parameters::Parameters;
+use firmware::queues::{Command, Snapshot, TickQueues};
+use firmware::recorder::Sample;
+use kinematics::{Angle, Pose, inverse};
+
+/// Ticks that a stage at rest takes to settle.
+pub const DWELL: u64 = 40;
+
+/// A tick without encoders and motors: pivots are where the setpoint puts them.
+pub struct FakeTick {
+    queues: TickQueues<'static>,
+    motion: PlanFollower,
+    scale: SetpointScale,
+    /// What the next snapshot says; tests set faults here.
+    pub now: Snapshot,
+    at_rest: u64,
+    /// Kinds of commands taken, in order.
+    pub log: Vec<&'static str>,
+    /// Largest change of velocity between two ticks, track radii (turns) per second: continuity.
+    pub worst_jump: f32,
+    last_twist: [f32; 3],
+    /// What the tick computes with, as it was told.
+    pub config: Config,
+    /// Takes no settings.
+    pub refuses_settings: bool,
+}
+
+impl FakeTick {
+    /// At this end of the queues, of a stage of these parameters: not referenced, at the origin.
+    pub fn new(queues: TickQueues<'static>, parameters: &Parameters) -> Self {
+        Self {
+            queues,
+            motion: PlanFollower::default(),
+            scale: SetpointScale::new(parameters.limits.rate_hz),
+            now: Snapshot::default(),
+            at_rest: 0,
+            log: Vec::new(),
+            worst_jump: 0.0,
+            last_twist: [0.0; 3],
+            config: Config::new(parameters),
+            refuses_settings: false,
+        }
+    }
+
+    pub fn run(&mut self) {
+        self.now.tick += 1;
+        if let Some(command) = self.queues.commands.dequeue() {
+            self.now.commands += 1;
+            self.obey(command);
+        }
+        self.motion.advance();
+        let setpoint = self.motion.setpoint(&self.scale);
+        let on = matches!(self.now.mode, Mode::Holding | Mode::Moving);
+        if on {
+            self.now.mode = if self.motion.is_moving() {
+                Mode::Moving
+            } else {
+                Mode::Holding
+            };
+            self.watch([setpoint.twist.x, setpoint.twist.y, setpoint.twist.theta]);
+        }
+        self.at_rest = if self.now.mode == Mode::Holding {
+            self.at_rest + 1
+        } else {
+            0
+        };
+        self.now.settled = self.at_rest > DWELL;
+        self.now.setpoint = setpoint.position;
+        (self.now.plan, self.now.plan_tick) = self.motion.progress();
+        self.now.centre = self.motion.centre();
+        let platform = self.now.centre.to_platform(&setpoint.position);
+        self.now.pivots = pivots(&platform);
+        self.now.loop_counters.ticks += 1;
+        if self.queues.recorder.is_active() {
+            self.queues.recorder.observe(&self.sample(setpoint));
+        }
+        if self.queues.snapshots.ready() {
+            let _ = self.queues.snapshots.enqueue(self.now.clone());
+            self.now.loop_counters = LoopCounters::default();
+        }
+    }
+
+    /// What the recorder sees of this tick.
+    fn sample(&self, setpoint: Setpoint) -> Sample {
+        Sample {
+            tick: self.now.tick,
+            mode: self.now.mode,
+            fault: self.now.fault.map(|fault| fault.kind),
+            setpoint,
+            reference_point: setpoint,
+            pivot_setpoints: self.now.pivots,
+            pivot_rates: [0.0; 3],
+            pivots: self.now.pivots,
+            duty: [Duty(420), Duty(-420), Duty(0)],
+            current_counts: [0; 3],
+            supply_counts: 0,
+            tick_cycles: 3000,
+            commands: self.now.commands,
+        }
+    }
+
+    fn obey(&mut self, command: Command) {
+        if self.now.mode == Mode::Fault && command != Command::Acknowledge {
+            self.now.refused += 1;
+            return;
+        }
+        match command {
+            Command::Reference => {
+                self.log.push("reference");
+                self.now.referenced = true;
+                self.now.mode = Mode::Holding;
+            }
+            Command::Servo(true) => {
+                self.log.push("on");
+                let at = self.motion.setpoint(&self.scale).position;
+                self.motion.rest_at(at);
+                self.now.mode = Mode::Holding;
+            }
+            Command::Servo(false) => {
+                self.log.push("off");
+                self.now.mode = Mode::Off;
+            }
+            Command::Centre(centre) => {
+                self.log.push("centre");
+                if self.motion.set_centre(centre).is_err() {
+                    self.now.refused += 1;
+                }
+            }
+            Command::Move(plan) => {
+                let accepted = self.motion.accept(plan).is_ok();
+                self.log.push(if accepted { "move" } else { "refused" });
+                if accepted {
+                    self.now.mode = Mode::Moving;
+                } else {
+                    self.now.refused += 1;
+                }
+            }
+            Command::Configure(_) if self.refuses_settings => {
+                self.log.push("settings refused");
+                self.now.refused += 1;
+            }
+            Command::Configure(config) => {
+                self.log.push("configure");
+                self.config = config;
+            }
+            Command::Acknowledge => {
+                self.log.push("acknowledge");
+                self.now.fault = None;
+                self.now.mode = Mode::Off;
+            }
+        }
+    }
+
+    fn watch(&mut self, twist: [f32; 3]) {
+        for (now, last) in twist.iter().zip(self.last_twist) {
+            self.worst_jump = self.worst_jump.max((now - last).abs());
+        }
+        self.last_twist = twist;
+    }
+
+    /// Puts the stage at rest at a pose, as if moved by hand.
+    pub fn place(&mut self, x_mm: f64, y_mm: f64, theta_deg: f64) {
+        let units = |mm: f64| (mm / 100.0 * 4_294_967_296.0).round() as i64;
+        let theta = Angle::from_degrees(theta_deg).unwrap().units();
+        let platform = [units(x_mm), units(y_mm), theta];
+        let point = self.motion.centre().from_platform(&platform);
+        self.motion.rest_at(point);
+    }
+
+    pub fn fail(&mut self, kind: FaultKind, pivot: Option<u8>) {
+        self.now.mode = Mode::Fault;
+        self.now.fault = Some(Fault {
+            kind,
+            pivot,
+            tick: self.now.tick,
+            value: 0.003,
+            limit: 0.002,
+        });
+    }
+}
+
+fn pivots(position: &[i64; 3]) -> [Angle; 3] {
+    let radii = |units: i64| units as f64 / 4_294_967_296.0;
+    let theta = Angle::from_units(position[2]);
+    let whole = Angle::from_units(i64::from(theta.turns()) << 32);
+    let pose = Pose {
+        x: radii(position[0]),
+        y: radii(position[1]),
+        theta: (theta - whole).radians(),
+    };
+    inverse(&pose)
+        .unwrap()
+        .pivots
+        .map(|pivot: f64| Angle::from_radians(pivot).unwrap() + whole)
+}

@@ -1,0 +1,217 @@
+//! `WPA`, `RPA` and macros over a restart: what is kept, when, and what is said when it cannot be.
+
+mod flash_bench;
+
+use firmware::fault::FaultKind;
+use flash_bench::gcs_bench::Bench;
+use flash_bench::{Flash, KeptBench};
+
+/// As on the chip.
+const SECTOR: usize = 16 << 10;
+const SPEED: &str = "0x54500100";
+const WINDOW: &str = "0x54500400";
+
+fn start() -> KeptBench<SECTOR> {
+    KeptBench::start(Flash::new())
+}
+
+fn value(bench: &mut KeptBench<SECTOR>, id: &str) -> f64 {
+    bench.bench.value(&format!("SPA? 1 {id}"))
+}
+
+#[test]
+fn what_is_kept_is_there_after_a_restart_and_the_rest_is_not() {
+    let mut bench = start();
+    assert_eq!(
+        bench.error_after(&format!(
+            "SPA 1 {SPEED} 120 1 {WINDOW} 3\nWPA 100\nSPA 1 {SPEED} 90"
+        )),
+        "0"
+    );
+    assert_eq!(value(&mut bench, SPEED), 90.0);
+    let mut bench = bench.restart();
+    assert_eq!(value(&mut bench, SPEED), 120.0);
+    assert_eq!(value(&mut bench, WINDOW), 3.0);
+    // What the tick and the plans compute with is the same.
+    assert_eq!(bench.say("VLS?\n"), "120\n");
+    assert_eq!(bench.error_after("VLS 130"), "8");
+}
+
+#[test]
+fn single_parameters_are_kept_by_name() {
+    let mut bench = start();
+    let lines = format!("SPA 1 {SPEED} 120 1 {WINDOW} 3\nWPA 100 1 {WINDOW}");
+    assert_eq!(bench.error_after(&lines), "0");
+    let mut bench = bench.restart();
+    assert_eq!(value(&mut bench, SPEED), 200.0);
+    assert_eq!(value(&mut bench, WINDOW), 3.0);
+}
+
+#[test]
+fn what_was_kept_comes_back_by_rpa() {
+    let mut bench = start();
+    let lines = format!("SPA 1 {SPEED} 120 1 {WINDOW} 3\nWPA 100");
+    assert_eq!(bench.error_after(&lines), "0");
+    let lines = format!("SPA 1 {SPEED} 90 1 {WINDOW} 5\nRPA 1 {SPEED}");
+    assert_eq!(bench.error_after(&lines), "0");
+    assert_eq!(value(&mut bench, SPEED), 120.0);
+    assert_eq!(value(&mut bench, WINDOW), 5.0);
+    assert_eq!(bench.error_after("RPA"), "0");
+    assert_eq!(value(&mut bench, WINDOW), 3.0);
+    assert!(bench.say("EVT?\n").contains("parameters as they are kept"));
+}
+
+#[test]
+fn macros_are_kept_as_they_are_recorded_and_deleted() {
+    let mut bench = start();
+    assert_eq!(
+        bench.error_after("MAC BEG one\nMOV X 5\nDEL 10\nMAC END"),
+        "0"
+    );
+    assert_eq!(bench.error_after("MAC BEG two\nMOV Y $1\nMAC END"), "0");
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("MAC?\n"), "one \ntwo\n");
+    assert_eq!(bench.say("MAC? one\n"), "MOV X 5 \nDEL 10\n");
+    assert_eq!(bench.error_after("MAC START two 4"), "0");
+    bench.bench.run_to_rest();
+    assert_eq!(bench.say("MOV? Y\n"), "Y=4\n");
+    assert_eq!(bench.error_after("MAC DEL one"), "0");
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("MAC?\n"), "two\n");
+    // Parameters that nobody asked to keep are not kept by the way.
+    let lines = format!("SPA 1 {SPEED} 120\nMAC BEG three\nDEL 1\nMAC END");
+    assert_eq!(bench.error_after(&lines), "0");
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("MAC?\n"), "two \nthree\n");
+    assert_eq!(value(&mut bench, SPEED), 200.0);
+}
+
+#[test]
+fn a_flash_full_of_macros_is_kept() {
+    let mut bench = start();
+    for number in 0..16 {
+        let line = format!("VAR A {:028}\n", number);
+        let lines = line.repeat(13);
+        assert_eq!(
+            bench.error_after(&format!("MAC BEG macro_number_{number:02}\n{lines}MAC END")),
+            "0"
+        );
+    }
+    let (before, free) = (
+        bench.say("MAC? macro_number_07\n"),
+        bench.say("MAC FREE?\n"),
+    );
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("MAC? macro_number_07\n"), before);
+    assert_eq!(bench.say("MAC FREE?\n"), free);
+}
+
+#[test]
+fn refusals_have_their_numbers_and_keep_nothing() {
+    let mut bench = start();
+    let steps = bench.keeper.flash().steps;
+    let refusals = [
+        ("WPA", "24"),
+        ("WPA 101", "56"),
+        ("WPA PASSWORD", "56"),
+        ("WPA 100 1", "24"),
+        ("WPA 100 1 12345", "54"),
+        ("WPA 100 Q 12345", "15"),
+        ("WPA 100 1 0xE000200", "64"),
+        ("RPA 1 12345", "54"),
+        ("RPA 1 0xE000200", "64"),
+    ];
+    for (line, error) in refusals {
+        assert_eq!(bench.error_after(line), error, "{line}");
+    }
+    assert_eq!(bench.keeper.flash().steps, steps);
+}
+
+#[test]
+fn in_motion_nothing_is_written() {
+    let mut bench = start();
+    assert_eq!(bench.error_after("VLS 1\nMOV X 5"), "0");
+    let steps = bench.keeper.flash().steps;
+    assert_eq!(bench.error_after("WPA 100"), "53");
+    assert_eq!(bench.error_after("RPA"), "53");
+    assert_eq!(bench.error_after("MAC BEG later\nDEL 1\nMAC END"), "0");
+    assert_eq!(bench.keeper.flash().steps, steps);
+    // The macro is kept once the stage is at rest.
+    assert_eq!(bench.error_after("HLT"), "10");
+    bench.bench.run_to_rest();
+    bench.say("");
+    assert!(bench.keeper.flash().steps > steps);
+    assert_eq!(bench.restart().say("MAC?\n"), "later\n");
+}
+
+#[test]
+fn what_needs_the_servo_off_does_not_come_back_with_it_on() {
+    const ZERO: &str = "0x54500600";
+    let mut bench = start();
+    let lines =
+        format!("CCL 1 ADVANCED\nSVO X 0\nSPA 1 {ZERO} 77\nWPA 100\nSPA 1 {ZERO} 0\nSVO X 1");
+    assert_eq!(bench.error_after(&lines), "0");
+    assert_eq!(bench.error_after("RPA"), "89");
+    // At level 0 too: it is what was set up.
+    assert_eq!(bench.error_after("SVO X 0\nCCL 0\nRPA"), "0");
+    assert_eq!(value(&mut bench, ZERO), 77.0);
+}
+
+#[test]
+fn a_flash_that_takes_nothing_is_told() {
+    let mut bench = start();
+    bench.keeper.flash().cut_in(0, 1);
+    assert_eq!(bench.error_after("WPA 100"), "4001");
+    assert!(
+        bench
+            .say("EVT?\n")
+            .contains("settings could not be kept, error 4001")
+    );
+    assert_eq!(bench.error_after("MAC BEG A\nDEL 1\nMAC END"), "0");
+    assert_eq!(bench.error_after(""), "4001");
+    // In force it is all the same.
+    assert_eq!(bench.say("MAC?\n"), "A\n");
+}
+
+#[test]
+fn without_a_keeper_it_is_refused() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("WPA 100"), "34");
+    assert_eq!(bench.error_after("RPA"), "34");
+}
+
+#[test]
+fn damage_is_overwritten_by_wpa_alone() {
+    let mut bench = start();
+    assert_eq!(
+        bench.error_after(&format!("SPA 1 {SPEED} 120\nWPA 100")),
+        "0"
+    );
+    let mut flash = bench.keeper.flash().powered();
+    // In the image of the only record.
+    flash.bytes[38] ^= 4;
+    let damaged = flash.clone();
+    let mut panel = flash_bench::fresh();
+    let mut keeper = firmware::settings_store::SettingsStore::new(flash);
+    assert_eq!(keeper.restore(&mut panel), Some(FaultKind::SettingsDamaged));
+    let mut bench = KeptBench {
+        bench: Bench::with(panel),
+        keeper,
+    };
+    bench.bench.tick.fail(FaultKind::SettingsDamaged, None);
+    bench.say("");
+    assert_eq!(value(&mut bench, SPEED), 200.0);
+    assert!(bench.say("FLT?\n").starts_with("kept settings are damaged"));
+    assert_eq!(bench.error_after("FRF"), "1024");
+    assert_eq!(bench.error_after("SVO X 1"), "1024");
+    assert_eq!(bench.error_after("FLC"), "0");
+    assert_eq!(bench.error_after("FRF"), "0");
+    assert_eq!(bench.error_after("MAC BEG A\nDEL 1\nMAC END"), "0");
+    assert!(
+        bench.keeper.flash().bytes == damaged.bytes,
+        "written by the way"
+    );
+    assert_eq!(bench.error_after("WPA 100"), "0");
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("MAC?\n"), "A\n");
+}

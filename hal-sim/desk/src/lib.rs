@@ -1,0 +1,16 @@
+//! What an operator uses in front of a controller, be it a simulated one or a board: nothing here knows a machine.
+//!
+//! | module | idea |
+//! |---|---|
+//! | `serve` | a controller in this process, for clients over TCP and a pseudo-terminal |
+//! | `web` | the page, in front of any controller |
+//! | `record` | a record of a controller's data recorder |
+//! | `settings` | a controller's settings to a file and back |
+//! | [`error_words`] | error numbers in words |
+
+mod assets;
+pub mod error_words;
+pub mod record;
+pub mod serve;
+pub mod settings;
+pub mod web;

@@ -1,0 +1,208 @@
+//! A client: its session, the bytes that come in and the replies that go out. Nothing here blocks.
+
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+use firmware::gcs::Session;
+use rustix::event::PollFlags;
+use rustix::fd::{AsFd, BorrowedFd};
+
+use super::output::{Output, Overflow};
+use super::{Controller, Notice};
+
+/// Bytes read at a time.
+const READ_BYTES: usize = 4096;
+/// With more lines than this waiting to be carried out, or replies to be read, nothing more is read from the client.
+const WAITING_BYTES: usize = 64 << 10;
+/// How long replies may wait with none of them read.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// How much of a line is kept for notices.
+const LINE_BYTES: usize = 80;
+
+/// What a client is at: a socket, or the pseudo-terminal.
+pub(super) trait Port: Read + Write + AsFd {}
+
+impl<P: Read + Write + AsFd> Port for P {}
+
+/// A client.
+pub(super) struct Connection {
+    name: String,
+    port: Box<dyn Port>,
+    /// A terminal stays when its client is gone.
+    permanent: bool,
+    session: Session,
+    /// Read, and not taken by the session yet.
+    input: Vec<u8>,
+    output: Output,
+    /// When the client last read, or had nothing to read.
+    last_read: Instant,
+    /// Its end was seen at this time; what it sent before is still carried out.
+    ended: Option<Instant>,
+    /// The last line it sent, as far as it has come.
+    line: Vec<u8>,
+    /// The last error that was told.
+    error: u16,
+    state: ClientState,
+}
+
+/// What has become of a client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ClientState {
+    Here,
+    Gone,
+    /// It does not read.
+    Unread,
+}
+
+impl Connection {
+    /// A client at a port that does not block.
+    pub fn new(name: String, port: Box<dyn Port>, permanent: bool, now: Instant) -> Self {
+        Self {
+            name,
+            port,
+            permanent,
+            session: Session::new(),
+            input: Vec::new(),
+            output: Output::default(),
+            last_read: now,
+            ended: None,
+            line: Vec::new(),
+            error: 0,
+            state: ClientState::Here,
+        }
+    }
+
+    /// The controller starts again, the connection stays.
+    pub fn controller_restarts(&mut self) {
+        self.session.start_again();
+        self.error = 0;
+    }
+
+    /// What to wait at.
+    pub fn port(&self) -> BorrowedFd<'_> {
+        self.port.as_fd()
+    }
+
+    /// What to wait for there.
+    pub fn interest(&self) -> PollFlags {
+        let mut flags = PollFlags::empty();
+        let room = self.input.len().max(self.output.len()) < WAITING_BYTES;
+        if self.ended.is_none() && room {
+            flags |= PollFlags::IN;
+        }
+        if self.output.len() > 0 {
+            flags |= PollFlags::OUT;
+        }
+        flags
+    }
+
+    /// Reads what has come; to be called when [`interest`](Self::interest) has been met.
+    pub fn read(&mut self, now: Instant) {
+        let mut bytes = [0; READ_BYTES];
+        match self.port.read(&mut bytes) {
+            Ok(0) => self.ended = Some(now),
+            Ok(count) => self.input.extend_from_slice(&bytes[..count]),
+            Err(error) if is_passing(&error) => {}
+            Err(_) => self.state = ClientState::Gone,
+        }
+    }
+
+    /// Has the controller carry out what has come, line by line, so that a refusal can be told with its line.
+    pub fn service(&mut self, controller: &mut impl Controller, say: &mut dyn FnMut(Notice)) {
+        loop {
+            let taken = self.feed();
+            let waiting = self.output.len();
+            (self.session).set_room(WAITING_BYTES.saturating_sub(waiting));
+            if let Err(Overflow) = controller.service(&mut self.session, &mut self.output) {
+                self.state = ClientState::Unread;
+                return;
+            }
+            self.tell_error(say);
+            if !taken {
+                return;
+            }
+        }
+    }
+
+    /// Gives the session the rest of a line; whether it has taken any of it.
+    fn feed(&mut self) -> bool {
+        let end = (self.input.iter())
+            .position(|&byte| byte == b'\n')
+            .map_or(self.input.len(), |at| at + 1);
+        let taken = self.session.receive(&self.input[..end]);
+        for byte in self.input.drain(..taken) {
+            if self.line.last() == Some(&b'\n') {
+                self.line.clear();
+            }
+            if self.line.len() < LINE_BYTES || byte == b'\n' {
+                self.line.push(byte);
+            }
+        }
+        taken > 0
+    }
+
+    fn tell_error(&mut self, say: &mut dyn FnMut(Notice)) {
+        let error = self.session.error().number();
+        if error != self.error && error != 0 {
+            say(Notice::Refused {
+                name: self.name.clone(),
+                error,
+                line: self.line.trim_ascii().escape_ascii().to_string(),
+            });
+        }
+        self.error = error;
+    }
+
+    /// Writes as many replies as the client takes.
+    pub fn write(&mut self, now: Instant) {
+        if self.output.len() == 0 {
+            self.last_read = now;
+            return;
+        }
+        match self.output.write_to(&mut self.port) {
+            Ok(true) => self.last_read = now,
+            Ok(false) if now.duration_since(self.last_read) > PATIENCE => {
+                self.state = ClientState::Unread;
+            }
+            Ok(false) => {}
+            Err(_) => self.state = ClientState::Gone,
+        }
+    }
+
+    /// Whether it is still there; tells when not.
+    pub fn stays(&mut self, now: Instant, say: &mut dyn FnMut(Notice)) -> bool {
+        let finished = self.ended.is_some_and(|ended| {
+            let done = self.input.is_empty() && self.session.is_idle() && self.output.len() == 0;
+            done || now.duration_since(ended) > PATIENCE
+        });
+        if finished {
+            self.state = ClientState::Gone;
+        }
+        match self.state {
+            ClientState::Here => return true,
+            ClientState::Gone => say(Notice::Left(self.name.clone())),
+            ClientState::Unread => say(Notice::Unread(self.name.clone())),
+        }
+        if self.permanent {
+            self.start_again(now);
+        }
+        self.permanent
+    }
+
+    /// Nobody is known to be there: as after a restart of the line.
+    fn start_again(&mut self, now: Instant) {
+        self.session = Session::new();
+        self.input.clear();
+        self.output = Output::default();
+        self.ended = None;
+        self.last_read = now;
+        self.state = ClientState::Here;
+    }
+}
+
+fn is_passing(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+    )
+}

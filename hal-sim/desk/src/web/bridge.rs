@@ -1,0 +1,255 @@
+//! The thread that owns the line to the controller: the status for all viewers, and their requests in between.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use tokio::sync::{broadcast, oneshot, watch};
+
+use super::line::{Answer, Line};
+use super::port::{Endpoint, Port};
+use super::request::{Refusal, Wanted};
+use super::watch::{FAST, SLOW_EVERY, slow};
+
+/// Between two status messages: a screen's refresh.
+const PERIOD: Duration = Duration::from_micros(16_667);
+/// Between two looks for viewers while there are none. The controller is not asked anything then: a page that nobody looks at
+/// must not be the host that a heartbeat (`HBT`) waits for.
+const IDLE_PERIOD: Duration = Duration::from_millis(100);
+/// Between two attempts to reach the controller.
+const RETRY: Duration = Duration::from_millis(500);
+/// Requests that may wait for the line.
+const WAITING: usize = 64;
+/// Status messages that a viewer may be behind before it loses some.
+const BACKLOG: usize = 128;
+/// `#24`.
+const STOP: u8 = 24;
+
+/// What viewers hold of the bridge.
+#[derive(Clone)]
+pub(super) struct Bridge {
+    requests: SyncSender<Pending>,
+    status: broadcast::Sender<Arc<str>>,
+    hello: watch::Receiver<Arc<str>>,
+    bypass: Arc<Mutex<Option<Port>>>,
+}
+
+/// A line that waits for its turn.
+struct Pending {
+    line: String,
+    answer: oneshot::Sender<Result<Answer, Refusal>>,
+}
+
+/// Who is at the other end of the line, if anybody.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename = "hello")]
+struct Hello<'a> {
+    connected: bool,
+    /// Where the controller is, or should be.
+    place: String,
+    identity: &'a str,
+    /// What `HLP?` answers.
+    help: &'a str,
+    /// Why there is no connection.
+    reason: String,
+}
+
+/// Answers to the questions that are asked over and over.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename = "status")]
+struct Status<'a> {
+    replies: BTreeMap<&'a str, String>,
+}
+
+impl Bridge {
+    /// Starts the thread; it ends when the last of its handles is gone.
+    pub fn start(endpoint: Endpoint) -> io::Result<Self> {
+        let (requests, incoming) = mpsc::sync_channel(WAITING);
+        let (status, _) = broadcast::channel(BACKLOG);
+        let (hello_sender, hello) = watch::channel(Arc::from(""));
+        let bypass = Arc::default();
+        let worker = Worker {
+            endpoint,
+            incoming,
+            status: status.clone(),
+            hello: hello_sender,
+            bypass: Arc::clone(&bypass),
+        };
+        worker.say_offline("not connected yet".to_owned());
+        thread::Builder::new()
+            .name("page".into())
+            .spawn(move || worker.run())?;
+        Ok(Self {
+            requests,
+            status,
+            hello,
+            bypass,
+        })
+    }
+
+    /// The status messages from now on.
+    pub fn status(&self) -> broadcast::Receiver<Arc<str>> {
+        self.status.subscribe()
+    }
+
+    /// Who is at the other end.
+    pub fn hello(&self) -> watch::Receiver<Arc<str>> {
+        self.hello.clone()
+    }
+
+    /// Has it carried out. A stop goes out before this returns; a line waits for its turn.
+    pub async fn ask(&self, wanted: Wanted) -> Result<Answer, Refusal> {
+        let line = match wanted {
+            Wanted::Stop => return self.stop(),
+            Wanted::Line(line) => line,
+        };
+        let (answer, answered) = oneshot::channel();
+        (self.requests.try_send(Pending { line, answer })).map_err(|error| match error {
+            TrySendError::Full(_) => Refusal::TooMany,
+            TrySendError::Disconnected(_) => Refusal::Offline,
+        })?;
+        answered.await.unwrap_or(Err(Refusal::Broken))
+    }
+
+    fn stop(&self) -> Result<Answer, Refusal> {
+        let mut bypass = self.bypass.lock().unwrap_or_else(PoisonError::into_inner);
+        let port = bypass.as_mut().ok_or(Refusal::Offline)?;
+        port.write_all(&[STOP]).map_err(|_| Refusal::Broken)?;
+        Ok(Answer {
+            reply: None,
+            error: 0,
+        })
+    }
+}
+
+/// The thread's side.
+struct Worker {
+    endpoint: Endpoint,
+    incoming: Receiver<Pending>,
+    status: broadcast::Sender<Arc<str>>,
+    hello: watch::Sender<Arc<str>>,
+    bypass: Arc<Mutex<Option<Port>>>,
+}
+
+/// All viewers and the server are gone.
+struct Done;
+
+impl Worker {
+    fn run(self) {
+        loop {
+            let reason = match self.serve() {
+                Ok(Done) => return,
+                Err(error) => error,
+            };
+            self.set_bypass(None);
+            self.say_offline(reason.to_string());
+            if self.refuse_for(RETRY).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Serves as long as the line holds.
+    fn serve(&self) -> io::Result<Done> {
+        let mut line = Line::open(&self.endpoint)?;
+        self.set_bypass(Some(line.bypass()?));
+        let help = line.ask_known(&["HLP?"])?.remove(0);
+        self.say(&Hello {
+            connected: true,
+            place: self.endpoint.to_string(),
+            identity: line.identity(),
+            help: &help,
+            reason: String::new(),
+        });
+        let all = [FAST, &slow(&help)].concat();
+        let mut next = Instant::now();
+        for number in 0_u32.. {
+            loop {
+                let left = next.saturating_duration_since(Instant::now());
+                match self.incoming.recv_timeout(left) {
+                    Ok(pending) => Self::carry_out(&mut line, pending)?,
+                    Err(RecvTimeoutError::Timeout) => break,
+                    Err(RecvTimeoutError::Disconnected) => return Ok(Done),
+                }
+                if Instant::now() >= next {
+                    break;
+                }
+            }
+            let looked_at = self.status.receiver_count() > 0;
+            if looked_at && number % SLOW_EVERY == 0 {
+                self.poll(&mut line, &all)?;
+            } else if looked_at {
+                self.poll(&mut line, FAST)?;
+            }
+            let period = if looked_at { PERIOD } else { IDLE_PERIOD };
+            // A line that is slower than a screen is asked as fast as it goes, and what was missed is not made up for.
+            next = (next + period).max(Instant::now());
+        }
+        Ok(Done)
+    }
+
+    fn carry_out(line: &mut Line, pending: Pending) -> io::Result<()> {
+        // A viewer that is gone needs no answer.
+        match line.ask(&pending.line) {
+            Ok(answer) => drop(pending.answer.send(Ok(answer))),
+            Err(error) => {
+                let _ = pending.answer.send(Err(Refusal::Broken));
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    fn poll(&self, line: &mut Line, questions: &[&'static str]) -> io::Result<()> {
+        let answers = line.ask_known(questions)?;
+        let replies = questions.iter().copied().zip(answers).collect();
+        // Nobody needs to look.
+        let _ = self.status.send(json(&Status { replies }));
+        Ok(())
+    }
+
+    /// Refuses what comes in meanwhile.
+    fn refuse_for(&self, time: Duration) -> Result<(), Done> {
+        let end = Instant::now() + time;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            match self.incoming.recv_timeout(left) {
+                Ok(pending) => drop(pending.answer.send(Err(Refusal::Offline))),
+                Err(RecvTimeoutError::Timeout) => return Ok(()),
+                Err(RecvTimeoutError::Disconnected) => return Err(Done),
+            }
+        }
+    }
+
+    fn set_bypass(&self, port: Option<Port>) {
+        *self.bypass.lock().unwrap_or_else(PoisonError::into_inner) = port;
+    }
+
+    fn say_offline(&self, reason: String) {
+        self.say(&Hello {
+            connected: false,
+            place: self.endpoint.to_string(),
+            identity: "",
+            help: "",
+            reason,
+        });
+    }
+
+    fn say(&self, hello: &Hello<'_>) {
+        let text = json(hello);
+        self.hello.send_if_modified(|current| {
+            let new = *current != text;
+            *current = text;
+            new
+        });
+    }
+}
+
+/// As a message; none of ours fails to be one.
+pub(super) fn json(message: &impl Serialize) -> Arc<str> {
+    serde_json::to_string(message).unwrap_or_default().into()
+}

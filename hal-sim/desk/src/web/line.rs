@@ -1,0 +1,148 @@
+//! Questions and answers over a GCS connection.
+//!
+//! A line that is refused may answer or not, so that an answer cannot be told from what follows it. After a line of a
+//! viewer come `ERR?` and `*IDN?`, whose answer is known: what came before it is the error, and before that the answer.
+//! Another `ERR?` goes before the line, so that the error of a stop or a fault is not taken for the line's own.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use super::port::{Endpoint, Port};
+
+/// How long the controller may be silent in the middle of an answer.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// How long the line has to be silent before it is taken for empty.
+const SILENCE: Duration = Duration::from_millis(50);
+/// Longest answer: more than the recorder of any controller holds.
+const ANSWER_BYTES: usize = 16 << 20;
+
+/// An open connection.
+pub(crate) struct Line {
+    port: Port,
+    received: Vec<u8>,
+    /// How far it was searched for the end of an answer.
+    searched: usize,
+    identity: String,
+}
+
+/// What a line came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Answer {
+    /// Its answer, if it had one: lines without the space at their end.
+    pub reply: Option<String>,
+    /// What `ERR?` said.
+    pub error: u16,
+}
+
+impl Line {
+    /// Opens it, throws away what is still on its way, and asks who is there.
+    pub fn open(endpoint: &Endpoint) -> io::Result<Self> {
+        let mut line = Self {
+            port: endpoint.open()?,
+            received: Vec::new(),
+            searched: 0,
+            identity: String::new(),
+        };
+        // Ends a line that somebody left unfinished.
+        line.port.write_all(b"\n")?;
+        while line.receive(SILENCE)? {}
+        line.forget();
+        line.identity = line.ask_known(&["*IDN?"])?.remove(0);
+        line.ask_known(&["ERR?"])?;
+        Ok(line)
+    }
+
+    /// Who answers.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    /// The same connection, to be written to past what is under way: single bytes may stand anywhere.
+    pub(super) fn bypass(&self) -> io::Result<Port> {
+        self.port.try_clone()
+    }
+
+    /// Sends questions that are always answered, and gives their answers.
+    pub fn ask_known(&mut self, questions: &[&str]) -> io::Result<Vec<String>> {
+        let text: String = questions.iter().flat_map(|line| [line, "\n"]).collect();
+        self.port.write_all(text.as_bytes())?;
+        questions.iter().map(|_| self.answer()).collect()
+    }
+
+    /// Sends a line that may be answered or not, or be refused.
+    pub fn ask(&mut self, line: &str) -> io::Result<Answer> {
+        (self.port).write_all(format!("ERR?\n{line}\nERR?\n*IDN?\n").as_bytes())?;
+        self.answer()?;
+        let mut answers = Vec::new();
+        while answers.len() < 2 || answers.last() != Some(&self.identity) {
+            if answers.len() == 3 {
+                return Err(io::Error::other(
+                    "the controller answers what was not asked",
+                ));
+            }
+            answers.push(self.answer()?);
+        }
+        answers.pop();
+        let error = answers.pop().and_then(|error| error.parse().ok());
+        Ok(Answer {
+            reply: answers.pop(),
+            error: error.ok_or_else(|| io::Error::other("the controller tells no error number"))?,
+        })
+    }
+
+    /// The next whole answer: lines that end in a space go on.
+    fn answer(&mut self) -> io::Result<String> {
+        loop {
+            while let Some(end) = self.next_end() {
+                let ends_here = end == 0 || self.received[end - 1] != b' ';
+                self.searched = end + 1;
+                if ends_here {
+                    let bytes: Vec<u8> = self.received.drain(..=end).collect();
+                    self.searched = 0;
+                    return Ok(text(&bytes));
+                }
+            }
+            if self.received.len() > ANSWER_BYTES {
+                return Err(io::Error::other("the controller's answer has no end"));
+            }
+            if !self.receive(PATIENCE)? {
+                let message = "the controller does not answer";
+                return Err(io::Error::new(io::ErrorKind::TimedOut, message));
+            }
+        }
+    }
+
+    fn next_end(&self) -> Option<usize> {
+        let rest = &self.received[self.searched..];
+        let at = rest.iter().position(|&byte| byte == b'\n')?;
+        Some(self.searched + at)
+    }
+
+    /// Takes what has come, or comes within this time; whether anything has.
+    fn receive(&mut self, time: Duration) -> io::Result<bool> {
+        let mut bytes = [0; 16 << 10];
+        match self.port.read_within(&mut bytes, time)? {
+            None => Ok(false),
+            Some(0) => Err(io::Error::new(
+                io::ErrorKind::UnexpectedEof,
+                "the controller has closed the connection",
+            )),
+            Some(count) => {
+                self.received.extend_from_slice(&bytes[..count]);
+                Ok(true)
+            }
+        }
+    }
+
+    fn forget(&mut self) {
+        self.received.clear();
+        self.searched = 0;
+    }
+}
+
+/// An answer as text, its lines without the space at their end.
+fn text(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let lines: Vec<&str> = text.trim_end().split('\n').map(str::trim_end).collect();
+    lines.join("\n")
+}

@@ -1,0 +1,57 @@
+//! The page: the stage drawn live in a browser, and driven from there. One more client of the command interface: whatever
+//! the page asks for goes over one GCS connection, to the simulated stage or to a controller on a serial line, as a line
+//! that any other client could have sent.
+//!
+//! ```text
+//! browser -- HTTP: page, scripts, token
+//!         \- WebSocket: {"line": "MOV X 1"} -> Viewer -> queue -> Bridge -> Line -> controller
+//!                       status, answers     <- Viewer <-------- Bridge <- Line <----/
+//! ```
+//!
+//! | file | idea |
+//! |---|---|
+//! | `port` | TCP or a serial line, opened |
+//! | `line` | questions and answers over it |
+//! | `watch` | which questions are asked over and over |
+//! | `bridge` | the thread that owns the line: the status as often as a screen shows it, requests in between |
+//! | `request` | what viewers may send |
+//! | `guard` | who may look and who may drive |
+//! | `viewer` | one browser: status and answers out, requests in |
+//! | `lesson` | the mechanism's three movements, for the page's explanation |
+//! | `server` | HTTP |
+//!
+//! Nobody is waited for: a viewer that does not read loses status messages and is told how many; a stop from any viewer
+//! goes out at once, ahead of everything else.
+
+mod bridge;
+mod guard;
+mod lesson;
+mod line;
+mod port;
+mod request;
+mod server;
+mod viewer;
+mod watch;
+
+use std::io;
+
+pub(crate) use line::Line;
+pub use port::Endpoint;
+pub use server::Page;
+pub use watch::questions;
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// The address cannot be listened at.
+    #[error("cannot serve the page at {address}: {error}")]
+    Listen {
+        /// As it was asked for.
+        address: String,
+        /// What the system says.
+        error: io::Error,
+    },
+    /// A thread or its runtime cannot be started, or there is no randomness to be had.
+    #[error("cannot serve the page: {0}")]
+    Start(io::Error),
+}

@@ -1,0 +1,166 @@
+//! HTTP: the page's files, the token, and the WebSocket.
+
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use axum::Router;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use tokio::runtime;
+use tokio::sync::oneshot;
+
+use super::bridge::Bridge;
+use super::guard::Guard;
+use super::port::Endpoint;
+use super::request::MESSAGE_BYTES;
+use super::{PageError, lesson, viewer};
+use crate::assets;
+use drawing::assets::Asset;
+
+/// What browsers are to enforce: nothing from elsewhere, and no page of somebody else's around this one.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// A page that is served until it is dropped.
+pub struct Page {
+    address: SocketAddr,
+    /// Dropped, it ends the server.
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What handlers share.
+#[derive(Clone)]
+struct Shared {
+    bridge: Bridge,
+    guard: Arc<Guard>,
+}
+
+impl Page {
+    /// Serves the page at `address` for the controller at `endpoint`, which need not be there yet.
+    ///
+    /// # Errors
+    /// [`PageError`].
+    pub fn start(address: &str, endpoint: Endpoint) -> Result<Self, PageError> {
+        let listener = TcpListener::bind(address).map_err(|error| PageError::Listen {
+            address: address.to_owned(),
+            error,
+        })?;
+        Self::serve(listener, address, endpoint).map_err(PageError::Start)
+    }
+
+    fn serve(listener: TcpListener, address: &str, endpoint: Endpoint) -> io::Result<Self> {
+        let place = listener.local_addr()?;
+        listener.set_nonblocking(true)?;
+        let shared = Shared {
+            guard: Arc::new(Guard::new(address)?),
+            bridge: Bridge::start(endpoint)?,
+        };
+        let runtime = runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()?;
+        let (stop, stopped) = oneshot::channel::<()>();
+        let thread = thread::Builder::new().name("http".into()).spawn(move || {
+            runtime.block_on(async move {
+                let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
+                    return;
+                };
+                let server = axum::serve(listener, router(shared)).into_future();
+                tokio::select! {
+                    _ = server => {}
+                    _ = stopped => {}
+                }
+            });
+        })?;
+        Ok(Self {
+            address: place,
+            stop: Some(stop),
+            thread: Some(thread),
+        })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            // A panic there has been printed.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn router(shared: Shared) -> Router {
+    let mut router = Router::new()
+        .route("/token", get(token))
+        .route("/live", get(live))
+        .route("/lesson.json", get(lesson_frames));
+    for asset in assets::all() {
+        router = router.route(asset.path, get(async || file(asset)));
+    }
+    router
+        .fallback(async || (StatusCode::NOT_FOUND, "there is no such page\n"))
+        .layer(middleware::from_fn_with_state(shared.clone(), check))
+        .with_state(shared)
+}
+
+/// Turns away what names another host, and tells browsers what the page may do.
+async fn check(State(shared): State<Shared>, request: Request, next: Next) -> Response {
+    if !shared.guard.allows_host(request.headers()) {
+        let reason = "this page is served to its own address only, not to another name\n";
+        return (StatusCode::MISDIRECTED_REQUEST, reason).into_response();
+    }
+    let mut response = next.run(request).await;
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ] {
+        let headers = response.headers_mut();
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+fn file(asset: &Asset) -> Response {
+    ([(header::CONTENT_TYPE, asset.kind)], asset.text).into_response()
+}
+
+/// The token: pages of other origins can ask for it, but browsers do not let them read the answer.
+async fn token(State(shared): State<Shared>) -> Response {
+    shared.guard.token().to_owned().into_response()
+}
+
+async fn lesson_frames() -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], lesson::json()).into_response()
+}
+
+async fn live(
+    State(shared): State<Shared>,
+    headers: HeaderMap,
+    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
+) -> Response {
+    if !shared.guard.allows_origin(&headers) {
+        let reason = "only the page of this server may connect\n";
+        return (StatusCode::FORBIDDEN, reason).into_response();
+    }
+    match upgrade {
+        Ok(upgrade) => upgrade
+            .max_message_size(MESSAGE_BYTES)
+            .on_upgrade(|socket| viewer::serve(socket, shared.bridge, shared.guard)),
+        Err(rejection) => rejection.into_response(),
+    }
+}

@@ -1,0 +1,25 @@
+//! What reports and pages are drawn with: nothing here knows a controller or a machine.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`svg`], [`png`] | pictures |
+//! | [`chart`], [`scale`], [`envelope`] | quantities over time |
+//! | [`colour`] | one set of colours |
+//! | [`mechanism`] | sizes of the drawn mechanism |
+//! | [`assets`] | scripts and styles that the live page and a run's document share |
+//! | [`files`] | files and folders written |
+//! | [`progress`] | the progress bar |
+
+pub mod assets;
+pub mod chart;
+pub mod colour;
+pub mod envelope;
+pub mod files;
+pub mod mechanism;
+pub mod png;
+pub mod progress;
+pub mod scale;
+pub mod svg;
+
+pub use files::{ReportError, claim_folder, make_folder, unwritable, write_file, write_png};
+pub use progress::Progress;

@@ -1,0 +1,163 @@
+//! The bench as its callers see it.
+
+use super::board::{ChipBoard, STAGE_RATE};
+use super::cost::TickCost;
+use super::driver::{Landmarks, StageDriver};
+use super::gaps;
+use super::period::{Period, Reset};
+use hal_sim::machine::devices::Stage;
+use rigless::emulator::{self, Start, Watch};
+use rigless::image::{self, Image};
+use rigless::session::Session;
+use rigless::symbols::{self, Symbols};
+use rigless::time::VirtualNanos;
+use std::fmt;
+use std::num::NonZeroU64;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Symbols of the image: the handler of the tick, where its cost ends, the record.
+pub(super) const TICK_BEGIN: &str = "TIM1_UP_TIM10";
+pub(super) const TICK_END: &str = "stage_tick_end";
+const TRACE: &str = "TRACE";
+
+/// An image, ready to boot.
+pub struct Bench {
+    image: Image,
+    symbols: Symbols,
+    stage: Stage,
+    instructions_per_second: NonZeroU64,
+}
+
+/// What a run leaves behind.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The stage at the end.
+    pub stage: Stage,
+    /// What the ticks cost.
+    pub cost: TickCost,
+    /// Restarts.
+    pub resets: Vec<Reset>,
+    /// Instructions executed.
+    pub instructions: u64,
+    /// Virtual time, ns.
+    pub at_ns: u64,
+    /// Accesses that the emulator does not model, beyond those allowed: any one makes the run worthless.
+    pub gaps: Vec<String>,
+}
+
+/// Why there was no run.
+#[derive(Debug)]
+pub enum BenchError {
+    /// The image could not be read.
+    Image(image::Error),
+    /// Its symbols could not be read, or one is missing.
+    Symbols(symbols::Error),
+    /// The emulated part could not be built.
+    Part(rigless::soc::Error),
+    /// The emulator gave up.
+    Emulator(emulator::Error),
+    /// The image did not start its timers within a second.
+    NeverStarted {
+        /// What it touched that the emulator does not model.
+        gaps: Vec<String>,
+    },
+}
+
+impl Bench {
+    /// Reads the image.
+    pub fn load(path: &Path, stage: Stage) -> Result<Self, BenchError> {
+        Self::new(Image::read(path, None).map_err(BenchError::Image)?, stage)
+    }
+
+    /// Takes the image from memory.
+    pub fn from_elf(elf: Vec<u8>, stage: Stage) -> Result<Self, BenchError> {
+        let name = PathBuf::from("stage");
+        Self::new(
+            Image::new(&name, elf, None).map_err(BenchError::Image)?,
+            stage,
+        )
+    }
+
+    fn new(image: Image, stage: Stage) -> Result<Self, BenchError> {
+        let symbols = Symbols::read(image.bytes(), even).map_err(BenchError::Symbols)?;
+        Ok(Self {
+            image,
+            symbols,
+            stage,
+            instructions_per_second: STAGE_RATE,
+        })
+    }
+
+    /// The same on a chip that executes so many instructions in a second, instead of one a cycle.
+    #[must_use]
+    pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
+        Self {
+            instructions_per_second,
+            ..self
+        }
+    }
+
+    /// Address of a symbol of the image, for [`Period::word`].
+    pub fn symbol(&self, name: &str) -> Result<u64, BenchError> {
+        self.symbols.get(name).map_err(BenchError::Symbols)
+    }
+
+    /// Boots the image and runs it, calling back once a control period, until the callback breaks.
+    pub fn run<F>(self, on_period: F) -> Result<Outcome, BenchError>
+    where
+        F: FnMut(&mut Period<'_>) -> ControlFlow<()> + Send + 'static,
+    {
+        let landmarks = Landmarks {
+            tick_begin: self.symbol(TICK_BEGIN)?,
+            tick_end: self.symbol(TICK_END)?,
+            trace: self.symbol(TRACE)?,
+        };
+        let board = ChipBoard::new().map_err(BenchError::Part)?;
+        let board = board.at_rate(self.instructions_per_second);
+        let mut session =
+            Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
+        session.watch(Watch::Instruction(landmarks.tick_begin));
+        session.watch(Watch::Instruction(landmarks.tick_end));
+        let driver = StageDriver::new(on_period, self.stage, landmarks);
+        let images = [self.image];
+        let finished =
+            emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
+        let gaps = gaps::unexpected(&finished.session);
+        let driver = finished.driver;
+        if driver.never_started {
+            return Err(BenchError::NeverStarted { gaps });
+        }
+        let stop = finished.stop;
+        Ok(Outcome {
+            stage: driver.stage,
+            cost: driver.cost,
+            resets: driver.resets,
+            instructions: stop.map_or(0, |stop| stop.instruction_count),
+            at_ns: stop.map_or(0, |stop| stop.at.0),
+            gaps,
+        })
+    }
+}
+
+/// A function's symbol has the lowest bit set, which says Thumb and is no part of the address.
+fn even(value: u64) -> u64 {
+    value & !1
+}
+
+impl fmt::Display for BenchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Image(error) => write!(f, "image: {error}"),
+            Self::Symbols(error) => write!(f, "image: {error}"),
+            Self::Part(error) => write!(f, "emulated part: {error}"),
+            Self::Emulator(error) => write!(f, "emulator: {error}"),
+            Self::NeverStarted { gaps } => {
+                write!(f, "the image did not start its timers within a second")?;
+                gaps.iter().try_for_each(|gap| write!(f, "\n  {gap}"))
+            }
+        }
+    }
+}
+
+impl std::error::Error for BenchError {}

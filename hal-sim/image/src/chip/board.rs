@@ -1,0 +1,208 @@
+//! The board around the emulated chip: crystal, supply, and the chips on its pins, as the image's pin table has them.
+
+use super::encoder::EncoderLine;
+use super::line::HostLine;
+use hal_sim::machine::devices::{BridgeState, MAX_DUTY};
+use rigless::cpu::armv7m;
+use rigless::device::Level;
+use rigless::machine::armv7m::{Core, Fpu, MpuRegions, Variant};
+use rigless::machine::{Board, Target};
+use rigless::mcu::{Mcu, Operate};
+use rigless::snapshot::Store;
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::peripherals::adc::Channel as AdcChannel;
+use rigless::soc::stm32f427::peripherals::gpio::Pin;
+use rigless::soc::stm32f427::peripherals::tim::Channel as TimerChannel;
+use rigless::soc::{Error, Fault, Width};
+use rigless::time::VirtualNanos;
+use std::num::{NonZeroU32, NonZeroU64};
+
+const CRYSTAL_HZ: u64 = 8_000_000;
+const SUPPLY_MV: u32 = 3300;
+/// Instructions in a second: one a cycle.
+pub const CORE_HZ: u64 = 168_000_000;
+
+/// The same, as the board runs unless told otherwise.
+pub const STAGE_RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
+
+const ADC1: usize = 0;
+const TIM1: usize = 0;
+const USART1: usize = 0;
+const PORT_D: usize = 3;
+const PORT_E: usize = 4;
+/// Pins of port D, pivot 1 first.
+const DIRECTION: [u8; 3] = [0, 1, 2];
+const SLEEP: [u8; 3] = [4, 5, 6];
+const BRIDGE_FAULT: [u8; 3] = [8, 9, 10];
+/// Pin of port E.
+const EMERGENCY_STOP: u8 = 15;
+const TIM3_CR1: u64 = 0x4000_0400;
+const FIRST_ADC_CHANNEL: u8 = 10;
+/// With as many millivolts of reference as there are counts, an input in millivolts is an input in counts.
+const ADC_REFERENCE: u32 = 4095;
+
+/// The board.
+#[derive(Debug)]
+pub struct ChipBoard {
+    mcu: Stm32f427,
+    emergency_stop: Level,
+    instructions_per_second: NonZeroU64,
+}
+
+impl ChipBoard {
+    /// The board, powered, its emergency stop released.
+    pub fn new() -> Result<Self, Error> {
+        let mut mcu = Stm32f427::new()?;
+        mcu.rcc.attach_crystals(CRYSTAL_HZ, 0);
+        mcu.set_supply(SUPPLY_MV);
+        mcu.adc[ADC1].set_reference(ADC_REFERENCE);
+        for port in &mut mcu.spi[..3] {
+            port.attach(EncoderLine::default());
+        }
+        mcu.usart[USART1].attach(HostLine::default());
+        let mut board = Self {
+            mcu,
+            emergency_stop: Level::High,
+            instructions_per_second: STAGE_RATE,
+        };
+        board.drive_again(VirtualNanos(0), [false; 3]);
+        Ok(board)
+    }
+
+    /// The same with other instructions in a second of virtual time.
+    pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
+        Self {
+            instructions_per_second,
+            ..self
+        }
+    }
+
+    /// Drives every input as the board has it: the chip's restart lets go of them.
+    pub fn drive_again(&mut self, now: VirtualNanos, bridge_faults: [bool; 3]) {
+        self.set_emergency_stop(now, self.emergency_stop == Level::Low);
+        self.set_bridge_faults(now, bridge_faults);
+    }
+
+    /// Latches the encoders' frames.
+    pub fn set_frames(&mut self, frames: [[u8; 8]; 3]) {
+        for (port, frame) in self.mcu.spi.iter_mut().zip(frames) {
+            if let Some(line) = port.chip_mut::<EncoderLine>(0) {
+                line.latch(frame);
+            }
+        }
+    }
+
+    /// Puts counts on the ADC's inputs.
+    pub fn set_analog(&mut self, (currents, supply): ([u16; 3], u16)) {
+        let [first, second, third] = currents;
+        for (channel, counts) in (FIRST_ADC_CHANNEL..).zip([first, second, third, supply]) {
+            if let Some(channel) = AdcChannel::new(channel) {
+                self.mcu.adc[ADC1].set_input(channel, u32::from(counts));
+            }
+        }
+    }
+
+    /// Presses or releases the emergency stop: the pin's level, and the break input behind it.
+    pub fn set_emergency_stop(&mut self, now: VirtualNanos, pressed: bool) {
+        self.emergency_stop = if pressed { Level::Low } else { Level::High };
+        self.drive_pin(now, PORT_E, EMERGENCY_STOP, self.emergency_stop);
+        self.settle_pwm(now);
+    }
+
+    /// Lets bridges pull their fault pins low.
+    pub fn set_bridge_faults(&mut self, now: VirtualNanos, faults: [bool; 3]) {
+        for (pin, fault) in BRIDGE_FAULT.into_iter().zip(faults) {
+            let level = if fault { Level::Low } else { Level::High };
+            self.drive_pin(now, PORT_D, pin, level);
+        }
+    }
+
+    /// What the pins of the bridges say now; the PWM as the period under way has it.
+    pub fn bridges(&mut self, now: VirtualNanos, faults: [bool; 3]) -> [BridgeState; 3] {
+        let duty = self.duty(now).unwrap_or([0; 3]);
+        let (port, registers) = self.mcu.port(PORT_D);
+        let level =
+            |pin: u8| Pin::new(pin).is_some_and(|pin| port.level(pin, registers) == Level::High);
+        [0, 1, 2].map(|axis| BridgeState {
+            pulse: f64::from(duty[axis]) / f64::from(MAX_DUTY),
+            forward: level(DIRECTION[axis]),
+            awake: level(SLEEP[axis]),
+            fault: faults[axis],
+        })
+    }
+
+    /// Counts of the PWM pulses of the period under way, or `None` while the outputs are cut.
+    pub fn duty(&mut self, now: VirtualNanos) -> Option<[u16; 3]> {
+        self.settle_pwm(now);
+        let (timer, registers) = self.mcu.advanced_timer(TIM1);
+        let counts = |number: u8| {
+            let pulse = timer.pulse(TimerChannel::new(number)?, registers)?;
+            // The width was rounded down to nanoseconds, so rounding up gives the counts back.
+            let counts = (pulse.width.0 * (CORE_HZ / 1_000_000)).div_ceil(1000);
+            u16::try_from(counts).ok()
+        };
+        Some([counts(1)?, counts(2)?, counts(3)?])
+    }
+
+    /// Stops the timer that starts every control period, as if its clock had died.
+    ///
+    /// # Errors
+    /// None, unless the emulator's part has no such register.
+    pub fn stop_latch_timer(&mut self, now: VirtualNanos) -> Result<(), Fault> {
+        self.mcu.write(now, TIM3_CR1, Width::W32, 0)
+    }
+
+    /// The host's end of the command interface.
+    pub fn line(&mut self) -> Option<&mut HostLine> {
+        self.mcu.usart[USART1].chip_mut::<HostLine>()
+    }
+
+    fn drive_pin(&mut self, now: VirtualNanos, port: usize, pin: u8, level: Level) {
+        if let Some(pin) = Pin::new(pin) {
+            self.mcu.drive_port(now, port, |gpio, registers, context| {
+                gpio.drive(pin, Some(level), registers, context);
+            });
+        }
+    }
+
+    /// Drives the break input, which also brings the timer's model up to now.
+    fn settle_pwm(&mut self, now: VirtualNanos) {
+        let level = self.emergency_stop;
+        self.mcu
+            .drive_advanced_timer(now, TIM1, |timer, registers, context| {
+                timer.drive_break(level, registers, context);
+            });
+    }
+}
+
+impl Store for ChipBoard {}
+
+impl Board for ChipBoard {
+    fn name(&self) -> &'static str {
+        "tripivot"
+    }
+
+    fn target_names(&self) -> Vec<&'static str> {
+        vec!["stm32f427"]
+    }
+
+    fn mcu(&mut self, target: usize) -> Option<&mut dyn Mcu> {
+        (target == 0).then_some(&mut self.mcu)
+    }
+
+    fn targets(&mut self) -> Vec<Target<'_>> {
+        let lines = u32::from(Operate::cpu(&self.mcu).interrupt_lines);
+        let core = Core {
+            variant: Variant::M4,
+            clock_hz: STAGE_RATE,
+            interrupt_lines: NonZeroU32::new(lines).unwrap_or(NonZeroU32::MIN),
+            priority_bits: 4,
+            refclk_divider: const { NonZeroU32::new(8).unwrap() },
+            instructions_per_second: self.instructions_per_second,
+            boot: "flash",
+        };
+        let windows = armv7m::windows(Mcu::bus(&self.mcu));
+        let core = core.spec_with_parts(&windows, Fpu::FpV4Sp, MpuRegions::Eight);
+        vec![Target::new("stm32f427", &mut self.mcu, core)]
+    }
+}

@@ -1,0 +1,165 @@
+//! What a caller sees and can do once a control period.
+
+use super::board::ChipBoard;
+use super::cost::TickCost;
+use hal_sim::machine::devices::{BridgeState, Stage};
+use rigless::device::ResetCause;
+use rigless::emulator::{Host, Watch};
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+
+/// A restart of the chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reset {
+    /// When, ns since power on.
+    pub at_ns: u64,
+    /// By what.
+    pub cause: ResetCause,
+}
+
+/// Something to do to the board at an instant within a period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Press (`true`) or release the emergency stop.
+    EmergencyStop(bool),
+    /// Stop the timer that starts every control period: the loop halts.
+    HaltLoop,
+    /// Keep what the bridges' pins say, for [`Period::probes`].
+    Probe,
+}
+
+/// The image's exported record (`TRACE`), as the last tick left it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Trace {
+    /// Ticks since the chip started.
+    pub ticks: u32,
+    /// Running hash over all ticks: `RunningHash` of the firmware's recorder.
+    pub hash: u32,
+    /// Commands the tick has taken.
+    pub commands: u32,
+    /// Why the chip started, as the image understood it.
+    pub reset_cause: u32,
+    /// How often the command interface has run.
+    pub served: u32,
+}
+
+/// A run of the chip's command interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Service {
+    /// Bytes it has taken since the chip started, the last of them right before this run.
+    pub bytes: u32,
+    /// The tick of the snapshot it had at hand; 0 before the first.
+    pub snapshot: u32,
+}
+
+/// How many of them the image remembers.
+const SERVICES: u32 = 16;
+/// Where they stand in the record, in words.
+const SERVICES_AT: u64 = 5;
+
+/// One control period: the frames and the ADC inputs of tick [`Period::tick`] have just been handed over, 16 us before it.
+pub struct Period<'a> {
+    pub(super) board: &'a mut ChipBoard,
+    pub(super) host: &'a mut dyn Host,
+    pub(super) at: VirtualNanos,
+    pub(super) trace_at: u64,
+    pub(super) actions: &'a mut Vec<(u64, Action)>,
+    /// The tick to come, counted from the last start of the chip; so many are done.
+    pub tick: u64,
+    /// The stage at this tick. Its encoders' frames have been handed over already: a fault set now shows next period.
+    pub stage: &'a mut Stage,
+    /// What the pins said over the second half of the last period.
+    pub pins: [BridgeState; 3],
+    /// Whether bridges have switched themselves off. May be changed.
+    pub bridge_faults: &'a mut [bool; 3],
+    /// What ticks cost so far.
+    pub cost: TickCost,
+    /// Restarts so far.
+    pub resets: &'a [Reset],
+    /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
+    pub probes: &'a [(u64, [BridgeState; 3])],
+    /// Where the core has come by since the period before: the tick's begin and end, and what [`Period::watch`] asked for.
+    pub path: &'a [u64],
+}
+
+impl Period<'_> {
+    /// Time since power on, ns.
+    #[must_use]
+    pub fn at_ns(&self) -> u64 {
+        self.at.0
+    }
+
+    /// When the tick to come is due, ns since power on.
+    #[must_use]
+    pub fn tick_at_ns(&self) -> u64 {
+        self.at.0 + super::driver::LATCH_NS + super::driver::EARLY_NS
+    }
+
+    /// Sends bytes to the command interface.
+    pub fn send(&mut self, bytes: &[u8]) {
+        if let Some(line) = self.board.line() {
+            line.send(bytes);
+        }
+    }
+
+    /// How many bytes have not gone out to it yet.
+    pub fn unsent(&mut self) -> usize {
+        self.board.line().map_or(0, |line| line.waiting())
+    }
+
+    /// What the command interface has answered since the last call.
+    pub fn received(&mut self) -> Vec<u8> {
+        self.board
+            .line()
+            .map(|line| line.take_received())
+            .unwrap_or_default()
+    }
+
+    /// Does something to the board at an instant to come, ns since power on.
+    pub fn at(&mut self, at_ns: u64, action: Action) {
+        self.actions.push((at_ns, action));
+        self.actions.sort_by_key(|(at_ns, _)| *at_ns);
+    }
+
+    /// The word at an address of the chip's memory, or `None` where there is none.
+    pub fn word(&mut self, address: u64) -> Option<u32> {
+        self.host
+            .read(address, Width::W32)
+            .ok()
+            .map(|word| word as u32)
+    }
+
+    /// Has the core's way over an instruction noted from now on. Returns whether it can be.
+    pub fn watch(&mut self, instruction: u64) -> bool {
+        self.host.watch(Watch::Instruction(instruction))
+    }
+
+    /// The image's record.
+    pub fn trace(&mut self) -> Trace {
+        let mut word = |index: u64| self.word(self.trace_at + 4 * index).unwrap_or(0);
+        Trace {
+            ticks: word(0),
+            hash: word(1),
+            commands: word(2),
+            reset_cause: word(3),
+            served: word(4),
+        }
+    }
+
+    /// The runs of the command interface from number `from` up to, not including, `to`; `None` when the image has forgotten some.
+    pub fn services(&mut self, from: u32, to: u32) -> Option<Vec<Service>> {
+        let count = to.wrapping_sub(from);
+        if count > SERVICES {
+            return None;
+        }
+        let mut word = |index: u64| self.word(self.trace_at + 4 * index).unwrap_or(0);
+        let services = (0..count).map(|offset| {
+            let place = u64::from(from.wrapping_add(offset) % SERVICES);
+            Service {
+                bytes: word(SERVICES_AT + 2 * place),
+                snapshot: word(SERVICES_AT + 2 * place + 1),
+            }
+        });
+        Some(services.collect())
+    }
+}

@@ -1,0 +1,33 @@
+//! `cargo image-check`: what can be proven of the image, and what it takes of the memories.
+
+use std::process::ExitCode;
+
+use super::error::CliError;
+use crate::chip::elf_file;
+use crate::cost::{Sizes, print_sizes};
+use crate::proof::{Code, LEVELS, NESTING, Stack, faults, print_proof, print_stack};
+
+/// Share of the stack's memory that has to be left, so that a change or two still fit.
+const LEFT: f64 = 0.25;
+
+pub(super) fn run() -> Result<ExitCode, CliError> {
+    let path = elf_file::find();
+    let path = path.ok_or_else(|| CliError::Value("no image: `cargo stage` builds it".into()))?;
+    let code = Code::read(&path)?;
+    let handlers = LEVELS[1].handlers;
+    let faults = faults(&code, handlers);
+    println!("{}", print_proof(&code, handlers, &faults));
+    let stack = Stack::of(&code, NESTING)?;
+    println!("{}", print_stack(&code, &stack));
+    let sizes = Sizes::read(&path).map_err(CliError::Value)?;
+    print!("{}", print_sizes(&sizes));
+    if !faults.is_empty() {
+        let what = format!("the control loop can fail in {} ways", faults.len());
+        return Err(CliError::Grown(what));
+    }
+    if (stack.left() as f64) < LEFT * stack.memory as f64 {
+        let what = format!("{} bytes of stack left, too few", stack.left());
+        return Err(CliError::Grown(what));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,13 @@
+//! What is asked of the image `stage` for the controller's chip.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`chip`] | the image on an emulated chip that has the simulated stage on its pins, and its twin on the host |
+//! | [`proof`] | the control loop cannot panic, the stack is deep enough |
+//! | [`cost`] | what parts of the library take, counted |
+//! | [`cli`] | the command line |
+
+pub mod chip;
+pub mod cli;
+pub mod cost;
+pub mod proof;

@@ -1,0 +1,71 @@
+//! The firmware's tick with its state, which is given what the hardware would give it.
+
+use super::Front;
+use firmware::control::config::Config;
+use firmware::control::{Inputs, Outputs, State, tick};
+use firmware::drivers::biss::RawFrame;
+use firmware::fault::{Fault, FaultKind};
+use firmware::parameters::Parameters;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
+
+/// See the module.
+pub struct ControlLoop {
+    /// What the next tick is given.
+    pub inputs: Inputs,
+    /// What the tick computes with.
+    pub config: Config,
+    state: State,
+}
+
+/// Nothing is connected.
+const NO_INPUTS: Inputs = Inputs {
+    frames: [RawFrame::MISSING; 3],
+    bridge_fault: [false; 3],
+    emergency_stop: false,
+    current_counts: [0; 3],
+    supply_counts: 0,
+    tick_cycles: 0,
+    late: false,
+};
+
+impl ControlLoop {
+    /// Freshly started, with nothing connected.
+    #[must_use]
+    pub fn new(parameters: &Parameters) -> Self {
+        Self {
+            inputs: NO_INPUTS,
+            config: Config::new(parameters),
+            state: State::new(),
+        }
+    }
+
+    /// The latched fault.
+    #[must_use]
+    pub fn fault(&self) -> Option<Fault> {
+        self.state.fault()
+    }
+
+    /// The fault that has ended the controlled stop of that one.
+    #[must_use]
+    pub fn stop_ended_by(&self) -> Option<Fault> {
+        self.state.stop_ended_by()
+    }
+}
+
+impl Front for ControlLoop {
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs {
+        tick(
+            &mut self.config,
+            &mut self.state,
+            &self.inputs,
+            link,
+            recorder,
+        )
+    }
+
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
+        self.config = Config::new(parameters);
+        self.state = fault.map_or_else(State::new, State::with_fault);
+    }
+}

@@ -1,0 +1,27 @@
+//! The controller in front of a machine: on the host here; on an emulated chip in the package `image`.
+//!
+//! | type | idea |
+//! |---|---|
+//! | [`ControlLoop`] | the firmware's tick with its state, which is given what the hardware would give it |
+//! | [`Host`] | the same behind the firmware's drivers, between the simulated encoders and bridges |
+
+mod control_loop;
+mod host;
+
+pub use control_loop::ControlLoop;
+pub use host::{Host, Wiring};
+
+use firmware::control::Outputs;
+use firmware::fault::FaultKind;
+use firmware::parameters::Parameters;
+use firmware::queues::TickQueues;
+use firmware::recorder::TickObserver;
+
+/// A controller's loop with what it stands before.
+pub trait Front {
+    /// One tick of the controller, and what it stands before up to the next.
+    fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs;
+
+    /// Starts the controller again, with these parameters and perhaps a fault; what it stands before stays as it is.
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>);
+}

@@ -1,0 +1,231 @@
+//! One phase/enable H-bridge: PWM, direction and sleep in, fault out, a voltage at the motor.
+//!
+//! PWM high drives the motor in the direction of the phase pin, PWM low brakes it (both low sides on), sleep low opens
+//! all switches. [`BridgePins`] are the firmware's side of a [`Bridge`]; [`BridgeState`] is the same as plain data, for
+//! a front that reads pulses and levels off an emulated chip.
+
+use std::cell::Cell;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use embedded_hal::digital::{self, InputPin, OutputPin};
+use embedded_hal::pwm::{self, SetDutyCycle};
+
+use crate::machine::plant::Drive;
+
+/// Counts of the reference stage's PWM: 168 MHz over 40 kHz.
+pub const MAX_DUTY: u16 = 4200;
+/// Counts of a PWM whose quantisation is switched off: as fine as a signed 16-bit duty can be.
+pub const FINE_PWM: u16 = 32_000;
+
+/// What a bridge is made like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BridgeParameters {
+    /// Supply, V.
+    pub supply_v: f64,
+    /// PWM frequency, Hz.
+    pub pwm_hz: f64,
+    /// Dead time of the switching leg, s; zero switches its effect off.
+    pub dead_time_s: f64,
+    /// Current from which the whole dead time counts, A. Below, the PWM's current ripple crosses zero within the
+    /// period and part of the loss turns into gain.
+    pub dead_time_knee_a: f64,
+}
+
+impl BridgeParameters {
+    /// 48 V and 40 kHz of the reference stage; 200 ns dead time is what makers of such bridges state, and the knee is
+    /// a tenth of the largest ripple (48 V / (4 * 0.7 mH * 40 kHz) = 0.43 A), since near rest the pulses are short.
+    pub const REFERENCE: Self = Self {
+        supply_v: 48.0,
+        pwm_hz: 40e3,
+        dead_time_s: 200e-9,
+        dead_time_knee_a: 0.043,
+    };
+}
+
+/// What the pins of one bridge say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BridgeState {
+    /// Part of the PWM period that the enable pin is high, 0 to 1.
+    pub pulse: f64,
+    /// Direction pin high: positive voltage.
+    pub forward: bool,
+    /// Sleep pin high: the bridge is awake.
+    pub awake: bool,
+    /// The bridge has switched itself off and pulls its fault pin low.
+    pub fault: bool,
+}
+
+impl BridgeState {
+    /// All pins low, as a chip in reset leaves them: asleep.
+    pub const RESET: Self = Self {
+        pulse: 0.0,
+        forward: false,
+        awake: false,
+        fault: false,
+    };
+
+    /// What it does to a motor that carries this current, averaged over a PWM period.
+    #[must_use]
+    pub fn drive(&self, parameters: &BridgeParameters, current_a: f64) -> Drive {
+        if !self.awake || self.fault {
+            return Drive::Coast;
+        }
+        if self.pulse <= 0.0 {
+            return Drive::Brake;
+        }
+        let sign = if self.forward { 1.0 } else { -1.0 };
+        let volts = sign * self.pulse.min(1.0) * parameters.supply_v;
+        Drive::Voltage(volts - self.dead_time_loss(parameters, current_a))
+    }
+
+    /// While both switches of a leg are off, a diode carries the current and the leg lies on the wrong rail.
+    fn dead_time_loss(&self, parameters: &BridgeParameters, current_a: f64) -> f64 {
+        if self.pulse >= 1.0 {
+            return 0.0;
+        }
+        // A pulse shorter than the dead time is swallowed whole, no more.
+        let lost = (parameters.dead_time_s * parameters.pwm_hz).min(self.pulse);
+        let direction = (current_a / parameters.dead_time_knee_a).clamp(-1.0, 1.0);
+        lost * parameters.supply_v * direction
+    }
+}
+
+/// The plant's side of one bridge on the host.
+#[derive(Debug)]
+pub struct Bridge(Rc<Cell<BridgeState>>);
+
+/// The firmware's side of one bridge on the host, one object a pin.
+#[derive(Debug)]
+pub struct BridgePins {
+    /// Enable pin, on a PWM channel.
+    pub pwm: PwmPin,
+    /// Phase pin.
+    pub direction: DirectionPin,
+    /// Sleep pin, active low.
+    pub sleep: SleepPin,
+    /// Fault pin, active low.
+    pub fault: FaultPin,
+}
+
+/// A PWM channel.
+#[derive(Debug)]
+pub struct PwmPin {
+    shared: Rc<Cell<BridgeState>>,
+    counts: u16,
+}
+
+/// The phase pin.
+#[derive(Debug)]
+pub struct DirectionPin(Rc<Cell<BridgeState>>);
+
+/// The sleep pin.
+#[derive(Debug)]
+pub struct SleepPin(Rc<Cell<BridgeState>>);
+
+/// The fault pin.
+#[derive(Debug)]
+pub struct FaultPin(Rc<Cell<BridgeState>>);
+
+impl Bridge {
+    /// A bridge in reset, and its pins; the PWM has [`MAX_DUTY`] counts.
+    #[must_use]
+    pub fn new() -> (Self, BridgePins) {
+        Self::with_pwm_counts(MAX_DUTY)
+    }
+
+    /// A bridge in reset, and its pins, with so many counts in a period of the PWM.
+    #[must_use]
+    pub fn with_pwm_counts(counts: u16) -> (Self, BridgePins) {
+        let shared = Rc::new(Cell::new(BridgeState::RESET));
+        let pins = BridgePins {
+            pwm: PwmPin {
+                shared: Rc::clone(&shared),
+                counts,
+            },
+            direction: DirectionPin(Rc::clone(&shared)),
+            sleep: SleepPin(Rc::clone(&shared)),
+            fault: FaultPin(Rc::clone(&shared)),
+        };
+        (Self(shared), pins)
+    }
+
+    /// What the pins say now.
+    #[must_use]
+    pub fn state(&self) -> BridgeState {
+        self.0.get()
+    }
+
+    /// Lets the bridge switch itself off (over-current, over-temperature), or recover.
+    pub fn set_fault(&self, fault: bool) {
+        change(&self.0, |state| state.fault = fault);
+    }
+}
+
+fn change(shared: &Cell<BridgeState>, edit: impl FnOnce(&mut BridgeState)) {
+    let mut state = shared.get();
+    edit(&mut state);
+    shared.set(state);
+}
+
+impl pwm::ErrorType for PwmPin {
+    type Error = Infallible;
+}
+
+impl SetDutyCycle for PwmPin {
+    fn max_duty_cycle(&self) -> u16 {
+        self.counts
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+        let pulse = f64::from(duty.min(self.counts)) / f64::from(self.counts);
+        change(&self.shared, |state| state.pulse = pulse);
+        Ok(())
+    }
+}
+
+impl digital::ErrorType for DirectionPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for DirectionPin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        change(&self.0, |state| state.forward = false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        change(&self.0, |state| state.forward = true);
+        Ok(())
+    }
+}
+
+impl digital::ErrorType for SleepPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for SleepPin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        change(&self.0, |state| state.awake = false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        change(&self.0, |state| state.awake = true);
+        Ok(())
+    }
+}
+
+impl digital::ErrorType for FaultPin {
+    type Error = Infallible;
+}
+
+impl InputPin for FaultPin {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.0.get().fault)
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(self.0.get().fault)
+    }
+}

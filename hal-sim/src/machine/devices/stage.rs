@@ -1,0 +1,201 @@
+//! The whole simulated stage behind the controller's wires, and the timeline of one control period.
+//!
+//! ```text
+//!  tick k                                                    tick k+1
+//!  T          T + P/4      T + P/2       T + 0.7 P           T + P
+//!  |-- 12.5 us --|-- 12.5 us --|-- 10 us --|--------- 15 us ---|      P = 50 us
+//!  |  drive of tick k-1        |  drive of tick k              |
+//!                                        ^ encoders latch: the frames that tick k+1 reads
+//! ```
+//!
+//! The PWM runs at twice the control rate and takes a new duty over at its next period, half a control period after
+//! the tick that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
+
+use super::analog;
+use super::bridge::{BridgeParameters, BridgeState};
+use super::encoder::{Encoder, EncoderParameters};
+use crate::machine::plant::{AXES, Drive, Plant, PlantParameters};
+
+/// Substeps before the new drive acts, in parts of the period.
+const OLD_DRIVE: [f64; 2] = [0.25, 0.25];
+/// Part of the period from the new drive to the encoders' latch.
+const TO_LATCH: f64 = 0.2;
+/// Part of the period from the latch to the next tick.
+const AFTER_LATCH: f64 = 0.3;
+
+/// Everything that a simulated stage is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageParameters {
+    /// Control period, s.
+    pub period_s: f64,
+    /// The machine, and which imperfections are simulated (also of the devices here).
+    pub plant: PlantParameters,
+    /// The encoders.
+    pub encoders: [EncoderParameters; AXES],
+    /// The bridges; their supply is the plant's.
+    pub bridge: BridgeParameters,
+    /// Seed of every random number.
+    pub seed: u64,
+}
+
+impl StageParameters {
+    /// The reference stage. Its encoders are mounted as they came: each with a zero and a direction of its own.
+    pub const REFERENCE: Self = Self {
+        period_s: 50e-6,
+        plant: PlantParameters::REFERENCE,
+        encoders: [
+            EncoderParameters {
+                zero_counts: 12_345_678,
+                reversed: false,
+                eccentricity_phase_rad: 0.4,
+                ..EncoderParameters::REFERENCE
+            },
+            EncoderParameters {
+                zero_counts: 50_331_649,
+                reversed: true,
+                eccentricity_phase_rad: 2.9,
+                ..EncoderParameters::REFERENCE
+            },
+            EncoderParameters {
+                zero_counts: 67_000_000,
+                reversed: false,
+                eccentricity_phase_rad: 5.1,
+                ..EncoderParameters::REFERENCE
+            },
+        ],
+        bridge: BridgeParameters::REFERENCE,
+        seed: 1,
+    };
+}
+
+impl Default for StageParameters {
+    fn default() -> Self {
+        Self::REFERENCE
+    }
+}
+
+/// Plant, encoders and bridges at one tick.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The machine.
+    pub plant: Plant,
+    /// The encoders; they hold the frames for the tick that is due.
+    pub encoders: [Encoder; AXES],
+    period_s: f64,
+    bridge: BridgeParameters,
+    acting: [BridgeState; AXES],
+    latched_pose: [f64; 3],
+}
+
+impl Stage {
+    /// A stage at rest in the centre with the bridges asleep and the encoders latched: the first tick is due.
+    #[must_use]
+    pub fn new(parameters: &StageParameters) -> Self {
+        let flags = parameters.plant.imperfections;
+        let mut axis = 0;
+        let encoders = parameters.encoders.map(|encoder| {
+            axis += 1;
+            // Any mixing will do: the generator spreads neighbouring seeds over its whole range.
+            let seed = parameters.seed.wrapping_mul(8).wrapping_add(axis);
+            Encoder::new(
+                encoder,
+                seed,
+                flags.encoder_noise,
+                flags.encoder_eccentricity,
+            )
+        });
+        let mut bridge = parameters.bridge;
+        bridge.supply_v = parameters.plant.supply_v;
+        if !flags.dead_time {
+            bridge.dead_time_s = 0.0;
+        }
+        let mut stage = Self {
+            plant: Plant::new(parameters.plant),
+            encoders,
+            period_s: parameters.period_s,
+            bridge,
+            acting: [BridgeState::RESET; AXES],
+            latched_pose: [0.0; 3],
+        };
+        stage.latch();
+        stage
+    }
+
+    /// Puts the machine at rest at a pose (m, m, rad) with freshly latched encoders, as if switched on there.
+    pub fn set_pose_at_rest(&mut self, pose: [f64; 3]) {
+        self.plant.set_pose_at_rest(pose);
+        self.latch();
+    }
+
+    /// Runs one control period: the pins as the last call left them for the first half, `pins` from there on.
+    pub fn advance_period(&mut self, pins: [BridgeState; AXES]) {
+        self.advance_first_half();
+        self.advance_second_half(pins);
+    }
+
+    /// From a tick to the middle of the period, under the pins of the last period.
+    pub fn advance_first_half(&mut self) {
+        for part in OLD_DRIVE {
+            self.substep(part);
+        }
+    }
+
+    /// From the middle of the period, where `pins` take over, past the encoders' latch to the next tick.
+    pub fn advance_second_half(&mut self, pins: [BridgeState; AXES]) {
+        self.advance_to_latch(pins);
+        self.substep(AFTER_LATCH);
+    }
+
+    /// The frames that the next tick reads, as an SPI master stores them.
+    #[must_use]
+    pub fn frames(&self) -> [[u8; 8]; AXES] {
+        [0, 1, 2].map(|axis| self.encoders[axis].frame_bytes())
+    }
+
+    /// ADC counts of the motor currents and of the supply.
+    #[must_use]
+    pub fn analog(&self) -> ([u16; AXES], u16) {
+        let currents = self.plant.currents_a().map(analog::current_counts);
+        (currents, analog::supply_counts(self.bridge.supply_v))
+    }
+
+    /// Changes the supply, V, from now on.
+    pub fn set_supply_v(&mut self, supply_v: f64) {
+        self.bridge.supply_v = supply_v;
+        self.plant.set_supply_v(supply_v);
+    }
+
+    /// True pose of the platform (m, m, rad) at the instant the encoders latched.
+    #[must_use]
+    pub const fn latched_pose(&self) -> [f64; 3] {
+        self.latched_pose
+    }
+
+    /// Control period, s.
+    #[must_use]
+    pub const fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    fn advance_to_latch(&mut self, pins: [BridgeState; AXES]) {
+        self.acting = pins;
+        self.substep(TO_LATCH);
+        self.latch();
+    }
+
+    fn substep(&mut self, part_of_period: f64) {
+        let currents_a = self.plant.currents_a();
+        let drives: [Drive; AXES] =
+            [0, 1, 2].map(|axis| self.acting[axis].drive(&self.bridge, currents_a[axis]));
+        self.plant.step(part_of_period * self.period_s, &drives);
+    }
+
+    fn latch(&mut self) {
+        self.latched_pose = self.plant.pose();
+        let angles_rad = self.plant.pivots_rad();
+        let rates_rad_s = self.plant.pivot_rates_rad_s();
+        for (axis, encoder) in self.encoders.iter_mut().enumerate() {
+            encoder.latch(angles_rad[axis], rates_rad_s[axis]);
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Every number of the simulated stage, in SI units, with its origin.
+//!
+//! "Reference stage" in an origin means the table of the project's reference stage: a given. "Chosen" means that the
+//! reference stage leaves it open; the reason follows.
+
+/// Number of pivots, drives, encoders and guides.
+pub const AXES: usize = 3;
+
+/// A load on the platform. Its centre and its own inertia are given in the platform frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Payload {
+    /// Mass, kg. Reference stage: 0 to 5.
+    pub mass_kg: f64,
+    /// Moment of inertia about its own centre, kg m^2.
+    pub inertia_kg_m2: f64,
+    /// Distance of its centre from the platform's, m.
+    pub eccentricity_m: f64,
+    /// Direction of its centre in the platform frame, rad from the platform's x' axis.
+    pub direction_rad: f64,
+}
+
+impl Payload {
+    /// Nothing on the platform.
+    pub const NONE: Self = Self {
+        mass_kg: 0.0,
+        inertia_kg_m2: 0.0,
+        eccentricity_m: 0.0,
+        direction_rad: 0.0,
+    };
+}
+
+/// Which departures from an ideal machine are simulated.
+///
+/// A flag only gates its effect: the size stands in [`PlantParameters`] (or in the parameters of the device), so an
+/// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
+/// whole counts, and the true angle is the plant's to tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Imperfections {
+    /// Coulomb, static and presliding friction at the rings (the bristle model).
+    pub dry_friction: bool,
+    /// Viscous friction at the rings.
+    pub viscous_friction: bool,
+    /// Elastic transmission. Off, the spring is made so stiff that the resonance is four times as high: a rigid joint
+    /// would need another state vector, and nothing in the controller's band can tell the two apart.
+    pub compliance: bool,
+    /// Dead zone in the transmission.
+    pub backlash: bool,
+    /// Torque ripple of the motors.
+    pub torque_ripple: bool,
+    /// Random noise of the encoders, beyond their quantisation.
+    pub encoder_noise: bool,
+    /// First harmonic error of the encoders.
+    pub encoder_eccentricity: bool,
+    /// Voltage lost in the bridges' dead time.
+    pub dead_time: bool,
+    /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
+    pub pwm_quantisation: bool,
+}
+
+impl Imperfections {
+    /// An ideal machine: no friction, no backlash, no noise. Integers stay integers: counts of encoders and PWM.
+    pub const NONE: Self = Self {
+        dry_friction: false,
+        viscous_friction: false,
+        compliance: true,
+        backlash: false,
+        torque_ripple: false,
+        encoder_noise: false,
+        encoder_eccentricity: false,
+        dead_time: false,
+        pwm_quantisation: false,
+    };
+
+    /// A real machine whose encoders have been calibrated: everything but their eccentricity.
+    pub const CALIBRATED: Self = Self {
+        dry_friction: true,
+        viscous_friction: true,
+        compliance: true,
+        backlash: true,
+        torque_ripple: true,
+        encoder_noise: true,
+        encoder_eccentricity: false,
+        dead_time: true,
+        pwm_quantisation: true,
+    };
+
+    /// Everything.
+    pub const ALL: Self = Self {
+        encoder_eccentricity: true,
+        ..Self::CALIBRATED
+    };
+}
+
+impl Default for Imperfections {
+    fn default() -> Self {
+        Self::CALIBRATED
+    }
+}
+
+/// The machine behind the bridges' terminals. See [`PlantParameters::REFERENCE`] for the origin of the numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantParameters {
+    /// Track radius, m.
+    pub track_radius_m: f64,
+    /// Mass of the platform, kg.
+    pub platform_mass_kg: f64,
+    /// Inertia of the platform about its centre, kg m^2.
+    pub platform_inertia_kg_m2: f64,
+    /// Load on the platform.
+    pub payload: Payload,
+    /// Acceleration of gravity in the plane of motion, base frame, m/s^2. Not zero when the stage is mounted at an
+    /// angle to the horizontal.
+    pub gravity_m_s2: [f64; 2],
+    /// Inertia of one ring with its pivot, carriage and output gear, kg m^2.
+    pub ring_inertia_kg_m2: f64,
+    /// Inertia of one motor with its side of the gear, seen at the ring (rotor times gear ratio squared), kg m^2.
+    pub motor_inertia_kg_m2: f64,
+    /// Motor turns a ring turn.
+    pub gear_ratio: f64,
+    /// Torque constant at the motor shaft, N m/A; in SI it is the back-EMF constant too, V s/rad.
+    pub torque_constant_n_m_a: f64,
+    /// Winding resistance with brushes and bridge, ohm.
+    pub resistance_ohm: f64,
+    /// Winding inductance, H.
+    pub inductance_h: f64,
+    /// Supply of the bridges, V.
+    pub supply_v: f64,
+    /// Stiffness of one transmission, seen at the ring, N m/rad.
+    pub transmission_stiffness_n_m_rad: f64,
+    /// Damping of one transmission, seen at the ring, N m s/rad.
+    pub transmission_damping_n_m_s_rad: f64,
+    /// Full width of the transmission's dead zone, seen at the ring, rad.
+    pub backlash_rad: f64,
+    /// Coulomb friction of one ring, N m.
+    pub coulomb_n_m: f64,
+    /// Break-away torque over Coulomb torque.
+    pub stiction_ratio: f64,
+    /// Rate at which half of the static excess has gone (Stribeck), rad/s.
+    pub stribeck_rad_s: f64,
+    /// Presliding distance, Coulomb torque over bristle stiffness, rad.
+    pub presliding_rad: f64,
+    /// Damping of the bristles, N m s/rad.
+    pub bristle_damping_n_m_s_rad: f64,
+    /// Viscous friction of one ring, N m s/rad.
+    pub viscous_n_m_s_rad: f64,
+    /// Amplitude of the torque ripple, seen at the ring, N m.
+    pub ripple_n_m: f64,
+    /// Periods of the ripple in one turn of the motor.
+    pub ripple_periods_per_motor_turn: f64,
+    /// Range of rho between a guide's two ends, m.
+    pub guide_range_m: [f64; 2],
+    /// Stiffness of a guide's end stop, N/m.
+    pub stop_stiffness_n_m: f64,
+    /// Damping of a guide's end stop while it is pressed, N s/m.
+    pub stop_damping_n_s_m: f64,
+    /// What of all this is simulated.
+    pub imperfections: Imperfections,
+}
+
+impl PlantParameters {
+    /// The reference stage, empty, level, with every imperfection but the encoders' eccentricity.
+    pub const REFERENCE: Self = Self {
+        // Reference stage.
+        track_radius_m: 0.1,
+        platform_mass_kg: 3.0,
+        platform_inertia_kg_m2: 0.02,
+        payload: Payload::NONE,
+        gravity_m_s2: [0.0, 0.0],
+        // Reference stage: 0.02 kg m^2 seen at the ring, both sides of the transmission together. Chosen split:
+        // an aluminium ring with its carriage, 0.8 kg at 0.1 m ...
+        ring_inertia_kg_m2: 0.008,
+        // ... and a rotor with its pinion of 48 g cm^2 times 50^2, a servo of the 35 mm class (makers state 40 to 80).
+        motor_inertia_kg_m2: 0.012,
+        // Reference stage.
+        gear_ratio: 50.0,
+        torque_constant_n_m_a: 0.06,
+        resistance_ohm: 2.1,
+        inductance_h: 0.7e-3,
+        supply_v: 48.0,
+        // Reference stage: first resonance at 1.5 kHz. Derived for the lowest mode of the assembled stage, empty and
+        // centred. That mode is a translation: its ring-side inertia a drive is I_ring + m R^2 / 1.5 (J^T J = 1.5/R^2
+        // in x and y) = 0.028 kg m^2, against 0.012 of the motor: k = (2 pi 1500)^2 / (1/0.012 + 1/0.028). The
+        // rotation then resonates at 1.69 kHz, and 5 kg of payload take the lowest to 1.37 kHz.
+        transmission_stiffness_n_m_rad: 7.46e5,
+        // Chosen: 2 % of critical damping, usual for steel gears with preload: c = 2 * 0.02 * sqrt(k * 0.0084).
+        transmission_damping_n_m_s_rad: 3.2,
+        // Chosen: 30 nm on the track, what a preloaded transmission keeps. The reference stage does not name a value. With more
+        // an unloaded pivot hunts in the gap, by about 4 encoder LSB for each urad: nothing but the ring has friction.
+        backlash_rad: 0.3e-6,
+        // Reference stage.
+        coulomb_n_m: 0.1,
+        stiction_ratio: 1.2,
+        presliding_rad: 100e-6,
+        viscous_n_m_s_rad: 0.05,
+        // Chosen: 0.5 mm/s on the track, the order reported for greased rolling bearings.
+        stribeck_rad_s: 5e-3,
+        // Chosen: a tenth of critical for the ring on its bristles, 2 * 0.1 * sqrt(1000 * 0.02).
+        bristle_damping_n_m_s_rad: 0.9,
+        // Reference stage.
+        ripple_n_m: 0.03,
+        // Chosen: a commutator of 13 bars, each brush passing each bar.
+        ripple_periods_per_motor_turn: 26.0,
+        // Reference stage: the guides reach their ends with the centre at 84 mm, so rho ends at 100 -+ 84 mm.
+        guide_range_m: [0.016, 0.184],
+        // Chosen: a hard rubber buffer. At full speed (0.2 m/s, 8 kg) it is pressed in by 0.6 mm ...
+        stop_stiffness_n_m: 1e6,
+        // ... and loses most of the energy in one stroke.
+        stop_damping_n_s_m: 2e3,
+        imperfections: Imperfections::CALIBRATED,
+    };
+
+    /// Inertia of one drive with its ring, seen at the ring, kg m^2.
+    #[must_use]
+    pub const fn drive_inertia_kg_m2(&self) -> f64 {
+        self.ring_inertia_kg_m2 + self.motor_inertia_kg_m2
+    }
+
+    /// Torque at the ring for each ampere, N m/A; at the same time the back EMF for each rad/s of the ring, V s/rad.
+    #[must_use]
+    pub const fn ring_torque_constant_n_m_a(&self) -> f64 {
+        self.gear_ratio * self.torque_constant_n_m_a
+    }
+}
+
+impl Default for PlantParameters {
+    fn default() -> Self {
+        Self::REFERENCE
+    }
+}

@@ -1,7 +1,0 @@
-//! `tripivot`: see [`hal_sim::cli`].
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    hal_sim::cli::main()
-}

@@ -1,0 +1,178 @@
+//! The one assembly of a controller: command side, settings, queues, tick, and starting again.
+//!
+//! What differs from one use to the next is passed in: what the tick stands before ([`Front`]), who sends lines and reads the
+//! replies, who records the ticks.
+//!
+//! ```text
+//! lines -> Session -> Interpreter -> queues -> tick of the Front -> recorder
+//! replies <---------/  |  ^------------/
+//!               SettingsFlash
+//! ```
+
+use crate::front::{Front, Host};
+use crate::machine::devices::{SettingsFlash, StageParameters};
+use embedded_io::Write;
+use firmware::control::Outputs;
+use firmware::fault::FaultKind;
+use firmware::fault_record::RetainedMemory;
+use firmware::gcs::{Identity, Interpreter, Session};
+use firmware::parameters::Parameters;
+use firmware::queues::{CommandQueues, Queues, TickQueues};
+use firmware::recorder::TickObserver;
+use firmware::settings_store::SettingsStore;
+
+/// Who the simulated controller says it is.
+pub const IDENTITY: Identity = Identity {
+    serial: "SIM",
+    version: env!("CARGO_PKG_VERSION"),
+};
+
+/// The queues between tick and command side, and what outlives a restart of both. A rig borrows it.
+pub struct ControllerMemory {
+    queues: Box<Queues>,
+    retained_memory: Box<RetainedMemory>,
+}
+
+/// See the module.
+pub struct Rig<'a, F = Host> {
+    /// The tick, and what it stands before.
+    pub front: F,
+    /// The command side.
+    pub panel: Box<Interpreter>,
+    /// Keeps its settings.
+    pub keeper: SettingsStore<SettingsFlash>,
+    /// The tick's ends of the queues.
+    pub tick_queues: TickQueues<'a>,
+    /// The command side's ends of the queues.
+    pub command_queues: CommandQueues<'a>,
+    parameters: Parameters,
+}
+
+impl Default for ControllerMemory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ControllerMemory {
+    /// Empty.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            queues: Box::new(Queues::new()),
+            retained_memory: Box::new(RetainedMemory::new()),
+        }
+    }
+
+    /// The ends of the tick, and those of the command side.
+    pub fn split(&mut self) -> (TickQueues<'_>, CommandQueues<'_>) {
+        self.queues.split_with_retained(&self.retained_memory)
+    }
+
+    /// Queues that live as long as the process: some kilobytes each time.
+    #[must_use]
+    pub fn endless() -> &'static mut Self {
+        Box::leak(Box::new(Self::new()))
+    }
+}
+
+impl<'a> Rig<'a> {
+    /// A simulated stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
+    #[must_use]
+    pub fn simulated(
+        memory: &'a mut ControllerMemory,
+        stage: &StageParameters,
+        parameters: &Parameters,
+        flash: SettingsFlash,
+    ) -> Self {
+        let front = |parameters: &Parameters| Host::new(stage, parameters);
+        Self::new(memory.split(), parameters, flash, front)
+    }
+}
+
+impl<'a, F: Front> Rig<'a, F> {
+    /// A controller that starts with the settings of this flash, and with these parameters where it keeps none. `front` is told with
+    /// which parameters it starts.
+    #[must_use]
+    pub fn new(
+        (tick_queues, command_queues): (TickQueues<'a>, CommandQueues<'a>),
+        parameters: &Parameters,
+        flash: SettingsFlash,
+        front: impl FnOnce(&Parameters) -> F,
+    ) -> Self {
+        let mut keeper = SettingsStore::new(flash);
+        let (panel, fault) = started(parameters, &mut keeper);
+        let mut front = front(panel.parameters());
+        front.restart(panel.parameters(), fault);
+        Self {
+            front,
+            panel,
+            keeper,
+            tick_queues,
+            command_queues,
+            parameters: parameters.clone(),
+        }
+    }
+
+    /// One tick of the controller, and of what it stands before up to the next.
+    pub fn tick(&mut self, recorder: &mut impl TickObserver) -> Outputs {
+        self.front.tick(&mut self.tick_queues, recorder)
+    }
+
+    /// Has the command side carry out what a connection has received.
+    ///
+    /// # Errors
+    /// Those of `replies`.
+    pub fn service<W: Write>(
+        &mut self,
+        session: &mut Session,
+        replies: &mut W,
+    ) -> Result<(), W::Error> {
+        self.panel
+            .service(session, &mut self.command_queues, replies)
+    }
+
+    /// What the command side does with no connection there: a macro goes on.
+    pub fn advance(&mut self) {
+        self.panel.advance(&mut self.command_queues);
+    }
+
+    /// Goes on keeping settings.
+    pub fn keep(&mut self) {
+        self.keeper.store_pending(&mut *self.panel);
+    }
+
+    /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
+    /// start again.
+    pub fn restart_if_wanted(&mut self) -> bool {
+        let wanted = self.panel.wants_restart();
+        if wanted {
+            self.start();
+        }
+        wanted
+    }
+
+    /// What a reset of the chip leaves: what the tick stands before as it is, the controller started anew for this cause.
+    pub fn reset(&mut self, cause: &'static str) {
+        self.start();
+        self.panel.set_start_cause(cause);
+    }
+
+    fn start(&mut self) {
+        let (panel, fault) = started(&self.parameters, &mut self.keeper);
+        self.panel = panel;
+        self.front.restart(self.panel.parameters(), fault);
+        self.tick_queues.clear();
+        self.command_queues.clear();
+    }
+}
+
+/// The panel of a controller that starts with what is kept, and the fault that it starts with.
+fn started(
+    parameters: &Parameters,
+    keeper: &mut SettingsStore<SettingsFlash>,
+) -> (Box<Interpreter>, Option<FaultKind>) {
+    let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
+    let fault = keeper.restore(&mut *panel);
+    (panel, fault)
+}

@@ -1,0 +1,233 @@
+//! Running a script on the simulated stage, on the host.
+
+use std::path::PathBuf;
+
+use firmware::fault::Fault;
+use firmware::gcs::Session;
+use firmware::mode::Mode;
+use firmware::parameters::Parameters;
+
+use super::{ControllerMemory, Rig};
+use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
+use crate::machine::plant::{Imperfections, Payload, PlantParameters};
+use crate::report::{DEFAULT_EVERY, Run};
+use crate::rig::client::{Client, Event};
+use crate::rig::observer::{Observer, TickRecord};
+use crate::rig::run_conditions;
+use crate::rig::script::{Line, Script};
+use drawing::Progress;
+
+/// What a run is to do besides the script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOptions {
+    /// Folder for trace and pictures.
+    pub out: PathBuf,
+    /// Every so many ticks a row of the trace.
+    pub every: u32,
+    /// Seed of the simulated noise.
+    pub seed: u64,
+    /// By how much the plant departs from the controller's model of it, in percent.
+    pub mismatch_percent: f64,
+    /// Mass of a load on the platform that the controller knows nothing of: a cylinder of 50 mm radius, 20 mm off the centre.
+    pub payload_kg: f64,
+    /// Imperfections of the simulated stage.
+    pub imperfections: Imperfections,
+    /// No progress bar.
+    pub quiet: bool,
+}
+
+impl Default for RunOptions {
+    /// What the command line has by default.
+    fn default() -> Self {
+        Self {
+            out: PathBuf::from("tripivot-run"),
+            every: DEFAULT_EVERY,
+            seed: 1,
+            mismatch_percent: 20.0,
+            payload_kg: 0.0,
+            imperfections: Imperfections::CALIBRATED,
+            quiet: true,
+        }
+    }
+}
+
+/// A run that came to its end, one way or another.
+#[derive(Debug)]
+pub struct RunOutcome {
+    /// Statistics, trace and moves.
+    pub run: Run,
+    /// The fault that ended it, or the line that was refused, in words.
+    pub fault: Option<String>,
+    /// Answers of the script's queries, with their lines.
+    pub answers: Vec<(String, String)>,
+    /// Running hash of all ticks.
+    pub hash: u32,
+    /// Ticks.
+    pub ticks: u64,
+}
+
+/// Radius of the payload's cylinder, m.
+const CYLINDER_M: f64 = 0.05;
+/// Its distance from the platform's centre, m.
+const OFF_CENTRE_M: f64 = 0.02;
+
+/// The reference stage as the options have it: off from the controller's model by their mismatch, heavier, with more
+/// friction, and with weaker motors, the combination that costs the servo most.
+#[must_use]
+pub fn stage_parameters(options: &RunOptions) -> StageParameters {
+    let more = 1.0 + options.mismatch_percent / 100.0;
+    let less = 1.0 - options.mismatch_percent / 100.0;
+    let reference = PlantParameters::REFERENCE;
+    StageParameters {
+        plant: PlantParameters {
+            platform_mass_kg: reference.platform_mass_kg * more,
+            platform_inertia_kg_m2: reference.platform_inertia_kg_m2 * more,
+            ring_inertia_kg_m2: reference.ring_inertia_kg_m2 * more,
+            motor_inertia_kg_m2: reference.motor_inertia_kg_m2 * more,
+            coulomb_n_m: reference.coulomb_n_m * more,
+            viscous_n_m_s_rad: reference.viscous_n_m_s_rad * more,
+            torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
+            payload: Payload {
+                mass_kg: options.payload_kg,
+                inertia_kg_m2: options.payload_kg * CYLINDER_M * CYLINDER_M / 2.0,
+                eccentricity_m: OFF_CENTRE_M,
+                direction_rad: 0.7,
+            },
+            imperfections: options.imperfections,
+            ..reference
+        },
+        seed: options.seed,
+        ..StageParameters::REFERENCE
+    }
+}
+
+/// Runs a script on the simulated stage. Nothing is kept of its settings.
+#[must_use]
+pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
+    run_with(script, options, SettingsFlash::in_memory())
+}
+
+/// Runs a script on the simulated stage, whose controller starts with the settings of this flash and keeps them there.
+#[must_use]
+pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> RunOutcome {
+    let stage = stage_parameters(options);
+    let parameters = controller_parameters(options);
+    simulate(script, &parameters, &stage, options, flash)
+}
+
+/// The controller's parameters, as the imperfections that are left make them.
+#[must_use]
+pub fn controller_parameters(options: &RunOptions) -> Parameters {
+    let mut parameters = Parameters::REFERENCE;
+    if !options.imperfections.pwm_quantisation {
+        parameters.drive.pwm_counts = FINE_PWM;
+    }
+    if !options.imperfections.dead_time {
+        // What is not there must not be made up for: that would be positive feedback around rest.
+        parameters.drive.dead_time_s = 0.0;
+    }
+    parameters
+}
+
+/// Ticks between two updates of the progress bar.
+const PROGRESS_EVERY: u64 = 2_000;
+
+/// Bytes between controller and client, on the host.
+#[derive(Default)]
+struct Wire {
+    to_client: Vec<u8>,
+    to_stage: Vec<u8>,
+}
+
+fn simulate(
+    script: &Script,
+    parameters: &Parameters,
+    stage: &StageParameters,
+    options: &RunOptions,
+    flash: SettingsFlash,
+) -> RunOutcome {
+    let mut queues = ControllerMemory::new();
+    let mut rig = Rig::simulated(&mut queues, stage, parameters, flash);
+    let Parameters {
+        geometry, limits, ..
+    } = *rig.panel.parameters();
+    let mut session = Session::new();
+    let mut client = Client::new(script);
+    let mut observer = Observer::new(rig.panel.parameters(), options.every);
+    let mut record = TickRecord::default();
+    let mut wire = Wire::default();
+    let mut answers = Vec::new();
+    let mut ticks = 0;
+    let progress = Progress::new(script.lines.len() as u64, options.quiet);
+    let fault = loop {
+        let pose = rig.front.stage.latched_pose();
+        rig.tick(&mut record);
+        ticks += 1;
+        let mut moving = false;
+        if let Some(sample) = &record.sample {
+            moving = sample.mode == Mode::Moving;
+            observer.look(sample, pose);
+            if sample.mode == Mode::Fault {
+                break Some(fault_text(script, &client, rig.front.fault()));
+            }
+        }
+        let taken = session.receive(&wire.to_stage);
+        wire.to_stage.drain(..taken);
+        // Writing to a vector does not fail.
+        let _ = rig.service(&mut session, &mut wire.to_client);
+        rig.keep();
+        if rig.restart_if_wanted() {
+            session.start_again();
+        }
+        let (bytes, event) = client.poll(&std::mem::take(&mut wire.to_client), moving);
+        wire.to_stage.extend(bytes);
+        match event {
+            Some(Event::Done(line, Some(answer))) => answers.push((line.text, answer)),
+            Some(Event::Refused(line, error)) => {
+                let at = place(script, &line);
+                break Some(format!("{at}: refused with GCS error {error}"));
+            }
+            Some(Event::Stuck(line)) => break Some(stuck_text(script, &line)),
+            Some(Event::Finished) => break None,
+            _ => {}
+        }
+        if ticks % PROGRESS_EVERY == 0 {
+            progress.update(
+                client.done() as u64,
+                ticks as f64 * rig.front.stage.period_s(),
+            );
+        }
+    };
+    RunOutcome {
+        run: Run {
+            name: script.name.clone(),
+            geometry,
+            limits,
+            trace: observer.trace,
+            moves: observer.moves,
+            conditions: run_conditions(options),
+            wall_s: progress.finish(),
+        },
+        fault,
+        answers,
+        hash: record.hash.0,
+        ticks,
+    }
+}
+
+/// What is said of a line that waits for ever.
+#[must_use]
+pub fn stuck_text(script: &Script, line: &Line) -> String {
+    let at = place(script, line);
+    format!("{at}: still waiting, and the stage has been at rest for a simulated minute")
+}
+
+fn place(script: &Script, line: &Line) -> String {
+    format!("{}:{}: {}", script.name, line.number, line.text)
+}
+
+fn fault_text(script: &Script, client: &Client, fault: Option<Fault>) -> String {
+    let at = (client.current()).map_or_else(|| script.name.clone(), |line| place(script, line));
+    let fault = fault.map_or_else(|| "unknown".to_owned(), |fault| fault.to_string());
+    format!("fault: {fault}; at {at}")
+}

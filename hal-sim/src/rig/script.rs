@@ -1,0 +1,167 @@
+//! Scripts: files of GCS lines, checked as a whole before anything moves.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use firmware::gcs::{ErrorCode, ParseError, parse};
+
+/// A line to be sent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Its number in the file, from 1.
+    pub number: usize,
+    /// Its text, without comment and surrounding space.
+    pub text: String,
+}
+
+/// A checked script.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Script {
+    /// What it is called, in headings and errors.
+    pub name: String,
+    /// Its lines, empty ones and comments left out.
+    pub lines: Vec<Line>,
+}
+
+/// Why a script is not run.
+#[derive(Debug)]
+pub enum ScriptError {
+    /// The file can not be read.
+    Unreadable {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A line is no command.
+    Line {
+        /// File and line.
+        name: String,
+        /// From 1.
+        line: usize,
+        /// From 1.
+        column: usize,
+        /// What was expected there.
+        expected: &'static str,
+        /// The error number that a controller would answer.
+        code: ErrorCode,
+    },
+}
+
+impl fmt::Display for ScriptError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, source } => {
+                write!(f, "cannot read {}: {source}", path.display())
+            }
+            Self::Line {
+                name,
+                line,
+                column,
+                expected,
+                code,
+            } => write!(
+                f,
+                "{name}:{line}:{column}: expected {expected} (GCS error {})",
+                code.number()
+            ),
+        }
+    }
+}
+
+impl std::error::Error for ScriptError {}
+
+impl Script {
+    /// The built-in demonstration.
+    ///
+    /// # Errors
+    /// None in practice: a test parses it.
+    pub fn demonstration() -> Result<Self, ScriptError> {
+        Self::parse(
+            "demonstration",
+            include_str!("../../scripts/demonstration.gcs"),
+        )
+    }
+
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// The file can not be read, or the first line that is no command.
+    pub fn read(path: &Path) -> Result<Self, ScriptError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScriptError::Unreadable {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Checks a text. `# ` at the start of a line is a comment; elsewhere `#` belongs to commands like `#5`.
+    ///
+    /// # Errors
+    /// The first line that is no command.
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScriptError> {
+        let mut lines = Vec::new();
+        for (index, raw) in text.lines().enumerate() {
+            let text = raw.trim();
+            if text.is_empty() || text == "#" || text.starts_with("# ") {
+                continue;
+            }
+            let number = index + 1;
+            check(text).map_err(|error| ScriptError::Line {
+                name: name.to_owned(),
+                line: number,
+                column: raw.len() - raw.trim_start().len() + error.column,
+                expected: error.expected,
+                code: error.code,
+            })?;
+            lines.push(Line {
+                number,
+                text: text.to_owned(),
+            });
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            lines,
+        })
+    }
+}
+
+/// Commands that are a single byte on the wire, in a script `#` and the byte's number.
+const SINGLE_BYTES: [u8; 3] = [5, 7, 24];
+
+/// The byte that a line like `#5` stands for.
+#[must_use]
+pub fn single_byte(text: &str) -> Option<u8> {
+    let byte = text.strip_prefix('#')?.parse().ok()?;
+    SINGLE_BYTES.contains(&byte).then_some(byte)
+}
+
+fn check(text: &str) -> Result<(), ParseError> {
+    match single_byte(text) {
+        Some(_) => Ok(()),
+        None => parse(text.as_bytes()).map(|_| ()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_demonstration_is_a_script() {
+        assert!(Script::demonstration().unwrap().lines.len() > 50);
+    }
+
+    #[test]
+    fn a_bad_line_is_named_with_line_and_column() {
+        let error = Script::parse("tour.gcs", "FRF\n\n# a comment\n  MOV X 1o\n").unwrap_err();
+        let ScriptError::Line { line, column, .. } = &error else {
+            panic!("{error}");
+        };
+        assert_eq!((*line, *column), (4, 10), "{error}");
+        assert!(
+            error.to_string().starts_with("tour.gcs:4:10: expected "),
+            "{error}"
+        );
+    }
+}

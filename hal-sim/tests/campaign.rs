@@ -1,0 +1,149 @@
+//! The campaign of faults: it finds nothing wrong with the controller, and would if there were.
+
+use firmware::fault::FaultKind;
+use hal_sim::campaign::{Campaign, Injection, NAMES, Outcome, Problem, Scenario, run, table};
+
+const SHORT: Campaign = Campaign {
+    runs: 12,
+    seed: 7,
+    jobs: 2,
+};
+
+/// The first run of the campaign's kind in which this breaks and is noticed.
+fn noticed(of: fn(&Injection) -> bool) -> Outcome {
+    (1..)
+        .map(Scenario::new)
+        .filter(|scenario| of(&scenario.injection))
+        .map(|scenario| run(scenario, false))
+        .find(|outcome| outcome.effect.is_some())
+        .expect("one of so many")
+}
+
+#[test]
+fn the_same_seed_gives_the_same_campaign_whatever_the_threads() {
+    let outcomes = SHORT.run(|_| {});
+    let alone = Campaign { jobs: 1, ..SHORT }.run(|_| {});
+    assert_eq!(format!("{outcomes:?}"), format!("{alone:?}"));
+    assert_eq!(outcomes.len(), 24);
+    for outcome in &outcomes {
+        assert_eq!(outcome.problem(), None, "{outcome}");
+    }
+    let table = table(&outcomes);
+    for name in NAMES {
+        assert!(table.contains(name), "{name}:\n{table}");
+    }
+}
+
+#[test]
+fn every_kind_of_injection_comes_up() {
+    let mut seen = [false; NAMES.len()];
+    for seed in 0..400 {
+        seen[Scenario::new(seed).injection.index()] = true;
+    }
+    assert_eq!(seen, [true; NAMES.len()]);
+}
+
+#[test]
+fn a_fault_that_is_not_reported_rightly_is_a_problem() {
+    let good = noticed(|injection| *injection == Injection::BadCrc);
+    assert_eq!(good.problem(), None, "{good}");
+    let latched = good.fault.expect("noticed");
+    let judged = |fault| {
+        let outcome = Outcome {
+            fault,
+            ..good.clone()
+        };
+        outcome.problem()
+    };
+    assert_eq!(judged(None), Some(Problem::Undetected));
+    let late = firmware::fault::Fault {
+        tick: latched.tick + 3,
+        ..latched
+    };
+    assert_eq!(judged(Some(late)), Some(Problem::Late(3)));
+    let kind = FaultKind::SupplyLow;
+    let wrong = firmware::fault::Fault { kind, ..latched };
+    assert_eq!(judged(Some(wrong)), Some(Problem::WrongKind));
+    let pivot = Some((good.scenario.axis as u8 + 1) % 3);
+    let elsewhere = firmware::fault::Fault { pivot, ..latched };
+    assert_eq!(judged(Some(elsewhere)), Some(Problem::WrongPivot));
+    let early = firmware::fault::Fault {
+        tick: good.scenario.at - 1,
+        ..latched
+    };
+    assert_eq!(judged(Some(early)), Some(Problem::FalseAlarm));
+}
+
+#[test]
+fn a_fault_that_comes_before_its_reason_is_a_problem() {
+    let good = noticed(|injection| *injection == Injection::Jam);
+    assert!(good.is_founded, "{good}");
+    let unfounded = Outcome {
+        is_founded: false,
+        ..good
+    };
+    assert_eq!(unfounded.problem(), Some(Problem::Unfounded));
+}
+
+#[test]
+fn a_second_encoder_that_is_not_told_is_a_problem() {
+    // At rest the first one brakes at once, and there is no stop that a second one could end.
+    let good = (1..)
+        .map(Scenario::new)
+        .filter(|scenario| matches!(scenario.injection, Injection::TwoEncoders(_)))
+        .map(|scenario| run(scenario, false))
+        .find(|outcome| outcome.second.is_some())
+        .expect("one of so many");
+    assert!(good.second.is_some() && good.worse.is_some(), "{good}");
+    assert_eq!(good.problem(), None, "{good}");
+    let untold = Outcome {
+        worse: None,
+        ..good
+    };
+    assert_eq!(untold.problem(), Some(Problem::SecondMissed));
+}
+
+#[test]
+fn what_is_told_as_an_event_or_an_error_has_to_be_told() {
+    for of in [
+        |injection: &Injection| *injection == Injection::HostSilent,
+        |injection: &Injection| matches!(injection, Injection::Watchdog(_)),
+        |injection: &Injection| *injection == Injection::QueueFull,
+    ] {
+        let good = noticed(of);
+        assert_eq!(good.problem(), None, "{good}");
+        let untold = Outcome { told: None, ..good };
+        assert_eq!(untold.problem(), Some(Problem::Undetected), "{untold}");
+    }
+}
+
+#[test]
+fn an_alarm_without_a_fault_is_a_problem() {
+    let fault = noticed(|injection| *injection == Injection::EmergencyStop).fault;
+    for control in [true, false] {
+        let scenario = (1..)
+            .map(Scenario::new)
+            .find(|scenario| scenario.injection.expected().causes.is_empty())
+            .expect("one of so many");
+        let quiet = run(scenario, control);
+        assert_eq!((quiet.fault, quiet.problem()), (None, None));
+        let alarmed = Outcome { fault, ..quiet };
+        assert_eq!(alarmed.problem(), Some(Problem::FalseAlarm));
+    }
+}
+
+#[test]
+fn an_overrun_counts_where_it_could_have_been_prevented() {
+    let good = noticed(|injection| *injection == Injection::BridgeFault);
+    let avoidable = Outcome {
+        overrun_mm: 0.5,
+        unavoidable_mm: 0.0,
+        ..good
+    };
+    assert_eq!(avoidable.problem(), Some(Problem::LimitBroken(0.5)));
+    let unavoidable = Outcome {
+        unavoidable_mm: 0.4,
+        ..avoidable
+    };
+    assert_eq!(unavoidable.problem(), None);
+}

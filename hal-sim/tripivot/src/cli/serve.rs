@@ -1,0 +1,66 @@
+//! `tripivot serve`: the simulated stage in real time, and its page, until Ctrl-C.
+
+use std::io::{self, Write};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::process::ExitCode;
+
+use super::arguments::Serve;
+use super::error::CliError;
+use super::signal::until_signal;
+use super::stage::stage_options;
+use super::view::page;
+use desk::serve::{Printer, ServeOptions, Server};
+use desk::web::{Endpoint, Page};
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::rig::ControllerMemory;
+
+use crate::simulated::Simulated;
+
+/// In place of the page's address: no page.
+const OFF: &str = "off";
+
+pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
+    let flash = (arguments.settings.as_deref())
+        .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
+    let mut queues = ControllerMemory::new();
+    let mut stage = Simulated::new(&mut queues, &stage_options(&arguments.stage), flash);
+    let server = Server::bind(ServeOptions {
+        listen: arguments.listen.clone(),
+        speed: arguments.speed,
+        terminal: arguments.pty,
+    })?;
+    let stop = until_signal()?;
+    let own = server.address().map_err(CliError::output)?;
+    let page = match arguments.web.as_deref() {
+        Some(OFF) => None,
+        web => Some(page(web, Endpoint::Tcp(reached_at(own).to_string()))?),
+    };
+    announce(&server, page.as_ref()).map_err(CliError::output)?;
+    let mut printer = Printer::start();
+    let result = server.run(&mut stage, &stop, &mut |notice| printer.print(&notice));
+    printer.finish();
+    result?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Where this machine itself reaches a server that listens at `address`.
+fn reached_at(address: SocketAddr) -> SocketAddr {
+    let ip = match address.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
+        IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
+        ip => ip,
+    };
+    SocketAddr::new(ip, address.port())
+}
+
+fn announce(server: &Server, page: Option<&Page>) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "listening at {}", server.address()?)?;
+    if let Some(page) = page {
+        writeln!(out, "page at http://{}/", page.address())?;
+    }
+    if let Some(path) = server.terminal() {
+        writeln!(out, "terminal at {}", path.display())?;
+    }
+    writeln!(out, "Ctrl-C ends it")
+}

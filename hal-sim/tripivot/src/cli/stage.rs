@@ -1,0 +1,129 @@
+//! The simulated stage on the command line, here and of the program that runs the chip's image.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use hal_sim::machine::plant::Imperfections;
+use hal_sim::report::DEFAULT_EVERY;
+use hal_sim::rig::run::RunOptions;
+
+use super::number::{whole, within};
+
+/// Before the name of a run: the folder that it goes to unless `--out` says otherwise, in the working directory.
+const FOLDER: &str = "tripivot-";
+
+/// Options of a simulation.
+#[derive(Args, Clone, Debug)]
+pub struct Simulation {
+    /// Folder for trace, pictures and report [default: tripivot-NAME in the working directory].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Write every N-th tick into the trace.
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_EVERY, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
+    pub every: u32,
+    /// What is simulated.
+    #[command(flatten)]
+    pub stage: SimulatedStage,
+    /// No progress bar.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// The simulated stage.
+#[derive(Args, Clone, Debug)]
+pub struct SimulatedStage {
+    /// Seed of the simulated noise: the same seed gives the same trace.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub seed: u64,
+    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
+    #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = within(-MISMATCH_LIMIT_PERCENT..=MISMATCH_LIMIT_PERCENT))]
+    pub mismatch: f64,
+    /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
+    #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=PAYLOAD_LIMIT_KG))]
+    pub payload: f64,
+    /// Imperfections of the simulated stage to switch off.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub without: Vec<Imperfection>,
+    /// Switch on the eccentricity of the encoders: a stage that has not been calibrated.
+    #[arg(long)]
+    pub eccentricity: bool,
+}
+
+/// What a simulated stage can do without.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Imperfection {
+    /// All of them.
+    All,
+    /// Coulomb, static and presliding friction.
+    DryFriction,
+    /// Viscous friction.
+    ViscousFriction,
+    /// Elastic transmission.
+    Compliance,
+    /// Dead zone in the transmission.
+    Backlash,
+    /// Torque ripple of the motors.
+    TorqueRipple,
+    /// Encoder noise.
+    EncoderNoise,
+    /// Dead time of the bridges.
+    DeadTime,
+    /// Counts of the PWM.
+    PwmQuantisation,
+}
+
+/// Beyond that the simulated motors have no torque, or the platform no mass.
+const MISMATCH_LIMIT_PERCENT: f64 = 80.0;
+
+/// What the reference stage carries at most.
+const PAYLOAD_LIMIT_KG: f64 = 5.0;
+
+/// What to do in a run called `name`.
+#[must_use]
+pub fn options(name: &str, arguments: &Simulation) -> RunOptions {
+    let default = || PathBuf::from(format!("{FOLDER}{name}"));
+    RunOptions {
+        out: arguments.out.clone().unwrap_or_else(default),
+        every: arguments.every,
+        quiet: arguments.quiet,
+        ..stage_options(&arguments.stage)
+    }
+}
+
+/// The stage that was asked for; the rest as it is by default.
+#[must_use]
+pub fn stage_options(arguments: &SimulatedStage) -> RunOptions {
+    RunOptions {
+        seed: arguments.seed,
+        mismatch_percent: arguments.mismatch,
+        payload_kg: arguments.payload,
+        imperfections: imperfections(arguments),
+        ..RunOptions::default()
+    }
+}
+
+fn imperfections(arguments: &SimulatedStage) -> Imperfections {
+    let mut on = Imperfections {
+        encoder_eccentricity: arguments.eccentricity,
+        ..Imperfections::CALIBRATED
+    };
+    for without in &arguments.without {
+        match without {
+            Imperfection::All => {
+                on = Imperfections {
+                    compliance: false,
+                    ..Imperfections::NONE
+                }
+            }
+            Imperfection::DryFriction => on.dry_friction = false,
+            Imperfection::ViscousFriction => on.viscous_friction = false,
+            Imperfection::Compliance => on.compliance = false,
+            Imperfection::Backlash => on.backlash = false,
+            Imperfection::TorqueRipple => on.torque_ripple = false,
+            Imperfection::EncoderNoise => on.encoder_noise = false,
+            Imperfection::DeadTime => on.dead_time = false,
+            Imperfection::PwmQuantisation => on.pwm_quantisation = false,
+        }
+    }
+    on
+}

@@ -1,0 +1,4 @@
+//! `tripivot`: the command line, and what it puts together for that.
+
+pub mod cli;
+pub mod simulated;

@@ -1,0 +1,419 @@
+//! The page as browsers and others meet it: who may look, who may drive, what comes of bad messages, and that it comes back.
+#![cfg(unix)]
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use desk::serve::{ServeOptions, Server};
+use desk::web::{Endpoint, Page};
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::rig::ControllerMemory;
+use hal_sim::rig::run::RunOptions;
+use serde_json::{Value, json};
+use tripivot::simulated::Simulated;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket, client};
+
+/// Far longer than anything here takes, on a busy machine too.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A simulated stage in a thread of the test.
+struct Stage {
+    address: SocketAddr,
+    terminal: Option<std::path::PathBuf>,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Stage {
+    fn start(listen: &str) -> Self {
+        let run = RunOptions::default();
+        let server = Server::bind(ServeOptions {
+            listen: listen.to_owned(),
+            speed: 1.0,
+            terminal: true,
+        })
+        .unwrap();
+        let (address, terminal) = (server.address().unwrap(), server.terminal().map(Into::into));
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = Arc::clone(&stop);
+        let thread = thread::spawn(move || {
+            let mut queues = ControllerMemory::new();
+            let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
+            server.run(&mut stage, &stopped, &mut drop).unwrap();
+        });
+        Self {
+            address,
+            terminal,
+            stop,
+            thread: Some(thread),
+        }
+    }
+
+    fn page(&self) -> Page {
+        Page::start("127.0.0.1:0", Endpoint::Tcp(self.address.to_string())).unwrap()
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        let result = self.thread.take().unwrap().join();
+        assert!(thread::panicking() || result.is_ok());
+    }
+}
+
+/// The whole answer to a request for `path`, under the name `host`.
+fn get(page: SocketAddr, path: &str, host: &str) -> String {
+    let mut stream = TcpStream::connect(page).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    write!(
+        stream,
+        "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+    )
+    .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
+fn token(page: &Page) -> String {
+    let answer = get(page.address(), "/token", &page.address().to_string());
+    let (_, token) = answer.split_once("\r\n\r\n").unwrap();
+    token.to_owned()
+}
+
+/// A browser's connection.
+struct Viewer {
+    socket: WebSocket<TcpStream>,
+    token: String,
+    next: u64,
+}
+
+fn connect(page: &Page, origin: Option<&str>) -> Result<WebSocket<TcpStream>, u16> {
+    let stream = TcpStream::connect(page.address()).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let mut request = format!("ws://{}/live", page.address())
+        .into_client_request()
+        .unwrap();
+    if let Some(origin) = origin {
+        let headers = request.headers_mut();
+        headers.insert("Origin", origin.parse().unwrap());
+    }
+    match client(request, stream) {
+        Ok((socket, _)) => Ok(socket),
+        Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(response))) => {
+            Err(response.status().as_u16())
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+impl Viewer {
+    fn new(page: &Page) -> Self {
+        let origin = format!("http://{}", page.address());
+        Self {
+            socket: connect(page, Some(&origin)).unwrap(),
+            token: token(page),
+            next: 1,
+        }
+    }
+
+    /// Connected to a controller.
+    fn ready(page: &Page) -> Self {
+        let mut viewer = Self::new(page);
+        viewer.wait(|message| message["kind"] == "hello" && message["connected"] == true);
+        viewer
+    }
+
+    /// The next message that `wanted` knows.
+    fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+        let end = Instant::now() + PATIENCE;
+        while Instant::now() < end {
+            if let Message::Text(text) = self.socket.read().unwrap() {
+                let message = serde_json::from_str(&text).unwrap();
+                if wanted(&message) {
+                    return message;
+                }
+            }
+        }
+        panic!("waited in vain");
+    }
+
+    fn send(&mut self, text: &str) {
+        self.socket.send(Message::text(text)).unwrap();
+    }
+
+    /// What becomes of a line.
+    fn ask(&mut self, line: &str) -> Value {
+        let id = self.next;
+        self.next += 1;
+        self.send(&json!({"id": id, "token": self.token, "line": line}).to_string());
+        self.wait(|message| message["id"] == id)
+    }
+
+    /// The reply to a line that is not refused.
+    fn reply(&mut self, line: &str) -> Option<String> {
+        let answer = self.ask(line);
+        assert_eq!(answer["error"], 0, "{line}: {answer}");
+        answer["reply"].as_str().map(str::to_owned)
+    }
+
+    /// What an axis of a query is.
+    fn value(&mut self, query: &str) -> f64 {
+        let reply = self.reply(query).unwrap();
+        reply.split_once('=').unwrap().1.parse().unwrap()
+    }
+
+    fn until(&mut self, query: &str, expected: f64) {
+        let end = Instant::now() + PATIENCE;
+        while (self.value(query) - expected).abs() > 1e-3 {
+            assert!(Instant::now() < end, "{query} does not become {expected}");
+        }
+    }
+}
+
+#[test]
+fn the_page_is_served_to_its_own_name_and_may_load_nothing_from_elsewhere() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let place = page.address().to_string();
+    let index = get(page.address(), "/", &place);
+    assert!(index.starts_with("HTTP/1.1 200"), "{index}");
+    assert!(index.contains("default-src 'none'"), "{index}");
+    let mut files = 0;
+    for part in index
+        .split(['"', '\''])
+        .filter(|part| part.starts_with('/'))
+    {
+        let answer = get(page.address(), part, &place);
+        assert!(answer.starts_with("HTTP/1.1 200"), "{part}: {answer}");
+        files += 1;
+    }
+    assert!(files >= 5, "{files}");
+    let lesson = get(page.address(), "/lesson.json", "localhost");
+    assert!(
+        lesson.contains("\"frames\":[{\"pose\":[0.0,0.0,"),
+        "{lesson}"
+    );
+    let elsewhere = get(page.address(), "/nothing", &place);
+    assert!(elsewhere.starts_with("HTTP/1.1 404"), "{elsewhere}");
+    for path in ["/", "/token", "/live"] {
+        let stolen = get(page.address(), path, "evil.example");
+        assert!(stolen.starts_with("HTTP/1.1 421"), "{stolen}");
+        assert!(!stolen.contains(&token(&page)));
+    }
+}
+
+#[test]
+fn a_page_of_somebody_else_cannot_connect() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut other = page.address();
+    other.set_port(1);
+    let strangers = [
+        None,
+        Some("http://evil.example".to_owned()),
+        Some(format!("http://{other}")),
+    ];
+    for origin in strangers {
+        let result = connect(&page, origin.as_deref());
+        assert_eq!(result.err(), Some(403), "{origin:?}");
+    }
+}
+
+#[test]
+fn what_is_not_a_request_gets_its_reason_and_changes_nothing() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    viewer.reply("FRF");
+    let before = viewer.reply("MOV? X Y W");
+    for (message, reason) in [
+        ("MOV X 10".to_owned(), "not a request: expected value"),
+        (
+            json!({"id": 1, "line": "MOV X 10"}).to_string(),
+            "not a request: missing field `token`",
+        ),
+        (
+            json!({"id": 1, "token": "0", "line": "MOV X 10"}).to_string(),
+            "the token is wrong",
+        ),
+        (
+            json!({"id": 1, "token": viewer.token, "line": "MOV X 10\nMOV Y 10"}).to_string(),
+            "a character",
+        ),
+        (
+            json!({"id": 1, "token": viewer.token, "line": "WAC ONT? X = 1"}).to_string(),
+            "WAC holds up",
+        ),
+    ] {
+        viewer.send(&message);
+        let answer = viewer.wait(|answer| answer["kind"] == "refused");
+        let said = answer["reason"].as_str().unwrap();
+        assert!(said.starts_with(reason), "{message}: {said}");
+    }
+    viewer.socket.send(Message::binary(vec![24])).unwrap();
+    viewer.wait(|answer| answer["kind"] == "refused");
+    assert_eq!(viewer.reply("MOV? X Y W"), before);
+}
+
+#[test]
+fn errors_are_those_of_the_line_and_every_viewer_sees_the_same_stage() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    assert_eq!(one.ask("MOV X 1")["error"], 5);
+    one.reply("FRF");
+    assert_eq!(one.ask("MOV X 500")["error"], 7);
+    assert_eq!(one.ask("QQQ?")["error"], 2);
+    assert_eq!(one.reply("VMO? X 60 Y 60").as_deref(), Some("0"));
+    assert_eq!(one.reply("*IDN?"), other.reply("*IDN?"));
+    one.reply("MOV X 2 W 4");
+    for viewer in [&mut one, &mut other] {
+        viewer.until("POS? X", 2.0);
+        viewer.until("POS? W", 4.0);
+        let seen = |message: &Value| {
+            let monitor = message["replies"]["MON?"].as_str().unwrap_or_default();
+            monitor.contains("\nX=2.00") && monitor.contains("\nPIVOT3=")
+        };
+        viewer.wait(seen);
+    }
+}
+
+#[test]
+fn a_stop_ends_a_motion_and_is_no_error_of_the_next_line() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    viewer.reply("FRF");
+    viewer.reply("VLS 5");
+    viewer.reply("MOV X 60");
+    viewer.wait(|message| {
+        let monitor = message["replies"]["MON?"].as_str().unwrap_or_default();
+        monitor.contains("MODE=moving")
+    });
+    viewer.reply("STP");
+    viewer.reply("SVO? X");
+    viewer.wait(|message| {
+        let monitor = message["replies"]["MON?"].as_str().unwrap_or_default();
+        monitor.contains("MODE=holding")
+    });
+    let x = viewer.value("POS? X");
+    assert!((0.0..50.0).contains(&x), "{x}");
+}
+
+#[test]
+fn it_comes_back_when_the_controller_does() {
+    let stage = Stage::start("127.0.0.1:0");
+    let (page, address) = (stage.page(), stage.address);
+    let mut viewer = Viewer::ready(&page);
+    viewer.reply("FRF");
+    drop(stage);
+    let lost = viewer.wait(|message| message["connected"] == false);
+    assert!(!lost["reason"].as_str().unwrap().is_empty());
+    let refused = viewer.ask("MOV X 1");
+    assert_eq!(refused["kind"], "refused", "{refused}");
+    let _stage = Stage::start(&address.to_string());
+    viewer.wait(|message| message["connected"] == true);
+    assert_eq!(viewer.value("FRF? X"), 0.0);
+    viewer.reply("FRF");
+}
+
+/// A script's connection beside the page.
+struct Script(TcpStream);
+
+impl Script {
+    fn connect(stage: &Stage) -> Self {
+        let stream = TcpStream::connect(stage.address).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        Self(stream)
+    }
+
+    /// The error that lines leave.
+    fn error_after(&mut self, lines: &str) -> String {
+        self.0
+            .write_all(format!("{lines}ERR?\n").as_bytes())
+            .unwrap();
+        let mut answer = [0; 8];
+        let count = self.0.read(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer[..count]).trim().to_owned()
+    }
+
+    /// Starts a move of a minute, says nothing for far longer than the heartbeat, and tells whether the stage was stopped.
+    fn is_missed(&mut self, heartbeat: &str, waits_s: &[u64]) -> bool {
+        let lines = format!("FRF\nVLS 1\n{heartbeat}\nMOV X 60\n");
+        assert_eq!(self.error_after(&lines), "0");
+        // The stage's time may be slower than the clock's.
+        waits_s.iter().any(|&wait_s| {
+            thread::sleep(Duration::from_secs(wait_s));
+            self.error_after("") == "10"
+        })
+    }
+}
+
+#[test]
+fn a_page_that_looks_on_does_not_stand_for_a_script_that_has_died() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    assert!(Script::connect(&stage).is_missed("HBT 1200", &[3, 6, 12]));
+    viewer.wait(|message| message["kind"] == "status");
+}
+
+#[test]
+fn a_page_that_nobody_looks_at_is_no_host_that_is_heard() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    // Somebody has looked, and has gone.
+    drop(Viewer::ready(&page));
+    // Promised by nobody, so that anybody counts.
+    assert!(Script::connect(&stage).is_missed("SPA 1 0x54500510 1200", &[3, 6, 12]));
+    // As somebody who looks does.
+    let _viewer = Viewer::ready(&page);
+    assert!(!Script::connect(&stage).is_missed("SPA 1 0x54500510 1200", &[4]));
+}
+
+#[test]
+fn a_serial_line_serves_as_well() {
+    let stage = Stage::start("127.0.0.1:0");
+    let device = stage.terminal.clone().unwrap();
+    let endpoint = Endpoint::Serial {
+        device,
+        baud: 115_200,
+    };
+    let page = Page::start("127.0.0.1:0", endpoint).unwrap();
+    let mut viewer = Viewer::ready(&page);
+    viewer.reply("FRF");
+    viewer.reply("MOV X 1");
+    viewer.until("POS? X", 1.0);
+}
+
+#[test]
+fn more_requests_than_fit_are_refused_and_none_is_lost() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    let count = 200;
+    for id in 1..=count {
+        let request = json!({"id": id, "token": viewer.token, "line": "CSV?"});
+        viewer.send(&request.to_string());
+    }
+    let mut answered = 0;
+    for _ in 0..count {
+        let answer = viewer.wait(|message| message["id"].is_u64());
+        match answer["reply"].as_str() {
+            Some(reply) => {
+                assert_eq!(reply, "2.0");
+                answered += 1;
+            }
+            None => assert_eq!(answer["reason"], "too many requests at once"),
+        }
+    }
+    assert!(answered > 0);
+    viewer.reply("CSV?");
+}

@@ -1,0 +1,20 @@
+//! `hal-sim/MEASURED.md`: what was measured, with the command that measures it again.
+//!
+//! `cargo run --release -p tests --bin measured` writes it. [`SECTIONS`] says what is in it: a section is a command and some
+//! words. The command runs as a child process, what it prints is the figures; so this knows nothing of what it measures.
+//! `tests/tests/measured.rs` holds page and table together, and some figures to a fresh run.
+
+mod compare;
+mod conditions;
+mod output;
+mod page;
+mod registry;
+mod run;
+mod section;
+
+pub use compare::{TOLERANCE, cost_differences, differences};
+pub use output::figures;
+pub use page::{Page, PageError, path};
+pub use registry::SECTIONS;
+pub use run::{RunError, prepare, run};
+pub use section::{Group, Kind, Measured, Section};

@@ -1,0 +1,387 @@
+//! The sections of the page.
+
+use super::{Group, Kind, Section};
+
+/// Lines of a run that are not figures of the stage: the script's queries and their answers, the folder, the host's speed; and the
+/// run's conditions, which the section's command and words say, the program's commit among them.
+const BESIDES: &[&str] = &[
+    "?",
+    "=",
+    "trace and report in",
+    "times real time",
+    "conditions",
+    "  program ",
+    "  machine ",
+    "  seed ",
+    "  mismatch ",
+    "  payload ",
+    "  imperfections ",
+    "  settings ",
+];
+
+/// All of them; those of a chapter in the page's order.
+pub const SECTIONS: &[Section] = &[
+    Section {
+        name: "demonstration",
+        title: "The demonstration",
+        group: Group::Demonstration,
+        about: "The plant is 20 % off the controller's model of it: heavier, with more friction and weaker motors.",
+        command: "cargo run --release",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 2,
+        without: BESIDES,
+    },
+    Section {
+        name: "as-modelled",
+        title: "The demonstration on a plant as modelled",
+        group: Group::Demonstration,
+        about: "The same, the machine's numbers being those of the controller's model.",
+        command: "cargo run --release -- --mismatch 0",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 2,
+        without: BESIDES,
+    },
+    Section {
+        name: "payload",
+        title: "The demonstration with an unknown payload",
+        group: Group::Demonstration,
+        about: "5 kg on the platform that the controller knows nothing of, on the plant that is 20 % off.",
+        command: "cargo run --release -- --payload 5",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 2,
+        without: BESIDES,
+    },
+    Section {
+        name: "lines",
+        title: "Straight moves beside the optimum",
+        group: Group::Motion,
+        about: "Duration of random moves over a numerical lower bound under all limits: x and y over the disk, theta up to a \
+                turn, one in five up to three turns, half of them of any size from 0.1 mm up, one in four about another centre of \
+                rotation. And the largest share of each limit at any tick of any of them.",
+        command: "LINES=1000 cargo test --release -p firmware --test motion_optimum lines_keep -- --nocapture",
+        short: Some(
+            "cargo test --release -p firmware --test motion_optimum lines_keep -- --nocapture",
+        ),
+        kind: Kind::Deterministic,
+        seconds: 60,
+        without: &[],
+    },
+    Section {
+        name: "profiles",
+        title: "Profiles of three axes beside rsruckig",
+        group: Group::Motion,
+        about: "Profiles from motion to rest, random states and limits, extremes included: the longest over rsruckig's \
+                synchronised duration, and how many rsruckig finds none for.",
+        command: "PROFILE_CASES=200000 cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
+        short: Some(
+            "cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
+        ),
+        kind: Kind::Deterministic,
+        seconds: 60,
+        without: &[],
+    },
+    Section {
+        name: "played",
+        title: "Three axes as the tick plays them, beside rsruckig",
+        group: Group::Motion,
+        about: "From motion to rest in whole ticks, as the tick plays what the chip computes; limits of each axis its own. Duration \
+                over rsruckig's synchronised one.",
+        command: "cargo test --release -p firmware --test motion_reference three_axes -- --nocapture",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 5,
+        without: &[],
+    },
+    Section {
+        name: "retargets",
+        title: "New targets in motion, beside rsruckig",
+        group: Group::Motion,
+        about: "A new target at a random tick of a random line, at which the stage ends at rest. rsruckig knows no limits along a \
+                path: it is given the square within the circle of the path's limits, which is what it could be used for here, and \
+                the square around it, which is a lower bound. It does not know the pivots' limits either: they are out of the way \
+                first, then in force. \"After a stop\" are those that are reached sooner, or only, by stopping first.",
+        command: "cargo test --release -p firmware --test motion_reference new_targets -- --nocapture",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 10,
+        without: &[],
+    },
+    Section {
+        name: "jogs",
+        title: "Velocities in motion that need a stop first",
+        group: Group::Motion,
+        about: "A random velocity commanded at a random tick of a line, or of another velocity: how many can not be reached from there \
+                without stopping.",
+        command: "cargo test --release -p firmware --test motion_jog another_velocity -- --nocapture",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 5,
+        without: &[],
+    },
+    Section {
+        name: "streams",
+        title: "Streamed paths",
+        group: Group::Motion,
+        about: "A circle, a spiral and a scan raster given as targets in equal times: the setpoint's largest error against the ideal \
+                path, and how much later it is.",
+        command: "cargo test --release -p firmware --test motion_stream sampled -- --nocapture",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 5,
+        without: &[],
+    },
+    Section {
+        name: "settle",
+        title: "Move and settle, and at rest",
+        group: Group::Motion,
+        about: "200 random moves of 1 mm and more on the simulated stage: time from the command to within +-2 encoder LSB, after the \
+                profile and as a multiple of it, and the share of moves within 1.1 of it. Then the stage at rest, half a second at a \
+                time: what moves, and how the motors' duty does.",
+        command: "cargo bench --bench settle",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 90,
+        without: &[],
+    },
+    Section {
+        name: "lost-encoder",
+        title: "An encoder lost in motion",
+        group: Group::Faults,
+        about: "The other two and the model bring the stage to rest on its path: how far the platform is off it at most (`off`, mm and \
+                deg), how far from the disk's centre it gets, and the ticks until it rests, over random moves at random ticks, for a \
+                plant as modelled and one 20 % off.",
+        command: "CASES=150 cargo test --release -p tests --test lost_encoder -- --nocapture",
+        short: Some("cargo test --release -p tests --test lost_encoder -- --nocapture"),
+        kind: Kind::Deterministic,
+        seconds: 60,
+        without: &[],
+    },
+    Section {
+        name: "two-encoders",
+        title: "Two encoders lost",
+        group: Group::Faults,
+        about: "A second encoder lost in the stop that the first one caused: how far the platform is off its setpoint at most until it \
+                rests.",
+        command: "CASES=300 cargo test --release -p tests --test second_fault two_lost -- --nocapture",
+        short: Some("cargo test --release -p tests --test second_fault two_lost -- --nocapture"),
+        kind: Kind::Deterministic,
+        seconds: 60,
+        without: &[],
+    },
+    Section {
+        name: "campaign",
+        title: "The campaign of faults",
+        group: Group::Faults,
+        about: "A fault at a random tick of a random motion, on machines with every number up to 30 % off and 0 to 5 kg on them that the \
+                controller knows nothing of; and as many runs without. Not as it should be is: a fault that is not latched in time, \
+                before what it names has passed its threshold in the machine itself, or under another name or pivot; a second one in \
+                the stop that is not told; an alarm without a fault; a guide pressed into its end that the documented reaction in time \
+                would have kept from it. Latency counts from the tick in which the effect passes its threshold, as the simulator sees \
+                it. Deviation is how far the platform is off its path; distance and turn are the way to rest. Overruns are guides that \
+                meet their ends unavoidably: a broken drive, or one that is let go, runs on freely. Quiet are runs in which the fault \
+                has no effect: a frozen encoder at rest, a drive that is lost where it has nothing to do, bad frames that are bridged. \
+                After damaged settings nothing has moved: its deviation is the distance to a setpoint that nobody asks for.",
+        command: "cargo run --release -- faults",
+        short: Some("cargo run --release -- faults --runs 500"),
+        kind: Kind::Deterministic,
+        seconds: 350,
+        without: &[],
+    },
+    Section {
+        name: "power-cuts",
+        title: "Power cuts while settings are written",
+        group: Group::Faults,
+        about: "A random sequence of changes, the power cut at every step of writing each: what is found afterwards is all of the old \
+                settings or all of the new ones, never anything else.",
+        command: "CHANGES=1500 cargo test --release -p firmware --test store_power_cut -- --nocapture",
+        short: Some("cargo test --release -p firmware --test store_power_cut -- --nocapture"),
+        kind: Kind::Deterministic,
+        seconds: 120,
+        without: &[],
+    },
+    Section {
+        name: "vectors",
+        title: "Kinematics beside 50 digits",
+        group: Group::Exactness,
+        about: "Largest error against vectors of 50 digits: pivots (rad), guides' lengths (track radii), dexterity, centre (track radii), \
+                theta (rad).",
+        command: "cargo test --release -p kinematics --test vectors -- --nocapture --test-threads 1",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 1,
+        without: &[],
+    },
+    Section {
+        name: "fixed-point",
+        title: "Fixed point beside f64 and 57 digits",
+        group: Group::Exactness,
+        about: "The loop's pivot setpoints, also with a centre of rotation up to a track radius away, and its measured pose, against f64 \
+                at the same inputs over a grid of the disk, theta within +-10,000 turns; and random poses of these against 57 digits. A \
+                quarter of an encoder LSB is 2 pi / 2^28 rad.",
+        command: "cargo test --release -p firmware --test exactness --test fifty_digits -- --nocapture --test-threads 1",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 20,
+        without: &["seed "],
+    },
+    Section {
+        name: "functions",
+        title: "Elementary functions of the loop",
+        group: Group::Exactness,
+        about: "Largest error against f64 over all of their 2^32 arguments; `cargo test` takes each 1,009th. Of the last ones and the square \
+                root it is how often they are not exact.",
+        command: "INPUTS=all cargo test --release -p firmware --test all_inputs -- --nocapture --test-threads 1",
+        short: Some(
+            "cargo test --release -p firmware --test all_inputs -- --nocapture --test-threads 1",
+        ),
+        kind: Kind::Deterministic,
+        seconds: 800,
+        without: &[" %"],
+    },
+    Section {
+        name: "chip",
+        title: "The demonstration on the chip",
+        group: Group::Chip,
+        about: "The image, unmodified, beside the host: every tick compared to the bit, and what a tick costs. Wherever the figures of the \
+                chip and of the host differ, plans have landed at other ticks.",
+        command: "cargo chip",
+        short: None,
+        kind: Kind::Compiled,
+        seconds: 40,
+        without: BESIDES,
+    },
+    Section {
+        name: "chip-ticks",
+        title: "Motion from a seed on the chip",
+        group: Group::Chip,
+        about: "New targets in motion, jogs, streams, waves, stops, an encoder that breaks, faults acknowledged: chip and host compared at \
+                every tick, and what ticks cost by what they do.",
+        command: "cargo chip --ticks 2000000",
+        short: Some("cargo chip --ticks 100000"),
+        kind: Kind::Compiled,
+        seconds: 300,
+        without: &[],
+    },
+    Section {
+        name: "cost",
+        title: "What the parts cost",
+        group: Group::Chip,
+        about: "Instructions of each part of the library over random states, with shares of the control period (or ms) at 1.0, 1.2 and \
+                1.68 cycles an instruction; code and memory by part; the deepest stack. \
+                [figures.csv](../firmware/figures.csv) keeps these figures: the command fails when one has grown by more than 3 %. Goals \
+                that are not reached stand beside what is.",
+        command: "cargo cost --check",
+        short: None,
+        kind: Kind::Compiled,
+        seconds: 60,
+        without: &["s of wall clock"],
+    },
+    Section {
+        name: "cost-motion",
+        title: "What planning costs at the worst",
+        group: Group::Chip,
+        about: "The same of the planners alone, over many more states.",
+        command: "cargo cost --states 10000 --only motion",
+        short: Some("cargo cost --states 1000 --only motion"),
+        kind: Kind::Compiled,
+        seconds: 300,
+        without: &["s of wall clock"],
+    },
+    Section {
+        name: "tick",
+        title: "Where the instructions of a tick go",
+        group: Group::Chip,
+        about: "One tick in motion by the functions that its instructions come from, and an estimate of its cycles by `llvm-mca` where that \
+                is installed.",
+        command: "cargo chip-tick --by function",
+        short: None,
+        kind: Kind::Compiled,
+        seconds: 5,
+        without: &[],
+    },
+    Section {
+        name: "load",
+        title: "The tick under load",
+        group: Group::Chip,
+        about: "When the tick starts after its timer event while the serial line is full in both directions and records are read out.",
+        command: "cargo chip-load",
+        short: None,
+        kind: Kind::Compiled,
+        seconds: 20,
+        without: &[],
+    },
+    Section {
+        name: "image-check",
+        title: "Proofs on the image, and its sizes",
+        group: Group::Chip,
+        about: "The image is taken apart, instruction by instruction: from the handlers of the control loop no path leads to the panic \
+                machinery, a trap, a call through a pointer, a recursion or arithmetic in f64. The deepest stack counts both levels of \
+                interrupts on top of everything below.",
+        command: "cargo image-check",
+        short: None,
+        kind: Kind::Compiled,
+        seconds: 2,
+        without: &[],
+    },
+    Section {
+        name: "speed",
+        title: "Speed of the simulation",
+        group: Group::Host,
+        about: "A control period of the plant, of the stage and of the controller alone, and the demonstration as a whole.",
+        command: "cargo bench -p hal-sim --bench speed",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 20,
+        without: &[],
+    },
+    Section {
+        name: "planning",
+        title: "Planning beside rsruckig",
+        group: Group::Host,
+        about: "Time of rsruckig over ours, in one run: a straight line from rest; a new target in motion with all slices, looked at along its \
+                whole way for disk and pivots, which rsruckig does not do; a streamed target; the next setpoint.",
+        command: "cargo bench -p firmware-cost --bench planning",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 30,
+        without: &[],
+    },
+    Section {
+        name: "kinematics",
+        title: "Kinematics beside nalgebra",
+        group: Group::Host,
+        about: "The same equations written with nalgebra as it comes, which takes sine and arcsine from the C library; here they are the crate \
+                `libm`'s, the same everywhere. Alone is one call after the other, batch is independent ones.",
+        command: "cargo bench -p kinematics --bench speed",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 30,
+        without: &[],
+    },
+    Section {
+        name: "viewers",
+        title: "Viewers of the page",
+        group: Group::Host,
+        about: "`tripivot serve` in real time beside viewers of its page: how late ticks are, and how many pictures a second the slowest \
+                viewer gets.",
+        command: "cargo bench --bench viewers",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 45,
+        without: &[],
+    },
+    Section {
+        name: "clients",
+        title: "Clients that ask without pause",
+        group: Group::Host,
+        about: "Clients that ask `tripivot serve` for the position as fast as they can, beside moves. No reply is lost.",
+        command: "cargo test --release --test serve load -- --nocapture",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 10,
+        without: &[],
+    },
+];
