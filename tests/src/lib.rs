@@ -60,7 +60,7 @@ impl Bench {
         }
     }
 
-    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the black box.
+    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the retained memory.
     pub fn reset(&mut self, cause: &'static str) {
         self.rig.reset(cause);
         self.session = Session::new();
