@@ -2,6 +2,13 @@
 //!
 //! [`Bench`] is the stage as a user has it, one command connection to a controller that runs the simulated machine through
 //! its own drivers, with a hand on every part that can be broken.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`trouble`] | ways to break a bench |
+//! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |
+//! | [`fuzz`] | random sessions and settings, and what has to hold whatever is sent |
+//! | [`measured`] | `hal-sim/MEASURED.md`: figures with the commands that give them |
 
 pub mod fuzz;
 pub mod ideal;
