@@ -12,9 +12,9 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`settings_store`] | settings kept in flash, over resets and power cuts |
 //! | [`gcs`] | the command language: lines in, answers out |
-//! | `commander` | the stage as the command side sees it: plans, what is sent and what is pending; no word of GCS |
+//! | [`settings_store`] | settings kept in flash, over resets and power cuts |
+//! | [`commander`] | the stage as the command side sees it: plans, what is sent and what is pending; no word of GCS |
 //! | [`queues`] | between the command side and the tick: commands one way, snapshots the other |
 //! | [`control`] | the tick: encoder frames in, duties out; servo, supervisor, referencing, settling |
 //! | [`fault_record`] | what is still there after a reset: events, and the ticks around a fault |

@@ -12,7 +12,7 @@ use std::fmt::Write;
 const HEAD: &str = "# Faults
 
 Written by `UPDATE=1 cargo test -p firmware --test fault_page` from the tables that the controller has
-(`firmware/src/controller/supervisor/table.rs`, `firmware/src/fault/about.rs`); edit those, not this.
+(`firmware/src/control/supervisor/transitions.rs`, `firmware/src/fault/description.rs`); edit those, not this.
 
 A fault is latched with its kind, pivot, tick and values. `FLT?` tells it in words, `EVT?` when it came, `ERR?` its number on every
 connection, once; from then on every motion is refused with 1024 until `FLC` acknowledges it. A second fault that ends a controlled

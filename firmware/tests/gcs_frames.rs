@@ -8,7 +8,7 @@ use proptest::prelude::*;
 /// mm and deg: what rounding to the tick's units makes of a place.
 const PLACE: f64 = 3e-7;
 
-/// A planar transform as a matrix: written down again, not the panel's own.
+/// A planar transform as a matrix: written down again, not the command side's own.
 #[derive(Clone, Copy, Debug)]
 struct Matrix([[f64; 3]; 2]);
 

@@ -222,7 +222,7 @@ fn a_stop_too_late_for_its_splice_is_planned_again() {
     let mut bench = Bench::ready();
     bench.say("MOV X 60\n");
     bench.run(1_000);
-    // The panel was away: its snapshot is of a past that the splice lies in.
+    // The command side was away: its snapshot is of a past that the splice lies in.
     for _ in 0..60 {
         bench.tick.run();
     }

@@ -1,4 +1,4 @@
-//! The recorder at the front panel, byte for byte.
+//! The recorder at the command interface, byte for byte.
 
 mod gcs_bench;
 

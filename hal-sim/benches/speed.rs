@@ -47,7 +47,7 @@ fn main() {
     whole_run();
 }
 
-/// The controller without a plant: its tick and its panel, given what it was given in a move with one.
+/// The controller without a plant: its tick and its command side, given what it was given in a move with one.
 fn controller_alone() {
     let inputs = recorded_inputs();
     let replayed = || {

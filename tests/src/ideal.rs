@@ -1,5 +1,5 @@
-//! The controller on a stage without flaws: its own tick and panel, pivots that are always where the setpoint puts them, and
-//! encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
+//! The controller on a stage without flaws: its own tick and command side, pivots that are always where the setpoint puts
+//! them, and encoders that show it. Cheap enough for millions of ticks; nothing here knows any dynamics.
 
 use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::RawFrame;
@@ -33,7 +33,7 @@ pub struct Trouble {
 /// A connection: what it has to send, and what it was answered.
 #[derive(Default)]
 pub struct Connection {
-    /// The panel's side.
+    /// The controller's end of it.
     pub session: Session,
     /// Sent, and not taken yet.
     pub input: Vec<u8>,
@@ -94,7 +94,7 @@ impl Ideal {
         }
     }
 
-    /// One tick, and a turn of the panel for every connection.
+    /// One tick, and a turn of the command side for every connection.
     pub fn tick(&mut self) {
         let before = self.last.0.take();
         self.rig.front.inputs = self.inputs();
@@ -136,7 +136,7 @@ impl Ideal {
         std::mem::take(&mut self.connections[number].output)
     }
 
-    /// Sends a command past the panel.
+    /// Sends a command past the command side.
     ///
     /// # Errors
     /// [`QueueFull`]

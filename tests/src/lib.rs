@@ -2,6 +2,13 @@
 //!
 //! [`Bench`] is the stage as a user has it, one command connection to a controller that runs the simulated machine through
 //! its own drivers, with a hand on every part that can be broken.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`trouble`] | ways to break a bench |
+//! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |
+//! | [`fuzz`] | random sessions and settings, and what has to hold whatever is sent |
+//! | [`measured`] | `hal-sim/MEASURED.md`: figures with the commands that give them |
 
 pub mod fuzz;
 pub mod ideal;
@@ -60,7 +67,7 @@ impl Bench {
         }
     }
 
-    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the black box.
+    /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the retained memory.
     pub fn reset(&mut self, cause: &'static str) {
         self.rig.reset(cause);
         self.session = Session::new();

@@ -1,5 +1,11 @@
 //! Random states of the reference stage, over which the controller's cost is counted (`cargo cost`, on the chip) and
 //! timed (`cargo bench -p firmware-cost`, on the host).
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`random`] | random arguments from a seed |
+//! | [`states`] | random positions and motions |
+//! | [`streaming`] | streams under way, just before the target that makes the next plan |
 #![no_std]
 
 pub mod random;

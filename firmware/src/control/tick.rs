@@ -21,7 +21,7 @@ use kinematics::Angle;
 /// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
 /// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
 /// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
-/// cost on the chip stands in the README and is printed by `cargo chip`.
+/// cost on the chip stands in `hal-sim/MEASURED.md` and is printed by `cargo chip`.
 #[inline]
 pub fn tick(
     config: &mut Config,

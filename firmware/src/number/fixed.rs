@@ -1,4 +1,14 @@
 //! A fixed-point number with 29 fraction bits, for lengths in track radii, sines and cosines.
+//!
+//! Why not the crate `fixed`: its type could only be the inside of this one. [`Scalar`] is a trait of `kinematics`, and
+//! Rust lets a third crate implement it for a type of its own only. What the wrapper could then pass on is shifts and
+//! wrapping sums. What counts here is not in it: its product is rounded down, where [`Scalar`]'s is rounded to nearest,
+//! once for a whole sum of products (`fixed` has the wide product to build that from, which is what `add_product` is);
+//! sine, arcsine and polar form need the instructions in `multiply`, that work on the bits; and its plain operators
+//! panic on overflow in a debug build, where these wrap on every machine alike, so host and chip could differ. `fixed`
+//! 1.31 wants Rust 1.93, this workspace 1.90.
+//!
+//! [`Scalar`]: kinematics::Scalar
 
 use super::multiply;
 use core::ops::{Add, Mul, Neg, Sub};

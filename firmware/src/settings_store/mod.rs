@@ -14,11 +14,21 @@
 //! | `byte_counter` | how long contents are, before they are written |
 //! | `error` | why settings could not be stored |
 //!
-//! Why no key-value store of the crates there are: the flash's contract
-//! ([`NorFlash`](embedded_storage::nor_flash::NorFlash)) leaves a page whose erase was cut off with undefined contents,
-//! and a store that tells a page's state by one byte of it can then take an old page for the one in use. And such a
-//! store passes over an item whose checksum is wrong, which is right after a power cut and wrong after damage: an
-//! encoder's offset would silently be the default again.
+//! # Why no key-value store
+//!
+//! What is kept is small and is kept all at once, so a store of keys would only take it apart. Besides:
+//!
+//! - The flash's contract ([`NorFlash`]) leaves a page whose erase was cut off with undefined contents. A store that
+//!   tells a page's state by one byte of it can then take an old page for the one in use.
+//! - A store that passes over an item whose checksum is wrong is right after a power cut and wrong after damage: an
+//!   encoder's offset would silently be the default again.
+//! - `ekv` 1.0 writes all keys of a transaction or none, and reports damage. But its own page says that its format in
+//!   flash is not stable yet: a new major release need not read what an old one wrote, and encoder offsets have to
+//!   outlive an update of the firmware. It erases a page at least for every transaction, where a whole image here goes
+//!   behind the last one without an erase. It is asynchronous and has a flash trait of its own; the command side is
+//!   neither, and has [`NorFlash`].
+//!
+//! [`NorFlash`]: embedded_storage::nor_flash::NorFlash
 
 mod byte_counter;
 mod envelope;

@@ -1,4 +1,4 @@
-//! A flash that loses its power in the middle of a word or of an erase, and a panel whose settings it keeps.
+//! A flash that loses its power in the middle of a word or of an erase, and a command side whose settings it keeps.
 #![allow(dead_code)] // Each test file uses its part.
 
 #[path = "../gcs_bench/mod.rs"]
@@ -180,7 +180,7 @@ pub struct Kept {
     pub macros: Vec<(String, String)>,
 }
 
-/// What a panel has of it now.
+/// What a command side has of it now.
 pub fn kept(panel: &Interpreter, parameters: &Parameters) -> Kept {
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     let mut macros: Vec<_> = (panel.macros())
@@ -203,7 +203,7 @@ pub fn fresh() -> Interpreter {
     Interpreter::new(&Parameters::REFERENCE, identity)
 }
 
-/// A panel whose settings are kept, with its tick.
+/// A command side whose settings are kept, with its tick.
 pub struct KeptBench<const SECTOR: usize> {
     pub bench: Bench,
     pub keeper: SettingsStore<Flash<SECTOR>>,

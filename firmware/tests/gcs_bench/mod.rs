@@ -1,4 +1,4 @@
-//! A panel with several connections in front of a tick that moves exactly as commanded.
+//! A command side with several connections in front of a tick that moves exactly as commanded.
 #![allow(dead_code)] // Each test file uses its part.
 
 use core::convert::Infallible;
@@ -9,7 +9,7 @@ use firmware::queues::{CommandQueues, Queues};
 pub mod fake_tick;
 pub use fake_tick::{DWELL, FakeTick};
 
-/// What the panel has written.
+/// What the command side has written.
 #[derive(Default)]
 pub struct Written(pub Vec<u8>);
 
@@ -28,7 +28,7 @@ impl embedded_io::Write for Written {
     }
 }
 
-/// The panel, its connections and the tick.
+/// The command side, its connections and the tick.
 pub struct Bench {
     panel: Interpreter,
     sessions: Vec<(Session, Written)>,
@@ -46,7 +46,7 @@ impl Bench {
         Self::with(Interpreter::new(&Parameters::REFERENCE, identity))
     }
 
-    /// The same with this panel.
+    /// The same with this command side.
     pub fn with(panel: Interpreter) -> Self {
         let parameters = Parameters::REFERENCE;
         let (tick, queues) = Box::leak(Box::new(Queues::new())).split();

@@ -7,6 +7,7 @@
 //! | `record` | a record of a controller's data recorder |
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
+//! | `assets` | the files of the page, embedded in the program |
 
 mod assets;
 pub mod error_words;

@@ -1,9 +1,9 @@
 //! The controller in front of a machine: on the host here; on an emulated chip in the package `image`.
 //!
-//! | type | idea |
+//! | file | idea |
 //! |---|---|
-//! | [`ControlLoop`] | the firmware's tick with its state, which is given what the hardware would give it |
-//! | [`Host`] | the same behind the firmware's drivers, between the simulated encoders and bridges |
+//! | `control_loop` | [`ControlLoop`]: the firmware's tick with its state, which is given what the hardware would give it |
+//! | `host` | [`Host`]: the same behind the firmware's drivers, between the simulated encoders and bridges |
 
 mod control_loop;
 mod host;

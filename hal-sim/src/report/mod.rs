@@ -3,6 +3,18 @@
 //!
 //! A run loop calls [`Trace::record`] every tick, collects its [`Move`]s, and puts both into a [`Run`], which prints
 //! ([`Run::summary`]) and writes ([`Run::write`]) itself.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `sample` | what a run records: a sample a tick, an entry a move |
+//! | `trace` | every tick goes in; statistics, plots and rows come out |
+//! | `statistics`, `facts` | what a run amounts to; the same for programs |
+//! | `conditions` | what a run was made under |
+//! | `summary`, `csv` | printed; written as tables |
+//! | `picture`, `motion` | pictures of a run: its path and following; its setpoints |
+//! | `path`, `mechanism` | the way of the centre; views of the plane |
+//! | `document` | the run as one HTML document |
+//! | `contour` | a quantity over the disk |
 
 mod conditions;
 mod contour;

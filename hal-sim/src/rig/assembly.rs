@@ -167,7 +167,7 @@ impl<'a, F: Front> Rig<'a, F> {
     }
 }
 
-/// The panel of a controller that starts with what is kept, and the fault that it starts with.
+/// The command side of a controller that starts with what is kept, and the fault that it starts with.
 fn started(
     parameters: &Parameters,
     keeper: &mut SettingsStore<SettingsFlash>,

@@ -2,7 +2,7 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`Rig`] | the assembly of both |
+//! | `assembly` | [`Rig`]: both, put together in one place |
 //! | [`run`] | a script, from its first line to the report |
 //! | `conditions` | what a run is made under |
 //! | [`script`] | files of GCS lines |

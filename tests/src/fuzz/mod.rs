@@ -1,4 +1,5 @@
-//! A fuzz target: random sessions, with faults now and then, on the controller's own panel and tick over an ideal stage.
+//! A fuzz target: random sessions, with faults now and then, on the controller's own command side and tick over an ideal
+//! stage.
 //!
 //! What holds whatever is sent, and is looked at in every tick or after every line:
 //! - nothing panics;

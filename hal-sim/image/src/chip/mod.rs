@@ -15,6 +15,17 @@
 //! ([`Stage::advance_period`]), so a run here and one there are the same to the bit. That the plant runs ahead by the
 //! 15 us from latch to tick changes nothing: no pin moves in them.
 //!
+//! | file | idea |
+//! |---|---|
+//! | `bench`, `driver`, `period` | the bench, its clock, and what a caller sees once a period |
+//! | `board`, `encoder`, `line` | what lies around the chip |
+//! | `run`, `serve`, `exercise/` | a script; clients over TCP; motion from a seed |
+//! | `twin` | the same controller on the host |
+//! | `load` | the tick under all the load there is |
+//! | `cost`, `way`, `estimate` | what ticks take; one tick instruction by instruction; in cycles |
+//! | `gaps` | what the emulator does not model |
+//! | `elf_file` | where the images lie |
+//!
 //! [`Stage::advance_period`]: hal_sim::machine::devices::Stage::advance_period
 
 mod bench;

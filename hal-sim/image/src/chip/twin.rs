@@ -1,18 +1,19 @@
 //! The same controller on the host, fed with what the chip was fed: its hash says whether the two agree to the bit, and if
 //! they do, its sample is the chip's.
 //!
-//! What the tick gets is easy to repeat: the frames and the ADC's counts of its period, and the commands. What commands the
-//! panel sends depends on when it runs: a way out of a motion is planned from the snapshot at hand, and the chip plans
-//! for many ticks what a host plans in none. So the image keeps a record of its panel's runs, each with the bytes
-//! it had received and the tick of its snapshot, and the twin's panel runs as often, with the same:
+//! What the tick gets is easy to repeat: the frames and the ADC's counts of its period, and the commands. What commands
+//! the command side sends depends on when it runs: a way out of a motion is planned from the snapshot at hand, and the
+//! chip plans for many ticks what a host plans in none. So the image keeps a record of its command side's runs, each with
+//! the bytes it had received and the tick of its snapshot, and the twin's command side runs as often, with the same:
 //!
 //! ```text
 //!  chip  tick 7   tick 8   tick 9  ...  tick 24   tick 25 takes the plan
-//!          \-> panel: line, snapshot 7, plans ------/  \-- its record: bytes, 7
-//!  twin  tick 7 .. tick 24, then waits for that record: panel with the same bytes, snapshot 7 -> the plan -> tick 25
+//!          \-> interpreter: line, snapshot 7, plans -/  \-- its record: bytes, 7
+//!  twin  tick 7 .. tick 24, then waits for that record: interpreter with the same bytes, snapshot 7 -> plan -> tick 25
 //! ```
 //!
-//! So the twin is a tick behind the chip, and as many more as the chip's panel takes from a command to the end of its run.
+//! So the twin is a tick behind the chip, and as many more as the chip's command side takes from a command to the end of
+//! its run.
 
 use super::period::{Period, Service, Trace};
 use firmware::control::Inputs;
@@ -56,24 +57,25 @@ pub struct Agreed<'a> {
 
 /// The twin.
 pub struct Twin {
-    /// Tick and panel, of queues of their own: what goes from one to the other is passed on when the chip has done so.
+    /// Tick and command side, of queues of their own: what goes from one to the other is passed on when the chip has done
+    /// so.
     rig: Rig<'static, ControlLoop>,
     record: TickRecord,
     session: Session,
-    /// The other ends of the panel's queues, and of the tick's.
+    /// The other ends of the command side's queues, and of the tick's.
     panel_side: TickQueues<'static>,
     tick_side: CommandQueues<'static>,
-    /// Ticks and commands done, and bytes given to the panel.
+    /// Ticks and commands done, and bytes given to the command side.
     ticks: u32,
     commands: u32,
     bytes: u32,
     input: VecDeque<u8>,
     latched: Option<Latched>,
     executed: VecDeque<Executed>,
-    /// The panel's runs to come, and how many the chip has told of.
+    /// The command side's runs to come, and how many the chip has told of.
     services: VecDeque<Service>,
     served: u32,
-    /// What the panel can still be asked to look at, and the tick of what it looked at last.
+    /// What the command side can still be asked to look at, and the tick of what it looked at last.
     snapshots: VecDeque<Snapshot>,
     seen: u32,
     flip_at: Option<u64>,
@@ -98,19 +100,20 @@ pub enum Divergence {
         /// Periods passed.
         host: u64,
     },
-    /// The chip's tick has taken a command that the twin's panel did not send.
+    /// The chip's tick has taken a command that the twin's command side did not send.
     Command {
         /// The tick, counted from 0.
         tick: u32,
     },
-    /// The chip's panel has run in a way that the twin's can not repeat.
+    /// The chip's command side has run in a way that the twin's can not repeat.
     Interpreter {
         /// Ticks done.
         ticks: u32,
     },
 }
 
-/// Ticks that the chip's panel may take from a command to the end of its run: a second, and plans take milliseconds.
+/// Ticks that the chip's command side may take from a command to the end of its run: a second, and plans take
+/// milliseconds.
 const PATIENCE: usize = 20_000;
 
 impl Twin {
@@ -119,7 +122,7 @@ impl Twin {
     pub fn new(parameters: &Parameters) -> Self {
         let (mut panel_side, command_queues) = ControllerMemory::endless().split();
         let (mut tick_queues, tick_side) = ControllerMemory::endless().split();
-        // The twin's panel orders its records from the twin's tick; nothing of them has to be held back.
+        // The twin's command side orders its records from the twin's tick; nothing of them has to be held back.
         std::mem::swap(&mut panel_side.recorder, &mut tick_queues.recorder);
         let (links, flash) = ((tick_queues, command_queues), SettingsFlash::in_memory());
         Self {
@@ -159,7 +162,7 @@ impl Twin {
     /// chip in peace; then [`Self::catch_up`] until there is no more.
     ///
     /// # Errors
-    /// The chip has lost ticks, or its panel's record is not whole.
+    /// The chip has lost ticks, or its command side's record is not whole.
     pub fn look(&mut self, period: &mut Period<'_>) -> Result<(), Divergence> {
         let trace = period.trace();
         if u64::from(trace.ticks) != period.tick {
@@ -211,7 +214,7 @@ impl Twin {
         let commanded = trace.commands != self.commands;
         if commanded && !self.relay() {
             let tick = self.ticks;
-            // The run of the chip's panel that sent the command is not over.
+            // The run of the chip's command side that sent the command is not over.
             let over = self.executed.len() > PATIENCE;
             return if over {
                 Err(Divergence::Command { tick })
@@ -247,7 +250,8 @@ impl Twin {
         }))
     }
 
-    /// Runs the panel as often as the chip's has run, as far as the twin's ticks have come; its answers are the chip's to give.
+    /// Runs the command side as often as the chip's has run, as far as the twin's ticks have come; its answers are the
+    /// chip's to give.
     fn serve_panel(&mut self) -> Result<(), Divergence> {
         while let Some(&service) = self.services.front()
             && service.snapshot <= self.ticks
@@ -276,7 +280,7 @@ impl Twin {
                 self.snapshots.pop_front();
             }
             let snapshot = self.snapshots.pop_front()?;
-            // The panel has taken the one before.
+            // The command side has taken the one before.
             self.panel_side.snapshots.enqueue(snapshot).ok()?;
         }
         let Ok(()) = self.rig.service(&mut self.session, &mut Nowhere);

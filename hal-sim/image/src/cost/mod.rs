@@ -3,6 +3,14 @@
 //!
 //! The image does the counting (the head of its source says what is counted and what is not); this side gives the order,
 //! waits, reads the table by symbol, and compares with the figures that the repository keeps.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `run`, `driver` | a run of the image, and the emulator through it |
+//! | `part`, `print` | a row of the table, and how it is printed |
+//! | `figures` | the figures that the repository keeps |
+//! | `goal` | what a part may cost |
+//! | `size` | flash and RAM by part |
 
 mod driver;
 mod figures;

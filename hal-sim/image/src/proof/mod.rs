@@ -12,6 +12,13 @@
 //!   deepest callee on top ([`Depths`]). A call through a pointer may reach every function whose address stands anywhere in
 //!   the image; such calls nest [`NESTING`] deep at most.
 //! - **Masks.** Where interrupts are held back ([`Code::masks`]).
+//!
+//! | file | idea |
+//! |---|---|
+//! | `elf`, `code`, `listing`, `step` | the file; functions and calls; instructions; what one of them means |
+//! | `safe` | nothing in the control loop can fail |
+//! | `stack` | the deepest stack |
+//! | `print` | the proofs as they are printed |
 
 mod code;
 mod elf;

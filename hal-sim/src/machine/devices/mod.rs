@@ -1,4 +1,12 @@
 //! The devices between plant and controller, as embedded-hal buses and pins, and as plain bits and levels.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `stage` | the whole stage behind the wires, and the timeline of a period |
+//! | `encoder`, `biss` | an absolute encoder, and the bits of its frame |
+//! | `bridge` | an H-bridge: pins in, voltage out |
+//! | `analog` | what the ADC reads |
+//! | `flash` | where settings are kept |
 
 pub mod analog;
 pub mod biss;

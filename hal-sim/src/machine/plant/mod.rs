@@ -3,6 +3,15 @@
 //!
 //! SI units throughout, f64, deterministic: no clock, no random number, and elementary functions from `libm`, so that a
 //! trace is the same on every host. Each part stands in a file of its own; `dynamics.rs` ties them together.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `parameters` | every number, with its origin; which imperfections are simulated |
+//! | `state` | the state vector |
+//! | `body` | platform and payload |
+//! | `drive` | winding, motor, transmission |
+//! | `friction`, `stops` | friction of a ring; ends of the guides |
+//! | `dynamics` | the equations of motion |
 
 mod body;
 mod drive;

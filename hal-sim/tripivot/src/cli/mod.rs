@@ -2,6 +2,17 @@
 //!
 //! Exit codes: 0 done; 1 the stage faulted or never settled, or the pose is out of reach; 2 the command line, a file or a number
 //! is wrong.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `arguments`, `number`, `usage`, `error` | what is typed, and what is said of it where it is wrong |
+//! | `stage`, `simulate`, `serve` | the simulated stage: its options, a run, in real time |
+//! | `view`, `record`, `settings` | in front of a controller that runs already |
+//! | `faults` | the campaign of faults |
+//! | `inverse`, `direct`, `check`, `map` | kinematics |
+//! | `rows`, `units`, `json` | numbers in and out |
+//! | `pages` | completions and man pages |
+//! | `signal` | Ctrl-C |
 
 mod arguments;
 mod check;

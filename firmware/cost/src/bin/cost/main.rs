@@ -1,4 +1,4 @@
-//! `cost`: calls functions of the library on random arguments and counts what each call takes. `tripivot cost` runs it
+//! `cost`: calls functions of the library on random arguments and counts what each call takes. `cargo cost` runs it
 //! on the emulated chip and prints the table.
 //!
 //! # What is counted
@@ -6,7 +6,7 @@
 //! One call at a time, with the processor's cycle counter, reading it not included. The emulator gives every
 //! instruction two counts, so the counts are instructions, exact to one or two. Arguments are made outside of what is
 //! counted; what comes back is counted until it lies in memory. The library is compiled as in the image `stage` (same
-//! profile), but what the compiler inlines where can differ: the tick as it is flashed is counted by `tripivot chip`.
+//! profile), but what the compiler inlines where can differ: the tick as it is flashed is counted by `cargo chip`.
 //!
 //! # What is not
 //!
