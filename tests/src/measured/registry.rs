@@ -66,7 +66,7 @@ pub const SECTIONS: &[Section] = &[
             "cargo test --release -p firmware --test motion_optimum lines_keep -- --nocapture",
         ),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 5,
         without: &[],
     },
     Section {
@@ -80,7 +80,7 @@ pub const SECTIONS: &[Section] = &[
             "cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
         ),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 3,
         without: &[],
     },
     Section {
@@ -92,7 +92,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_reference three_axes -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -106,7 +106,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_reference new_targets -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 10,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -118,7 +118,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_jog another_velocity -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -130,7 +130,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_stream sampled -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -224,7 +224,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test exactness --test fifty_digits -- --nocapture --test-threads 1",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 20,
+        seconds: 1,
         without: &["seed "],
     },
     Section {
