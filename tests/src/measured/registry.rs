@@ -143,7 +143,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo bench --bench settle",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 90,
+        seconds: 15,
         without: &[],
     },
     Section {
@@ -156,7 +156,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CASES=150 cargo test --release -p tests --test lost_encoder -- --nocapture",
         short: Some("cargo test --release -p tests --test lost_encoder -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 12,
         without: &[],
     },
     Section {
@@ -168,7 +168,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CASES=300 cargo test --release -p tests --test second_fault two_lost -- --nocapture",
         short: Some("cargo test --release -p tests --test second_fault two_lost -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 12,
         without: &[],
     },
     Section {
@@ -199,7 +199,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CHANGES=1500 cargo test --release -p firmware --test store_power_cut -- --nocapture",
         short: Some("cargo test --release -p firmware --test store_power_cut -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 120,
+        seconds: 15,
         without: &[],
     },
     Section {
