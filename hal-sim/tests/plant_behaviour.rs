@@ -44,13 +44,13 @@ fn static_friction_holds_a_small_torque() {
     // The bristles give way: -120 urad ln(1 - 0.2/0.36), the integral of z' = v (1 - z / z_ss),
     // and a little more because the end of the rise overshoots.
     assert!((97e-6..103e-6).contains(&theta_rad), "{theta_rad}");
-    assert!(plant.velocity()[2].abs() < 1e-7, "{:?}", plant.velocity());
+    assert!(plant.velocity()[2].abs() < 1.5e-8, "{:?}", plant.velocity());
 }
 
 #[test]
 fn static_friction_slips_over_it() {
     let theta_rad = twisted_by(0.4).pose()[2];
-    assert!(theta_rad > 0.05, "{theta_rad}");
+    assert!(theta_rad > 0.195, "{theta_rad}");
 }
 
 #[test]
@@ -82,11 +82,11 @@ fn motors_reach_the_speed_of_their_voltage() {
         / (constant + resistance_ohm * viscous / constant);
     let current_a = (coulomb_n_m + viscous * rate_rad_s) / constant;
     for i in 0..AXES {
-        assert!((plant.pivot_rates_rad_s()[i] / rate_rad_s - 1.0).abs() < 1e-4);
-        assert!((plant.currents_a()[i] / current_a - 1.0).abs() < 1e-3);
+        assert!((plant.pivot_rates_rad_s()[i] / rate_rad_s - 1.0).abs() < 2.2e-9);
+        assert!((plant.currents_a()[i] / current_a - 1.0).abs() < 1.2e-7);
     }
     assert!(
-        plant.pose()[2] > 1.0 && plant.pose()[0].abs() < 1e-9,
+        plant.pose()[2] > 3.5 && plant.pose()[0].abs() < 1e-12,
         "{:?}",
         plant.pose()
     );
@@ -97,7 +97,7 @@ fn supply_limits_the_voltage() {
     let mut plant = with(Imperfections::NONE);
     run(&mut plant, 1.0, &[Drive::Voltage(1e6); AXES]);
     assert!(
-        (plant.velocity()[2] / 16.0 - 1.0).abs() < 1e-3,
+        (plant.velocity()[2] / 16.0 - 1.0).abs() < 2e-12,
         "{:?}",
         plant.velocity()
     );
@@ -113,7 +113,7 @@ fn stalled_motors_draw_voltage_over_resistance() {
     });
     run(&mut plant, 0.05, &[Drive::Voltage(21.0); AXES]);
     for current_a in plant.currents_a() {
-        assert!((current_a - 10.0).abs() < 1e-3, "{current_a}");
+        assert!((current_a - 10.0).abs() < 1.7e-5, "{current_a}");
     }
 }
 
@@ -125,15 +125,15 @@ fn brake_stops_the_stage_and_coast_lets_it_run() {
         run(&mut plant, 0.1, &[drive; AXES]);
         plant.velocity()[2]
     };
-    assert!(spin_after(Drive::Brake).abs() < 1e-3);
-    assert!((spin_after(Drive::Coast) - 5.0).abs() < 1e-6);
+    assert!(spin_after(Drive::Brake).abs() < 2.4e-7);
+    assert!((spin_after(Drive::Coast) - 5.0).abs() < 1.9e-11);
 }
 
 #[test]
 fn coasting_current_dies_through_the_diodes() {
     let mut plant = with(Imperfections::NONE);
     run(&mut plant, 1e-3, &[Drive::Voltage(20.0); AXES]);
-    assert!(plant.currents_a()[0] > 2.0);
+    assert!(plant.currents_a()[0] > 7.6);
     run(&mut plant, 1e-3, &[Drive::Coast; AXES]);
     assert_eq!(plant.currents_a(), [0.0; AXES]);
 }
@@ -155,12 +155,14 @@ fn backlash_lets_the_motor_turn_before_the_ring() {
     }
     assert_eq!(plant.pose()[2], 0.0);
     run(&mut plant, 0.1, &[Drive::Voltage(1.0); AXES]);
-    assert!(plant.pose()[2] > 1e-3);
+    assert!(plant.pose()[2] > 0.026);
 }
 
 #[test]
 fn torque_ripple_disturbs_a_steady_rotation() {
-    // In the rotation itself the three ripples cancel, 120 deg of their period apart; they show as a sway of x.
+    // In the rotation itself the three ripples cancel, 120 deg of their period apart. They show as a sway: 1.5 times 0.03 N m at
+    // 0.1 m are 0.45 N, at 650 rad/s (1,300 periods in a turn, at 0.5 rad/s) against 6 kg and the currents that the motors' voltage
+    // drives: 0.118 mm/s, and 2 % more by the transmission, of whose resonance they are an eighth.
     let sway = |torque_ripple| {
         let mut plant = with(Imperfections {
             torque_ripple,
@@ -172,12 +174,14 @@ fn torque_ripple_disturbs_a_steady_rotation() {
             run(&mut plant, 1e-4, &[Drive::Voltage(1.5); AXES]);
             fastest_m_s = fastest_m_s.max(plant.velocity()[0].abs());
         }
+        let spin_rad_s = plant.velocity()[2];
+        assert!((spin_rad_s - 0.5).abs() < 3.8e-5, "{spin_rad_s}");
         fastest_m_s
     };
     let (without_m_s, with_m_s) = (sway(false), sway(true));
     println!("sway: {without_m_s:e} m/s without ripple, {with_m_s:e} m/s with");
-    assert!(without_m_s < 1e-9);
-    assert!(with_m_s > 2e-5);
+    assert!(without_m_s < 1e-12);
+    assert!((1.19e-4..1.22e-4).contains(&with_m_s));
 }
 
 #[test]

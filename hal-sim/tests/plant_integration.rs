@@ -74,7 +74,7 @@ fn integrator_is_of_fourth_order() {
         println!("order {order:.2}");
         assert!((3.7..4.6).contains(&order), "order {order} from {errors:?}");
     }
-    assert!(errors[2] < 1e-5, "{errors:?}");
+    assert!(errors[2] < 1.9e-7, "{errors:?}");
 }
 
 /// Work done by gravity since the platform was at theta = 0 in the centre.
@@ -113,7 +113,7 @@ fn energy_drift(parameters: PlantParameters, velocity: [f64; 3], seconds: f64) -
 fn free_motion_keeps_its_energy() {
     let drift = energy_drift(conservative(), [0.04, 0.03, 5.0], 1.0);
     println!("relative energy drift in 1 s: {drift:.2e}");
-    assert!(drift < 1e-6, "{drift:e}");
+    assert!(drift < 1.7e-7, "{drift:e}");
 }
 
 #[test]
@@ -124,15 +124,33 @@ fn tilted_stage_exchanges_energy_with_gravity() {
     };
     let drift = energy_drift(parameters, [-0.05, 0.02, 3.0], 0.3);
     println!("relative energy drift in 0.3 s: {drift:.2e}");
-    assert!(drift < 1e-6, "{drift:e}");
+    assert!(drift < 3.7e-12, "{drift:e}");
 }
 
 #[test]
 fn an_end_stop_gives_back_what_it_takes() {
+    let mut plant = Plant::new(conservative());
+    plant.set_pose_at_rest([0.02, -0.01, 0.4]);
+    plant.set_velocity([0.25, 0.0, 1.0]);
+    let start_j = plant.kinetic_energy_j();
+    let (mut farthest_m, mut stored_j, mut drift_j) = (0.0_f64, 0.0_f64, 0.0_f64);
     // 0.5 s at 0.25 m/s reach the stop and come back. The corner of the stop's force costs the integrator an order.
-    let drift = energy_drift(conservative(), [0.25, 0.0, 1.0], 0.5);
-    println!("relative energy drift over the stop: {drift:.2e}");
-    assert!(drift < 1e-3, "{drift:e}");
+    for _ in 0..500 {
+        run(&mut plant, 1e-3, 12.5e-6, &[Drive::Coast; AXES]);
+        let elastic_j = plant.elastic_energy_j();
+        farthest_m = farthest_m.max(plant.pose()[0].hypot(plant.pose()[1]));
+        stored_j = stored_j.max(elastic_j);
+        drift_j = drift_j.max((plant.kinetic_energy_j() + elastic_j - start_j).abs());
+    }
+    let distance_m = plant.pose()[0].hypot(plant.pose()[1]);
+    let [stored, left, drift] = [stored_j, plant.elastic_energy_j(), drift_j].map(|j| j / start_j);
+    println!(
+        "{farthest_m:.6} m out, then {distance_m:.6} m; in springs at most {stored:.3} of the energy, at last {left:.2e}; drift {drift:.2e}"
+    );
+    // It reaches the stop, which takes what was going outwards; what is left in the springs at last is in the transmissions.
+    assert!(farthest_m > 0.084 && stored > 0.85, "{farthest_m} {stored}");
+    assert!(distance_m < 0.037 && left < 5.5e-7, "{distance_m} {left:e}");
+    assert!(drift < 3.4e-7, "{drift:e}");
 }
 
 /// The momentum that belongs to turning everything about the track's centre.
@@ -169,7 +187,7 @@ fn free_motion_keeps_its_angular_momentum() {
     for _ in 0..100 {
         run(&mut plant, 1e-2, 12.5e-6, &[Drive::Coast; AXES]);
         let change = angular_momentum(&parameters, &plant) / start - 1.0;
-        assert!(change.abs() < 1e-7, "{change:e}");
+        assert!(change.abs() < 2e-13, "{change:e}");
     }
 }
 
@@ -242,7 +260,7 @@ proptest! {
         let v = nalgebra::Vector3::new(vx, vy, spin);
         let by_matrix = 0.5 * v.dot(&(plant.mass_matrix() * v));
         let by_parts = kinetic_energy_by_differences(&parameters, pose, v.into());
-        prop_assert!((by_matrix - by_parts).abs() < 1e-6 * by_parts + 1e-9, "{by_matrix} {by_parts}");
+        prop_assert!((by_matrix - by_parts).abs() < 2e-9 * by_parts + 1e-12, "{by_matrix} {by_parts}");
     }
 }
 
@@ -284,10 +302,10 @@ fn first_transmission_resonance_is_at_1500_hz() {
     let (translation_hz, rotation_hz) = (resonance(push, 0), resonance(twist, 2));
     println!("translation {translation_hz:.0} Hz, rotation {rotation_hz:.0} Hz");
     assert!(
-        (translation_hz / 1500.0 - 1.0).abs() < 0.01,
+        (translation_hz / 1500.0 - 1.0).abs() < 9.5e-5,
         "{translation_hz}"
     );
-    assert!((rotation_hz / 1690.0 - 1.0).abs() < 0.01, "{rotation_hz}");
+    assert!((rotation_hz / 1690.0 - 1.0).abs() < 1.2e-3, "{rotation_hz}");
 }
 
 #[test]
@@ -303,7 +321,7 @@ fn stage_behaves_alike_when_its_parts_trade_places() {
     let there = end(0.2 + TAU / 3.0, [-5.0, 3.0, 9.0]);
     let moved = [here[0], here[1], here[2] + TAU / 3.0];
     for i in 0..3 {
-        assert!((moved[i] - there[i]).abs() < 1e-10, "{moved:?} {there:?}");
+        assert!((moved[i] - there[i]).abs() < 1e-14, "{moved:?} {there:?}");
     }
 }
 
@@ -336,7 +354,7 @@ fn stage_behaves_alike_in_every_direction() {
         let there = end(turn);
         for i in 0..3 {
             assert!(
-                (here[i] - there[i]).abs() < 1e-9,
+                (here[i] - there[i]).abs() < 4.4e-12,
                 "{turn}: {here:?} {there:?}"
             );
         }

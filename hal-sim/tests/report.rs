@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
+use drawing::colour;
 use firmware::parameters::Parameters;
-use hal_sim::report::{MotionSample, Move, Run, Sample, Trace};
+use hal_sim::report::{Conditions, FILES, MotionSample, Move, Run, Sample, Trace};
 use kinematics::{Geometry, Pose, inverse, margins};
 
 /// Circling at 50 mm with two ticks of standstill at either end.
@@ -55,6 +56,15 @@ fn run(ticks: u32, every: u32) -> Run {
         limits: Parameters::REFERENCE.limits,
         trace,
         moves: (0..3).map(one).collect(),
+        conditions: Conditions {
+            program: "made up 1.2".to_owned(),
+            machine: "none at all".to_owned(),
+            seed: 3,
+            mismatch_percent: 60.0,
+            payload_kg: 2.5,
+            without: vec!["backlash"],
+            ..Conditions::default()
+        },
         wall_s: 0.01,
     }
 }
@@ -67,22 +77,14 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn seven_files_are_written_the_same_each_time() {
+fn the_files_are_written_the_same_each_time() {
     let (first, second) = (folder("first"), folder("second").join("below"));
     for folder in [&first, &second] {
         run(1_001, 20)
             .write(folder)
             .expect("the folder can be written");
     }
-    for file in [
-        "trace.csv",
-        "moves.csv",
-        "picture.svg",
-        "picture.png",
-        "motion.svg",
-        "motion.png",
-        "report.html",
-    ] {
+    for file in FILES {
         let bytes = fs::read(first.join(file)).expect(file);
         assert!(!bytes.is_empty());
         assert!(
@@ -90,7 +92,8 @@ fn seven_files_are_written_the_same_each_time() {
             "{file} differs"
         );
     }
-    assert_eq!(fs::read_dir(&first).expect("a folder").count(), 7);
+    let count = fs::read_dir(&first).expect("a folder").count();
+    assert_eq!(count, FILES.len());
 }
 
 #[test]
@@ -154,6 +157,95 @@ fn the_summary_tells_what_happened() {
             "{line}\n{summary}"
         );
     }
+}
+
+/// Whoever has any of it can tell what it was made under.
+#[test]
+fn pictures_document_and_summary_tell_the_conditions() {
+    let run = run(1_001, 20);
+    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections all but backlash; settings none kept";
+    for text in [run.picture(), run.motion_picture(), run.document()] {
+        assert!(text.contains(line));
+    }
+    let summary = run.summary().to_string();
+    for line in [
+        "  program             made up 1.2",
+        "  mismatch            60 %",
+        "  imperfections       all but backlash",
+    ] {
+        assert!(
+            summary.lines().any(|other| other == line),
+            "{line}\n{summary}"
+        );
+    }
+    let folder = folder("conditions");
+    run.write(&folder).expect("the folder can be written");
+    let text = fs::read_to_string(folder.join("conditions.json")).expect("written");
+    let conditions: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(conditions["run"], "made up");
+    assert_eq!(conditions["seed"], 3);
+    assert_eq!(conditions["without"], serde_json::json!(["backlash"]));
+    assert_eq!(conditions["settings"], serde_json::Value::Null);
+}
+
+/// The same quantity has one colour: what the document's plots take from its style sheet is what the pictures take from the table.
+#[test]
+fn a_quantity_has_one_colour() {
+    let document = run(1_001, 20).document();
+    let [first, second, third] = colour::PIVOTS;
+    for (name, light) in [
+        ("x", colour::X),
+        ("y", colour::Y),
+        ("centre", colour::CENTRE),
+        ("theta", colour::THETA),
+        ("pivot-1", first),
+        ("pivot-2", second),
+        ("pivot-3", third),
+    ] {
+        let rule = format!("--{name}: light-dark({light},");
+        assert!(document.contains(&rule), "{rule}");
+    }
+    for (title, paints) in [
+        ("Centre, mm", &["x", "y"][..]),
+        ("Orientation \u{3b8}, \u{b0}", &["theta"]),
+        ("Following error of the centre, \u{b5}m", &["centre"]),
+        ("Following error of \u{3b8}, \u{b5}rad", &["theta"]),
+        ("Speed of the moved point, mm/s", &["centre"]),
+        ("Rate of \u{3b8}, \u{b0}/s", &["theta"]),
+    ] {
+        let plot = format!("{{ title: \"{title}\",");
+        let line = (document.lines())
+            .find(|line| line.trim_start().starts_with(&plot))
+            .expect(title);
+        let found: Vec<&str> = (line.split("paint: \"").skip(1))
+            .filter_map(|rest| rest.split('"').next())
+            .collect();
+        assert_eq!(found, paints, "{title}");
+    }
+}
+
+/// A move that the next one followed at once had no time to settle; one that was given a tenth of a second had.
+#[test]
+fn a_move_that_nobody_waited_for_is_no_failure() {
+    let mut run = run(1_001, 20);
+    let end_s = run.trace.statistics().end_s;
+    let unsettled = |start_s: f64| Move {
+        start_s,
+        profile_end_s: start_s + 0.5,
+        settled_s: None,
+        target: [0.0; 3],
+    };
+    run.moves = [0.0, 0.5, 1.099, 1.7].map(unsettled).to_vec();
+    assert_eq!(run.never_settled(), 1);
+    let summary = run.summary().to_string();
+    let ends_in = |word: &str| summary.lines().filter(|line| line.ends_with(word)).count();
+    assert_eq!((ends_in("no time"), ends_in(" never")), (3, 1), "{summary}");
+    assert!(summary.contains("never settled: 1\n"), "{summary}");
+    // The end of the run counts as the next move does.
+    run.moves = vec![unsettled(end_s - 0.5 - 0.099)];
+    assert_eq!(run.never_settled(), 0);
+    run.moves = vec![unsettled(end_s - 0.5 - 0.101)];
+    assert_eq!(run.never_settled(), 1);
 }
 
 #[test]

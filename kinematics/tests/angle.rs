@@ -73,14 +73,14 @@ proptest! {
     fn float_near_is_congruent_and_nearest(angle in -100.0..100.0, reference in -100.0..100.0) {
         let near = <f64 as Scalar>::near(angle, reference);
         prop_assert!((near - reference).abs() <= PI + 1e-12);
-        prop_assert!(((near - angle) / TAU - ((near - angle) / TAU).round()).abs() < 1e-12);
+        prop_assert!(((near - angle) / TAU - ((near - angle) / TAU).round()).abs() < 4e-15);
     }
 
     #[test]
     fn polar_gives_back_the_direction(angle in -PI..PI, length in 0.01..3.0) {
         let (sin, cos) = angle.sin_cos();
         let (direction, re, im) = <f64 as Scalar>::polar(length * cos, length * sin).expect("long enough");
-        prop_assert!((direction - angle).abs() < 1e-15 * 4.0);
+        prop_assert!((direction - angle).abs() < 5e-16);
         prop_assert!((re - cos).abs() < 1e-15 && (im - sin).abs() < 1e-15);
     }
 }
@@ -94,6 +94,35 @@ fn constants_are_nearest_and_their_sums_known() {
     let three = Angle::DEG_120 + Angle::DEG_120 + Angle::DEG_120;
     assert_eq!((Angle::TURN - three).units(), 1);
     assert_eq!(Angle::from_degrees(210.0), Some(quarter + Angle::DEG_120));
+}
+
+/// Half a turn from the reference two angles are nearest: the one below it is taken, from whichever side it is asked.
+#[test]
+fn at_half_a_turn_near_takes_the_angle_below() {
+    let half = Angle::from_units(Angle::TURN.units() / 2);
+    let one = Angle::from_units(1);
+    let far = Angle::from_units((9_999 << 32) + 123_456_789);
+    for reference in [Angle::ZERO, far, -far] {
+        for off in [half, -half, half + Angle::TURN, -half - Angle::TURN] {
+            assert_eq!(
+                (reference + off).near(reference),
+                reference - half,
+                "{off:?}"
+            );
+        }
+        assert_eq!(
+            (reference + half - one).near(reference),
+            reference + half - one
+        );
+        assert_eq!(
+            (reference - half - one).near(reference),
+            reference + half - one
+        );
+        assert_eq!(
+            (reference + half + one).near(reference),
+            reference - half + one
+        );
+    }
 }
 
 #[test]

@@ -90,8 +90,8 @@ impl Scalar for Ranged {
     }
 }
 
-/// A quarter of a 26-bit encoder's LSB.
-const QUARTER_LSB_RAD: f64 = TAU / (1 << 28) as f64;
+/// What is left of an angle's digits: its unit of 1.5 nrad, and not a fifteenth of a 26-bit encoder's LSB.
+const ANGLE_RAD: f64 = TAU / (1_u64 << 32) as f64;
 
 proptest! {
     #![proptest_config(settings())]
@@ -105,11 +105,11 @@ proptest! {
         let exact = solve(&Pose { theta: theta.radians(), ..pose }).pivots;
         for i in 0..3 {
             let error_rad = (got[i] - far).radians() - exact[i];
-            prop_assert!(error_rad.abs() < QUARTER_LSB_RAD, "{error_rad}");
+            prop_assert!(error_rad.abs() < ANGLE_RAD, "{error_rad}");
         }
         let back = direct::<Ranged>(&got).expect("a feasible triangle");
-        prop_assert!((back.x.0 - pose.x).abs() < 1e-8 && (back.y.0 - pose.y).abs() < 1e-8);
-        prop_assert!((back.theta - there.theta).radians().abs() < 1e-8);
+        prop_assert!((back.x.0 - pose.x).abs() < 1.6e-9 && (back.y.0 - pose.y).abs() < 1.6e-9);
+        prop_assert!((back.theta - there.theta).radians().abs() < 1.7e-9);
     }
 
     /// Poses anywhere in the number's range, also outside the track.

@@ -1,8 +1,11 @@
 """The report that a run leaves, opened from disk."""
 
+import base64
 import csv
+import json
 import pathlib
 import re
+import struct
 
 from page import WithDriver
 from settings import ARGUMENTS
@@ -36,10 +39,35 @@ class Report(WithDriver):
         names = ("x_mm", "y_mm", "theta_deg")
         with open(pathlib.Path(ARGUMENTS.report).with_name("trace.csv"), newline="") as file:
             near = [row for row in csv.DictReader(file) if abs(float(row["time_s"]) - time_s) <= 0.01]
-        shown = [float(number.replace("−", "-")) for number in re.findall(r"[−-]?\d+\.\d+", browser.text("#pose"))]
-        for value, name in zip(shown, names, strict=True):
+        for value, name in zip(self.shown_pose(browser), names, strict=True):
             places = [float(row[name]) for row in near]
             self.assertTrue(min(places) - 1e-3 <= value <= max(places) + 1e-3, (name, value, min(places), max(places)))
+
+    def shown_pose(self, browser):
+        return [float(number.replace("−", "-")) for number in re.findall(r"[−-]?\d+\.\d+", browser.text("#pose"))]
+
+    def test_the_pose_lies_inside_its_stretch(self):
+        """What is shown at the cursor is between the lowest and the highest of the stretch of time that the cursor is in."""
+        browser = self.page()
+        run = json.loads(browser.run("return document.getElementById('run').textContent"))
+
+        def unpacked(text):
+            data = base64.b64decode(text)
+            return struct.unpack(f"<{len(data) // 4}f", data)
+
+        ends = unpacked(run["times"])
+        channels = [[unpacked(text) for text in channel] for channel in run["channels"][:3]]
+        # The fastest motion, where neighbours differ most, is among them; late and early in a stretch.
+        speed = unpacked(run["channels"][5][1])
+        fastest = max(range(1, len(ends)), key=lambda at: speed[at])
+        stretches = [*range(1, len(ends) - 1, len(ends) // 25), fastest]
+        for at in stretches:
+            for share in (0.02, 0.5, 0.98):
+                time_s = ends[at - 1] + share * (ends[at] - ends[at - 1])
+                browser.run(f"const s = document.getElementById('time'); s.value = {time_s!r}; s.dispatchEvent(new Event('input'))")
+                self.drawn(browser, "#scene")
+                for value, (low, high) in zip(self.shown_pose(browser), channels, strict=True):
+                    self.assertTrue(low[at] - 6e-4 <= value <= high[at] + 6e-4, (time_s, value, low[at], high[at]))
 
     def test_opens_from_disk_without_a_network(self):
         browser = self.page()
@@ -48,6 +76,7 @@ class Report(WithDriver):
         self.assertEqual(browser.errors(), [])
         self.assertIn("20 moves", browser.text("#span-text"))
         self.assertIn("following error while moving", browser.text("#summary"))
+        self.assertIn("seed 1; mismatch 20 %", browser.text("#conditions"))
         self.assertLess(pathlib.Path(ARGUMENTS.report).stat().st_size, 5_000_000)
 
     def test_the_slider_moves_the_mechanism_and_the_cursor_in_the_plots(self):

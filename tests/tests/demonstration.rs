@@ -1,4 +1,4 @@
-//! The demonstration, whole, at the numbers the project promises.
+//! The demonstration, whole. Promised are 0.5 um, 5 urad and 30 ms; it is held to what it does, and a tenth more.
 
 use hal_sim::rig::run::{RunOptions, run};
 use hal_sim::rig::script::Script;
@@ -17,21 +17,21 @@ fn the_demonstration_keeps_its_promises() {
         statistics.error_theta_urad.rms(),
     );
     assert!(
-        centre_um < 0.5 && theta_urad < 5.0,
+        centre_um < 0.315 && theta_urad < 2.95,
         "{centre_um} um, {theta_urad} urad"
     );
     // It has moved, far and long: 95 % of the disk, three turns.
-    assert!(statistics.error_xy_um.count() > 100_000);
-    assert!(outcome.run.moves.len() >= 12);
+    assert!(statistics.error_xy_um.count() > 170_000);
+    assert!(outcome.run.moves.len() >= 20);
     let furthest = (outcome.run.moves.iter()).map(|one| one.target[0].hypot(one.target[1]));
-    assert!((furthest.fold(0.0, f64::max) - 76.0).abs() < 0.01);
+    assert!((furthest.fold(0.0, f64::max) - 76.0).abs() < 0.0073);
     for one in &outcome.run.moves {
         let settle_s = one.settle_s().expect("settled");
-        assert!(settle_s <= 0.030, "{:?}: {settle_s} s", one.target);
+        assert!(settle_s < 0.0230, "{:?}: {settle_s} s", one.target);
     }
     assert!(
-        statistics.peak_duty < 0.98,
-        "saturated: {}",
+        statistics.peak_duty < 0.63,
+        "peak duty {}",
         statistics.peak_duty
     );
 }

@@ -13,6 +13,8 @@ const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
 /// Where the guides end at the worst orientation, mm.
 const GUIDES_END_MM: f64 = 84.0;
+/// Losses that are tried unless `CASES` says otherwise.
+const CASES: u32 = 30;
 
 const LOST: [EncoderFault; 3] = [
     EncoderFault::StuckHigh,
@@ -96,13 +98,17 @@ fn lose_one(stage: &StageParameters, random: &mut Random, worst: &mut Worst) {
         worst.look(&bench);
     }
     let at_rest = bench.rig.front.stage.plant.pivot_rates_rad_s();
-    assert!(at_rest.iter().all(|rate| rate.abs() < 0.01), "{at_rest:?}");
+    assert!(
+        at_rest.iter().all(|rate| rate.abs() < 6.8e-4),
+        "{at_rest:?}"
+    );
 }
 
 #[test]
 fn two_encoders_and_the_model_bring_the_stage_to_rest_inside_its_limits() {
-    let cases = std::env::var("CASES").map_or(30, |cases| cases.parse().expect("a number"));
-    for (mismatch_percent, most) in [(0.0, [0.8, 0.4]), (20.0, [4.0, 2.0])] {
+    let cases = std::env::var("CASES").map_or(CASES, |cases| cases.parse().expect("a number"));
+    // What the cases that are always run come to, and a tenth more; others are printed, and have the guides' ends as their limit.
+    for (mismatch_percent, most) in [(0.0, [0.0838, 0.0355]), (20.0, [2.85, 0.90])] {
         let stage = stage_parameters(&RunOptions {
             mismatch_percent,
             ..RunOptions::default()
@@ -115,7 +121,7 @@ fn two_encoders_and_the_model_bring_the_stage_to_rest_inside_its_limits() {
         }
         println!("{cases} cases from seed {seed}, mismatch {mismatch_percent} %: {worst:?}");
         assert!(
-            worst.off[0] < most[0] && worst.off[1] < most[1],
+            cases != CASES || (worst.off[0] < most[0] && worst.off[1] < most[1]),
             "{worst:?}"
         );
         assert!(worst.from_centre_mm < GUIDES_END_MM, "{worst:?}");

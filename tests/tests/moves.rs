@@ -30,16 +30,16 @@ fn a_move_ends_where_it_was_sent() {
     assert_eq!(bench.error_after("MOV X 30 Y -20 W 45"), "0");
     bench.settle();
     for (query, target) in [("POS? X", 30.0), ("POS? Y", -20.0), ("POS? W", 45.0)] {
-        // Two encoder LSB: 19 nm, 10.7 udeg; over the centre they add up.
+        // Under an encoder LSB, which is 9.4 nm and 5.4 udeg; over the centre they add up.
         let off = (bench.value(query) - target).abs();
-        assert!(off < 6e-5, "{query}: off by {off}");
+        assert!(off < 9.1e-6, "{query}: off by {off}");
     }
     let truth = bench.rig.front.stage.plant.pose();
     assert!(
-        (truth[0] - 0.030).abs() < 1e-7 && (truth[1] + 0.020).abs() < 1e-7,
+        (truth[0] - 0.030).abs() < 4.2e-9 && (truth[1] + 0.020).abs() < 4.2e-9,
         "{truth:?}"
     );
-    assert!((truth[2] - 45f64.to_radians()).abs() < 1e-6, "{truth:?}");
+    assert!((truth[2] - 45f64.to_radians()).abs() < 5.4e-8, "{truth:?}");
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn outside_the_disk_nothing_moves() {
     // The twin: on the rim.
     assert_eq!(bench.error_after("MOV X 80"), "0");
     bench.settle();
-    assert!((bench.value("POS? X") - 80.0).abs() < 6e-5);
+    assert!((bench.value("POS? X") - 80.0).abs() < 1.4e-5);
 }
 
 #[test]
@@ -91,9 +91,9 @@ fn a_move_in_motion_retargets_without_a_jump() {
         pose(bench.sample()).map(|value| (value * 1e6).round() / 1e6),
         [-20.0, 30.0, 10.0]
     );
-    // A first move with the model 20 % off: 6 um on the track. The fault is at 21,000.
+    // A first move with the model 20 % off: 4 um on the track. The fault is at 21,000.
     assert!(
-        bench.worst_error_counts() < 1_000,
+        bench.worst_error_counts() < 473,
         "{} counts",
         bench.worst_error_counts()
     );
@@ -111,8 +111,8 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
         let after = pose(bench.sample());
         assert_eq!(bench.mode(), Mode::Holding);
         // On the line (from where it was referenced, an LSB or so from 0), past where it was, short of the target.
-        assert!((after[0] - 2.0 * after[1]).abs() < 1e-4, "{after:?}");
-        assert!((after[2] - 1.5 * after[0]).abs() < 1e-4, "{after:?}");
+        assert!((after[0] - 2.0 * after[1]).abs() < 1.6e-7, "{after:?}");
+        assert!((after[2] - 1.5 * after[0]).abs() < 1.9e-6, "{after:?}");
         assert!(
             before[0] < after[0] && after[0] < 60.0,
             "{before:?} {after:?}"
@@ -124,7 +124,7 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
         assert_eq!(pose(bench.sample()), after, "it stays");
         // At 300 rad/s^2, the model 20 % off and nothing learnt yet: 13 um on the track. The fault is at 21,000.
         assert!(
-            bench.worst_error_counts() < 1_500,
+            bench.worst_error_counts() < 1_456,
             "{} counts",
             bench.worst_error_counts()
         );
@@ -135,7 +135,7 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
     let [halt, stop, byte] = ways[..] else {
         panic!("three stops");
     };
-    assert!(stop < 0.8 * halt && (stop - byte).abs() < 0.1, "{ways:?}");
+    assert!(stop < 0.58 * halt && stop == byte, "{ways:?}");
 }
 
 #[test]

@@ -19,7 +19,12 @@ DEL 100
 #[test]
 fn an_unknown_payload_is_carried_whatever_the_mismatch() {
     let script = Script::parse("payload", SCRIPT).expect("a good script");
-    for mismatch_percent in [-20.0, 0.0, 20.0] {
+    // What it does, and a tenth more.
+    for (mismatch_percent, most_um, most_s) in [
+        (-20.0, 0.338, 0.0216),
+        (0.0, 0.192, 0.0207),
+        (20.0, 1.01, 0.0488),
+    ] {
         let outcome = run(
             &script,
             &RunOptions {
@@ -30,18 +35,14 @@ fn an_unknown_payload_is_carried_whatever_the_mismatch() {
         );
         assert_eq!(outcome.fault, None, "{mismatch_percent} %");
         let statistics = outcome.run.trace.statistics();
+        let rms_um = statistics.error_xy_um.rms();
+        let settled_s = (outcome.run.moves.iter())
+            .map(|one| one.settle_s().expect("settled"))
+            .fold(0.0, f64::max);
+        println!("{mismatch_percent} %: {rms_um} um rms, settled in {settled_s} s at the latest");
         assert!(
-            statistics.error_xy_um.rms() < 3.0,
-            "{mismatch_percent} %: {} um",
-            statistics.error_xy_um.rms()
+            rms_um < most_um && settled_s < most_s,
+            "{mismatch_percent} %: {rms_um} um, {settled_s} s"
         );
-        for one in &outcome.run.moves {
-            let settle_s = one.settle_s();
-            assert!(
-                settle_s.is_some_and(|s| s < 0.08),
-                "{mismatch_percent} %, {:?}: {settle_s:?}",
-                one.target
-            );
-        }
     }
 }

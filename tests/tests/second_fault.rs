@@ -15,6 +15,8 @@ use tests::Bench;
 const BRIDGED: u32 = Parameters::REFERENCE.supervision.bridged_frames as u32;
 /// Ticks of a controlled stop.
 const STOP_TICKS: u32 = 1_200;
+/// Losses of two encoders that are tried unless `CASES` says otherwise.
+const CASES: usize = 30;
 
 fn lose(bench: &mut Bench, encoder: usize) {
     bench.rig.front.stage.encoders[encoder].set_fault(Some(EncoderFault::StuckHigh));
@@ -67,7 +69,7 @@ fn a_second_encoder_that_is_lost_in_the_stop_brakes_and_is_told() {
         );
         bench.run(2_000);
         let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
-        assert!(rates.iter().all(|rate| rate.abs() < 0.01), "{rates:?}");
+        assert!(rates.iter().all(|rate| rate.abs() < 0.0019), "{rates:?}");
     }
 }
 
@@ -177,7 +179,7 @@ fn what_the_pivot_was_off_when_its_encoder_was_lost_does_not_jerk_it() {
     let first = i32::from(bench.outputs.duty[1].0);
     bench.tick();
     let second = i32::from(bench.outputs.duty[1].0);
-    assert!((first - second).abs() < 100, "{first}, then {second}");
+    assert!((first - second).abs() <= 11, "{first}, then {second}");
 }
 
 /// How far the platform is off its setpoint, mm, at the worst after two encoders are lost one after the other.
@@ -219,7 +221,7 @@ fn off_after_two(stage: &StageParameters, random: &mut Random) -> Option<f64> {
 
 #[test]
 fn two_lost_encoders_leave_the_stage_inside_its_limits() {
-    let cases = std::env::var("CASES").map_or(30, |cases| cases.parse().expect("a number"));
+    let cases = std::env::var("CASES").map_or(CASES, |cases| cases.parse().expect("a number"));
     let stage = stage_parameters(&RunOptions {
         mismatch_percent: 20.0,
         ..RunOptions::default()
@@ -234,7 +236,12 @@ fn two_lost_encoders_leave_the_stage_inside_its_limits() {
         "{} cases from seed {seed}, plant 20 % off: {worst:.2} mm off at most",
         offs.len()
     );
-    assert!(offs.len() > cases / 3 && worst < 12.0, "{worst}");
+    // What the cases that are always run come to, and a tenth more; others are printed, and have the guides' ends as their limit.
+    assert!(
+        cases != CASES || (offs.len() == 28 && worst < 3.61),
+        "{worst}"
+    );
+    assert!(offs.len() > cases / 3, "{}", offs.len());
 }
 
 /// An encoder that was lost while the stage coasts is ready again with four good frames, as soon as a pivot is slow enough for its

@@ -30,7 +30,7 @@ fn gains_set_while_holding_change_the_next_move() {
     let before = error_with("");
     // Half the position and velocity gain, nothing learnt, no integral to speak of.
     let weak = error_with("SPA 1 0x54500300 150 1 0x54500301 20 1 0x54500302 100 1 0x54500303 0");
-    assert!(weak > 2 * before, "{weak} counts, {before} before");
+    assert!(weak > 28 * before, "{weak} counts, {before} before");
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn setting_while_holding_does_not_move_the_stage() {
     bench.run(2_000);
     assert_eq!(bench.mode(), Mode::Holding);
     assert!(
-        bench.worst_error_counts() <= 4,
+        bench.worst_error_counts() <= 2,
         "{}",
         bench.worst_error_counts()
     );
@@ -92,7 +92,7 @@ fn another_encoder_zero_takes_the_reference_and_moves_the_angle() {
     assert_eq!(bench.error_after("FRF"), "0");
     bench.settle();
     assert!(
-        (bench.value("POS? W") - 90.0).abs() < 0.01,
+        (bench.value("POS? W") - 90.0).abs() < 1.6e-5,
         "{}",
         bench.value("POS? W")
     );
@@ -105,7 +105,7 @@ fn another_encoder_zero_takes_the_reference_and_moves_the_angle() {
     );
     assert_eq!(bench.error_after("FRF"), "0");
     bench.settle();
-    assert!(bench.value("POS? W").abs() < 0.01);
+    assert!(bench.value("POS? W").abs() < 2.0e-6);
 }
 
 /// Whoever asks, the loop itself takes constants only when they can do no harm.

@@ -249,7 +249,7 @@ fn a_following_error_is_found_at_its_limit() {
         let fault = bench.fault().expect("found");
         assert_eq!(fault.kind, FaultKind::FollowingError);
         let [value, limit] = [fault.value, fault.limit].map(f64::from);
-        assert!((limit / limit_rad - 1.0).abs() < 0.001, "{fault}");
+        assert!((limit / limit_rad - 1.0).abs() < 7.5e-7, "{fault}");
         assert!((1.0..1.15).contains(&(value.abs() / limit)), "{fault}");
         assert_eq!(bench.mode(), Mode::Fault, "it brakes at once");
         assert!(bench.outputs.awake);

@@ -28,8 +28,11 @@ fn off_line(bench: &mut Bench, tool: [f64; 2], from: [f64; 2], to: [f64; 2]) -> 
     off
 }
 
-/// What the machine's own deviations leave of the following error, mm.
-const CLOSE_MM: f64 = 0.02;
+/// What the machine's own deviations leave of the following error, and a tenth more: of a tool's point on its line, of a centre of
+/// rotation, and of a wave's circle, mm.
+const TOOL_MM: f64 = 2.22e-3;
+const CENTRE_MM: f64 = 1.46e-3;
+const WAVE_MM: f64 = 3.93e-4;
 
 #[test]
 fn a_tools_point_travels_the_straight_line_while_the_platform_turns() {
@@ -48,16 +51,17 @@ fn a_tools_point_travels_the_straight_line_while_the_platform_turns() {
         assert_eq!(bench.error_after(line), "0", "{line}");
         bench.run(10);
         let off = off_line(&mut bench, tool, from, to);
-        assert!(off < CLOSE_MM, "{line}: {off} mm");
+        println!("{line}: {off} mm off the line");
+        assert!(off < TOOL_MM, "{line}: {off} mm");
         bench.settle();
         let [x, y] = point(&bench, tool);
-        assert!((x - to[0]).hypot(y - to[1]) < 2e-4, "{line}: {x} {y}");
+        assert!((x - to[0]).hypot(y - to[1]) < 6.0e-6, "{line}: {x} {y}");
         from = to;
     }
     // The platform's centre has gone round.
     let [x, y] = point(&bench, [0.0, 0.0]);
     let away = (x - from[0]).hypot(y - from[1]);
-    assert!((away - 725f64.sqrt()).abs() < 1e-3, "{away}");
+    assert!((away - 725f64.sqrt()).abs() < 1.3e-6, "{away}");
 }
 
 #[test]
@@ -73,10 +77,11 @@ fn a_centre_of_rotation_stays_where_it_is() {
     }
     bench.run(10);
     let off = off_line(&mut bench, [30.0, 0.0], [35.0, 5.0], [35.0, 5.0]);
-    assert!(off < CLOSE_MM, "{off} mm");
+    println!("the centre of rotation strays {off} mm");
+    assert!(off < CENTRE_MM, "{off} mm");
     bench.settle();
-    assert!((bench.value("POS? X") - 5.0).abs() < 1e-4);
-    assert!((bench.value("POS? W") - 720.0).abs() < 1e-3);
+    assert!((bench.value("POS? X") - 5.0).abs() < 3.3e-6);
+    assert!((bench.value("POS? W") - 720.0).abs() < 3.4e-6);
 }
 
 #[test]
@@ -100,6 +105,7 @@ fn a_wave_is_drawn_by_the_machine() {
         let [x, y] = point(&bench, [0.0, 0.0]);
         off = off.max((x.hypot(y) - 10.0).abs());
     }
-    assert!(off < CLOSE_MM, "{off} mm off the circle");
+    println!("{off} mm off the circle");
+    assert!(off < WAVE_MM, "{off} mm off the circle");
     assert_eq!(bench.say("ERR?\n"), "0\n");
 }

@@ -8,14 +8,9 @@
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
 
-#[cfg(unix)]
 mod assets;
 pub mod error_words;
-#[cfg(unix)]
 pub mod record;
-#[cfg(unix)]
 pub mod serve;
-#[cfg(unix)]
 pub mod settings;
-#[cfg(unix)]
 pub mod web;

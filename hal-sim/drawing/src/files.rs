@@ -17,6 +17,14 @@ pub enum ReportError {
         /// Why not.
         source: io::Error,
     },
+    /// The folder holds something that is not ours.
+    #[error("{} holds {file}, which this program has not written: name another folder with --out", folder.display())]
+    NotOurs {
+        /// The folder.
+        folder: PathBuf,
+        /// What is in it.
+        file: String,
+    },
     /// The picture could not be made into pixels.
     #[error("cannot render {}: {reason}", path.display())]
     Render {
@@ -37,6 +45,26 @@ pub fn make_folder(folder: &Path) -> Result<(), ReportError> {
         .and_then(|()| fs::write(&probe, []))
         .and_then(|()| fs::remove_file(&probe))
         .map_err(unwritable(folder))
+}
+
+/// Makes `folder` as [`make_folder`] does, to hold `files`. It may be there already and hold some of them, which will be
+/// overwritten, and hidden files, but no others.
+///
+/// # Errors
+/// [`ReportError::NotOurs`], [`ReportError::Unwritable`].
+pub fn claim_folder(folder: &Path, files: &[&str]) -> Result<(), ReportError> {
+    // What cannot be listed is not there, or cannot be written either.
+    for entry in fs::read_dir(folder).into_iter().flatten() {
+        let name = entry.map_err(unwritable(folder))?.file_name();
+        let file = name.to_string_lossy().into_owned();
+        if !file.starts_with('.') && !files.contains(&file.as_str()) {
+            return Err(ReportError::NotOurs {
+                folder: folder.to_owned(),
+                file,
+            });
+        }
+    }
+    make_folder(folder)
 }
 
 /// Writes one file.

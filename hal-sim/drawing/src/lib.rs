@@ -21,5 +21,5 @@ pub mod progress;
 pub mod scale;
 pub mod svg;
 
-pub use files::{ReportError, make_folder, unwritable, write_file, write_png};
+pub use files::{ReportError, claim_folder, make_folder, unwritable, write_file, write_png};
 pub use progress::Progress;

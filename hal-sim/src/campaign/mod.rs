@@ -16,6 +16,7 @@
 //! | `run`, `watch` | one run, and who looks on |
 //! | `truth` | what the machine really did |
 //! | `verdict` | whether the controller did what it has to |
+//! | `totals` | what the runs of each fault amount to |
 //! | `table`, `rows` | what is printed, and written |
 
 mod effect;
@@ -26,6 +27,7 @@ mod run;
 mod scenario;
 mod settings;
 mod table;
+mod totals;
 mod truth;
 mod verdict;
 mod watch;
@@ -37,6 +39,7 @@ pub use rows::write;
 pub use run::{End, Outcome, run};
 pub use scenario::Scenario;
 pub use table::table;
+pub use totals::{Total, totals};
 pub use verdict::Problem;
 
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,5 +1,6 @@
 //! The firmware's tick with its state, which is given what the hardware would give it.
 
+use super::Front;
 use firmware::control::config::Config;
 use firmware::control::{Inputs, Outputs, State, tick};
 use firmware::drivers::biss::RawFrame;
@@ -7,8 +8,6 @@ use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
 use firmware::queues::TickQueues;
 use firmware::recorder::TickObserver;
-
-use super::Front;
 
 /// See the module.
 pub struct ControlLoop {

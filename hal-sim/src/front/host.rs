@@ -1,5 +1,10 @@
 //! The controller on the host: the firmware's own loop and drivers between the simulated encoders and bridges.
 
+use super::{ControlLoop, Front};
+use crate::machine::devices::{
+    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
+};
+use crate::machine::plant::AXES;
 use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
@@ -7,12 +12,6 @@ use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
 use firmware::queues::TickQueues;
 use firmware::recorder::TickObserver;
-
-use super::{ControlLoop, Front};
-use crate::machine::devices::{
-    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
-};
-use crate::machine::plant::AXES;
 
 type Driver = bridge::Bridge<PwmPin, DirectionPin, SleepPin, FaultPin>;
 

@@ -7,7 +7,6 @@ use kinematics::Geometry;
 use serde::Serialize;
 
 use super::Run;
-use super::sample::Move;
 use drawing::assets::{bundle, text};
 use drawing::envelope::Bin;
 
@@ -34,10 +33,12 @@ const STYLE: &str = include_str!("document/report.css");
 struct Facts<'a> {
     name: &'a str,
     summary: String,
+    /// In one line.
+    conditions: String,
     ticks: u64,
     geometry: Lengths,
     moves: Vec<Leg>,
-    /// Start of each bin, s.
+    /// End of each bin, s: a plot on the live page has them so, too.
     times: String,
     /// Lowest and highest of each channel, bin by bin.
     channels: Vec<[String; 2]>,
@@ -57,8 +58,10 @@ struct Lengths {
 struct Leg {
     start_s: f64,
     end_s: f64,
-    /// Ms; none when it never settled.
+    /// Ms; none when it had not settled before the next move or the end of the run.
     settle_ms: Option<f64>,
+    /// It had the time to.
+    never: bool,
     target: [f64; 3],
 }
 
@@ -95,7 +98,7 @@ fn fill(template: &str, parts: &[(&str, String)]) -> String {
 
 fn facts(run: &Run) -> Facts<'_> {
     let plots = run.trace.plots();
-    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.start_s).collect();
+    let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.end_s).collect();
     let mut channels = Vec::new();
     add(&mut channels, plots.pose.bins(), &[0, 1, 2]);
     add(&mut channels, plots.error.bins(), &[0, 1]);
@@ -106,9 +109,10 @@ fn facts(run: &Run) -> Facts<'_> {
     Facts {
         name: &run.name,
         summary: run.summary().to_string(),
+        conditions: run.conditions.to_string(),
         ticks: run.trace.statistics().ticks,
         geometry: lengths(&run.geometry),
-        moves: run.moves.iter().map(leg).collect(),
+        moves: (0..run.moves.len()).map(|index| leg(run, index)).collect(),
         times: packed(times.into_iter()),
         channels,
     }
@@ -124,11 +128,13 @@ fn lengths(geometry: &Geometry) -> Lengths {
     }
 }
 
-fn leg(one: &Move) -> Leg {
+fn leg(run: &Run, index: usize) -> Leg {
+    let one = &run.moves[index];
     Leg {
         start_s: one.start_s,
         end_s: one.profile_end_s,
         settle_ms: one.settle_s().map(|s| 1e3 * s),
+        never: run.never_settles(index),
         target: one.target,
     }
 }

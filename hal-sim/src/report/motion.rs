@@ -2,7 +2,7 @@
 //! beside the limits that hold for them.
 
 use super::Run;
-use super::picture::{COLUMNS, series, time_axis};
+use super::picture::{COLUMNS, draw_conditions, series, time_axis};
 use super::trace::Plots;
 use drawing::chart::{Chart, Series, TimeAxis, draw_time_labels};
 use drawing::colour;
@@ -22,6 +22,7 @@ pub(super) fn draw(run: &Run) -> String {
     let title = Font::new(26.0, colour::INK, Anchor::Start).bold();
     let heading = format!("Tripivot: {}, setpoints and their limits", run.name);
     svg.text([30.0, 48.0], &heading, &title);
+    draw_conditions(&mut svg, run);
     draw_notes(&mut svg);
     let plots = &run.trace.plots().reduced(COLUMNS);
     let time = time_axis(plots);

@@ -45,6 +45,14 @@ fn draw_heading(svg: &mut Svg, run: &Run) {
     );
     let facts = Font::new(17.0, colour::FAINT, Anchor::End);
     svg.text([CHART_LEFT + CHART_WIDTH, 46.0], &facts_line(run), &facts);
+    draw_conditions(svg, run);
+}
+
+/// What the run was made under, below the heading.
+pub(super) fn draw_conditions(svg: &mut Svg, run: &Run) {
+    let font = Font::new(13.0, colour::FAINT, Anchor::Start);
+    let place = [VIEW_LEFT - 40.0, 70.0];
+    svg.text(place, &run.conditions.to_string(), &font);
 }
 
 fn facts_line(run: &Run) -> String {

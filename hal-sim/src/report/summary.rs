@@ -25,8 +25,9 @@ impl<'a> Summary<'a> {
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         errors(f, self.run)?;
-        moves(f, &self.run.moves)?;
-        limits(f, self.run)
+        moves(f, self.run)?;
+        limits(f, self.run)?;
+        conditions(f, self.run)
     }
 }
 
@@ -48,7 +49,8 @@ fn errors(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     writeln!(f)
 }
 
-fn moves(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
+fn moves(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    let moves = &run.moves;
     if moves.is_empty() {
         return writeln!(f, "no moves\n");
     }
@@ -67,13 +69,14 @@ fn moves(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
         "\n    #    start s    to x mm     y mm   theta deg   profile s   settle ms"
     )?;
     for index in listed {
-        one_move(f, index + 1, &moves[index])?;
+        one_move(f, run, index)?;
     }
-    totals(f, moves)?;
+    totals(f, run)?;
     writeln!(f)
 }
 
-fn one_move(f: &mut fmt::Formatter<'_>, number: usize, one: &Move) -> fmt::Result {
+fn one_move(f: &mut fmt::Formatter<'_>, run: &Run, index: usize) -> fmt::Result {
+    let (number, one) = (index + 1, &run.moves[index]);
     let [x_mm, y_mm, theta_deg] = one.target.map(|value| fixed(value, 3));
     let (start_s, profile_s) = (one.start_s, one.profile_s());
     write!(
@@ -82,11 +85,13 @@ fn one_move(f: &mut fmt::Formatter<'_>, number: usize, one: &Move) -> fmt::Resul
     )?;
     match one.settle_s() {
         Some(settle_s) => writeln!(f, "{:>10.2}", 1e3 * settle_s),
-        None => writeln!(f, "{:>10}", "never"),
+        None if run.never_settles(index) => writeln!(f, "{:>10}", "never"),
+        None => writeln!(f, "{:>10}", "no time"),
     }
 }
 
-fn totals(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
+fn totals(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    let moves = &run.moves;
     let profiles: Vec<f64> = moves.iter().map(Move::profile_s).collect();
     let settles_ms: Vec<f64> = (moves.iter())
         .filter_map(|one| Some(1e3 * one.settle_s()?))
@@ -96,7 +101,7 @@ fn totals(f: &mut fmt::Formatter<'_>, moves: &[Move]) -> fmt::Result {
     };
     line("mean", mean(&profiles), mean(&settles_ms))?;
     line("worst", worst(&profiles), worst(&settles_ms))?;
-    match moves.len() - settles_ms.len() {
+    match run.never_settled() {
         0 => Ok(()),
         never => writeln!(f, "  never settled: {never}"),
     }
@@ -129,6 +134,14 @@ fn limits(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     writeln!(f, "{:<22}{end_s:>10.3} s", "simulated time")?;
     let speed = end_s / wall_s;
     writeln!(f, "{:<22}{speed:>10.1} times real time", "speed")
+}
+
+fn conditions(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
+    writeln!(f, "\nconditions")?;
+    for (name, value) in run.conditions.list() {
+        writeln!(f, "  {name:<20}{value}")?;
+    }
+    writeln!(f)
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -9,6 +9,8 @@
 //!               SettingsFlash
 //! ```
 
+use crate::front::{Front, Host};
+use crate::machine::devices::{SettingsFlash, StageParameters};
 use embedded_io::Write;
 use firmware::control::Outputs;
 use firmware::fault::FaultKind;
@@ -18,9 +20,6 @@ use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Queues, TickQueues};
 use firmware::recorder::TickObserver;
 use firmware::settings_store::SettingsStore;
-
-use crate::front::{Front, Host};
-use crate::machine::devices::{SettingsFlash, StageParameters};
 
 /// Who the simulated controller says it is.
 pub const IDENTITY: Identity = Identity {

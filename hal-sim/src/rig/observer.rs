@@ -1,12 +1,11 @@
 //! Looks at every tick of a run: turns what the controller and the plant know into the report's samples and moves.
 
+use crate::report::{MotionSample, Move, Sample, Trace};
 use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
 use std::f64::consts::{PI, TAU};
-
-use crate::report::{MotionSample, Move, Sample, Trace};
 
 const TURN: f64 = 4_294_967_296.0;
 /// Units of angle in an encoder count.

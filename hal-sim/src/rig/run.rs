@@ -13,6 +13,7 @@ use crate::machine::plant::{Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
 use crate::rig::client::{Client, Event};
 use crate::rig::observer::{Observer, TickRecord};
+use crate::rig::run_conditions;
 use crate::rig::script::{Line, Script};
 use drawing::Progress;
 
@@ -39,7 +40,7 @@ impl Default for RunOptions {
     /// What the command line has by default.
     fn default() -> Self {
         Self {
-            out: PathBuf::from("target/tripivot/run"),
+            out: PathBuf::from("tripivot-run"),
             every: DEFAULT_EVERY,
             seed: 1,
             mismatch_percent: 20.0,
@@ -204,6 +205,7 @@ fn simulate(
             limits,
             trace: observer.trace,
             moves: observer.moves,
+            conditions: run_conditions(options),
             wall_s: progress.finish(),
         },
         fault,

@@ -1,5 +1,4 @@
 //! `tripivot`: the command line, and what it puts together for that.
 
 pub mod cli;
-#[cfg(unix)]
 pub mod simulated;

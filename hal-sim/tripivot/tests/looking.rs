@@ -1,5 +1,4 @@
 //! Whoever looks at the page changes nothing of the control loop.
-#![cfg(unix)]
 
 use desk::web::questions;
 use firmware::gcs::Session;

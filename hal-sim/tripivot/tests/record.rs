@@ -106,6 +106,25 @@ fn a_move_from_before_its_start() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.starts_with("1500 points, 100 us apart\n"), "{text}");
+    // What it is at now, as a document.
+    let again = ["--tables", "X:1", "--points", "100", "--json", "--out"];
+    let again = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args(["record", "--connect", &served.address])
+        .args(again)
+        .arg(folder.with_file_name("document"))
+        .output()
+        .unwrap();
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+    let document: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(document["controller"], served.address);
+    assert_eq!(document["sent"], serde_json::Value::Null);
+    assert_eq!(document["points"], 100);
+    assert_eq!(
+        document["signals"][0]["name"],
+        "commanded position of X, mm"
+    );
+    let highest = document["signals"][0]["highest"].as_f64().unwrap();
+    assert!((highest - 10.0).abs() < 1e-2, "{document}");
     let (names, rows) = table(&folder);
     assert_eq!(
         names,

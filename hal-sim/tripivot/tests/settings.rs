@@ -1,5 +1,4 @@
 //! Settings over a restart of the program, and as a readable file, as a user meets them.
-#![cfg(unix)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};

@@ -223,7 +223,7 @@ mod app {
                     .service(local.session, local.command_queues, local.transmitter);
             TRACE.record_service(received, local.panel.tick() as u32);
             local.transmitter.send();
-            local.keeper.store_pending(local.panel);
+            local.keeper.store_pending(&mut **local.panel);
             if local.panel.wants_restart() {
                 restart::now();
             }

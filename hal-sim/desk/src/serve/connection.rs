@@ -1,12 +1,11 @@
 //! A client: its session, the bytes that come in and the replies that go out. Nothing here blocks.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::os::fd::{AsFd, BorrowedFd};
+use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
 use firmware::gcs::Session;
 use rustix::event::PollFlags;
+use rustix::fd::{AsFd, BorrowedFd};
 
 use super::output::{Output, Overflow};
 use super::{Controller, Notice};
@@ -20,10 +19,15 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// How much of a line is kept for notices.
 const LINE_BYTES: usize = 80;
 
+/// What a client is at: a socket, or the pseudo-terminal.
+pub(super) trait Port: Read + Write + AsFd {}
+
+impl<P: Read + Write + AsFd> Port for P {}
+
 /// A client.
 pub(super) struct Connection {
     name: String,
-    port: File,
+    port: Box<dyn Port>,
     /// A terminal stays when its client is gone.
     permanent: bool,
     session: Session,
@@ -52,7 +56,7 @@ enum ClientState {
 
 impl Connection {
     /// A client at a port that does not block.
-    pub fn new(name: String, port: File, permanent: bool, now: Instant) -> Self {
+    pub fn new(name: String, port: Box<dyn Port>, permanent: bool, now: Instant) -> Self {
         Self {
             name,
             port,
@@ -74,7 +78,7 @@ impl Connection {
         self.error = 0;
     }
 
-    /// The file to wait at.
+    /// What to wait at.
     pub fn port(&self) -> BorrowedFd<'_> {
         self.port.as_fd()
     }

@@ -17,7 +17,8 @@
 //! | `pace` | ticks from the wall clock |
 //! | `connection` | a client: its session, and bytes in and out |
 //! | `output` | replies that wait to be read, bounded |
-//! | `terminal` | the pseudo-terminal |
+//! | `terminal` | the pseudo-terminal, on Unix |
+//! | `no_terminal` | in its place elsewhere |
 //! | `notice` | what is told meanwhile |
 //! | `printer` | printing it without waiting for a terminal |
 
@@ -28,6 +29,10 @@ mod output;
 mod pace;
 mod printer;
 mod server;
+#[cfg(unix)]
+mod terminal;
+#[cfg(not(unix))]
+#[path = "no_terminal.rs"]
 mod terminal;
 
 use std::io;
@@ -45,7 +50,7 @@ pub struct ServeOptions {
     pub listen: String,
     /// Simulated seconds in a second.
     pub speed: f64,
-    /// A pseudo-terminal besides.
+    /// A pseudo-terminal besides; only Unix has any.
     pub terminal: bool,
 }
 

@@ -1,17 +1,16 @@
 //! The turns: ticks that are due, then what has come in meanwhile.
 
-use std::fs::File;
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-use super::connection::Connection;
+use super::connection::{Connection, Port};
 use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
 use super::{Controller, Notice, ServeError, ServeOptions};
@@ -64,7 +63,7 @@ impl Server {
     /// The pseudo-terminal, if there is one.
     #[must_use]
     pub fn terminal(&self) -> Option<&Path> {
-        self.terminal.as_ref().map(|terminal| &*terminal.path)
+        self.terminal.as_ref().map(Terminal::path)
     }
 
     /// Runs the controller and serves it until `stop` is set; looks at that 20 times a second at least. How well it kept to the
@@ -80,14 +79,14 @@ impl Server {
     ) -> Result<Pacing, ServeError> {
         let now = Instant::now();
         let rate_hz = controller.rate_hz() * self.options.speed;
-        // The client's end has to stay open as long as the controller's.
-        let (terminal, _client) = self.terminal.map(|t| (t.controller, t.client)).unzip();
-        let connections = terminal.map(|port| Connection::new("terminal".into(), port, true, now));
+        let terminal = self
+            .terminal
+            .map(|terminal| Connection::new("terminal".into(), terminal.into_port(), true, now));
         let mut service = Service {
             controller,
             pace: Pace::new(now, rate_hz),
             listener: self.listener,
-            connections: connections.into_iter().collect(),
+            connections: terminal.into_iter().collect(),
             accept_from: now,
             fault_tick: None,
             lost_told: None,
@@ -185,10 +184,13 @@ impl<C: Controller> Service<'_, C> {
         if Instant::now() >= self.accept_from {
             ports.push(PollFd::new(&self.listener, PollFlags::IN));
         }
-        let time = Timespec {
-            tv_sec: time.as_secs().cast_signed(),
-            tv_nsec: time.subsec_nanos().into(),
-        };
+        if ports.is_empty() {
+            // Windows takes waiting for nothing for a mistake.
+            thread::sleep(time);
+            return Ok(Vec::new());
+        }
+        // A turn's wait is short: it always fits.
+        let time = Timespec::try_from(time).unwrap_or_default();
         match poll(&mut ports, Some(&time)) {
             Ok(_) | Err(Errno::INTR) => {}
             Err(error) => return Err(error.into()),
@@ -237,9 +239,9 @@ impl<C: Controller> Service<'_, C> {
     }
 }
 
-/// The stream as a file that does not block and sends short replies at once.
-fn port(stream: TcpStream) -> io::Result<File> {
+/// The stream, which does not block and sends short replies at once.
+fn port(stream: TcpStream) -> io::Result<Box<dyn Port>> {
     stream.set_nonblocking(true)?;
     stream.set_nodelay(true)?;
-    Ok(OwnedFd::from(stream).into())
+    Ok(Box::new(stream))
 }

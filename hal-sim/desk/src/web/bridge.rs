@@ -1,7 +1,6 @@
 //! The thread that owns the line to the controller: the status for all viewers, and their requests in between.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +11,7 @@ use serde::Serialize;
 use tokio::sync::{broadcast, oneshot, watch};
 
 use super::line::{Answer, Line};
-use super::port::Endpoint;
+use super::port::{Endpoint, Port};
 use super::request::{Refusal, Wanted};
 use super::watch::{FAST, SLOW_EVERY, slow};
 
@@ -36,7 +35,7 @@ pub(super) struct Bridge {
     requests: SyncSender<Pending>,
     status: broadcast::Sender<Arc<str>>,
     hello: watch::Receiver<Arc<str>>,
-    bypass: Arc<Mutex<Option<File>>>,
+    bypass: Arc<Mutex<Option<Port>>>,
 }
 
 /// A line that waits for its turn.
@@ -133,7 +132,7 @@ struct Worker {
     incoming: Receiver<Pending>,
     status: broadcast::Sender<Arc<str>>,
     hello: watch::Sender<Arc<str>>,
-    bypass: Arc<Mutex<Option<File>>>,
+    bypass: Arc<Mutex<Option<Port>>>,
 }
 
 /// All viewers and the server are gone.
@@ -226,7 +225,7 @@ impl Worker {
         }
     }
 
-    fn set_bypass(&self, port: Option<File>) {
+    fn set_bypass(&self, port: Option<Port>) {
         *self.bypass.lock().unwrap_or_else(PoisonError::into_inner) = port;
     }
 

@@ -4,13 +4,10 @@
 //! viewer come `ERR?` and `*IDN?`, whose answer is known: what came before it is the error, and before that the answer.
 //! Another `ERR?` goes before the line, so that the error of a stop or a fault is not taken for the line's own.
 
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::time::Duration;
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-
-use super::port::Endpoint;
+use super::port::{Endpoint, Port};
 
 /// How long the controller may be silent in the middle of an answer.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -21,7 +18,7 @@ const ANSWER_BYTES: usize = 16 << 20;
 
 /// An open connection.
 pub(crate) struct Line {
-    port: File,
+    port: Port,
     received: Vec<u8>,
     /// How far it was searched for the end of an answer.
     searched: usize,
@@ -48,9 +45,7 @@ impl Line {
         };
         // Ends a line that somebody left unfinished.
         line.port.write_all(b"\n")?;
-        while line.wait(SILENCE)? {
-            line.read()?;
-        }
+        while line.receive(SILENCE)? {}
         line.forget();
         line.identity = line.ask_known(&["*IDN?"])?.remove(0);
         line.ask_known(&["ERR?"])?;
@@ -63,7 +58,7 @@ impl Line {
     }
 
     /// The same connection, to be written to past what is under way: single bytes may stand anywhere.
-    pub fn bypass(&self) -> io::Result<File> {
+    pub(super) fn bypass(&self) -> io::Result<Port> {
         self.port.try_clone()
     }
 
@@ -110,11 +105,10 @@ impl Line {
             if self.received.len() > ANSWER_BYTES {
                 return Err(io::Error::other("the controller's answer has no end"));
             }
-            if !self.wait(PATIENCE)? {
+            if !self.receive(PATIENCE)? {
                 let message = "the controller does not answer";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, message));
             }
-            self.read()?;
         }
     }
 
@@ -124,25 +118,18 @@ impl Line {
         Some(self.searched + at)
     }
 
-    fn wait(&self, time: Duration) -> io::Result<bool> {
-        let mut ports = [PollFd::new(&self.port, PollFlags::IN)];
-        let time = Timespec {
-            tv_sec: time.as_secs().cast_signed(),
-            tv_nsec: time.subsec_nanos().into(),
-        };
-        Ok(poll(&mut ports, Some(&time))? > 0)
-    }
-
-    fn read(&mut self) -> io::Result<()> {
+    /// Takes what has come, or comes within this time; whether anything has.
+    fn receive(&mut self, time: Duration) -> io::Result<bool> {
         let mut bytes = [0; 16 << 10];
-        match self.port.read(&mut bytes)? {
-            0 => Err(io::Error::new(
+        match self.port.read_within(&mut bytes, time)? {
+            None => Ok(false),
+            Some(0) => Err(io::Error::new(
                 io::ErrorKind::UnexpectedEof,
                 "the controller has closed the connection",
             )),
-            count => {
+            Some(count) => {
                 self.received.extend_from_slice(&bytes[..count]);
-                Ok(())
+                Ok(true)
             }
         }
     }

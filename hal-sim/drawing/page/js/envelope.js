@@ -38,6 +38,22 @@ export class Envelope {
   }
 }
 
+/**
+ * The value of a channel at a time: on the line from middle to middle of the stretches, and never outside the lowest and highest
+ * of the stretch that the time lies in. NaN where nothing is known.
+ */
+export function valueAt({ times, low, high }, channel, time) {
+  if (times.length === 0) return NaN;
+  const middle = (at) => ({ time: (times[Math.max(0, at - 1)] + times[at]) / 2, value: (low[channel][at] + high[channel][at]) / 2 });
+  const place = Math.min(placeOf(times, time), times.length - 1);
+  const here = middle(place);
+  const beside = middle(Math.min(Math.max(place + (time < here.time ? -1 : 1), 0), times.length - 1));
+  const gap = beside.time - here.time;
+  const share = gap === 0 ? 0 : Math.min(Math.max((time - here.time) / gap, 0), 1);
+  const value = here.value + share * (beside.value - here.value);
+  return Math.min(Math.max(value, low[channel][place]), high[channel][place]);
+}
+
 /** The first place in sorted `times` that is not before `time`. */
 export function placeOf(times, time) {
   let [low, high] = [0, times.length];

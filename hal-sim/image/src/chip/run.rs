@@ -13,10 +13,11 @@ use super::{Bench, BenchError, Divergence, Period, TickCost, Twin, elf_file};
 use crate::proof::ProofError;
 use drawing::Progress;
 use hal_sim::machine::devices::Stage;
-use hal_sim::report::Run;
+use hal_sim::report::{Conditions, Run};
 use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::observer::Observer;
 use hal_sim::rig::run::{RunOptions, stage_parameters, stuck_text};
+use hal_sim::rig::run_conditions;
 use hal_sim::rig::script::{Script, ScriptError};
 
 /// A run on the chip that came to its end, one way or another.
@@ -152,6 +153,11 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
             limits: parameters.limits,
             trace: runner.observer.trace,
             moves: runner.observer.moves,
+            conditions: Conditions {
+                machine: "simulated reference stage, controller's image on the emulated chip"
+                    .to_owned(),
+                ..run_conditions(options)
+            },
             wall_s: runner.progress.finish(),
         },
         fault,

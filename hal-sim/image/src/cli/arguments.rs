@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use tripivot::cli::VERSION;
-#[cfg(unix)]
 use tripivot::cli::stage::SimulatedStage;
 use tripivot::cli::stage::Simulation;
 
@@ -23,7 +22,6 @@ pub(super) enum Command {
     /// Run a script, or motion from a seed, on the image for the controller's chip, emulated, and compare it with the host to the bit.
     Chip(ChipRun),
     /// Let GCS clients drive the emulated chip over its serial line, one at a time, over TCP.
-    #[cfg(unix)]
     ChipServe(ChipServe),
     /// Count the instructions that parts of the library take on the emulated chip, over random states.
     Cost(CostRun),
@@ -52,7 +50,6 @@ pub(super) struct ChipRun {
 }
 
 /// The emulated chip, served.
-#[cfg(unix)]
 #[derive(Args, Clone, Debug)]
 pub(super) struct ChipServe {
     /// Address and port to listen at; port 0 takes a free one.

@@ -6,10 +6,11 @@ use std::process::ExitCode;
 use super::arguments::ChipRun;
 use super::error::CliError;
 use crate::chip::{self, ChipOutcome};
-use drawing::make_folder;
-use hal_sim::report::Run;
+use drawing::claim_folder;
+use hal_sim::report::{FILES, Run};
 use hal_sim::rig::run::{self, RunOutcome};
 use hal_sim::rig::script::Script;
+use tripivot::cli::VERSION;
 use tripivot::cli::stage::options;
 
 /// Instructions a control period has at 168 MHz.
@@ -29,8 +30,9 @@ pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
         .unwrap_or(name.as_os_str())
         .to_string_lossy();
     let options = options(&format!("chip-{stem}"), &arguments.simulation);
-    make_folder(&options.out)?;
-    let on_chip = chip::run(&script, &options)?;
+    claim_folder(&options.out, &FILES)?;
+    let mut on_chip = chip::run(&script, &options)?;
+    on_chip.run.conditions.program = format!("image {VERSION}");
     let on_host = run::run(&script, &options);
     for (line, answer) in &on_chip.answers {
         println!("{line}\n{answer}\n");

@@ -21,7 +21,6 @@ pub(super) enum CliError {
     Report(#[from] ReportError),
     #[error(transparent)]
     Script(#[from] ScriptError),
-    #[cfg(unix)]
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
     #[error(transparent)]

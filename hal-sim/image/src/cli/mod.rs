@@ -5,7 +5,6 @@
 mod arguments;
 mod chip;
 mod chip_load;
-#[cfg(unix)]
 mod chip_serve;
 mod chip_tick;
 mod cost;
@@ -40,7 +39,6 @@ pub fn main() -> ExitCode {
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Chip(chip) => chip::run(&chip),
-        #[cfg(unix)]
         Command::ChipServe(arguments) => chip_serve::run(&arguments),
         Command::Cost(arguments) => cost::run(&arguments),
         Command::ChipLoad(arguments) => chip_load::run(&arguments),

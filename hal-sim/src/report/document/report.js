@@ -30,14 +30,9 @@ const plots = [
   return plot;
 });
 
-/** The pose at the cursor: between the lowest and the highest of its bin. */
+/** The pose at the cursor, inside the lowest and highest of its stretch: what the plots say there. */
 function poseAt(time) {
-  const place = Math.min(placeOf(data.times, time), data.times.length - 1);
-  const before = Math.max(0, place - 1);
-  const gap = data.times[place] - data.times[before];
-  const share = gap > 0 ? Math.min(Math.max((time - data.times[before]) / gap, 0), 1) : 0;
-  const middle = (channel, at) => (data.low[channel][at] + data.high[channel][at]) / 2;
-  const value = (channel) => middle(channel, before) * (1 - share) + middle(channel, place) * share;
+  const value = (channel) => valueAt(data, channel, time);
   return { centre: [value(0), value(1)], deg: value(2), pivots: [value(7), value(8), value(9)] };
 }
 
@@ -92,6 +87,7 @@ onColours(() => { stale = true; });
 addEventListener("resize", () => { stale = true; });
 
 setText(byId("name"), run.name);
+setText(byId("conditions"), run.conditions);
 setText(byId("summary"), run.summary);
 setText(byId("span-text"), `${run.moves.length} moves, ${(last - first).toFixed(2)} s, ${run.ticks.toLocaleString("en")} ticks of the control loop`);
 const heads = ["", "start s", "x mm", "y mm", "θ °", "profile s", "settle ms"].map((text) => make("th", { scope: "col", textContent: text }));
@@ -102,7 +98,8 @@ byId("moves").append(make("tr", {}, ...heads), ...run.moves.map((move, index) =>
     view.show(move.start_s - room, move.end_s + room);
     view.point(move.start_s);
   });
-  const settled = move.settle_ms === null ? "never" : shown(move.settle_ms, 2);
+  const unsettled = move.never ? "never" : "no time";
+  const settled = move.settle_ms === null ? unsettled : shown(move.settle_ms, 2);
   const cells = [shown(move.start_s, 3), ...move.target.map((value) => shown(value, 3)), shown(move.end_s - move.start_s, 4), settled];
   return make("tr", {}, make("td", {}, show), ...cells.map((text) => make("td", { textContent: text })));
 }));

@@ -1,32 +1,49 @@
 //! The arguments, as clap reads them.
 
+use super::number::{whole, within};
+use super::stage::{SimulatedStage, Simulation};
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+pub(super) use controller::{Controller, RecordRun, SettingsCommand, View};
+pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, value_parser};
-
-use super::stage::{SimulatedStage, Simulation};
-
-#[cfg(unix)]
 mod controller;
 mod kinematics;
 
-#[cfg(unix)]
-pub(super) use controller::{Controller, RecordRun, SettingsCommand, View};
-pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
-
 /// Version and commit of this program.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("TRIPIVOT_COMMIT"));
+
+/// Below the help.
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 the stage faulted or never settled, a fault was missed, or the pose is out of reach; \
+    2 the command line, a file or a number is wrong.";
 
 /// Tripivot: a simulated planar XY-Theta stage under its real controller.
 ///
 /// Without a command it runs the built-in demonstration: a tour of the disk, three turns of the platform, and back.
 #[derive(Parser, Debug)]
-#[command(version = VERSION, args_conflicts_with_subcommands = true)]
+#[command(version = VERSION, after_help = EXIT_CODES, args_conflicts_with_subcommands = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) simulation: Simulation,
+    #[command(flatten)]
+    pub(super) output: RunOutput,
+}
+
+/// How a run tells what came of it.
+#[derive(Args, Clone, Copy, Debug)]
+pub(super) struct RunOutput {
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, eccentricity, settings);
+    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); moves (start_s, profile_end_s, settled_s,
+    /// settle_ms, x_mm, y_mm, theta_deg; null where the stage had not settled when the next move began or the run ended);
+    /// never_settled, how many of those had a tenth of a second for it, or more; peak_duty (0 to 1);
+    /// smallest_separation_deg; simulated_s; wall_s; answers (line, answer); fault (null without one); folder.
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 #[derive(Subcommand, Debug)]
@@ -40,23 +57,21 @@ pub(super) enum Command {
         settings: Option<PathBuf>,
         #[command(flatten)]
         simulation: Simulation,
+        #[command(flatten)]
+        output: RunOutput,
     },
     /// Run the simulated stage in real time and let GCS clients drive it, over TCP and a pseudo-terminal.
-    #[cfg(unix)]
     Serve(Serve),
     /// Watch and drive a controller that runs already, on a serial line or at a TCP address, in a browser.
-    #[cfg(unix)]
     View(View),
     /// Record signals of a controller that runs already, every tick or less often: a table and a picture.
-    #[cfg(unix)]
     Record(RecordRun),
     /// Write settings of a controller that runs already into a readable file, or bring them back from one.
-    #[cfg(unix)]
     #[command(subcommand)]
     Settings(SettingsCommand),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
-    /// Pivot angles (deg) of a pose (mm, mm, deg).
+    /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg).
     Direct(PivotRows),
@@ -64,19 +79,31 @@ pub(super) enum Command {
     Check(PoseArguments),
     /// Draw a quantity over the disk as a contour picture.
     Map(Map),
+    /// Print a shell's completions of this command line.
+    ///
+    /// For bash: tripivot completions bash > ~/.local/share/bash-completion/completions/tripivot
+    Completions {
+        /// Which shell.
+        shell: Shell,
+    },
+    /// Write the manual pages of this program and of each of its commands into a folder.
+    Man {
+        /// The folder.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
 }
 
 /// The simulated stage, served.
-#[cfg(unix)]
 #[derive(Args, Clone, Debug)]
 pub(super) struct Serve {
     /// Address and port to listen at; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50000")]
     pub(super) listen: String,
     /// Simulated seconds in a second.
-    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true, value_parser = within(SPEEDS))]
     pub(super) speed: f64,
-    /// A pseudo-terminal besides, in place of the controller's serial line.
+    /// A pseudo-terminal besides, in place of the controller's serial line; not on Windows.
     #[arg(long)]
     pub(super) pty: bool,
     /// Address and port of the page to watch and drive the stage in a browser; `off` for none [default: 127.0.0.1:8080, or a
@@ -94,42 +121,33 @@ pub(super) struct Serve {
 #[derive(Args, Clone, Debug)]
 pub(super) struct Faults {
     /// Runs with a fault; as many are run without.
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 10_000, allow_negative_numbers = true, value_parser = whole(1..=10_000_000_u32))]
     pub(super) runs: u32,
     /// Seed of the campaign.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub(super) seed: u64,
     /// Threads [default: as many as there are processors].
-    #[arg(long, value_name = "N", value_parser = jobs)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1024_usize))]
     pub(super) jobs: Option<usize>,
     /// Run the run of this seed again, alone, and tell about it.
-    #[arg(long, value_name = "SEED", conflicts_with_all = ["runs", "seed", "jobs"])]
+    #[arg(long, value_name = "SEED", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX), conflicts_with_all = ["runs", "seed", "jobs"])]
     pub(super) only: Option<u64>,
     /// Write all runs into this file, as CSV.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: runs, seed (both null with --only) and wall_s; faults, for each of them and at last for the runs without: fault, runs,
+    /// no_effect, detected, latency_median_ticks, latency_worst_ticks, deviation_worst_mm, travelled_median_mm,
+    /// travelled_worst_mm, turned_worst_deg, ended_braked, ended_released, ended_moving, overruns, overrun_worst_mm;
+    /// missed, the runs with a fault that are not as they should be, and alarms, the runs without; told, those runs one by
+    /// one, with --only both: seed, is_control, fault, tick, latched, latched_tick, latency_ticks, problem, text.
+    #[arg(long)]
+    pub(super) json: bool,
     /// No progress bar.
     #[arg(long, short)]
     pub(super) quiet: bool,
 }
 
-fn jobs(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(jobs @ 1..=1024) => Ok(jobs),
-        _ => Err("not a number from 1 to 1024".to_owned()),
-    }
-}
-
 /// Slowest and fastest: 20 ticks a second, and more than any machine computes.
-#[cfg(unix)]
 const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
-
-#[cfg(unix)]
-fn speed(text: &str) -> Result<f64, String> {
-    let speed: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if SPEEDS.contains(&speed) {
-        Ok(speed)
-    } else {
-        Err(format!("not from {} to {}", SPEEDS.start(), SPEEDS.end()))
-    }
-}

@@ -1,12 +1,11 @@
 //! What can stop a command, each in one line.
 
+use super::{BAD_REQUEST, FAILED};
+use drawing::ReportError;
+use hal_sim::report::SETTLING_S;
+use hal_sim::rig::script::ScriptError;
 use std::io;
 use std::path::PathBuf;
-
-use drawing::ReportError;
-use hal_sim::rig::script::ScriptError;
-
-use super::{BAD_REQUEST, FAILED};
 
 /// Why a command ended early.
 #[derive(Debug, thiserror::Error)]
@@ -14,13 +13,16 @@ pub(super) enum CliError {
     /// The pose, pivots or option given on the command line.
     #[error("{0}")]
     Value(String),
+    /// A pose that has no pivots.
+    #[error("{0}")]
+    OutOfReach(String),
     /// A row of standard input.
-    #[error("row {row}: {reason}")]
+    #[error("row {row}: {error}")]
     Row {
         /// Line number in the input, from 1.
         row: u64,
         /// What is wrong with it.
-        reason: String,
+        error: Box<CliError>,
     },
     #[error("cannot read standard input: {0}")]
     Input(io::Error),
@@ -37,30 +39,36 @@ pub(super) enum CliError {
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),
     #[error(transparent)]
     Script(#[from] ScriptError),
-    #[cfg(unix)]
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
-    #[cfg(unix)]
     #[error(transparent)]
     Record(#[from] desk::record::RecordError),
-    #[cfg(unix)]
     #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
-    #[cfg(unix)]
     #[error(transparent)]
     Page(#[from] desk::web::PageError),
     /// The stage faulted in a run, or refused a line.
     #[error("{0}")]
     Fault(String),
+    #[error(
+        "{never} of {moves} moves never settled, though each had {SETTLING_S} s or more before the next move or the end of the run"
+    )]
+    NeverSettled {
+        /// So many.
+        never: usize,
+        /// All moves.
+        moves: usize,
+    },
 }
 
 impl CliError {
     pub(super) fn exit_code(&self) -> u8 {
         match self {
-            Self::Fault(_) => FAILED,
-            #[cfg(unix)]
+            Self::Fault(_) | Self::OutOfReach(_) | Self::NeverSettled { .. } => FAILED,
+
+            Self::Row { error, .. } => error.exit_code(),
+
             Self::Settings(error) if error.is_failure() => FAILED,
-            #[cfg(unix)]
             Self::Record(error) if error.is_failure() => FAILED,
             _ => BAD_REQUEST,
         }

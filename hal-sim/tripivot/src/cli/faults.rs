@@ -4,41 +4,71 @@ use std::io::{self, Write};
 use std::num::NonZero;
 use std::process::ExitCode;
 use std::thread::available_parallelism;
+use std::time::Instant;
+
+use serde::Serialize;
 
 use super::arguments::Faults;
 use super::error::CliError;
+use super::json;
 use drawing::Progress;
-use hal_sim::campaign::{Campaign, Outcome, replay, table, write};
+use hal_sim::campaign::{Campaign, NAMES, Outcome, Total, replay, table, totals, write};
 
 /// Runs that are told one by one; the rest is counted.
 const TOLD: usize = 30;
 
+/// What has been run.
+struct Runs {
+    /// With a campaign: the runs with a fault, and its seed.
+    campaign: Option<(u64, u64)>,
+    wall_s: f64,
+    outcomes: Vec<Outcome>,
+}
+
+/// What a campaign is told as with `--json`.
+#[derive(Serialize)]
+struct Document<'a> {
+    runs: Option<u64>,
+    seed: Option<u64>,
+    wall_s: f64,
+    faults: Vec<Total>,
+    /// Runs with a fault that are not as they should be.
+    missed: usize,
+    /// Runs without, with an alarm.
+    alarms: usize,
+    told: Vec<Told<'a>>,
+}
+
+/// One run.
+#[derive(Serialize)]
+struct Told<'a> {
+    seed: u64,
+    is_control: bool,
+    fault: &'a str,
+    tick: u64,
+    latched: Option<&'static str>,
+    latched_tick: Option<u64>,
+    latency_ticks: Option<u64>,
+    problem: Option<String>,
+    text: String,
+}
+
 pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
-    let mut text = String::new();
-    let outcomes = match arguments.only {
-        Some(seed) => {
-            let outcomes = replay(seed);
-            text += &story(&outcomes[0]);
-            outcomes.to_vec()
-        }
-        None => campaign(arguments, &mut text),
+    let runs = match arguments.only {
+        Some(seed) => alone(seed),
+        None => campaign(arguments),
     };
     if let Some(path) = &arguments.out {
-        write(path, &outcomes).map_err(|error| {
+        write(path, &runs.outcomes).map_err(|error| {
             CliError::Value(format!("{}: cannot be written: {error}", path.display()))
         })?;
     }
-    let bad: Vec<_> = (outcomes.iter())
-        .filter(|outcome| arguments.only.is_some() || outcome.problem().is_some())
-        .collect();
-    for outcome in bad.iter().take(TOLD) {
-        text += &format!("{outcome}\n");
+    if arguments.json {
+        json::print(&runs.document())?;
+    } else {
+        (io::stdout().write_all(runs.text().as_bytes())).map_err(CliError::output)?;
     }
-    (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
-    match (outcomes.iter())
-        .filter(|outcome| outcome.problem().is_some())
-        .count()
-    {
+    match runs.wrong(false) + runs.wrong(true) {
         0 => Ok(ExitCode::SUCCESS),
         count => Err(CliError::Fault(format!(
             "{count} runs are not as they should be; --only SEED runs one again"
@@ -46,7 +76,16 @@ pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
     }
 }
 
-fn campaign(arguments: &Faults, text: &mut String) -> Vec<Outcome> {
+fn alone(seed: u64) -> Runs {
+    let begun = Instant::now();
+    Runs {
+        campaign: None,
+        outcomes: replay(seed).to_vec(),
+        wall_s: begun.elapsed().as_secs_f64(),
+    }
+}
+
+fn campaign(arguments: &Faults) -> Runs {
     let jobs = arguments
         .jobs
         .unwrap_or_else(|| available_parallelism().map_or(1, NonZero::get));
@@ -57,26 +96,73 @@ fn campaign(arguments: &Faults, text: &mut String) -> Vec<Outcome> {
     };
     let progress = Progress::new(campaign.runs, arguments.quiet);
     let outcomes = campaign.run(|runs| progress.tell(runs, "runs"));
-    let wall_s = progress.finish();
-    let count = |wanted: bool| {
-        let mut problems = outcomes
-            .iter()
-            .filter(|outcome| outcome.problem().is_some());
-        let of_them = problems.by_ref();
-        of_them
-            .filter(|outcome| outcome.is_control == wanted)
+    Runs {
+        campaign: Some((campaign.runs, campaign.seed)),
+        outcomes,
+        wall_s: progress.finish(),
+    }
+}
+
+impl Runs {
+    /// How many are not as they should be, of those without a fault or with one.
+    fn wrong(&self, is_control: bool) -> usize {
+        (self.outcomes.iter())
+            .filter(|outcome| outcome.is_control == is_control && outcome.problem().is_some())
             .count()
-    };
-    *text += &format!(
-        "{}\n{} runs with a fault, {} not as they should be; {} without, {} of them with an alarm; seed {}, {wall_s:.0} s\n",
-        table(&outcomes),
-        campaign.runs,
-        count(false),
-        campaign.runs,
-        count(true),
-        campaign.seed,
-    );
-    outcomes
+    }
+
+    /// Those that somebody has to look at: a single one in any case.
+    fn told(&self) -> impl Iterator<Item = &Outcome> {
+        let is_alone = self.campaign.is_none();
+        (self.outcomes.iter()).filter(move |outcome| is_alone || outcome.problem().is_some())
+    }
+
+    fn text(&self) -> String {
+        let mut text = match self.campaign {
+            None => story(&self.outcomes[0]),
+            Some((runs, seed)) => format!(
+                "{}\n{runs} runs with a fault, {} not as they should be; {runs} without, {} of them with an alarm; seed {seed}, {:.0} s\n",
+                table(&self.outcomes),
+                self.wrong(false),
+                self.wrong(true),
+                self.wall_s,
+            ),
+        };
+        for outcome in self.told().take(TOLD) {
+            text += &format!("{outcome}\n");
+        }
+        text
+    }
+
+    fn document(&self) -> Document<'_> {
+        Document {
+            runs: self.campaign.map(|(runs, _)| runs),
+            seed: self.campaign.map(|(_, seed)| seed),
+            wall_s: self.wall_s,
+            faults: totals(&self.outcomes),
+            missed: self.wrong(false),
+            alarms: self.wrong(true),
+            told: self.told().map(told).collect(),
+        }
+    }
+}
+
+fn told(outcome: &Outcome) -> Told<'_> {
+    let scenario = &outcome.scenario;
+    Told {
+        seed: scenario.seed,
+        is_control: outcome.is_control,
+        fault: match outcome.is_control {
+            true => "none",
+            false => NAMES[scenario.injection.index()],
+        },
+        tick: scenario.at,
+        latched: outcome.fault.map(|fault| fault.kind.text()),
+        latched_tick: outcome.fault.map(|fault| fault.tick),
+        latency_ticks: outcome.latency_ticks(),
+        problem: outcome.problem().map(|problem| problem.to_string()),
+        text: outcome.to_string(),
+    }
 }
 
 /// What a run is, for somebody who looks for the reason of its end.

@@ -1,6 +1,7 @@
 //! The command line `tripivot`: what can be asked of it, and the answers that need no simulation.
 //!
-//! Exit codes: 0 done; 1 the stage faulted, or the pose is out of reach; 2 the command line, a file or a number is wrong.
+//! Exit codes: 0 done; 1 the stage faulted or never settled, or the pose is out of reach; 2 the command line, a file or a number
+//! is wrong.
 
 mod arguments;
 mod check;
@@ -8,32 +9,33 @@ mod direct;
 mod error;
 mod faults;
 mod inverse;
+mod json;
 mod map;
-#[cfg(unix)]
+
+mod number;
+mod pages;
+
 mod record;
 mod rows;
-#[cfg(unix)]
 mod serve;
-#[cfg(unix)]
 mod settings;
-#[cfg(unix)]
 pub mod signal;
 mod simulate;
 pub mod stage;
 mod units;
-#[cfg(unix)]
+
+mod usage;
+
 mod view;
 
-use std::process::ExitCode;
-
-use clap::Parser;
-
-use arguments::{Arguments, Command};
-use error::CliError;
-
 pub use arguments::VERSION;
+use arguments::{Arguments, Command};
+use clap::Parser;
+use error::CliError;
+use std::process::ExitCode;
+pub use usage::usage;
 
-/// Exit code: something went wrong on the way of a valid request: a fault, a pose out of reach.
+/// Exit code: something went wrong on the way of a valid request: a fault, a stage that does not settle, a pose out of reach.
 pub const FAILED: u8 = 1;
 /// Exit code: the request cannot be served as it stands.
 pub const BAD_REQUEST: u8 = 2;
@@ -54,44 +56,25 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// What a program of this name says of its command line: help and version as clap prints them; an error in one line, its first
-/// paragraph.
-pub fn usage(program: &str, error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() {
-        // Nobody is left to be told when standard output is closed.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
-    }
-    let text = error.render().to_string();
-    let paragraph: Vec<&str> = (text.lines().map(str::trim))
-        .take_while(|line| !line.is_empty())
-        .collect();
-    let line = paragraph.join(" ");
-    let line = line.strip_prefix("error: ").unwrap_or(&line);
-    eprintln!("{program}: {line} (see --help)");
-    ExitCode::from(BAD_REQUEST)
-}
-
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
-        None => simulate::demonstration(&arguments.simulation),
+        None => simulate::demonstration(&arguments.simulation, arguments.output.json),
         Some(Command::Run {
             file,
             settings,
             simulation,
-        }) => simulate::script(&file, &simulation, settings.as_deref()),
-        #[cfg(unix)]
+            output,
+        }) => simulate::script(&file, &simulation, settings.as_deref(), output.json),
         Some(Command::Serve(arguments)) => serve::run(&arguments),
-        #[cfg(unix)]
         Some(Command::View(arguments)) => view::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
-        #[cfg(unix)]
         Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),
         Some(Command::Map(map)) => map::run(&map),
+        Some(Command::Completions { shell }) => pages::completions(shell),
+        Some(Command::Man { out }) => pages::man(&out),
     }
 }

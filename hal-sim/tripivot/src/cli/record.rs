@@ -1,31 +1,56 @@
 //! `tripivot record`: a record of a controller that runs already, as a table and a picture.
 
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use serde::Serialize;
+
 use super::arguments::RecordRun;
 use super::error::CliError;
+use super::json;
 use super::view::endpoint;
 use desk::record::{Order, Record, TABLES, Trigger, record};
-use drawing::make_folder;
+use drawing::claim_folder;
+
+/// The files of a record.
+const FILES: [&str; 3] = ["record.csv", "record.svg", "record.png"];
+
+/// What a record is told as with `--json`.
+#[derive(Serialize)]
+struct Document<'a> {
+    controller: String,
+    sent: Option<&'a str>,
+    points: usize,
+    period_us: f64,
+    signals: Vec<Signal<'a>>,
+    folder: String,
+}
+
+/// Where a recorded signal lies, in the unit that its name ends with.
+#[derive(Serialize)]
+struct Signal<'a> {
+    name: &'a str,
+    lowest: f64,
+    highest: f64,
+}
 
 pub(super) fn run(arguments: &RecordRun) -> Result<ExitCode, CliError> {
     let order = order(arguments)?;
-    make_folder(&arguments.out)?;
+    claim_folder(&arguments.out, &FILES)?;
     let record = record(&order)?;
     let heading = match &order.send {
         Some(line) => format!("{}: {line}", order.endpoint),
         None => order.endpoint.to_string(),
     };
     record.write(&heading, &arguments.out)?;
-    let text = summary(&record)
-        + &format!(
-            "{:<22}{}\n",
-            "table and picture in",
-            arguments.out.display()
-        );
-    (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
+    let document = document(&order, &record, &arguments.out);
+    if arguments.json {
+        json::print(&document)?;
+    } else {
+        (io::stdout().write_all(text(&document).as_bytes())).map_err(CliError::output)?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -54,16 +79,36 @@ fn order(arguments: &RecordRun) -> Result<Order, CliError> {
     })
 }
 
-/// Length of the record, and where each signal lies.
-fn summary(record: &Record) -> String {
-    let (points, period_us) = (record.rows.len(), record.period_s * 1e6);
-    let mut text = format!("{points} points, {period_us:.0} us apart\n");
-    for (column, name) in record.names.iter().enumerate() {
-        let values = record.rows.iter().map(|row| row[column]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
-        text += &format!("{name:<36}{low:>16.9} to {high:.9}\n");
+fn document<'a>(order: &'a Order, record: &'a Record, folder: &Path) -> Document<'a> {
+    let signal = |(column, name): (usize, &'a String)| {
+        let values = || record.rows.iter().map(|row| row[column]);
+        Signal {
+            name,
+            lowest: values().fold(f64::INFINITY, f64::min),
+            highest: values().fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    Document {
+        controller: order.endpoint.to_string(),
+        sent: order.send.as_deref(),
+        points: record.rows.len(),
+        period_us: record.period_s * 1e6,
+        signals: record.names.iter().enumerate().map(signal).collect(),
+        folder: folder.display().to_string(),
     }
-    text
+}
+
+/// Length of the record, where each signal lies, and where to look.
+fn text(document: &Document<'_>) -> String {
+    let (points, period_us) = (document.points, document.period_us);
+    let mut text = format!("{points} points, {period_us:.0} us apart\n");
+    for Signal {
+        name,
+        lowest,
+        highest,
+    } in &document.signals
+    {
+        text += &format!("{name:<36}{lowest:>16.9} to {highest:.9}\n");
+    }
+    text + &format!("{:<22}{}\n", "table and picture in", document.folder)
 }

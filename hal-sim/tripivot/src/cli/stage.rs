@@ -2,22 +2,24 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum, value_parser};
+use clap::{Args, ValueEnum};
 use hal_sim::machine::plant::Imperfections;
 use hal_sim::report::DEFAULT_EVERY;
 use hal_sim::rig::run::RunOptions;
 
-/// Where runs go unless `--out` says otherwise, from the current folder.
-const FOLDER: &str = "target/tripivot";
+use super::number::{whole, within};
+
+/// Before the name of a run: the folder that it goes to unless `--out` says otherwise, in the working directory.
+const FOLDER: &str = "tripivot-";
 
 /// Options of a simulation.
 #[derive(Args, Clone, Debug)]
 pub struct Simulation {
-    /// Folder for trace and picture [default: target/tripivot/<name>].
+    /// Folder for trace, pictures and report [default: tripivot-NAME in the working directory].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write every N-th tick into the trace.
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_EVERY, value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_EVERY, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     pub every: u32,
     /// What is simulated.
     #[command(flatten)]
@@ -31,13 +33,13 @@ pub struct Simulation {
 #[derive(Args, Clone, Debug)]
 pub struct SimulatedStage {
     /// Seed of the simulated noise: the same seed gives the same trace.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub seed: u64,
     /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
-    #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = mismatch_percent)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = within(-MISMATCH_LIMIT_PERCENT..=MISMATCH_LIMIT_PERCENT))]
     pub mismatch: f64,
     /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
-    #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = payload_kg)]
+    #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=PAYLOAD_LIMIT_KG))]
     pub payload: f64,
     /// Imperfections of the simulated stage to switch off.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -76,30 +78,10 @@ const MISMATCH_LIMIT_PERCENT: f64 = 80.0;
 /// What the reference stage carries at most.
 const PAYLOAD_LIMIT_KG: f64 = 5.0;
 
-fn payload_kg(text: &str) -> Result<f64, String> {
-    let kg: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=PAYLOAD_LIMIT_KG).contains(&kg) {
-        Ok(kg)
-    } else {
-        Err(format!("not between 0 and {PAYLOAD_LIMIT_KG}"))
-    }
-}
-
-fn mismatch_percent(text: &str) -> Result<f64, String> {
-    let percent: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if percent.abs() <= MISMATCH_LIMIT_PERCENT {
-        Ok(percent)
-    } else {
-        Err(format!(
-            "not from -{MISMATCH_LIMIT_PERCENT} to {MISMATCH_LIMIT_PERCENT}"
-        ))
-    }
-}
-
 /// What to do in a run called `name`.
 #[must_use]
 pub fn options(name: &str, arguments: &Simulation) -> RunOptions {
-    let default = || PathBuf::from(FOLDER).join(name);
+    let default = || PathBuf::from(format!("{FOLDER}{name}"));
     RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,

@@ -1,10 +1,9 @@
 //! Options of what talks to a controller that runs already.
 
-use std::path::PathBuf;
-
-use clap::{Args, Subcommand, value_parser};
-
+use super::super::number::{whole, within};
+use clap::{Args, Subcommand};
 use desk::record::Trigger;
+use std::path::PathBuf;
 
 /// Where a controller is that runs already.
 #[derive(Args, Clone, Debug)]
@@ -17,11 +16,11 @@ pub(in super::super) struct Controller {
         conflicts_with = "port"
     )]
     pub(in super::super) connect: String,
-    /// The serial line that the controller is at, or a pseudo-terminal.
+    /// The serial line that the controller is at (/dev/ttyUSB0, COM3), or a pseudo-terminal.
     #[arg(long, value_name = "DEVICE")]
     pub(in super::super) port: Option<PathBuf>,
-    /// Bits a second on the serial line.
-    #[arg(long, value_name = "N", default_value_t = 921_600)]
+    /// Bits a second on the serial line. On macOS a pseudo-terminal takes 0 only, which leaves its rate alone.
+    #[arg(long, value_name = "N", default_value_t = 921_600, allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     pub(in super::super) baud: u32,
 }
 
@@ -44,13 +43,13 @@ pub(in super::super) struct RecordRun {
     #[arg(long, value_name = "SOURCE:OPTION", value_delimiter = ',', default_value = "X:1,X:3,Y:1,Y:3,W:1,W:3,1:73", value_parser = recorded)]
     pub(in super::super) tables: Vec<String>,
     /// Ticks from point to point.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(1..=65_536_u32))]
     pub(in super::super) every: u32,
     /// Points of the record [default: as the controller has it].
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=u32::MAX))]
     pub(in super::super) points: Option<u32>,
     /// How many of them are from before the trigger.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole(0..=u32::MAX))]
     pub(in super::super) before: u32,
     /// What begins it: now, move, fault, rises:TABLE:VALUE or falls:TABLE:VALUE [default: move with --send, now without].
     #[arg(long, value_name = "TRIGGER", value_parser = trigger)]
@@ -59,11 +58,16 @@ pub(in super::super) struct RecordRun {
     #[arg(long, value_name = "LINE")]
     pub(in super::super) send: Option<String>,
     /// Seconds that the record may take.
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, allow_negative_numbers = true, value_parser = within(0.0..=LONGEST_S))]
     pub(in super::super) patience: f64,
     /// Folder for table and picture.
-    #[arg(long, value_name = "DIR", default_value = "target/tripivot/record")]
+    #[arg(long, value_name = "DIR", default_value = "tripivot-record")]
     pub(in super::super) out: PathBuf,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: controller; sent (null if nothing was); points; period_us; signals (name with its unit, lowest, highest); folder.
+    #[arg(long)]
+    pub(in super::super) json: bool,
     /// No progress bar.
     #[arg(long, short)]
     pub(in super::super) quiet: bool,
@@ -115,12 +119,3 @@ fn trigger(text: &str) -> Result<Trigger, String> {
 
 /// A day.
 const LONGEST_S: f64 = 86_400.0;
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=LONGEST_S).contains(&seconds) {
-        Ok(seconds)
-    } else {
-        Err(format!("not from 0 to {LONGEST_S}"))
-    }
-}

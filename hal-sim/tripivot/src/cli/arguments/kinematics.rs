@@ -4,16 +4,27 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::super::number::number;
+
 /// One pose on the command line.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseArguments {
     /// Centre along x, mm.
+    #[arg(value_parser = number)]
     pub(in super::super) x: f64,
     /// Centre along y, mm.
+    #[arg(value_parser = number)]
     pub(in super::super) y: f64,
     /// Orientation, deg, any number of turns.
+    #[arg(value_parser = number)]
     pub(in super::super) theta: f64,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: x_mm, y_mm, theta_deg; reachable; reason (null if reachable); margins (null outside the track): disk_mm,
+    /// guide_start_mm, guide_end_mm, separation_deg; separation_deg, the smallest; dexterity.
+    #[arg(long)]
+    pub(in super::super) json: bool,
 }
 
 /// One pose on the command line, or many on standard input.
@@ -21,9 +32,13 @@ pub(in super::super) struct PoseArguments {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseRows {
     /// X and Y in mm, THETA in deg.
-    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv")]
+    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
     pub(in super::super) numbers: Vec<f64>,
-    /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3. A line of headings may come first.
+    /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3.
+    ///
+    /// Empty rows and rows that begin with # are passed over. The first other row may be a header, which is three names that begin
+    /// with a letter: the output has one too then. Everything else has to be three numbers: the first row that is not ends
+    /// the command.
     #[arg(long)]
     pub(in super::super) csv: bool,
 }
@@ -33,9 +48,13 @@ pub(in super::super) struct PoseRows {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PivotRows {
     /// Angles of the pivots on the track, deg.
-    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv")]
+    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
     pub(in super::super) numbers: Vec<f64>,
-    /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta. A line of headings may come first.
+    /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta.
+    ///
+    /// Empty rows and rows that begin with # are passed over. The first other row may be a header, which is three names that begin
+    /// with a letter: the output has one too then. Everything else has to be three numbers: the first row that is not ends
+    /// the command.
     #[arg(long)]
     pub(in super::super) csv: bool,
 }
@@ -50,7 +69,7 @@ pub(in super::super) struct Map {
     #[arg(long, value_name = "FILE")]
     pub(in super::super) out: PathBuf,
     /// Orientation of the platform, deg.
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, value_parser = number)]
     pub(in super::super) theta: f64,
 }
 

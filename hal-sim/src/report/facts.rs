@@ -1,0 +1,116 @@
+//! What a run amounts to, for programs: the summary's numbers as they are serialised. Units are in the names.
+
+use serde::Serialize;
+
+use super::sample::Move;
+use super::statistics::Spread;
+use super::{Conditions, Run};
+
+/// A [`Run`]'s summary: serialise it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Facts<'a> {
+    /// What was run.
+    pub run: &'a str,
+    /// What it was made under.
+    pub conditions: &'a Conditions,
+    /// Following errors while moving.
+    pub following_error: FollowingError,
+    /// The moves in the order of time.
+    pub moves: Vec<Leg>,
+    /// How many of them never settled, though they had the time to.
+    pub never_settled: usize,
+    /// Largest magnitude of any duty, 0 to 1.
+    pub peak_duty: f64,
+    /// Smallest angle between two pivots; none without a tick.
+    pub smallest_separation_deg: f64,
+    /// Time of the last tick.
+    pub simulated_s: f64,
+    /// Wall-clock time of the simulation.
+    pub wall_s: f64,
+}
+
+/// Following errors over the moving ticks.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FollowingError {
+    /// So many.
+    pub ticks: u64,
+    /// Distance of the centre from its setpoint.
+    pub centre_um: PeakRms,
+    /// Orientation minus its setpoint.
+    pub theta_urad: PeakRms,
+    /// Measured minus setpoint of the three pivots, encoder LSB.
+    pub pivots_lsb: PeakRms,
+}
+
+/// Largest magnitude and root mean square.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PeakRms {
+    /// Largest magnitude.
+    pub peak: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+/// One move.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Leg {
+    /// When the setpoint started.
+    pub start_s: f64,
+    /// When it arrived.
+    pub profile_end_s: f64,
+    /// When the stage had settled; none if it had not when the next move began or the run ended.
+    pub settled_s: Option<f64>,
+    /// From the arrival until settled; none as above.
+    pub settle_ms: Option<f64>,
+    /// Where to, along x.
+    pub x_mm: f64,
+    /// Along y.
+    pub y_mm: f64,
+    /// The orientation.
+    pub theta_deg: f64,
+}
+
+impl From<&Spread> for PeakRms {
+    fn from(spread: &Spread) -> Self {
+        Self {
+            peak: spread.peak(),
+            rms: spread.rms(),
+        }
+    }
+}
+
+impl From<&Move> for Leg {
+    fn from(one: &Move) -> Self {
+        let [x_mm, y_mm, theta_deg] = one.target;
+        Self {
+            start_s: one.start_s,
+            profile_end_s: one.profile_end_s,
+            settled_s: one.settled_s,
+            settle_ms: one.settle_s().map(|settle_s| 1e3 * settle_s),
+            x_mm,
+            y_mm,
+            theta_deg,
+        }
+    }
+}
+
+/// The facts of a run.
+pub(super) fn facts(run: &Run) -> Facts<'_> {
+    let statistics = run.trace.statistics();
+    Facts {
+        run: &run.name,
+        conditions: &run.conditions,
+        following_error: FollowingError {
+            ticks: statistics.error_theta_urad.count(),
+            centre_um: (&statistics.error_xy_um).into(),
+            theta_urad: (&statistics.error_theta_urad).into(),
+            pivots_lsb: (&statistics.pivot_error_lsb).into(),
+        },
+        moves: run.moves.iter().map(Leg::from).collect(),
+        never_settled: run.never_settled(),
+        peak_duty: statistics.peak_duty,
+        smallest_separation_deg: statistics.separation_deg,
+        simulated_s: statistics.end_s,
+        wall_s: run.wall_s,
+    }
+}
