@@ -33,7 +33,7 @@ impl Conditions {
         } = self;
         format!(
             "{date}, {commit}, {:.0} s on {machine}",
-            taken.as_secs_f64()
+            taken.as_secs_f64().ceil()
         )
     }
 }

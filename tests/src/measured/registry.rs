@@ -66,7 +66,7 @@ pub const SECTIONS: &[Section] = &[
             "cargo test --release -p firmware --test motion_optimum lines_keep -- --nocapture",
         ),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 5,
         without: &[],
     },
     Section {
@@ -80,7 +80,7 @@ pub const SECTIONS: &[Section] = &[
             "cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
         ),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 3,
         without: &[],
     },
     Section {
@@ -92,7 +92,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_reference three_axes -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -106,7 +106,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_reference new_targets -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 10,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -118,7 +118,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_jog another_velocity -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -130,7 +130,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test motion_stream sampled -- --nocapture",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 5,
+        seconds: 1,
         without: &[],
     },
     Section {
@@ -143,7 +143,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo bench --bench settle",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 90,
+        seconds: 15,
         without: &[],
     },
     Section {
@@ -156,7 +156,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CASES=150 cargo test --release -p tests --test lost_encoder -- --nocapture",
         short: Some("cargo test --release -p tests --test lost_encoder -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 12,
         without: &[],
     },
     Section {
@@ -168,7 +168,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CASES=300 cargo test --release -p tests --test second_fault two_lost -- --nocapture",
         short: Some("cargo test --release -p tests --test second_fault two_lost -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 60,
+        seconds: 12,
         without: &[],
     },
     Section {
@@ -199,7 +199,7 @@ pub const SECTIONS: &[Section] = &[
         command: "CHANGES=1500 cargo test --release -p firmware --test store_power_cut -- --nocapture",
         short: Some("cargo test --release -p firmware --test store_power_cut -- --nocapture"),
         kind: Kind::Deterministic,
-        seconds: 120,
+        seconds: 15,
         without: &[],
     },
     Section {
@@ -224,7 +224,7 @@ pub const SECTIONS: &[Section] = &[
         command: "cargo test --release -p firmware --test exactness --test fifty_digits -- --nocapture --test-threads 1",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 20,
+        seconds: 1,
         without: &["seed "],
     },
     Section {
