@@ -14,6 +14,7 @@
 //! | `expected`, `effect` | what the controller has to say about it, and when that has passed its threshold |
 //! | `scenario` | from a seed to a run |
 //! | `run`, `watch` | one run, and who looks on |
+//! | `outcome` | what came of a run |
 //! | `truth` | what the machine really did |
 //! | `verdict` | whether the controller did what it has to |
 //! | `totals` | what the runs of each fault amount to |
@@ -22,6 +23,7 @@
 mod effect;
 mod expected;
 mod injection;
+mod outcome;
 mod rows;
 mod run;
 mod scenario;
@@ -35,8 +37,9 @@ mod watch;
 pub use effect::Effect;
 pub use expected::{Cause, Expected};
 pub use injection::{Injection, NAMES};
+pub use outcome::{End, Outcome};
 pub use rows::write;
-pub use run::{End, Outcome, run};
+pub use run::run;
 pub use scenario::Scenario;
 pub use table::table;
 pub use totals::{Total, totals};

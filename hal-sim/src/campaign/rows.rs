@@ -6,7 +6,7 @@ use std::path::Path;
 use ::csv::Writer;
 
 use super::injection::NAMES;
-use super::run::Outcome;
+use super::outcome::Outcome;
 
 const COLUMNS: [&str; 16] = [
     "seed",

@@ -48,5 +48,5 @@ fn kept() -> Vec<u8> {
         rig.keep();
     }
     assert_eq!(answers, b"0\n", "the settings are kept");
-    rig.keeper.flash().bytes().to_vec()
+    rig.settings_store.flash().bytes().to_vec()
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::injection::NAMES;
-use super::run::Outcome;
+use super::outcome::Outcome;
 use super::totals::{Total, totals};
 
 const HEAD: [&str; 2] = [

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::injection::NAMES;
-use super::run::{End, Outcome};
+use super::outcome::{End, Outcome};
 
 /// The runs with one fault, or those without. Units are in the names; medians and worsts of no run are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

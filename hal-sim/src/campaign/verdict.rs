@@ -4,7 +4,7 @@ use core::fmt;
 
 use firmware::fault::FaultKind;
 
-use super::run::Outcome;
+use super::outcome::Outcome;
 
 /// What is wrong with a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

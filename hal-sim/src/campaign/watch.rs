@@ -6,7 +6,7 @@ use firmware::mode::Mode;
 use super::effect::{Effects, Now};
 use super::expected::{Cause, MOST_EARLY};
 use super::injection::Injection;
-use super::run::{End, Outcome, Seen};
+use super::outcome::{End, Outcome, Seen};
 use super::scenario::Scenario;
 use super::truth::{Path, fastest_rad_s, overrun_mm};
 use crate::front::{Host, Wiring};

@@ -38,9 +38,9 @@ pub struct Rig<'a, F = Host> {
     /// The tick, and what it stands before.
     pub front: F,
     /// The command side.
-    pub panel: Box<Interpreter>,
+    pub interpreter: Box<Interpreter>,
     /// Keeps its settings.
-    pub keeper: SettingsStore<SettingsFlash>,
+    pub settings_store: SettingsStore<SettingsFlash>,
     /// The tick's ends of the queues.
     pub tick_queues: TickQueues<'a>,
     /// The command side's ends of the queues.
@@ -100,14 +100,14 @@ impl<'a, F: Front> Rig<'a, F> {
         flash: SettingsFlash,
         front: impl FnOnce(&Parameters) -> F,
     ) -> Self {
-        let mut keeper = SettingsStore::new(flash);
-        let (panel, fault) = started(parameters, &mut keeper);
-        let mut front = front(panel.parameters());
-        front.restart(panel.parameters(), fault);
+        let mut settings_store = SettingsStore::new(flash);
+        let (interpreter, fault) = started(parameters, &mut settings_store);
+        let mut front = front(interpreter.parameters());
+        front.restart(interpreter.parameters(), fault);
         Self {
             front,
-            panel,
-            keeper,
+            interpreter,
+            settings_store,
             tick_queues,
             command_queues,
             parameters: parameters.clone(),
@@ -128,24 +128,24 @@ impl<'a, F: Front> Rig<'a, F> {
         session: &mut Session,
         replies: &mut W,
     ) -> Result<(), W::Error> {
-        self.panel
+        self.interpreter
             .service(session, &mut self.command_queues, replies)
     }
 
     /// What the command side does with no connection there: a macro goes on.
     pub fn advance(&mut self) {
-        self.panel.advance(&mut self.command_queues);
+        self.interpreter.advance(&mut self.command_queues);
     }
 
     /// Goes on keeping settings.
     pub fn keep(&mut self) {
-        self.keeper.store_pending(&mut *self.panel);
+        self.settings_store.store_pending(&mut *self.interpreter);
     }
 
     /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
     /// start again.
     pub fn restart_if_wanted(&mut self) -> bool {
-        let wanted = self.panel.wants_restart();
+        let wanted = self.interpreter.wants_restart();
         if wanted {
             self.start();
         }
@@ -155,13 +155,13 @@ impl<'a, F: Front> Rig<'a, F> {
     /// What a reset of the chip leaves: what the tick stands before as it is, the controller started anew for this cause.
     pub fn reset(&mut self, cause: &'static str) {
         self.start();
-        self.panel.set_start_cause(cause);
+        self.interpreter.set_start_cause(cause);
     }
 
     fn start(&mut self) {
-        let (panel, fault) = started(&self.parameters, &mut self.keeper);
-        self.panel = panel;
-        self.front.restart(self.panel.parameters(), fault);
+        let (interpreter, fault) = started(&self.parameters, &mut self.settings_store);
+        self.interpreter = interpreter;
+        self.front.restart(self.interpreter.parameters(), fault);
         self.tick_queues.clear();
         self.command_queues.clear();
     }
@@ -170,9 +170,9 @@ impl<'a, F: Front> Rig<'a, F> {
 /// The command side of a controller that starts with what is kept, and the fault that it starts with.
 fn started(
     parameters: &Parameters,
-    keeper: &mut SettingsStore<SettingsFlash>,
+    settings_store: &mut SettingsStore<SettingsFlash>,
 ) -> (Box<Interpreter>, Option<FaultKind>) {
-    let mut panel = Box::new(Interpreter::new(parameters, IDENTITY));
-    let fault = keeper.restore(&mut *panel);
-    (panel, fault)
+    let mut interpreter = Box::new(Interpreter::new(parameters, IDENTITY));
+    let fault = settings_store.restore(&mut *interpreter);
+    (interpreter, fault)
 }

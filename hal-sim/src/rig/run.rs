@@ -150,10 +150,10 @@ fn simulate(
     let mut rig = Rig::simulated(&mut queues, stage, parameters, flash);
     let Parameters {
         geometry, limits, ..
-    } = *rig.panel.parameters();
+    } = *rig.interpreter.parameters();
     let mut session = Session::new();
     let mut client = Client::new(script);
-    let mut observer = Observer::new(rig.panel.parameters(), options.every);
+    let mut observer = Observer::new(rig.interpreter.parameters(), options.every);
     let mut record = TickRecord::default();
     let mut wire = Wire::default();
     let mut answers = Vec::new();

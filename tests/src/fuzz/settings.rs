@@ -33,27 +33,28 @@ pub fn run(seed: u64) {
         let at = random.index(content.len());
         content[at] = random.bits() as u8;
     }
-    let mut keeper = SettingsStore::new(SettingsFlash::holding(&content));
-    let (panel, problem) = started(&mut keeper);
-    check(&panel, problem);
-    assert_eq!(keeper.write(&panel), Ok(()));
-    let (again, problem) = started(&mut keeper);
+    let mut settings_store = SettingsStore::new(SettingsFlash::holding(&content));
+    let (interpreter, problem) = started(&mut settings_store);
+    check(&interpreter, problem);
+    assert_eq!(settings_store.write(&interpreter), Ok(()));
+    let (again, problem) = started(&mut settings_store);
     assert_eq!(problem, None);
     for parameter in PARAMETERS {
-        let [now, before] = [&again, &panel].map(|p| parameter.number(p.parameters_to_store()));
+        let [now, before] =
+            [&again, &interpreter].map(|p| parameter.number(p.parameters_to_store()));
         assert_eq!(now, before, "{:x}", parameter.id);
     }
-    assert!(again.macros().eq(panel.macros()));
+    assert!(again.macros().eq(interpreter.macros()));
 }
 
-fn started(keeper: &mut SettingsStore<SettingsFlash>) -> (Interpreter, Option<FaultKind>) {
-    let mut panel = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
-    let problem = keeper.restore(&mut panel);
-    (panel, problem)
+fn started(settings_store: &mut SettingsStore<SettingsFlash>) -> (Interpreter, Option<FaultKind>) {
+    let mut interpreter = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
+    let problem = settings_store.restore(&mut interpreter);
+    (interpreter, problem)
 }
 
-fn check(panel: &Interpreter, problem: Option<FaultKind>) {
-    let parameters = panel.parameters();
+fn check(interpreter: &Interpreter, problem: Option<FaultKind>) {
+    let parameters = interpreter.parameters();
     assert!(parameters.are_sound());
     for parameter in PARAMETERS.iter().filter(|p| !p.is_read_only()) {
         let value = parameter.number(parameters).expect("a number");
@@ -63,12 +64,12 @@ fn check(panel: &Interpreter, problem: Option<FaultKind>) {
         let within = (lowest - slack..=highest + slack).contains(&value);
         assert!(within, "{:x}: {value}", parameter.id);
     }
-    for (_, text) in panel.macros() {
+    for (_, text) in interpreter.macros() {
         assert!(text.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\n')));
     }
     if problem.is_some() {
         assert_eq!(*parameters, Parameters::REFERENCE);
-        assert_eq!(panel.macros().count(), 0);
+        assert_eq!(interpreter.macros().count(), 0);
     }
 }
 

@@ -101,9 +101,9 @@ mod app {
         trace_writer: TraceWriter,
         tick_timing: TickTiming,
         tick_queues: TickQueues<'static>,
-        panel: &'static mut Interpreter,
+        interpreter: &'static mut Interpreter,
         session: &'static mut Session,
-        keeper: SettingsStore<SettingsFlash>,
+        settings_store: SettingsStore<SettingsFlash>,
         command_queues: CommandQueues<'static>,
         receiver: Receiver,
         transmitter: Transmitter,
@@ -130,28 +130,28 @@ mod app {
         let mut core = context.core;
         let (tick_queues, command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
-        let panel = context
+        let interpreter = context
             .local
             .panel_place
             .write(Interpreter::new(&PARAMETERS, IDENTITY));
         if let Some(cause) = reset_cause.unasked() {
-            panel.set_start_cause(cause);
+            interpreter.set_start_cause(cause);
         }
         // Before anything can move.
-        let mut keeper = SettingsStore::new(flash);
-        let state = match keeper.restore(panel) {
+        let mut settings_store = SettingsStore::new(flash);
+        let state = match settings_store.restore(interpreter) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
         };
         let local = Local {
-            config: Config::new(panel.parameters()),
+            config: Config::new(interpreter.parameters()),
             state: context.local.state_place.write(state),
             trace_writer: TraceWriter::default(),
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
             tick_queues,
-            panel,
+            interpreter,
             session: context.local.session_place.write(Session::new()),
-            keeper,
+            settings_store,
             command_queues,
             receiver,
             transmitter,
@@ -203,7 +203,7 @@ mod app {
     }
 
     /// The command interface, the settings and the watchdog.
-    #[idle(local = [panel, session, keeper, command_queues, receiver, transmitter])]
+    #[idle(local = [interpreter, session, settings_store, command_queues, receiver, transmitter])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
         let mut received = 0u32;
@@ -219,12 +219,12 @@ mod app {
             local.session.set_room(local.transmitter.room());
             let Ok(()) =
                 local
-                    .panel
+                    .interpreter
                     .service(local.session, local.command_queues, local.transmitter);
-            TRACE.record_service(received, local.panel.tick() as u32);
+            TRACE.record_service(received, local.interpreter.tick() as u32);
             local.transmitter.send();
-            local.keeper.store_pending(&mut **local.panel);
-            if local.panel.wants_restart() {
+            local.settings_store.store_pending(&mut **local.interpreter);
+            if local.interpreter.wants_restart() {
                 restart::now();
             }
             watchdog::feed();

@@ -3,20 +3,13 @@
 use super::board::ChipBoard;
 use super::cost::TickCost;
 use super::period::{Action, Period, Reset};
+use super::timeline::{EARLY_NS, FIRST_TICK_NS, LATCH_NS, PERIOD_NS};
 use hal_sim::machine::devices::{BridgeState, Stage};
 use rigless::emulator::{AccessKind, Driver, HitKind, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use std::ops::ControlFlow;
 
-/// Control period.
-const PERIOD_NS: u64 = 50_000;
-/// From the start of the timers to the first tick.
-const FIRST_TICK_NS: u64 = 50_000;
-/// From latch to tick.
-pub const LATCH_NS: u64 = 15_000;
-/// The stop comes before the latch by so much, so that no instruction of the latch runs before it.
-pub const EARLY_NS: u64 = 1_000;
 /// How often to look whether the timers have been started.
 const SEARCH_NS: u64 = 5_000;
 /// A chip that has not started its timers by then never will.

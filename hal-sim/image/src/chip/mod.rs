@@ -20,6 +20,7 @@
 //! | `bench`, `driver`, `period` | the bench, its clock, and what a caller sees once a period |
 //! | `board`, `encoder`, `line` | what lies around the chip |
 //! | `run`, `serve`, `exercise/` | a script; clients over TCP; motion from a seed |
+//! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
 //! | `load` | the tick under all the load there is |
 //! | `cost`, `way`, `estimate` | what ticks take; one tick instruction by instruction; in cycles |
@@ -42,6 +43,7 @@ mod load;
 mod period;
 mod run;
 mod serve;
+mod timeline;
 mod twin;
 mod way;
 

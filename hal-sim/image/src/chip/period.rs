@@ -2,6 +2,7 @@
 
 use super::board::ChipBoard;
 use super::cost::TickCost;
+use super::timeline::{EARLY_NS, LATCH_NS};
 use hal_sim::machine::devices::{BridgeState, Stage};
 use rigless::device::ResetCause;
 use rigless::emulator::{Host, Watch};
@@ -92,7 +93,7 @@ impl Period<'_> {
     /// When the tick to come is due, ns since power on.
     #[must_use]
     pub fn tick_at_ns(&self) -> u64 {
-        self.at.0 + super::driver::LATCH_NS + super::driver::EARLY_NS
+        self.at.0 + LATCH_NS + EARLY_NS
     }
 
     /// Sends bytes to the command interface.

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use super::arguments::ChipRun;
 use super::error::CliError;
+use super::period::PERIOD_INSTRUCTIONS;
 use crate::chip::{self, ChipOutcome};
 use drawing::claim_folder;
 use hal_sim::report::{FILES, Run};
@@ -12,9 +13,6 @@ use hal_sim::rig::run::{self, RunOutcome};
 use hal_sim::rig::script::Script;
 use tripivot::cli::VERSION;
 use tripivot::cli::stage::options;
-
-/// Instructions a control period has at 168 MHz.
-pub(super) const PERIOD_INSTRUCTIONS: f64 = 8_400.0;
 
 pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
     if let Some(ticks) = arguments.ticks {

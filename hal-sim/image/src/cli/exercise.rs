@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::arguments::ChipRun;
-use super::chip::PERIOD_INSTRUCTIONS;
 use super::error::CliError;
+use super::period::PERIOD_INSTRUCTIONS;
 use crate::chip::{self, Cost, Exercise, ExerciseOptions};
 use tripivot::cli::stage::options;
 

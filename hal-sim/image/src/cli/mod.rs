@@ -11,6 +11,7 @@ mod cost;
 mod error;
 mod exercise;
 mod image_check;
+mod period;
 
 use std::process::ExitCode;
 

@@ -1,6 +1,6 @@
 //! The image's file: functions, which bytes of `.text` are instructions, the vector table, words that could be addresses.
 
-use super::code::ProofError;
+use super::error::ProofError;
 use super::step::{Decoded, Engine};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 use std::collections::BTreeMap;

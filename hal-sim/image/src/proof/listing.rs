@@ -1,7 +1,8 @@
 //! The instructions that a function can come to.
 
-use super::code::{Code, ProofError};
+use super::code::Code;
 use super::elf::Elf;
+use super::error::ProofError;
 use super::step::{Decoded, Engine};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -22,13 +22,15 @@
 
 mod code;
 mod elf;
+mod error;
 mod listing;
 mod print;
 mod safe;
 mod stack;
 mod step;
 
-pub use code::{Code, Edge, Function, ProofError};
+pub use code::{Code, Edge, Function};
+pub use error::ProofError;
 pub use listing::listing;
 pub use print::{print_proof, print_stack};
 pub use safe::{Fault, faults};

@@ -1,6 +1,7 @@
 //! The deepest stack.
 
-use super::code::{Code, ProofError};
+use super::code::Code;
+use super::error::ProofError;
 use std::collections::BTreeMap;
 
 /// How deep calls through pointers nest at the most. A GCS answer is the deepest: the interpreter calls `core::fmt::write`,

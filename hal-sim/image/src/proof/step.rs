@@ -1,6 +1,6 @@
 //! What one instruction means to the proofs.
 
-use super::code::ProofError;
+use super::error::ProofError;
 use capstone::arch::arm::{
     ArchExtraMode, ArchMode, ArmInsn, ArmInsnDetail, ArmOperand, ArmOperandType, ArmReg,
 };

@@ -1,0 +1,92 @@
+//! What came of a run, and what is seen of it while it goes on.
+
+use super::scenario::Scenario;
+use firmware::fault::Fault;
+use firmware::mode::Mode;
+use firmware::recorder::{Sample, TickObserver};
+
+/// What came of a run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What was run.
+    pub scenario: Scenario,
+    /// Whether it was run without the injection.
+    pub is_control: bool,
+    /// The tick in which what has to be latched, or has been, passed its threshold.
+    pub effect: Option<u64>,
+    /// Whether what was latched had a reason.
+    pub is_founded: bool,
+    /// The tick in which it has to be told at the latest.
+    pub deadline: Option<u64>,
+    /// What was latched first.
+    pub fault: Option<Fault>,
+    /// What ended the controlled stop of that.
+    pub worse: Option<Fault>,
+    /// The tick in which a second encoder was to be found lost, and the pivot, where the stage was still being stopped then.
+    pub second: Option<(u64, usize)>,
+    /// The tick of the event that tells of it where it is no fault.
+    pub told: Option<u64>,
+    /// Largest distance of the platform's centre from the path of its setpoint after the injection, mm.
+    pub deviation_mm: f64,
+    /// Way of the centre (mm) and angle of the platform (deg) from the fault to the end.
+    pub travelled: (f64, f64),
+    /// Deepest that a guide was pressed into its end, mm.
+    pub overrun_mm: f64,
+    /// The same where the documented reaction begins in time, on the same machine; only told for a run that has an overrun.
+    pub unavoidable_mm: f64,
+    /// How it ended.
+    pub end: End,
+    /// What the plant says of its own equations, which end where the platform is torn out of its guides.
+    pub is_torn: bool,
+}
+
+/// State at the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// No fault, and the servo is on.
+    Driven,
+    /// At rest, the bridges brake.
+    Braked,
+    /// At rest, the bridges let go.
+    Released,
+    /// Still turning when it was looked at last.
+    Moving,
+}
+
+impl End {
+    /// In a word.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Driven => "driven",
+            Self::Braked => "braked",
+            Self::Released => "released",
+            Self::Moving => "moving",
+        }
+    }
+}
+
+/// What the tick has computed that the judgement needs.
+#[derive(Default)]
+pub(super) struct Seen(Option<Sample>);
+
+impl Seen {
+    pub fn sample(&self) -> Option<&Sample> {
+        self.0.as_ref()
+    }
+}
+
+impl TickObserver for Seen {
+    fn observe(&mut self, sample: &Sample) {
+        // A fault leaves no rates: those that were asked for last count.
+        let last = self
+            .0
+            .take()
+            .map_or(sample.pivot_rates, |last| last.pivot_rates);
+        let mut sample = sample.clone();
+        if !matches!(sample.mode, Mode::Holding | Mode::Moving | Mode::Stopping) {
+            sample.pivot_rates = last;
+        }
+        self.0 = Some(sample);
+    }
+}
