@@ -13,8 +13,8 @@ use kinematics::{Angle, Pose, direct, inverse};
 const QUARTER_LSB: f64 = 2.3e-8;
 /// What is reached, so that a loss of digits is seen long before the goal.
 const PIVOT_RAD: f64 = 8.0e-9;
-const CENTRE: f64 = 8.0e-9;
-const THETA_RAD: f64 = 8.0e-9;
+const CENTRE: f64 = 6.1e-9;
+const THETA_RAD: f64 = 4.1e-9;
 const _: () = assert!(PIVOT_RAD < QUARTER_LSB && CENTRE < QUARTER_LSB && THETA_RAD < QUARTER_LSB);
 
 const TURNS: i64 = 10_000;

@@ -437,8 +437,8 @@ proptest! {
         // Back in the base frame it is still there.
         prop_assert_eq!(bench.error_after("KEN 0"), "0");
         let there = place(&mut bench, "POS?");
-        prop_assert!((there[2] - pose.2).abs() < PLACE, "{:?} {:?}", there, pose);
-        prop_assert!((there[0] - pose.0).abs() < 3e-6 && (there[1] - pose.1).abs() < 3e-6);
+        prop_assert!((there[2] - pose.2).abs() < 7.5e-8, "{:?} {:?}", there, pose);
+        prop_assert!((there[0] - pose.0).abs() < 1.9e-7 && (there[1] - pose.1).abs() < 1.9e-7);
     }
 
     /// What `VMO?` and `TRA?` answer is what `MOV` meets, with any frames: a target is taken exactly when `VMO?` says

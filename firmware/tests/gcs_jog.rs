@@ -30,19 +30,19 @@ fn theta_turns_until_it_is_told_otherwise() {
     say_all(&mut bench, &["JOG W 90"]);
     assert_eq!(bench.say("JOG? W\n\x05ONT? W\n"), "W=90\n20\nW=0\n");
     bench.run(6_000);
-    assert!((speed(&mut bench, "W") - 90.0).abs() < 1e-3);
+    assert!((speed(&mut bench, "W") - 90.0).abs() < 7.7e-7);
     // Faster, and back, without a stop.
     say_all(&mut bench, &["JOG W 300"]);
     bench.run(6_000);
-    assert!((speed(&mut bench, "W") - 300.0).abs() < 1e-3);
+    assert!((speed(&mut bench, "W") - 300.0).abs() < 7.7e-7);
     say_all(&mut bench, &["JOG W -45"]);
     bench.run(6_000);
-    assert!((speed(&mut bench, "W") + 45.0).abs() < 1e-3);
+    assert!((speed(&mut bench, "W") + 45.0).abs() < 7.7e-7);
     say_all(&mut bench, &["JOG W 0"]);
     assert_eq!(bench.say("JOG? W\n"), "W=0\n");
     bench.run_to_rest();
     let (at, target) = (bench.value("POS? W"), bench.value("MOV? W"));
-    assert!((at - target).abs() < 1e-6, "{at} {target}");
+    assert!((at - target).abs() < 5.6e-8, "{at} {target}");
     assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
 }
 
@@ -53,13 +53,13 @@ fn several_axes_at_once_each_for_itself() {
     bench.run(4_000);
     assert_eq!(bench.say("JOG? X Y W\n\x05"), "X=5 \nY=-4 \nW=60\n23\n");
     for (axis, wanted) in [("X", 5.0), ("Y", -4.0), ("W", 60.0)] {
-        assert!((speed(&mut bench, axis) - wanted).abs() < 1e-3, "{axis}");
+        assert!((speed(&mut bench, axis) - wanted).abs() < 7.7e-7, "{axis}");
     }
     // One stops, the others go on.
     say_all(&mut bench, &["JOG X 0"]);
     bench.run(4_000);
     for (axis, wanted) in [("X", 0.0), ("Y", -4.0), ("W", 60.0)] {
-        assert!((speed(&mut bench, axis) - wanted).abs() < 1e-3, "{axis}");
+        assert!((speed(&mut bench, axis) - wanted).abs() < 7.7e-7, "{axis}");
     }
     assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
 }
@@ -76,7 +76,7 @@ fn stops_and_targets_end_a_jog() {
         for axis in ["X", "W"] {
             let at = bench.value(&format!("POS? {axis}"));
             let target = bench.value(&format!("MOV? {axis}"));
-            assert!(at > 3.0 && (at - target).abs() < 1e-6, "{stop} {axis}");
+            assert!(at > 3.0 && (at - target).abs() < 5.6e-8, "{stop} {axis}");
         }
     }
     // A target of one axis: the other comes to rest as soon as it can, and does not come back.
@@ -89,7 +89,7 @@ fn stops_and_targets_end_a_jog() {
     bench.run_to_rest();
     let at = bench.value("POS? W");
     assert!(turned < at && at < turned + 10.0, "{turned} {at}");
-    assert!((bench.value("POS? X") - 10.0).abs() < 1e-6);
+    assert!((bench.value("POS? X") - 10.0).abs() < 5.6e-8);
     assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
 }
 
@@ -104,8 +104,8 @@ fn a_jog_takes_over_from_a_move() {
     say_all(&mut bench, &["JOG W 30"]);
     bench.run(10_000);
     assert!(bench.value("POS? X") < 60.0);
-    assert!((speed(&mut bench, "W") - 30.0).abs() < 1e-3);
-    assert!(speed(&mut bench, "X").abs() < 1e-3);
+    assert!((speed(&mut bench, "W") - 30.0).abs() < 7.7e-7);
+    assert!(speed(&mut bench, "X").abs() < 7.7e-7);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn the_way_ends_before_the_edge() {
     let at = bench.value("POS? X");
     assert!((29.5..=30.0).contains(&at), "{at}");
     assert_eq!(bench.say("JOG? X\n"), "X=0\n");
-    assert!((bench.value("MOV? X") - at).abs() < 1e-6);
+    assert!((bench.value("MOV? X") - at).abs() < 5.6e-8);
     say_all(&mut bench, &["JOG Y -100"]);
     bench.run_to_rest();
     let [x, y] = ["X", "Y"].map(|axis| bench.value(&format!("POS? {axis}")));
@@ -128,8 +128,8 @@ fn velocities_are_those_of_the_work_frame() {
     let mut bench = Bench::ready();
     say_all(&mut bench, &["KSW A W 90", "KEN A", "JOG X 10"]);
     bench.run(4_000);
-    assert!((speed(&mut bench, "X") - 10.0).abs() < 1e-3);
-    assert!(speed(&mut bench, "Y").abs() < 1e-3);
+    assert!((speed(&mut bench, "X") - 10.0).abs() < 7.7e-7);
+    assert!(speed(&mut bench, "Y").abs() < 7.7e-7);
     assert!(bench.tick.now.setpoint[1] > 0);
 }
 
@@ -159,7 +159,7 @@ fn what_is_refused() {
     assert_eq!(bench.error_after("JOG X 150 Y 150"), "8");
     assert_eq!(bench.say("JOG? X W\n"), "X=0 \nW=40\n");
     bench.run(2_000);
-    assert!((speed(&mut bench, "W") - 40.0).abs() < 1e-3);
+    assert!((speed(&mut bench, "W") - 40.0).abs() < 7.7e-7);
 }
 
 #[test]
@@ -203,11 +203,14 @@ fn velocities_of_single_axes() {
         fastest
     };
     let [x, y, _] = fastest(&mut bench, "MOV X 20 Y 40");
-    assert!((x - 20.0).abs() < 0.1 && (y - 40.0).abs() < 0.2, "{x} {y}");
+    assert!(
+        (x - 20.0).abs() < 1.4e-5 && (y - 40.0).abs() < 2.1e-6,
+        "{x} {y}"
+    );
     let [x, y, _] = fastest(&mut bench, "MOV Y -40");
     assert!(x == 0.0 && y > 150.0, "{y}");
     let [_, _, w] = fastest(&mut bench, "MOV W 20");
-    assert!((w - 30.0).abs() < 0.1, "{w}");
+    assert!((w - 30.0).abs() < 1.6e-3, "{w}");
     assert_eq!(bench.error_after("JOG W 31"), "8");
     say_all(&mut bench, &["JOG W 30"]);
 }

@@ -241,7 +241,7 @@ fn another_radius_is_another_travel() {
     // The same place on a larger track.
     assert_eq!(bench.error_after("SVO X 0"), "0");
     assert_eq!(bench.error_after("SPA 1 0x54500200 60"), "0");
-    assert!((bench.value("POS? X") - 48.0).abs() < 1e-6);
+    assert!((bench.value("POS? X") - 48.0).abs() < 1.5e-9);
 }
 
 #[test]

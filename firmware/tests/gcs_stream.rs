@@ -1,12 +1,10 @@
-//! Streamed targets and running waveforms by command.
+//! Streamed targets and running waveforms by command. The bounds of `worst_jump`, a change of velocity in a tick, are what there is and
+//! a tenth more.
 
 mod gcs_bench;
 
 use firmware::mode::Mode;
 use gcs_bench::Bench;
-
-/// Largest change of velocity in a tick: 7,200 deg/s^2 at 20 kHz, in rad/s.
-const SMOOTH: f32 = 6.5e-3;
 
 fn say_all(bench: &mut Bench, lines: &[&str]) {
     for line in lines {
@@ -93,18 +91,18 @@ fn streamed_targets_are_followed_and_the_end_is_quiet() {
             .map(|late| (late, off(late)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap();
-        assert!(least < 0.05, "{ms} ms: {late} ticks late, {least} mm off");
-        assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+        assert!(least < 0.0050, "{ms} ms: {late} ticks late, {least} mm off");
+        assert!(bench.tick.worst_jump < 4.9e-4, "{}", bench.tick.worst_jump);
         bench.run_to_rest();
         assert_eq!(bench.say("ERR?\n"), "0\n");
         let [x, y, w] = circle(3.0);
         for (axis, value) in [("X", x), ("Y", y), ("W", w)] {
-            assert!((bench.value(&format!("POS? {axis}")) - value).abs() < 1e-6);
-            assert!((bench.value(&format!("MOV? {axis}")) - value).abs() < 1e-6);
+            assert!((bench.value(&format!("POS? {axis}")) - value).abs() < 6.2e-8);
+            assert!((bench.value(&format!("MOV? {axis}")) - value).abs() < 6.2e-8);
         }
         // And once more from there.
         let path = stream(&mut bench, period, 20, |_| [x, y, w]);
-        assert!((path.last().unwrap()[0] - x).abs() < 1e-6);
+        assert!((path.last().unwrap()[0] - x).abs() < 6.2e-8);
     }
 }
 
@@ -119,11 +117,11 @@ fn a_stream_that_dries_up_stops_and_says_so() {
     for connection in [0, other] {
         assert_eq!(bench.say_to(connection, "ERR?\n"), "220\n");
     }
-    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
-    assert!((bench.value("MOV? X") - bench.value("POS? X")).abs() < 1e-6);
+    assert!(bench.tick.worst_jump < 1.63e-3, "{}", bench.tick.worst_jump);
+    assert!((bench.value("MOV? X") - bench.value("POS? X")).abs() < 6.2e-8);
     say_all(&mut bench, &["SPA 1 0x19001900 0", "MOV X 0 Y 0 W 0"]);
     bench.run_to_rest();
-    assert!(bench.value("POS? X").abs() < 1e-6);
+    assert!(bench.value("POS? X").abs() < 6.2e-8);
 }
 
 #[test]
@@ -166,7 +164,7 @@ fn a_stream_that_asks_for_too_much_stops() {
     });
     bench.run_to_rest();
     assert_eq!(bench.say("ERR?\n"), "8\n");
-    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+    assert!(bench.tick.worst_jump < 8.3e-6, "{}", bench.tick.worst_jump);
 }
 
 #[test]
@@ -182,9 +180,9 @@ fn stops_and_jogs_in_a_stream() {
         assert_eq!(bench.error_after(stop), "10");
         bench.run_to_rest();
         assert_eq!(bench.say("ERR?\n"), "0\n");
-        assert!(bench.tick.worst_jump < 2.0 * SMOOTH);
+        assert!(bench.tick.worst_jump < 5.9e-3);
         let [at, target] = ["POS? X", "MOV? X"].map(|query| bench.value(query));
-        assert!((at - target).abs() < 1e-6);
+        assert!((at - target).abs() < 6.2e-8);
     }
 }
 
@@ -239,14 +237,14 @@ fn waves_run_on_their_path_from_rest_to_rest() {
             break;
         }
     }
-    assert!(off < 1e-3, "{off} mm off the circle");
+    assert!(off < 2.72e-5, "{off} mm off the circle");
     // Three cycles, but for the last point, which is the first.
     let turns = turned.abs() / std::f64::consts::TAU;
-    assert!((turns - 2.999).abs() < 1e-4, "{turns}");
+    assert!((turns - 2.999).abs() < 1e-10, "{turns}");
     assert_eq!(bench.say("\x09\x05ERR?\n"), "0\n0\n0\n");
-    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+    assert!(bench.tick.worst_jump < 2.2e-3, "{}", bench.tick.worst_jump);
     let [at, target] = ["POS? X", "MOV? X"].map(|query| bench.value(query));
-    assert!((at - target).abs() < 1e-6);
+    assert!((at - target).abs() < 6.2e-8);
 }
 
 #[test]
@@ -263,7 +261,7 @@ fn waves_without_end_are_stopped() {
         assert_eq!(bench.say("\x09"), "0\n");
         bench.run_to_rest();
         assert_eq!(bench.say("ERR?\n"), "0\n");
-        assert!(bench.tick.worst_jump < 2.0 * SMOOTH);
+        assert!(bench.tick.worst_jump < 7.6e-3);
         say_all(&mut bench, &["MOV X 0 Y 0 W 0"]);
         bench.run_to_rest();
     }
@@ -295,7 +293,7 @@ fn waves_that_can_not_be_are_refused() {
     );
     bench.run_to_rest();
     assert_eq!(bench.say("ERR?\n\x09"), "8\n0\n");
-    assert!(bench.tick.worst_jump < SMOOTH, "{}", bench.tick.worst_jump);
+    assert!(bench.tick.worst_jump < 2.2e-3, "{}", bench.tick.worst_jump);
     for line in ["WTR 0 9 0", "WTR 0 2001 0"] {
         assert_eq!(bench.error_after(line), "17", "{line}");
     }

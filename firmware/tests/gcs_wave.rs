@@ -21,7 +21,7 @@ fn values(shape: &Shape, points: core::ops::Range<u32>) -> Vec<f64> {
 fn assert_near(values: &[f64], expected: &[f64]) {
     assert_eq!(values.len(), expected.len());
     for (value, expected) in values.iter().zip(expected) {
-        assert!((value - expected).abs() < 1e-12, "{value} {expected}");
+        assert!((value - expected).abs() < 1e-14, "{value} {expected}");
     }
 }
 
@@ -46,14 +46,14 @@ fn rounded_ends_are_as_fast_as_the_middle_and_symmetric() {
     let values = values(&line, 0..101);
     // Speed grows evenly to that of the middle: 10 over (100 - 20) points.
     for point in 20..80 {
-        assert!((values[point + 1] - values[point] - 0.125).abs() < 1e-12);
+        assert!((values[point + 1] - values[point] - 0.125).abs() < 1e-14);
     }
     for point in 1..20 {
         let bend = values[point + 1] - 2.0 * values[point] + values[point - 1];
-        assert!((bend - 0.125 / 20.0).abs() < 1e-12, "{point}: {bend}");
+        assert!((bend - 0.125 / 20.0).abs() < 1e-14, "{point}: {bend}");
     }
     for (point, value) in values.iter().enumerate() {
-        assert!((value + values[100 - point] - 14.0).abs() < 1e-12);
+        assert!((value + values[100 - point] - 14.0).abs() < 1e-14);
     }
 }
 
@@ -81,7 +81,7 @@ fn ramps_and_sines_turn_at_their_centre() {
     };
     for (point, value) in values(&sine, 0..9).into_iter().enumerate() {
         let phase = std::f64::consts::TAU * point as f64 / 8.0;
-        assert!((value - (7.0 - 5.0 * phase.cos())).abs() < 1e-12, "{point}");
+        assert!((value - (7.0 - 5.0 * phase.cos())).abs() < 1e-14, "{point}");
     }
 }
 

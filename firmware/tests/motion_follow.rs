@@ -63,7 +63,7 @@ proptest! {
             ];
             for (step, rate) in step.iter().zip(rates) {
                 // Rounding to units at both ends; the jerk's part of a step is under one at the highest jerk.
-                prop_assert!((step - rate).abs() < 2.5, "{step} units in a tick, {rate} by the rates");
+                prop_assert!((step - rate).abs() < 1.29, "{step} units in a tick, {rate} by the rates");
             }
             before = now;
         }

@@ -149,6 +149,6 @@ fn a_line_of_a_minute_is_slowed_where_it_has_to_be() {
             .map(|axes| off_line(axes, &from, &to))
             .fold(0.0, f64::max);
         println!("{turns} turns: {ratio:.4} of the bound, {off:.1} units off the line");
-        assert!(ratio < 1.1 && off < 10.0);
+        assert!(ratio < 1.1 && off < 0.54);
     }
 }

@@ -123,7 +123,7 @@ proptest! {
             let wanted = force(&parameters.platform, q, v, a, k);
             // Forces reach 60 N, torques 5 N m; an f32 keeps seven digits of what they are made of.
             let unit = if k < 2 { 1.0 / RADIUS_M } else { 1.0 };
-            prop_assert!((work - wanted).abs() < 2e-5 * unit, "coordinate {k}: {work} for {wanted}");
+            prop_assert!((work - wanted).abs() < 2.2e-6 * unit, "coordinate {k}: {work} for {wanted}");
         }
     }
 
@@ -149,17 +149,17 @@ fn presliding_follows_dahl() {
         deflection = contact.advance(1e-3);
     }
     let z0 = 1.0 - (-1.5_f32).exp();
-    assert!((deflection - z0).abs() < 1e-3, "{deflection} for {z0}");
+    assert!((deflection - z0).abs() < 2.2e-4, "{deflection} for {z0}");
     for _ in 0..700 {
         deflection = contact.advance(-1e-3);
     }
     let z1 = -1.0 + (1.0 + z0) * (-0.7_f32).exp();
-    assert!((deflection - z1).abs() < 2e-3, "{deflection} for {z1}");
+    assert!((deflection - z1).abs() < 2.3e-4, "{deflection} for {z1}");
     for _ in 0..20_000 {
         deflection = contact.advance(-1e-3);
     }
     // As near as a step of a thousandth can be told from none in an f32.
-    assert!((deflection + 1.0).abs() < 2e-4, "{deflection}");
+    assert!((deflection + 1.0).abs() < 9.9e-5, "{deflection}");
 }
 
 #[test]
