@@ -11,11 +11,9 @@ use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
 use crate::random::Random;
 use crate::rig::{ControllerMemory, Rig};
-use firmware::fault::Fault;
 use firmware::gcs::{START_CAUSES, Session};
 use firmware::mode::Mode;
 use firmware::queues::Command;
-use firmware::recorder::{Sample, TickObserver};
 
 /// Ticks from one sign of life of the host to the next.
 const HEARTBEAT_EVERY: u64 = 200;
