@@ -55,10 +55,10 @@ impl Bench {
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
         // A test has a few of them.
-        let queues = ControllerMemory::endless();
+        let memory = ControllerMemory::endless();
         let flash = SettingsFlash::in_memory();
         Self {
-            rig: Rig::simulated(queues, stage, &Parameters::REFERENCE, flash),
+            rig: Rig::simulated(memory, stage, &Parameters::REFERENCE, flash),
             outputs: Outputs::default(),
             session: Session::new(),
             record: TickRecord::default(),

@@ -33,8 +33,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     } else {
         SettingsFlash::in_memory()
     };
-    let mut queues = ControllerMemory::new();
-    let mut rig = Rig::simulated(&mut queues, &scenario.stage, &scenario.parameters, flash);
+    let mut memory = ControllerMemory::new();
+    let mut rig = Rig::simulated(&mut memory, &scenario.stage, &scenario.parameters, flash);
     rig.front.stage.set_pose_at_rest(scenario.start);
     let mut session = Session::new();
     let mut flooding = Session::new();

@@ -35,9 +35,9 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 
 fn kept() -> Vec<u8> {
     let parameters = Parameters::REFERENCE;
-    let mut queues = ControllerMemory::new();
+    let mut memory = ControllerMemory::new();
     let (stage, flash) = (StageParameters::REFERENCE, SettingsFlash::in_memory());
-    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
+    let mut rig = Rig::simulated(&mut memory, &stage, &parameters, flash);
     let mut session = Session::new();
     let mut answers = Vec::new();
     session.receive(LINES);

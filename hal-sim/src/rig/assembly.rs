@@ -69,7 +69,7 @@ impl ControllerMemory {
         self.queues.split_with_retained(&self.retained_memory)
     }
 
-    /// Queues that live as long as the process: some kilobytes each time.
+    /// Memory that lives as long as the process: some kilobytes each time.
     #[must_use]
     pub fn endless() -> &'static mut Self {
         Box::leak(Box::new(Self::new()))

@@ -146,8 +146,8 @@ fn simulate(
     options: &RunOptions,
     flash: SettingsFlash,
 ) -> RunOutcome {
-    let mut queues = ControllerMemory::new();
-    let mut rig = Rig::simulated(&mut queues, stage, parameters, flash);
+    let mut memory = ControllerMemory::new();
+    let mut rig = Rig::simulated(&mut memory, stage, parameters, flash);
     let Parameters {
         geometry, limits, ..
     } = *rig.interpreter.parameters();

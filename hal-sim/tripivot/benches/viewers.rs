@@ -66,8 +66,8 @@ mod table {
         let done = Arc::new(AtomicBool::new(false));
         thread::scope(|scope| {
             let served = scope.spawn(|| {
-                let mut queues = ControllerMemory::new();
-                let mut stage = Simulated::new(&mut queues, &options, SettingsFlash::in_memory());
+                let mut memory = ControllerMemory::new();
+                let mut stage = Simulated::new(&mut memory, &options, SettingsFlash::in_memory());
                 server
                     .run(&mut stage, &stop, &mut |_| {})
                     .expect("a server")

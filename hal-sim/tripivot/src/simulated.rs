@@ -18,13 +18,13 @@ impl<'a> Simulated<'a> {
     /// The stage that these options describe, whose controller keeps its settings in this flash.
     #[must_use]
     pub fn new(
-        queues: &'a mut ControllerMemory,
+        memory: &'a mut ControllerMemory,
         options: &RunOptions,
         flash: SettingsFlash,
     ) -> Self {
         let parameters = controller_parameters(options);
         Self {
-            rig: Rig::simulated(queues, &stage_parameters(options), &parameters, flash),
+            rig: Rig::simulated(memory, &stage_parameters(options), &parameters, flash),
             rate_hz: parameters.limits.rate_hz,
         }
     }

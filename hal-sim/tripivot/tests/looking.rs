@@ -25,9 +25,9 @@ const DRIVEN: &[(u64, &str)] = &[
 fn run(viewers: usize, lines: &str) -> (RunningHash, usize) {
     let options = RunOptions::default();
     let parameters = controller_parameters(&options);
-    let mut queues = ControllerMemory::new();
+    let mut memory = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
-    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
+    let mut rig = Rig::simulated(&mut memory, &stage, &parameters, flash);
     let mut client = Session::new();
     let mut looking: Vec<_> = (0..viewers).map(|_| Session::new()).collect();
     let (mut hash, mut replies, mut seen) = (RunningHash::default(), Vec::new(), Vec::new());

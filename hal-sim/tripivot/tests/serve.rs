@@ -45,8 +45,8 @@ impl Served {
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
             let mut say = |notice| drop(say.send(notice));
-            let mut queues = ControllerMemory::new();
-            let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
+            let mut memory = ControllerMemory::new();
+            let mut stage = Simulated::new(&mut memory, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut say).unwrap()
         });
         Self {

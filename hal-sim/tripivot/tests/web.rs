@@ -42,8 +42,8 @@ impl Stage {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
         let thread = thread::spawn(move || {
-            let mut queues = ControllerMemory::new();
-            let mut stage = Simulated::new(&mut queues, &run, SettingsFlash::in_memory());
+            let mut memory = ControllerMemory::new();
+            let mut stage = Simulated::new(&mut memory, &run, SettingsFlash::in_memory());
             server.run(&mut stage, &stopped, &mut drop).unwrap();
         });
         Self {

@@ -50,9 +50,9 @@ fn exercise(lines: &Script) -> u32 {
         ..RunOptions::default()
     };
     let parameters = controller_parameters(&options);
-    let mut queues = ControllerMemory::new();
+    let mut memory = ControllerMemory::new();
     let (stage, flash) = (stage_parameters(&options), SettingsFlash::in_memory());
-    let mut rig = Rig::simulated(&mut queues, &stage, &parameters, flash);
+    let mut rig = Rig::simulated(&mut memory, &stage, &parameters, flash);
     let (mut session, mut client) = (Session::new(), Client::new(lines));
     let (mut patience, mut record) = (Patience::default(), TickRecord::default());
     let (mut to_client, mut to_stage) = (Vec::new(), Vec::new());

@@ -22,8 +22,8 @@ const OFF: &str = "off";
 pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     let flash = (arguments.settings.as_deref())
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
-    let mut queues = ControllerMemory::new();
-    let mut stage = Simulated::new(&mut queues, &stage_options(&arguments.stage), flash);
+    let mut memory = ControllerMemory::new();
+    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage), flash);
     let server = Server::bind(ServeOptions {
         listen: arguments.listen.clone(),
         speed: arguments.speed,
