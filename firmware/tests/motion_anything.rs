@@ -109,17 +109,10 @@ impl Course {
         let mut worst = Worst::default();
         let end = worst.walk_ends(next, start, &self.constraints, MOST);
         let before = Worst::of(start, &self.constraints);
-        if let Command::Stop(_) = command {
-            // It has no limits but the pivots', and the jerk that it is granted.
-            worst.speed = 0.0;
-            worst.acceleration = 0.0;
-            worst.jerk /= LIMITS.stop_factor.powi(2);
-        } else {
-            // What an urgent stop has left over a limit can only be left.
-            let within = |share: f64, before: f64| if share <= before { 0.0 } else { share };
-            worst.speed = within(worst.speed, before.speed);
-            worst.acceleration = within(worst.acceleration, before.acceleration);
-        }
+        let worst = match command {
+            Command::Stop(_) => worst.of_a_stop(&self.constraints),
+            _ => worst.left_with(&before),
+        };
         prop_assert!(
             worst.is_kept_but_for_a_thousandth(),
             "{command:?} {worst:?}\nfrom {before:?} {start:?}\n{next:?}\non {:?}",

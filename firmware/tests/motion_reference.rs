@@ -7,64 +7,13 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisLimits, AxisState, JERK_STEP, Limits, Plan, Position, plan_line, plan_retarget,
-    synchronised,
+    AxisLimits, AxisState, JERK_STEP, Plan, plan_line, plan_retarget, synchronised,
 };
 use motion_bench::exact::ends_at_rest;
 use motion_bench::random::Random;
+use motion_bench::reference::{Reference, per_axis};
 use motion_bench::setting::setting;
 use motion_bench::*;
-use rsruckig::prelude::*;
-
-/// Speed, acceleration and jerk of an axis: 2^-72 units and ticks.
-type AxisMost = [f64; 3];
-
-/// The limits of x, y and theta, those of x and y as a part of the path's.
-fn per_axis(limits: &Limits, part: f64) -> [AxisMost; 3] {
-    let tick = 1.0 / limits.rate_hz;
-    let axis = |unit: f64, [v, a, j]: [f64; 3]| {
-        [v * tick, a * tick.powi(2), j * tick.powi(3)].map(|limit| limit * unit * AXIS_UNIT)
-    };
-    let way = axis(
-        part / GEOMETRY.radius_mm,
-        [
-            limits.speed_mm_s,
-            limits.acceleration_mm_s2,
-            limits.jerk_mm_s3,
-        ],
-    );
-    let turn = axis(
-        1.0 / 360.0,
-        [
-            limits.turn_speed_deg_s,
-            limits.turn_acceleration_deg_s2,
-            limits.turn_jerk_deg_s3,
-        ],
-    );
-    [way, way, turn]
-}
-
-/// The reference's synchronised duration in ticks; `None` where it finds none.
-fn reference(axes: &[AxisState; 3], to: &Position, limits: &[AxisMost; 3]) -> Option<f64> {
-    // Times in thousands of ticks: it takes what is closer than 1e-8 for the same.
-    const LONG: f64 = 1_000.0;
-    let mut input = InputParameter::<3>::new(None);
-    for (i, axis) in axes.iter().enumerate() {
-        let scaled = |value: f64, power: i32| value / AXIS_UNIT * LONG.powi(power);
-        let way = (i128::from(to[i]) << 40) - axis.position;
-        input.target_position[i] = scaled(way as f64, 0);
-        input.current_velocity[i] = scaled(axis.velocity as f64, 1);
-        input.current_acceleration[i] = scaled(axis.acceleration as f64, 2);
-        let [v, a, j] = limits[i];
-        input.max_velocity[i] = scaled(v, 1);
-        input.max_acceleration[i] = scaled(a, 2);
-        input.max_jerk[i] = scaled(j, 3);
-    }
-    let mut trajectory = Trajectory::new(None);
-    let mut ruckig = Ruckig::<3, ThrowErrorHandler>::new(None, 0.001);
-    ruckig.calculate(&input, &mut trajectory).ok()?;
-    Some(trajectory.get_duration() * LONG)
-}
 
 /// Ticks in which the tick itself plays a plan, which has to end at rest.
 fn played(plan: &Plan, start: &[AxisState; 3]) -> f64 {
@@ -141,8 +90,8 @@ fn three_axes_take_as_long_as_the_reference() {
             plan.nudge.iter().all(|nudge| nudge.abs() < 1 << 30),
             "{plan:?}"
         );
-        if let Some(theirs) = reference(&axes, &end, &limits) {
-            ratios.push(played(&plan, &axes) / theirs);
+        if let Some(theirs) = Reference::new(&axes, &end, &limits) {
+            ratios.push(played(&plan, &axes) / theirs.ticks());
         }
     }
     println!("{none} not at all");
@@ -180,8 +129,8 @@ fn new_targets_in_motion_beside_the_reference() {
             let ticks = played(&next, &start);
             for (ratios, part) in ratios.iter_mut().zip([0.5_f64.sqrt(), 1.0]) {
                 let limits = per_axis(&constraints.limits, part);
-                if let Some(theirs) = reference(&start, &other, &limits) {
-                    ratios.push(ticks / theirs);
+                if let Some(theirs) = Reference::new(&start, &other, &limits) {
+                    ratios.push(ticks / theirs.ticks());
                 }
             }
         }

@@ -1,5 +1,5 @@
 //! Random states of the reference stage, over which the controller's cost is counted (`cargo cost`, on the chip) and
-//! timed (`cargo bench -p firmware-cost`, on the host).
+//! timed (`cargo bench -p firmware-cost --bench planning`, on the host).
 //!
 //! | module | idea |
 //! |---|---|

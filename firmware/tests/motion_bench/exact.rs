@@ -178,6 +178,22 @@ impl Worst {
         axes
     }
 
+    /// Of a stop, which has no limits but the pivots' and the jerk that an urgent one is granted.
+    pub fn of_a_stop(mut self, constraints: &Constraints) -> Self {
+        self.speed = 0.0;
+        self.acceleration = 0.0;
+        self.jerk /= constraints.limits.stop_factor.powi(2);
+        self
+    }
+
+    /// Of a plan that was left with `before`: what an urgent stop has left over a limit can only be left.
+    pub fn left_with(mut self, before: &Self) -> Self {
+        let within = |share: f64, before: f64| if share <= before { 0.0 } else { share };
+        self.speed = within(self.speed, before.speed);
+        self.acceleration = within(self.acceleration, before.acceleration);
+        self
+    }
+
     /// Parts of the limits: speed, acceleration, jerk, the pivots' rate and acceleration.
     pub fn shares(&self) -> [f64; 5] {
         [

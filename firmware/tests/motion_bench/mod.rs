@@ -4,6 +4,7 @@
 pub mod constraints;
 pub mod exact;
 pub mod random;
+pub mod reference;
 pub mod setting;
 pub mod streaming;
 

@@ -110,6 +110,21 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "retarget",
+        title: "New targets in motion, by what is left for them",
+        group: Group::Motion,
+        about: "Duration of the way to a new target over rsruckig's within the square, a stop and a line from there counted in where the \
+                stage has to stop first: out of lines, early ones, for corrections of the target, out of stops, jogs and other retargets, \
+                about other centres of rotation. Then the swing of the speed when a target that goes along a straight path is renewed \
+                every 20 ms. Every plan is walked tick by tick against the exact limits. \"Refused\" are targets to which no straight \
+                line leads from where the stage has stopped; \"too slow\" is rsruckig where the square is too slow for the path.",
+        command: "CHECK=1 STATES=10000 cargo bench -p firmware-cost --bench retarget",
+        short: Some("CHECK=1 cargo bench -p firmware-cost --bench retarget"),
+        kind: Kind::Deterministic,
+        seconds: 150,
+        without: &[],
+    },
+    Section {
         name: "jogs",
         title: "Velocities in motion that need a stop first",
         group: Group::Motion,

@@ -1,4 +1,4 @@
-//! What planning and following cost on this machine, beside rsruckig: `cargo bench -p firmware-cost`.
+//! What planning and following cost on this machine, beside rsruckig: `cargo bench -p firmware-cost --bench planning`.
 //!
 //! Both are given the same random states, those of `cargo cost`, which counts instructions on the chip. They are asked
 //! in turn, some states at a time, again and again, and for each state the fastest counts: what disturbs a timing only
