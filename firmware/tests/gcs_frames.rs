@@ -299,18 +299,44 @@ fn the_centre_of_rotation() {
     assert_near(place(&mut bench, "POS?"), [5.0, -3.0, 810.0]);
     // R p = (-10, 20): the point stays at (25, 7).
     assert_near(platform(&bench), [35.0, -13.0, 810.0]);
-    for line in ["SPI R 0", "SPI T 0"] {
-        assert_eq!(bench.error_after(line), "9", "{line}");
-    }
+    // It lies in the platform's own axes: at any orientation it can be set, and nothing moves. X and Y are those of another
+    // point then, which lies at (25, -13).
+    say_all(&mut bench, &["SPI R 0 T 0"]);
+    assert_eq!(bench.say("SPI?\n"), "R=0 \nS=10 \nT=0\n");
+    assert_near(platform(&bench), [35.0, -13.0, 810.0]);
+    assert_near(place(&mut bench, "POS?"), [25.0, -23.0, 810.0]);
+    assert_near(place(&mut bench, "MOV?"), [25.0, -23.0, 810.0]);
     say_all(&mut bench, &["MOV W 0"]);
     bench.run_to_rest();
-    say_all(&mut bench, &["SPI S 0"]);
+    assert_near(place(&mut bench, "POS?"), [25.0, -23.0, 0.0]);
+    assert_near(platform(&bench), [25.0, -23.0, 0.0]);
+    say_all(&mut bench, &["SPI R 20 S 0"]);
     assert_eq!(bench.say("SPI?\n"), "R=20 \nS=0 \nT=0\n");
-    assert_near(platform(&bench), [5.0, -3.0, 0.0]);
+    assert_eq!(bench.error_after("SPI T 1"), "17");
+    assert_near(place(&mut bench, "POS?"), [25.0, -23.0, 0.0]);
     // It counts beside a directed frame, not beside a tool.
     say_all(&mut bench, &["KSD D X 1", "KEN D", "KSW A", "KEN A"]);
     assert_eq!(bench.say("SPI? R\n"), "R=0\n");
-    assert_near(place(&mut bench, "POS?"), [5.0, -3.0, 0.0]);
+    assert_near(place(&mut bench, "POS?"), [25.0, -23.0, 0.0]);
+}
+
+/// The platform stays where it is to the unit, wherever it stands and whatever point is chosen.
+#[test]
+fn another_centre_of_rotation_moves_nothing() {
+    let mut bench = Bench::new();
+    bench.tick.place(12.0, -7.0, 0.000_002);
+    say_all(&mut bench, &["FRF"]);
+    for target in ["MOV X 12 Y -7 W 0", "MOV W 33", "MOV X 5 Y 20 W -721.5"] {
+        say_all(&mut bench, &[target]);
+        bench.run_to_rest();
+        let now = &bench.tick.now;
+        let before = now.centre.to_platform(&now.setpoint);
+        for line in ["SPI R 20 S 10", "SPI R -35", "SPI R 0 S 0"] {
+            say_all(&mut bench, &[line]);
+            let now = &bench.tick.now;
+            assert_eq!(now.centre.to_platform(&now.setpoint), before, "{line}");
+        }
+    }
 }
 
 #[test]
@@ -324,6 +350,11 @@ fn soft_limits_do_not_mind_the_centre_of_rotation() {
     assert_near(place(&mut bench, "POS?"), [10.0, 0.0, 0.0]);
     say_all(&mut bench, &["MOV X 0"]);
     bench.run_to_rest();
+    // Where the platform is turned, X is that of another point, and may lie outside.
+    say_all(&mut bench, &["MOV W 90"]);
+    bench.run_to_rest();
+    assert_eq!(bench.error_after("SPI R 0"), "27");
+    assert_eq!(bench.say("SPI? R\n"), "R=50\n");
     // A tool's point is far outside them, in the base frame.
     say_all(&mut bench, &["KST T X 50"]);
     assert_eq!(bench.error_after("KEN T"), "27");

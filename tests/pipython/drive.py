@@ -276,9 +276,18 @@ class Drive(Programs):
         self.assertEqual(self.stage.qSPI(), {"R": 20, "S": 10, "T": 0})
         pitools.moveandwait(self.stage, "W", 90)
         self.assert_at(X=0, Y=0, W=90)
-        self.assert_refused(gcserror.E9_PI_CNTR_SET_PIVOT_NOT_POSSIBLE, self.stage.SPI, "R", 0)
+        # The point is the platform's own: it can be another one at any W, and X and Y are those of that point.
+        self.stage.SPI(["R", "S"], [0, 0])
+        self.assert_at(X=30, Y=-10, W=90)
+        self.stage.SPI({"R": 20, "S": 10})
+        self.assert_at(X=0, Y=0, W=90)
         pitools.moveandwait(self.stage, "W", 0)
         self.stage.SPI(["R", "S"], [0, 0])
+        self.stage.KSW("TABLE", {"X": 1})
+        self.stage.KEN("TABLE")
+        self.assert_refused(gcserror.E9_PI_CNTR_SET_PIVOT_NOT_POSSIBLE, self.stage.SPI, "R", 0)
+        self.stage.KEN(0)
+        self.stage.KRM("TABLE")
 
     def test_jog(self):
         self.stage.JOG("W", 90)

@@ -13,10 +13,6 @@ use crate::mode::Mode;
 use crate::motion::{MAX_CENTRE_OFFSET, RotationCentre};
 use crate::queues::{Command, CommandQueues};
 
-/// What of W counts as a whole number of turns when the centre of rotation is set, deg: less than a position tells
-/// apart.
-const WHOLE_TURN_DEG: f64 = 1e-7;
-
 impl Commander {
     /// The frames there are, and which are in force.
     pub const fn frames(&self) -> &FrameTree {
@@ -54,6 +50,8 @@ impl Commander {
         Ok(self.frames.define(name, FrameKind::Here, pose)?)
     }
 
+    /// The point lies in the platform's own axes, so that its orientation does not matter. What changes where it is
+    /// turned is X and Y: those of another point, which is where the platform has it.
     fn set_rotation_centre(
         &mut self,
         values: [Option<f64>; 3],
@@ -63,10 +61,6 @@ impl Commander {
         let [r, s, t] = values;
         if t.is_some_and(|t| t != 0.0) {
             return Err(FrameError::CentreNotPlanar.into());
-        }
-        let w_deg = libm::remainder(self.rest_target()[Axis::W.index()], 360.0);
-        if w_deg.abs() > WHOLE_TURN_DEG {
-            return Err(FrameError::CentreWhileTurned.into());
         }
         let [old_r, old_s] = self.frames.rotation_centre();
         let wanted = [r.unwrap_or(old_r), s.unwrap_or(old_s)];

@@ -26,7 +26,7 @@ pub enum ErrorCode {
     PositionLimit = 7,
     /// The velocity is out of its limits.
     VelocityLimit = 8,
-    /// The centre of rotation can not be set: W is not a multiple of 360 deg, or a tool frame gives the centre.
+    /// The centre of rotation can not be set: a work or tool frame is in force, whose origin is the centre.
     CentreNotSettable = 9,
     /// Stopped by command.
     Stopped = 10,
@@ -184,9 +184,7 @@ impl ErrorCode {
             | FrameError::Circular
             | FrameError::CentreNotPlanar
             | FrameError::TooFar => Self::OutOfRange,
-            FrameError::CentreWhileTurned | FrameError::CentreGivenByTool => {
-                Self::CentreNotSettable
-            }
+            FrameError::CentreGivenByTool => Self::CentreNotSettable,
             FrameError::OutsideSoftLimits => Self::SoftLimit,
             FrameError::InMotion => Self::WhileMoving,
         }

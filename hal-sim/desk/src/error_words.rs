@@ -26,7 +26,7 @@ error_words! {
     NotReady: "not referenced, or the servo is off",
     PositionLimit: "out of the stage’s reach or of the soft limits",
     VelocityLimit: "velocity out of limits",
-    CentreNotSettable: "the centre of rotation cannot be set there",
+    CentreNotSettable: "the centre of rotation is the frame’s origin",
     Stopped: "stopped",
     InvalidAxis: "no such axis",
     OutOfRange: "a value is out of range",

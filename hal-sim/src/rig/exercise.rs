@@ -183,7 +183,7 @@ impl Lines {
         self.rest();
     }
 
-    /// A centre of rotation beside the platform's, which can be set where the platform's axes are the track's.
+    /// A centre of rotation beside the platform's, set where it changes no coordinate.
     fn about_a_point(&mut self) {
         self.line("MOV X 0 Y 0 W 0");
         self.rest();

@@ -22,8 +22,6 @@ pub enum FrameError {
     NotPlanar,
     /// A third coordinate of the centre of rotation that is not 0.
     CentreNotPlanar,
-    /// W is not a multiple of 360 deg: with another centre the platform's place would change.
-    CentreWhileTurned,
     /// A work or tool frame is enabled: the tool's origin is the centre of rotation.
     CentreGivenByTool,
     /// The tool's origin is too far from the platform's centre, or the work frame out of any laboratory.
@@ -47,7 +45,6 @@ impl fmt::Display for FrameError {
             }
             Self::NotPlanar => f.write_str("frames lie in the plane"),
             Self::CentreNotPlanar => f.write_str("the centre of rotation lies in the plane"),
-            Self::CentreWhileTurned => f.write_str("W is not a multiple of 360 deg"),
             Self::CentreGivenByTool => f.write_str("a work or tool frame is enabled"),
             Self::TooFar => f.write_str("a frame's origin is too far away"),
             Self::OutsideSoftLimits => f.write_str("the stage would stand outside the soft limits"),

@@ -15,7 +15,7 @@
 //! moves it along. What is enabled, and what it is linked to, cannot be changed, linked or removed.
 //!
 //! The centre of rotation is a directed frame that is only moved, on top of the base frame, a directed frame or one
-//! made here: at w = 0 it changes no coordinate. With a tool frame the tool's origin is the centre, and the other does
+//! made here: it can be set wherever the stage stands, and at w = 0 changes no coordinate. With a tool frame the tool's origin is the centre, and the other does
 //! not count.
 //!
 //! | file | idea |
