@@ -102,7 +102,7 @@ fn an_encoder_that_has_frozen_at_rest_is_found_when_something_is_to_move() {
         assert_at_rest(&mut bench);
         let [x, y, theta] = bench.rig.front.stage.plant.pose();
         assert!(
-            x.hypot(y) < 5.2e-6 && theta.abs() < 1.9e-5,
+            x.hypot(y) < 1.1e-5 && theta.abs() < 5.0e-5,
             "{line}: {x} {y} {theta}"
         );
         let mut twin = Bench::ready();
@@ -285,6 +285,9 @@ fn a_warning_is_told_as_an_event() {
 fn a_controlled_stop_stays_on_its_path() {
     assert_eq!(FaultKind::LoopLate.reaction(), Reaction::Stop);
     let mut bench = Bench::ready();
+    // Referencing has left the stage an LSB or so beside the origin.
+    assert_eq!(bench.error_after("MOV X 0 Y 0"), "0");
+    bench.settle();
     assert_eq!(bench.error_after("MOV X 60 Y 30"), "0");
     bench.run(3_000);
     let speed_mm_s = 100.0 * f64::from(bench.sample().setpoint.twist.x) / 2.0_f64.sqrt();
@@ -301,13 +304,14 @@ fn a_controlled_stop_stays_on_its_path() {
         let now = bench.sample().setpoint;
         let [x, y, _] = now.position.map(|units| units as f64 / TURN * 1e5);
         assert!(
-            (y - x / 2.0).abs() < 1.1e-4,
+            (y - x / 2.0).abs() < 2.6e-5,
             "off the line by {} um",
             y - x / 2.0
         );
         let moved = (now.position[0] - last.position[0]) as f64 / TURN * 20_000.0;
         let between = f64::from(now.twist.x + last.twist.x) / 2.0;
-        assert!((moved - between).abs() < 7.1e-6, "{moved} {between}");
+        // Two units of a position.
+        assert!((moved - between).abs() < 9.4e-6, "{moved} {between}");
         let jerk = f64::from(now.acceleration.x - last.acceleration.x).abs() * 20_000.0;
         assert!(jerk < 3_280.0, "{jerk} track radii/s^3");
         last = now;

@@ -91,7 +91,7 @@ fn assert_safe_until_acknowledged(mut bench: Bench, kind: FaultKind, awake: bool
     // Wherever it has coasted to, outside the disk too, it can be moved back.
     assert_eq!(bench.error_after("MOV X 0 Y 0 W 0"), "0");
     bench.settle();
-    assert!(bench.value("POS? X").abs() < 3.5e-6);
+    assert!(bench.value("POS? X").abs() < 6.9e-6);
     assert_eq!(bench.fault(), None, "{kind:?}");
 }
 

@@ -16,8 +16,11 @@ fn pose(sample: &Sample) -> [f64; 3] {
     [x * 100.0, y * 100.0, turns * 360.0]
 }
 
+/// Under way from the origin: referencing has left the stage an LSB or so beside it.
 fn moving(line: &str) -> Bench {
     let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("MOV X 0 Y 0 W 0"), "0");
+    bench.settle();
     assert_eq!(bench.error_after(line), "0");
     bench.run(UNDER_WAY);
     assert_eq!(bench.mode(), Mode::Moving);
@@ -36,10 +39,10 @@ fn a_move_ends_where_it_was_sent() {
     }
     let truth = bench.rig.front.stage.plant.pose();
     assert!(
-        (truth[0] - 0.030).abs() < 4.2e-9 && (truth[1] + 0.020).abs() < 4.2e-9,
+        (truth[0] - 0.030).abs() < 4.8e-9 && (truth[1] + 0.020).abs() < 4.8e-9,
         "{truth:?}"
     );
-    assert!((truth[2] - 45f64.to_radians()).abs() < 5.4e-8, "{truth:?}");
+    assert!((truth[2] - 45f64.to_radians()).abs() < 8.0e-8, "{truth:?}");
 }
 
 #[test]
@@ -110,9 +113,9 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
         bench.settle();
         let after = pose(bench.sample());
         assert_eq!(bench.mode(), Mode::Holding);
-        // On the line (from where it was referenced, an LSB or so from 0), past where it was, short of the target.
-        assert!((after[0] - 2.0 * after[1]).abs() < 1.6e-7, "{after:?}");
-        assert!((after[2] - 1.5 * after[0]).abs() < 1.9e-6, "{after:?}");
+        // On the line, past where it was, short of the target.
+        assert!((after[0] - 2.0 * after[1]).abs() < 3.1e-8, "{after:?}");
+        assert!((after[2] - 1.5 * after[0]).abs() < 3.1e-8, "{after:?}");
         assert!(
             before[0] < after[0] && after[0] < 60.0,
             "{before:?} {after:?}"

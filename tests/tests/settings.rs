@@ -105,7 +105,7 @@ fn another_encoder_zero_takes_the_reference_and_moves_the_angle() {
     );
     assert_eq!(bench.error_after("FRF"), "0");
     bench.settle();
-    assert!(bench.value("POS? W").abs() < 2.0e-6);
+    assert!(bench.value("POS? W").abs() < 1.6e-5);
 }
 
 /// Whoever asks, the loop itself takes constants only when they can do no harm.

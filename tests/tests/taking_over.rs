@@ -1,10 +1,19 @@
-//! The pose that the servo takes over where it goes on.
+//! The pose that the servo takes over, by referencing and by `SVO`: one that can be told and commanded again, where the
+//! encoders say that the stage is.
 
+use firmware::mode::Mode;
+use firmware::parameters::Parameters;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
+use kinematics::{Angle, direct};
 use tests::Bench;
 
 /// Seeds of the encoders' noise.
 const SEEDS: u64 = 20;
+/// Steps of what is told, in a mm and in a deg.
+const STEPS: f64 = 1e6;
+/// By how much the setpoint may be off the reading that it comes from: half a step, and the resolution of the tick's numbers, mm
+/// and deg.
+const ROUNDING: f64 = 0.5 / STEPS + 4e-7;
 
 /// Just switched on, with noise of this seed.
 fn stage(seed: u64) -> Bench {
@@ -12,6 +21,12 @@ fn stage(seed: u64) -> Bench {
         seed,
         ..RunOptions::default()
     }))
+}
+
+/// mm and deg of 2^-32 track radii and turns.
+fn units() -> [f64; 3] {
+    let radius_mm = Parameters::REFERENCE.geometry.radius_mm;
+    [radius_mm, radius_mm, 360.0].map(|whole| whole / 4_294_967_296.0)
 }
 
 /// The platform's setpoint, units.
@@ -24,11 +39,50 @@ fn target(bench: &mut Bench) -> [f64; 3] {
     ["X", "Y", "W"].map(|axis| bench.value(&format!("MOV? {axis}")))
 }
 
+/// Sends a line that switches the servo on, and holds the setpoint of the first tick against the reading of that tick.
+fn take_over(bench: &mut Bench, line: &str) {
+    bench.send(&format!("{line}\n"));
+    bench.run_until("the servo is on", |bench| bench.mode() == Mode::Holding);
+    let pivots = bench.sample().pivots;
+    let turns = pivots[0].turns();
+    let whole = Angle::from_units(i64::from(turns) << 32);
+    let pose = direct::<f64>(&pivots.map(|pivot| (pivot - whole).radians())).expect("a pose");
+    let radius_mm = Parameters::REFERENCE.geometry.radius_mm;
+    let w_deg = pose.theta.to_degrees() + f64::from(turns) * 360.0;
+    let measured = [pose.x * radius_mm, pose.y * radius_mm, w_deg];
+    for (i, unit) in units().into_iter().enumerate() {
+        let step = setpoint(bench)[i] as f64 * unit - measured[i];
+        assert!(step.abs() < ROUNDING, "{line}: {measured:?}, {step}");
+    }
+}
+
+/// The target is a number of six decimals, it means the setpoint to the unit, and to command it sends nothing.
+fn assert_is_told(bench: &mut Bench) {
+    let told = target(bench);
+    for (i, unit) in units().into_iter().enumerate() {
+        assert_eq!(told[i], (told[i] * STEPS).round() / STEPS, "{told:?}");
+        assert_eq!(setpoint(bench)[i], (told[i] / unit).round() as i64);
+    }
+    let before = (setpoint(bench), bench.sample().commands);
+    let [x, y, w] = told;
+    assert_eq!(bench.error_after(&format!("MOV X {x} Y {y} W {w}")), "0");
+    assert_eq!((setpoint(bench), bench.sample().commands), before);
+}
+
+#[test]
+fn what_referencing_takes_over_is_told() {
+    for seed in 0..SEEDS {
+        let mut bench = stage(seed);
+        take_over(&mut bench, "FRF");
+        assert_is_told(&mut bench);
+    }
+}
+
 #[test]
 fn right_after_referencing_the_centre_of_rotation_can_be_set() {
     for seed in 0..SEEDS {
         let mut bench = stage(seed);
-        assert_eq!(bench.error_after("FRF"), "0");
+        take_over(&mut bench, "FRF");
         let (told, before) = (target(&mut bench), setpoint(&bench));
         assert_eq!(bench.error_after("SPI R 20 S 10"), "0", "seed {seed}");
         assert_eq!(setpoint(&bench), before, "nothing moves");
@@ -37,4 +91,17 @@ fn right_after_referencing_the_centre_of_rotation_can_be_set() {
             assert!((now - told).abs() < 1e-5, "{now} {told}");
         }
     }
+}
+
+#[test]
+fn what_a_servo_takes_over_that_goes_on_again_is_told() {
+    let mut bench = stage(1);
+    take_over(&mut bench, "FRF");
+    assert_eq!(bench.error_after("MOV X 12.3 Y -7.5 W 1045.25"), "0");
+    bench.settle();
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    // Friction lets go of what the motors held: some time to come to rest.
+    bench.run(4_000);
+    take_over(&mut bench, "SVO X 1");
+    assert_is_told(&mut bench);
 }

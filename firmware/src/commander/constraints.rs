@@ -1,11 +1,9 @@
 //! What plans keep to: the limits of motion, as velocities, frames and soft limits leave them.
 
 use super::axis::Axis;
-use super::coordinates::UNITS_PER_RADIUS;
+use super::coordinates::{DEGREES_A_TURN, UNITS_PER_RADIUS};
 use super::state::Commander;
 use crate::motion::{Constraints, Limits, Position};
-
-const DEGREES_A_TURN: f64 = 360.0;
 
 impl Commander {
     /// What plans keep to now.

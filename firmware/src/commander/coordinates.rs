@@ -3,6 +3,7 @@
 use super::axis::{Axis, Coordinates, Travel};
 use super::error::CommandError;
 use super::frames::{ActiveFrames, Transform};
+use crate::control::held_position::STEPS_PER_UNIT;
 use crate::motion::{Constraints, Position, check_target};
 use kinematics::{Angle, Geometry, direct};
 
@@ -11,6 +12,7 @@ const W_TRAVEL_DEG: f64 = 3_600_000.0;
 
 /// 2^32: units of a [`Position`] in a track radius.
 pub(crate) const UNITS_PER_RADIUS: f64 = 4_294_967_296.0;
+pub(super) const DEGREES_A_TURN: f64 = 360.0;
 
 /// How far the commanded point gets from the track's centre, at whatever orientation, mm.
 pub(crate) fn max_distance_mm(active_frames: &ActiveFrames, geometry: &Geometry) -> f64 {
@@ -85,12 +87,23 @@ pub(crate) fn coordinates(
     active_frames: &ActiveFrames,
     geometry: &Geometry,
 ) -> Coordinates {
-    let mm = |units: i64| units as f64 / UNITS_PER_RADIUS * geometry.radius_mm;
+    let [x, y, theta] = *position;
     active_frames.target_of(&Transform {
-        x_mm: mm(position[0]),
-        y_mm: mm(position[1]),
-        w_deg: Angle::from_units(position[2]).degrees(),
+        x_mm: told(x, geometry.radius_mm),
+        y_mm: told(y, geometry.radius_mm),
+        w_deg: told(theta, DEGREES_A_TURN),
     })
+}
+
+/// Units in mm or deg, so many of which are a track radius or a turn: a number of six decimals where one means the same
+/// units, as of a position that the servo has taken over.
+fn told(units: i64, whole: f64) -> f64 {
+    // Not one at the edge of what means the same: frames may cost it its last digit.
+    const SURE: f64 = 0.499;
+    let exact = units as f64 / UNITS_PER_RADIUS * whole;
+    let short = libm::rint(exact * STEPS_PER_UNIT) / STEPS_PER_UNIT;
+    let off = short / whole * UNITS_PER_RADIUS - units as f64;
+    if off.abs() < SURE { short } else { exact }
 }
 
 /// The target at the pose that the pivots set; `None` when they are no pose of the mechanism.

@@ -1,6 +1,7 @@
 //! What the tick computes with, derived once from the parameters.
 
 use crate::control::encoder::EncoderConfig;
+use crate::control::held_position::PositionSteps;
 use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
@@ -14,6 +15,8 @@ pub struct Config {
     pub encoders: [EncoderConfig; 3],
     /// Setpoint integers to rates.
     pub scale: SetpointScale,
+    /// To what a position is rounded that the servo takes over.
+    pub steps: PositionSteps,
     /// Servo.
     pub servo: ServoConfig,
     /// Supervision.
@@ -76,6 +79,7 @@ impl Config {
                 .encoders
                 .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),
             scale: SetpointScale::new(rate_hz),
+            steps: PositionSteps::new(geometry.radius_mm),
             servo: ServoConfig::new(parameters),
             limits: SupervisionConfig {
                 following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,

@@ -8,6 +8,7 @@
 //! | `units` | counts of the converter and units of an angle |
 //! | `encoder` | frames to a multi-turn angle: which frame is believed, what bridges one that is not |
 //! | `referencing` | turns for theta and the pivots from single-turn encoders |
+//! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `settling` | whether the stage has settled |
@@ -21,6 +22,7 @@
 mod command;
 pub mod config;
 pub mod encoder;
+pub mod held_position;
 mod inspection;
 pub mod loop_counters;
 mod pivot_setpoints;

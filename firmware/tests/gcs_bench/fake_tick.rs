@@ -117,13 +117,11 @@ impl FakeTick {
             Command::Reference => {
                 self.log.push("reference");
                 self.now.referenced = true;
-                self.now.mode = Mode::Holding;
+                self.hold();
             }
             Command::Servo(true) => {
                 self.log.push("on");
-                let at = self.motion.setpoint(&self.scale).position;
-                self.motion.rest_at(at);
-                self.now.mode = Mode::Holding;
+                self.hold();
             }
             Command::Servo(false) => {
                 self.log.push("off");
@@ -158,6 +156,15 @@ impl FakeTick {
                 self.now.mode = Mode::Off;
             }
         }
+    }
+
+    /// Servo on, where the stage is, as far as that is told.
+    fn hold(&mut self) {
+        let centre = self.motion.centre();
+        let platform = centre.to_platform(&self.motion.position());
+        let held = self.config.steps.nearest(&platform);
+        self.motion.rest_at(centre.from_platform(&held));
+        self.now.mode = Mode::Holding;
     }
 
     fn watch(&mut self, twist: [f32; 3]) {

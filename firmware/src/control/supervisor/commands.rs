@@ -29,7 +29,7 @@ impl State {
                 true
             }
             Outcome::If(mode) => {
-                let done = self.try_apply(command, pivots);
+                let done = self.try_apply(config, command, pivots);
                 if done {
                     self.mode = mode;
                 }
@@ -64,10 +64,10 @@ impl State {
     }
 
     /// What the stage may not be ready for; nothing has changed then.
-    fn try_apply(&mut self, command: &Command, pivots: &[Angle; 3]) -> bool {
+    fn try_apply(&mut self, config: &Config, command: &Command, pivots: &[Angle; 3]) -> bool {
         match command {
-            Command::Reference if !self.referenced => self.reference(pivots),
-            Command::Reference | Command::Servo(_) => self.hold(pivots),
+            Command::Reference if !self.referenced => self.reference(config, pivots),
+            Command::Reference | Command::Servo(_) => self.hold(config, pivots),
             Command::Move(plan) => {
                 let taken = self.motion.accept(plan).is_ok();
                 if taken {
@@ -80,7 +80,7 @@ impl State {
     }
 
     /// Takes theta and the pivots' turns from what single-turn encoders show, and holds.
-    fn reference(&mut self, pivots: &[Angle; 3]) -> bool {
+    fn reference(&mut self, config: &Config, pivots: &[Angle; 3]) -> bool {
         let ready = self
             .encoders
             .iter()
@@ -93,21 +93,21 @@ impl State {
             encoder.unwrap_near(angle);
         }
         self.referenced = true;
-        self.hold_at(&Pose { theta, ..pose });
+        self.hold_at(config, &Pose { theta, ..pose });
         true
     }
 
     /// Servo on, at the pose where the stage is.
-    fn hold(&mut self, pivots: &[Angle; 3]) -> bool {
+    fn hold(&mut self, config: &Config, pivots: &[Angle; 3]) -> bool {
         let (true, Ok(pose)) = (self.referenced, direct(pivots)) else {
             return false;
         };
-        self.hold_at(&pose);
+        self.hold_at(config, &pose);
         true
     }
 
-    fn hold_at(&mut self, pose: &Pose<Fixed>) {
-        let platform = position(pose);
+    fn hold_at(&mut self, config: &Config, pose: &Pose<Fixed>) {
+        let platform = config.steps.nearest(&position(pose));
         self.motion
             .rest_at(self.motion.centre().from_platform(&platform));
         self.settling.start();
