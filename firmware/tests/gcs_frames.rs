@@ -469,7 +469,8 @@ proptest! {
         prop_assert_eq!(bench.error_after("KEN 0"), "0");
         let there = place(&mut bench, "POS?");
         prop_assert!((there[2] - pose.2).abs() < 7.5e-8, "{:?} {:?}", there, pose);
-        prop_assert!((there[0] - pose.0).abs() < 1.9e-7 && (there[1] - pose.1).abs() < 1.9e-7);
+        // Two roundings of sines to 2^-29, times the tool's length.
+        prop_assert!((there[0] - pose.0).abs() < 4e-7 && (there[1] - pose.1).abs() < 4e-7);
     }
 
     /// What `VMO?` and `TRA?` answer is what `MOV` meets, with any frames: a target is taken exactly when `VMO?` says

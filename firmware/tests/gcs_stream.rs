@@ -118,7 +118,7 @@ fn a_stream_that_dries_up_stops_and_says_so() {
         assert_eq!(bench.say_to(connection, "ERR?\n"), "220\n");
     }
     assert!(bench.tick.worst_jump < 1.63e-3, "{}", bench.tick.worst_jump);
-    assert!((bench.value("MOV? X") - bench.value("POS? X")).abs() < 6.2e-8);
+    assert!((bench.value("MOV? X") - bench.value("POS? X")).abs() < 7.9e-8);
     say_all(&mut bench, &["SPA 1 0x19001900 0", "MOV X 0 Y 0 W 0"]);
     bench.run_to_rest();
     assert!(bench.value("POS? X").abs() < 6.2e-8);

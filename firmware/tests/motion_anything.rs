@@ -5,8 +5,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RetargetError, RotationCentre,
-    Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
+    AxisState, Constraints, Effort, Plan, PlanFollower, PlanStart, Position, RetargetError,
+    RotationCentre, Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
 use motion_bench::constraints::{Velocity, any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
@@ -78,7 +78,7 @@ impl Course {
             Command::Target(platform) => {
                 let to = RotationCentre::new(constraints.rotation_centre)?.from_platform(&platform);
                 if moving {
-                    plan_retarget(id, &self.plan, &self.from, at, to, constraints).ok()
+                    plan_retarget(id, &self.plan, &self.from, at, to, constraints, Effort::All).ok()
                 } else {
                     plan_line(id, here, to, constraints).ok()
                 }
@@ -111,7 +111,7 @@ impl Course {
         let before = Worst::of(start, &self.constraints);
         let worst = match command {
             Command::Stop(_) => worst.of_a_stop(&self.constraints),
-            _ => worst.left_with(&before),
+            _ => worst.left_with(&before, &self.constraints),
         };
         prop_assert!(
             worst.is_kept_but_for_a_thousandth(),

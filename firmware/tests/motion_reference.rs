@@ -6,9 +6,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{
-    AxisLimits, AxisState, JERK_STEP, Plan, plan_line, plan_retarget, synchronised,
-};
+use firmware::motion::{AxisState, Effort, Plan, plan_line, plan_retarget};
 use motion_bench::exact::ends_at_rest;
 use motion_bench::random::Random;
 use motion_bench::reference::{Reference, per_axis};
@@ -38,68 +36,6 @@ fn spread(what: &str, mut ratios: Vec<f64>) -> [f64; 3] {
     all
 }
 
-/// Three independent axes, each within limits of its own, of any size and in any relation.
-#[test]
-fn three_axes_take_as_long_as_the_reference() {
-    let (seed, cases) = (setting("SEED", 20_260_401), setting("STATES", 4_000));
-    println!("seed {seed}");
-    let mut random = Random::new(seed);
-    let (mut ratios, mut none) = (Vec::new(), 0);
-    for _ in 0..cases {
-        let limits = per_axis(&LIMITS, 1.0)
-            .map(|all| all.map(|limit| limit * 10_f64.powf(random.unit() - 0.5)));
-        let mut within = |limit: f64| match (8.0 * random.unit()) as u32 {
-            0 => 0.0,
-            1 => limit,
-            _ => (2.0 * random.unit() - 1.0) * limit,
-        };
-        let axes = limits.map(|[v, a, _]| AxisState {
-            position: 0,
-            velocity: within(v) as i64,
-            acceleration: within(a) as i64 / JERK_STEP * JERK_STEP,
-        });
-        let end = limits.map(|[v, a, j]| {
-            let size = v * (v / a + a / j) * 10_f64.powf(3.0 * random.unit() - 2.0);
-            ((2.0 * random.unit() - 1.0) * size / AXIS_UNIT * UNIT) as i64
-        });
-        let ways = [0, 1, 2].map(|i| (axes[i], i128::from(end[i]) << 40));
-        let single = limits.map(|all| {
-            let [velocity, acceleration, jerk] = all.map(|limit| limit as f32);
-            AxisLimits {
-                velocity,
-                acceleration,
-                jerk,
-            }
-        });
-        let Some(pieces) = synchronised(&ways, &single) else {
-            none += 1;
-            continue;
-        };
-        let mut plan = Plan {
-            pieces,
-            end,
-            ..Plan::default()
-        };
-        // What the roundings leave is spread over the plan, as for new targets.
-        let last = *states(&plan, axes).last().unwrap();
-        plan.nudge = [0, 1, 2].map(|i| {
-            let missing = (i128::from(end[i]) << 40) - last[i].position;
-            (missing / i128::from(plan.ticks().max(1))) as i64
-        });
-        assert!(
-            plan.nudge.iter().all(|nudge| nudge.abs() < 1 << 30),
-            "{plan:?}"
-        );
-        if let Some(theirs) = Reference::new(&axes, &end, &limits) {
-            ratios.push(played(&plan, &axes) / theirs.ticks());
-        }
-    }
-    println!("{none} not at all");
-    let [median, most, worst] = spread("duration over the reference's", ratios);
-    // They last from some hundred ticks on, and are rounded up to whole ones segment by segment.
-    assert!(median < 1.001 && most < 1.005 && worst < 1.05 && none <= 2 + cases / 4_000);
-}
-
 /// New targets in motion. The reference knows no limits along a path: with the axes' in a square around the circle of
 /// the path's it is a bound from below, with a square within the circle what it could be used for here. The pivots'
 /// limits, which it does not know either, are out of the way first.
@@ -122,7 +58,15 @@ fn new_targets_in_motion_beside_the_reference() {
             let line = plan_line(1, from, to, &constraints).expect("a line");
             let at = (random.unit() * line.ticks() as f64) as u64;
             let start = line.state_after(&at_rest(from), at);
-            let Ok(next) = plan_retarget(2, &line, &at_rest(from), at, other, &constraints) else {
+            let Ok(next) = plan_retarget(
+                2,
+                &line,
+                &at_rest(from),
+                at,
+                other,
+                &constraints,
+                Effort::All,
+            ) else {
                 stops += 1;
                 continue;
             };

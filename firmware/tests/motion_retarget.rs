@@ -3,8 +3,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisState, Constraints, Plan, PlanFollower, Position, RetargetError, Stop, plan_retarget,
-    plan_stop,
+    AxisState, Constraints, Effort, Plan, PlanFollower, Position, RetargetError, Stop,
+    plan_retarget, plan_stop,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::*;
@@ -17,7 +17,7 @@ fn retarget(
     at: u64,
     to: Position,
 ) -> Result<Plan, RetargetError> {
-    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS)
+    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS, Effort::All)
 }
 
 /// A line and further targets, each with the part of the motion before after which it comes.
@@ -230,6 +230,7 @@ fn near_the_rim_and_the_bounds_it_needs_a_stop() {
                 bounds,
                 ..CONSTRAINTS
             },
+            Effort::All,
         )
     };
     assert!(plan_within(30.0).is_ok());

@@ -3,8 +3,8 @@
 use crate::random::Random;
 use core::hint::black_box;
 use firmware::motion::{
-    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, RetargetError, Stop, Tries,
-    plan_line, plan_retarget, plan_stop, try_retarget,
+    AxisState, Constraints, Effort, Plan, PlanStart, Position, RetargetError, Stop, plan_line,
+    plan_retarget, plan_stop,
 };
 use firmware::number::Fixed;
 use firmware::parameters::Parameters;
@@ -113,7 +113,15 @@ impl Moving {
             return line;
         }
         let to = position(random);
-        match plan_retarget(2, &line.plan, &line.start, line.at, to, ground()) {
+        match plan_retarget(
+            2,
+            &line.plan,
+            &line.start,
+            line.at,
+            to,
+            ground(),
+            Effort::All,
+        ) {
             Ok(plan) => Self {
                 start: line.state(),
                 at: random.up_to(plan.ticks() - 1),
@@ -123,41 +131,18 @@ impl Moving {
         }
     }
 
-    /// To a new target, or to a stop where there is no way to it without one, or not with the first try.
-    pub fn retargeted(&self, to: Position) -> Option<Plan> {
-        let (mut tries, mut ahead) = (Tries::NONE, None);
-        let (mut next, leave) = (Plan::default(), self.leave());
-        match try_retarget(&mut next, 3, leave, to, ground(), &mut tries, &mut ahead) {
-            Ok(()) => Some(next),
-            Err(RetargetError::NeedsStop | RetargetError::TooFast) => self.stopped(Stop::Smooth),
+    /// To a new target, or to a stop where there is no way to it without one.
+    pub fn retargeted(&self, to: Position, effort: Effort) -> Option<Plan> {
+        match plan_retarget(3, &self.plan, &self.start, self.at, to, ground(), effort) {
+            Ok(plan) => Some(plan),
+            Err(RetargetError::NeedsStop) => self.stopped(Stop::Smooth),
             Err(RetargetError::Refused(_)) => None,
-        }
-    }
-
-    /// What lies ahead of a new target's head, and what has been tried: of the next state that has any.
-    pub fn headed(random: &mut Random) -> (Ahead, Tries) {
-        loop {
-            let (now, to) = (Self::new(random), position(random));
-            let (mut tries, mut ahead) = (Tries::NONE, None);
-            let (mut head, leave) = (Plan::default(), now.leave());
-            let _ = try_retarget(&mut head, 3, leave, to, ground(), &mut tries, &mut ahead);
-            if let Some(ahead) = ahead {
-                return (ahead, tries);
-            }
         }
     }
 
     /// To a stop.
     pub fn stopped(&self, stop: Stop) -> Option<Plan> {
         plan_stop(3, &self.plan, &self.start, self.at, ground(), stop)
-    }
-
-    fn leave(&self) -> Leave<'_> {
-        Leave {
-            of: &self.plan,
-            from: &self.start,
-            at: self.at,
-        }
     }
 
     /// The axes where it is left.

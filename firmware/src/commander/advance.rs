@@ -3,11 +3,11 @@
 
 use super::error::CommandError;
 use super::in_flight::InFlight;
-use super::pending::{Pending, Retarget};
+use super::pending::Pending;
 use super::sent_plan::{Goal, SentPlan};
 use super::state::Commander;
 use crate::mode::Mode;
-use crate::motion::{RetargetError, Stop};
+use crate::motion::{Constraints, Effort, PlanStart, RetargetError, Stop, check_target};
 use crate::queues::{Command, CommandQueues};
 
 impl Commander {
@@ -27,13 +27,13 @@ impl Commander {
                 self.send_stop(stop, queues);
                 return;
             }
-            (Mode::Moving, &(Pending::Goal(retarget) | Pending::HeadSent(retarget, _)))
-                if !retarget.needs_rest =>
-            {
-                self.retarget(retarget, queues)
+            (Mode::Moving, &Pending::Goal(goal)) => self.retarget(goal, queues),
+            (Mode::Moving, &Pending::Improving(goal)) => self.take_soonest_way(goal, true, queues),
+            (Mode::Moving, &Pending::GoalInStop(goal)) => {
+                self.take_soonest_way(goal, false, queues)
             }
             (Mode::Holding, pending) => match pending.goal() {
-                Some(&retarget) => self.start_from_rest(retarget, queues),
+                Some(&goal) => self.start_from_rest(goal, queues),
                 None => return,
             },
             _ => return,
@@ -59,11 +59,11 @@ impl Commander {
         if self.pending.stream().is_some() {
             return Err(CommandError::Streaming);
         }
-        let (stop, retarget) = (self.pending.stop(), Retarget::new(goal));
-        let before = core::mem::replace(&mut self.pending, Pending::with_goal(stop, retarget));
+        let stop = self.pending.stop();
+        let before = core::mem::replace(&mut self.pending, Pending::with_goal(stop, goal));
         let result = match (self.mode(), stop) {
-            (Mode::Holding, _) => self.start_from_rest(retarget, queues),
-            (Mode::Moving, None) => self.retarget(retarget, queues),
+            (Mode::Holding, _) => self.start_from_rest(goal, queues),
+            (Mode::Moving, None) => self.retarget(goal, queues),
             _ => Ok(()),
         };
         if result.is_err() {
@@ -75,10 +75,10 @@ impl Commander {
     /// Sends the motion from rest; nothing is sent when there is none to be made.
     fn start_from_rest(
         &mut self,
-        retarget: Retarget,
+        goal: Goal,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
-        let (from, goal) = (self.setpoint(), retarget.goal);
+        let from = self.setpoint();
         let constraints = match goal {
             Goal::Position(to) => self.line_constraints(&from, &to),
             _ => self.constraints(),
@@ -86,61 +86,112 @@ impl Commander {
         let id = self.next_plan_id();
         let sent_plan = SentPlan::from_rest(id, from, goal, &constraints)?;
         if sent_plan.plan.ticks() > 0 {
-            self.send_plan(sent_plan, Some(retarget), queues)?;
+            self.send_plan(sent_plan, Some(goal), queues)?;
         }
         self.pending.drop_goal();
         Ok(())
     }
 
-    /// Sends the way to another goal, slice by slice; where there is none the stage stops first. It also brakes while
-    /// it is to be tried again: a stop that has just begun has hardly taken any speed, and is the way out if nothing
-    /// comes of it.
-    fn retarget(
-        &mut self,
-        retarget: Retarget,
-        queues: &mut CommandQueues<'_>,
-    ) -> Result<(), CommandError> {
-        let goal = retarget.goal;
-        let constraints = match goal {
-            Goal::Position(_) => self.curve_constraints(),
-            _ => self.constraints(),
-        };
+    /// Sends a way to another goal. For a target in slices: a stop, so that the stage reacts soon and whatever becomes of
+    /// the next slice has a way to rest; at the same tick of the plan under way, a first way to the target that takes the
+    /// stop's place; and [the soonest](Self::take_soonest_way), which takes longer to find.
+    fn retarget(&mut self, goal: Goal, queues: &mut CommandQueues<'_>) -> Result<(), CommandError> {
+        let constraints = self.goal_constraints(&goal);
+        if let Goal::Position(to) = &goal {
+            check_target(to, &constraints)?;
+        }
         let id = self.next_plan_id();
-        // What takes over soon is what will be left, and is not known to be under way yet.
-        let Some((under_way, at)) = self.active_plan().filter(|_| self.next_plan.is_none()) else {
+        let Some((under_way, at)) = self.plan_to_leave() else {
             return Ok(());
         };
-        let head = match &self.pending {
-            Pending::HeadSent(_, ahead) if ahead.follows(under_way.plan.id, at) => Some(ahead),
-            _ => None,
-        };
-        // A stop that has begun, and a head, come to rest by themselves.
-        let stops = under_way.stop.is_some() || head.is_some();
-        let (mut tries, mut ahead) = (retarget.tries, None);
-        let planned = match head {
-            Some(head) => under_way.continued(head, id, at, &constraints, &mut tries),
-            None => under_way.retargeted(goal, id, at, &constraints, &mut tries, &mut ahead),
-        };
-        let tried = Retarget { tries, ..retarget };
-        match planned {
+        let stops = under_way.stop.is_some() || self.next_plan.is_some();
+        let is_target = matches!(goal, Goal::Position(_));
+        if !stops
+            && is_target
+            && let Some(stop) = under_way.with_stop(id, at, &self.constraints(), Stop::Smooth)
+        {
+            return self.send_plan(stop, None, queues);
+        }
+        match under_way.retargeted(goal, id, at, &constraints, Effort::First) {
             Ok(sent_plan) => {
-                let sent = self.send_plan(sent_plan, Some(tried), queues);
-                self.pending = match (sent, ahead) {
-                    (Err(_), _) => Pending::Goal(retarget),
-                    (Ok(()), Some(ahead)) => Pending::HeadSent(tried, ahead),
-                    (Ok(()), None) => Pending::Nothing,
+                self.send_plan(sent_plan, Some(goal), queues)?;
+                self.pending = if is_target {
+                    Pending::Improving(goal)
+                } else {
+                    Pending::Nothing
                 };
-                sent
-            }
-            Err(RetargetError::Refused(refusal)) => Err(refusal.into()),
-            Err(no) => {
-                let tried = Retarget {
-                    needs_rest: no == RetargetError::NeedsStop,
-                    ..tried
-                };
-                self.pending = Pending::with_goal((!stops).then_some(Stop::Smooth), tried);
                 Ok(())
             }
+            Err(RetargetError::Refused(refusal)) => Err(refusal.into()),
+            Err(RetargetError::NeedsStop) => {
+                self.pending = match (is_target, stops) {
+                    (true, _) => Pending::GoalInStop(goal),
+                    (false, true) => Pending::GoalFromRest(goal),
+                    (false, false) => Pending::StopThenGoal(Stop::Smooth, goal),
+                };
+                Ok(())
+            }
+        }
+    }
+
+    /// Sends the soonest way to a target. When a first one `is_under_way`, only if it is sooner; it does not matter then
+    /// if it comes too late. Where there is none out of a stop, there is nothing else to do but to wait for rest.
+    fn take_soonest_way(
+        &mut self,
+        goal: Goal,
+        is_under_way: bool,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        if self.next_plan.is_some() {
+            return Ok(());
+        }
+        let constraints = self.goal_constraints(&goal);
+        let id = self.next_plan_id();
+        let lead = self.planning_lead_ticks;
+        let Some((under_way, at)) = self.active_plan() else {
+            return Ok(());
+        };
+        let at = at + lead;
+        let left = under_way.plan.ticks().saturating_sub(at);
+        let way = under_way.retargeted(goal, id, at, &constraints, Effort::All);
+        let way = way
+            .ok()
+            .filter(|way| !is_under_way || way.plan.ticks() < left);
+        self.pending = match way {
+            Some(way) => {
+                self.send_plan(way, (!is_under_way).then_some(goal), queues)?;
+                Pending::Nothing
+            }
+            None if is_under_way => Pending::Nothing,
+            None => Pending::GoalFromRest(goal),
+        };
+        Ok(())
+    }
+
+    fn goal_constraints(&self, goal: &Goal) -> Constraints {
+        match goal {
+            Goal::Position(_) => self.curve_constraints(),
+            _ => self.constraints(),
+        }
+    }
+
+    /// The plan that a way to another goal leaves, and the tick of it: where the stop before it leaves it, if there is
+    /// time; not one that is about to be left for something else, which is not known to be under way yet.
+    fn plan_to_leave(&self) -> Option<(&SentPlan, u64)> {
+        let Some(next) = &self.next_plan else {
+            return self.active_plan();
+        };
+        let snapshot = self.snapshot()?;
+        match (next.plan.start, &self.sent_plan) {
+            (PlanStart::Splice { plan, tick }, Some(under_way))
+                if next.stop == Some(Stop::Smooth)
+                    && under_way.plan.id == plan
+                    && snapshot.plan == plan
+                    && snapshot.plan_tick + self.planning_lead_ticks / 2 <= tick =>
+            {
+                Some((under_way, tick))
+            }
+            _ => None,
         }
     }
 
@@ -178,11 +229,11 @@ impl Commander {
     pub(super) fn send_plan(
         &mut self,
         sent_plan: SentPlan,
-        retarget: Option<Retarget>,
+        goal: Option<Goal>,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         let command = Command::Move(sent_plan.plan.clone());
-        self.send(command, InFlight::Plan(sent_plan, retarget), queues)
+        self.send(command, InFlight::Plan(sent_plan, goal), queues)
     }
 
     pub(super) const fn next_plan_id(&mut self) -> u32 {

@@ -7,29 +7,31 @@
 //! | state | what happens next, as soon as nothing is in flight |
 //! |---|---|
 //! | `Nothing` | nothing |
-//! | `Goal` | at rest: a plan from rest; in motion: a plan that leaves the one under way, unless the goal needs rest first |
-//! | `HeadSent` | the rest of that plan, of which the head is with the tick already |
+//! | `Goal` | at rest: a plan from rest; in motion: a stop, and then a first way that takes its place and ends at the goal |
+//! | `Improving` | the soonest way to the goal, which takes over from the first if it is sooner |
+//! | `GoalInStop` | the soonest way to the goal, once the stop is under way |
+//! | `GoalFromRest` | a plan from rest, once the stage holds |
 //! | `Stop` | a stop for the plan under way |
 //! | `StopThenGoal` | the same, and the goal stays |
 //! | `Stream` | plans of the stream, one after the other, until it is over |
 //! | `GoalThenStream` | a plan from rest to where the waveforms begin |
 //! | `StopThenStream` | a plan of the stream, and then its stop: see there |
 //!
-//! | event | `Nothing` | `Goal`, `HeadSent` | `Stop` | `StopThenGoal` | `Stream` |
-//! |---|---|---|---|---|---|
-//! | a goal, at rest | sent: `Nothing` | sent: `Nothing` | sent: `Stop` | | refused |
-//! | a goal, in motion | as `Goal` below | the new one's | `StopThenGoal` | `StopThenGoal`, the new goal | refused |
-//! | a stop | `Stop` | `Stop` | `Stop`, the more urgent | `Stop`, the more urgent | `Stop` |
-//! | planned: the whole way | | sent: `Nothing` | | | |
-//! | planned: a head | | sent: `HeadSent` | | | |
-//! | planned: too fast, or not without rest | | `StopThenGoal`; `Goal` if a stop or a head is under way | | | |
-//! | planned: refused | | `Nothing`, and an error | | | |
-//! | the tick takes a plan | the same | the same | the same | the same | the same |
-//! | the tick takes the stop | | | `Nothing` | `Goal` | |
-//! | the tick refuses a plan | `Goal` again | | | | `GoalThenStream`; of the stream: `Nothing`, and an error |
-//! | the tick refuses the stop | | | the same | the same | |
-//! | the stage holds | | | `Nothing` | `Goal` | |
-//! | the stage is off or at fault | | `Nothing` | `Nothing` | `Nothing` | `Nothing` |
+//! | event | `Nothing` | `Goal` | `Improving` | `GoalInStop` | `GoalFromRest` | `Stop` | `StopThenGoal` | `Stream` |
+//! |---|---|---|---|---|---|---|---|---|
+//! | a goal, at rest | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Stop` | | refused |
+//! | a goal, in motion | as `Goal` here | `Goal`, the new one | `Goal`, the new one | `Goal`, the new one | `Goal`, the new one | `StopThenGoal` | `StopThenGoal`, the new one | refused |
+//! | a stop | `Stop` | `Stop` | `Stop` | `Stop` | `Stop` | `Stop`, the more urgent | `Stop`, the more urgent | `Stop` |
+//! | planned: the stop before it | | sent: `Goal` | | | | | | |
+//! | planned: a way to it | | sent: `Improving` | sent: `Nothing` | sent: `Nothing` | | | | |
+//! | planned: none without rest | | `GoalInStop`, a jog `StopThenGoal` or in a stop `GoalFromRest` | `Nothing` | `GoalFromRest` | | | | |
+//! | planned: refused | | `Nothing`, and an error | `Nothing` | `Nothing`, and an error | | | | |
+//! | the tick takes a plan | the same | the same | the same | the same | the same | the same | the same | the same |
+//! | the tick takes the stop | | | | | | `Nothing` | `Goal` | |
+//! | the tick refuses a plan | `Goal` again; a better way: the same | | `Goal` again | | | | | `GoalThenStream`; of the stream: `Nothing`, and an error |
+//! | the tick refuses the stop | | the same | | | | the same | the same | |
+//! | the stage holds | | | `Nothing` | `Goal` | sent: `Nothing` | `Nothing` | `Goal` | |
+//! | the stage is off or at fault | | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` |
 //!
 //! What is in flight ([`InFlight`](super::in_flight::InFlight)) and what is under way (the plans that the tick has
 //! taken) are apart from this: a stop, a goal or a servo switched off may come at any moment of either, so every
@@ -38,47 +40,30 @@
 
 use super::sent_plan::Goal;
 use super::stream_source::Streaming;
-use crate::motion::{Ahead, Stop, Tries};
-
-/// A goal for a stage in motion, and how far the planning of the way to it has come.
-#[derive(Clone, Copy)]
-pub(super) struct Retarget {
-    pub goal: Goal,
-    /// There is no way to it without coming to rest before.
-    pub needs_rest: bool,
-    /// What has been tried.
-    pub tries: Tries,
-}
-
-impl Retarget {
-    /// Nothing has been tried yet.
-    pub const fn new(goal: Goal) -> Self {
-        Self {
-            goal,
-            needs_rest: false,
-            tries: Tries::NONE,
-        }
-    }
-}
+use crate::motion::Stop;
 
 /// See the module.
-// There is no heap to box a stream or the rest of a plan in, and there is one of these.
+// There is no heap to box a stream in, and there is one of these.
 #[allow(clippy::large_enum_variant)]
 pub(super) enum Pending {
     /// Nothing is asked.
     Nothing,
     /// To get to a goal, or to keep a velocity.
-    Goal(Retarget),
-    /// The same; the head of the way is sent, this is what follows it.
-    HeadSent(Retarget, Ahead),
+    Goal(Goal),
+    /// On the way to a goal; there may be a sooner one.
+    Improving(Goal),
+    /// To get to a goal, to which no first way has been found: out of the stop that was sent.
+    GoalInStop(Goal),
+    /// To get to a goal, to which there is no way without coming to rest before.
+    GoalFromRest(Goal),
     /// To come to rest.
     Stop(Stop),
     /// To stop, and to get to a goal from there: from the stop as soon as there is a way, from rest at the latest.
-    StopThenGoal(Stop, Retarget),
+    StopThenGoal(Stop, Goal),
     /// To follow targets.
     Stream(Streaming),
     /// The tick has refused the way to where waveforms begin: once more, then the waveforms.
-    GoalThenStream(Retarget, Streaming),
+    GoalThenStream(Goal, Streaming),
     /// A stop came while the stage held, and stays pending until the next snapshot shows that there is nothing to stop.
     /// A stream that begins before that snapshot and sends a plan at once is stopped by it. (A goal that is sent then
     /// is stopped too: its state is `Stop`.)
@@ -97,12 +82,13 @@ impl Pending {
     }
 
     /// The goal that is pending.
-    pub const fn goal(&self) -> Option<&Retarget> {
+    pub const fn goal(&self) -> Option<&Goal> {
         match self {
-            Self::Goal(retarget)
-            | Self::HeadSent(retarget, _)
-            | Self::StopThenGoal(_, retarget)
-            | Self::GoalThenStream(retarget, _) => Some(retarget),
+            Self::Goal(goal)
+            | Self::GoalInStop(goal)
+            | Self::GoalFromRest(goal)
+            | Self::StopThenGoal(_, goal)
+            | Self::GoalThenStream(goal, _) => Some(goal),
             _ => None,
         }
     }
@@ -129,7 +115,7 @@ impl Pending {
 
     /// Whether a motion is asked for.
     pub const fn is_motion(&self) -> bool {
-        !matches!(self, Self::Nothing | Self::Stop(_))
+        !matches!(self, Self::Nothing | Self::Improving(_) | Self::Stop(_))
     }
 
     /// A stop is asked for: whatever else was is over. An urgent one stays urgent.
@@ -155,10 +141,10 @@ impl Pending {
     }
 
     /// The goal, a stop before it if that is pending already.
-    pub const fn with_goal(stop: Option<Stop>, retarget: Retarget) -> Self {
+    pub const fn with_goal(stop: Option<Stop>, goal: Goal) -> Self {
         match stop {
-            None => Self::Goal(retarget),
-            Some(stop) => Self::StopThenGoal(stop, retarget),
+            None => Self::Goal(goal),
+            Some(stop) => Self::StopThenGoal(stop, goal),
         }
     }
 
@@ -173,14 +159,18 @@ impl Pending {
     /// The goal is reached, or sent, or given up.
     pub fn drop_goal(&mut self) {
         match self {
-            Self::Goal(_) | Self::HeadSent(..) => *self = Self::Nothing,
+            Self::Goal(_) | Self::GoalInStop(_) | Self::GoalFromRest(_) => *self = Self::Nothing,
             Self::StopThenGoal(stop, _) => *self = Self::Stop(*stop),
             Self::GoalThenStream(..) => {
                 if let Self::GoalThenStream(_, streaming) = self.take() {
                     *self = Self::Stream(streaming);
                 }
             }
-            Self::Nothing | Self::Stop(_) | Self::Stream(_) | Self::StopThenStream(..) => {}
+            Self::Nothing
+            | Self::Improving(_)
+            | Self::Stop(_)
+            | Self::Stream(_)
+            | Self::StopThenStream(..) => {}
         }
     }
 
@@ -188,7 +178,7 @@ impl Pending {
     pub fn drop_stop(&mut self) {
         match self {
             Self::Stop(_) => *self = Self::Nothing,
-            Self::StopThenGoal(_, retarget) => *self = Self::Goal(*retarget),
+            Self::StopThenGoal(_, goal) => *self = Self::Goal(*goal),
             Self::StopThenStream(..) => {
                 if let Self::StopThenStream(_, streaming) = self.take() {
                     *self = Self::Stream(streaming);
@@ -207,12 +197,12 @@ impl Pending {
 
     /// The tick has refused the plan to a goal, which is not where the setpoint was: once more from where it is, unless
     /// something else has been asked for meanwhile.
-    pub fn plan_refused(&mut self, retarget: Retarget) {
+    pub fn plan_refused(&mut self, goal: Goal) {
         match self {
-            Self::Nothing => *self = Self::Goal(retarget),
+            Self::Nothing | Self::Improving(_) => *self = Self::Goal(goal),
             Self::Stream(_) => {
                 if let Self::Stream(streaming) = self.take() {
-                    *self = Self::GoalThenStream(retarget, streaming);
+                    *self = Self::GoalThenStream(goal, streaming);
                 }
             }
             _ => {}

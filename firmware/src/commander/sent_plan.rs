@@ -2,8 +2,8 @@
 
 use super::error::CommandError;
 use crate::motion::{
-    Ahead, AxisState, Constraints, Leave, Plan, PlanStart, Position, RetargetError, Stop, Tries,
-    plan_jog, plan_line, plan_stop, try_retarget,
+    AxisState, Constraints, Effort, Plan, PlanStart, Position, RetargetError, Stop, plan_jog,
+    plan_line, plan_retarget, plan_stop,
 };
 
 /// What a motion is for.
@@ -50,7 +50,7 @@ impl SentPlan {
                     match no {
                         RetargetError::Refused(refusal) => CommandError::Refused(refusal),
                         // At rest there is nothing to stop.
-                        RetargetError::NeedsStop | RetargetError::TooFast => CommandError::NoMotion,
+                        RetargetError::NeedsStop => CommandError::NoMotion,
                     }
                 })
             }
@@ -73,30 +73,21 @@ impl SentPlan {
         }
     }
 
-    /// The way to another goal that leaves this plan at its tick `at`, by the next of `tries`; what of it is not
-    /// planned yet is left `ahead`.
+    /// The way to another goal that leaves this plan at its tick `at`; a target's with so much effort.
     pub fn retargeted(
         &self,
         goal: Goal,
         id: u32,
         at: u64,
         constraints: &Constraints,
-        tries: &mut Tries,
-        ahead: &mut Option<Ahead>,
+        effort: Effort,
     ) -> Result<Self, RetargetError> {
-        let mut next = Self {
-            plan: Plan::default(),
-            goal,
-            stop: None,
-            start: self.plan.state_after(&self.start, at),
-        };
-        match goal {
+        let start = self.plan.state_after(&self.start, at);
+        let plan = match goal {
             // It makes its plans itself.
             Goal::Stream => Err(RetargetError::NeedsStop),
             Goal::Position(to) => {
-                let (of, from) = (&self.plan, &self.start);
-                let leave = Leave { of, from, at };
-                try_retarget(&mut next.plan, id, leave, to, constraints, tries, ahead)
+                plan_retarget(id, &self.plan, &self.start, at, to, constraints, effort)
             }
             // A plan that has ended by then leaves nothing to leave.
             Goal::Velocity(_) if at >= self.plan.ticks() => Err(RetargetError::NeedsStop),
@@ -105,26 +96,14 @@ impl SentPlan {
                     plan: self.plan.id,
                     tick: at,
                 };
-                plan_jog(id, splice, &next.start, &velocity, constraints)
-                    .map(|plan| next.plan = plan)
+                plan_jog(id, splice, &start, &velocity, constraints)
             }
         }?;
-        Ok(next)
-    }
-
-    /// What lies `ahead` of this plan, which is its head, from tick `at` on.
-    pub fn continued(
-        &self,
-        ahead: &Ahead,
-        id: u32,
-        at: u64,
-        constraints: &Constraints,
-        tries: &mut Tries,
-    ) -> Result<Self, RetargetError> {
         Ok(Self {
-            plan: ahead.go_on(id, at, constraints, tries)?,
-            start: self.plan.state_after(&self.start, at),
-            ..*self
+            plan,
+            goal,
+            stop: None,
+            start,
         })
     }
 
@@ -133,7 +112,8 @@ impl SentPlan {
         matches!(self.plan.start, PlanStart::Splice { .. })
     }
 
-    /// The stop that leaves this plan at its tick `at`; `None` when it comes to rest by itself as soon.
+    /// The stop that leaves this plan at its tick `at`; `None` when it comes to rest by itself as soon, as a stop does that
+    /// is no less urgent.
     pub fn with_stop(
         &self,
         id: u32,
@@ -141,6 +121,9 @@ impl SentPlan {
         constraints: &Constraints,
         stop: Stop,
     ) -> Option<Self> {
+        if self.stop == Some(stop) || self.stop == Some(Stop::Urgent) {
+            return None;
+        }
         Some(Self {
             plan: plan_stop(id, &self.plan, &self.start, at, constraints, stop)?,
             start: self.plan.state_after(&self.start, at),

@@ -5,7 +5,7 @@ use super::coordinates::coordinates;
 use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
 use super::in_flight::InFlight;
-use super::pending::{Pending, Retarget};
+use super::pending::Pending;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
@@ -16,7 +16,7 @@ use crate::queues::{Command, CommandQueues, Snapshot};
 
 /// Time between streamed targets at first, ms.
 const DEFAULT_CYCLE_MS: f64 = 10.0;
-/// Ticks between the snapshot a stop or a transition is planned from and the tick at which it takes over: 2 ms for
+/// Ticks between the snapshot a stop or a way to another goal is planned from and the tick at which it takes over: 2 ms for
 /// planning.
 const PLANNING_LEAD_TICKS: u64 = 40;
 /// Where doubling it ends: a stop that is late even so finds the motion at rest.
@@ -153,10 +153,10 @@ impl Commander {
     /// The tick has taken what was in flight, or refused it.
     fn acknowledge(&mut self, in_flight: InFlight, refused: bool) {
         match in_flight {
-            InFlight::Plan(sent_plan, retarget) => {
+            InFlight::Plan(sent_plan, goal) => {
                 self.adapt_planning_lead(&sent_plan, refused);
                 if refused {
-                    self.plan_refused(&sent_plan, retarget);
+                    self.plan_refused(&sent_plan, goal);
                 } else {
                     self.plan_taken(sent_plan);
                 }
@@ -199,14 +199,14 @@ impl Commander {
     }
 
     /// The setpoint was not where the snapshot said. A stop is still pending, a stream can not wait.
-    fn plan_refused(&mut self, sent_plan: &SentPlan, retarget: Option<Retarget>) {
+    fn plan_refused(&mut self, sent_plan: &SentPlan, goal: Option<Goal>) {
         if sent_plan.stop.is_some() {
             return;
         }
         if sent_plan.goal == Goal::Stream {
             self.abort_streaming();
-        } else if let Some(retarget) = retarget {
-            self.pending.plan_refused(retarget);
+        } else if let Some(goal) = goal {
+            self.pending.plan_refused(goal);
         }
     }
 
@@ -226,6 +226,9 @@ impl Commander {
                 self.sent_plan = None;
                 self.next_plan = None;
                 self.pending.drop_stop();
+                if matches!(self.pending, Pending::Improving(_)) {
+                    self.pending = Pending::Nothing;
+                }
                 if self.target_is_rest && matches!(self.pending, Pending::Nothing) {
                     self.jog_velocities = [0.0; 6];
                     self.target = coordinates(

@@ -1,6 +1,7 @@
 //! What every plan keeps to: limits, mechanism, workspace, and which point of the platform is moved.
 
 use super::limits::Limits;
+use super::speeds::Speeds;
 use kinematics::Geometry;
 
 /// Smallest and largest x and y (2^-32 track radii) and theta (2^-32 turns) of the point that is moved.
@@ -31,6 +32,14 @@ impl Constraints {
             usable_radius: geometry.usable_radius(),
             bounds: ANYWHERE,
             rotation_centre: [0.0; 2],
+        }
+    }
+
+    /// Rates of translation (mm) and of rotation (deg) in the units of planning.
+    pub(crate) fn speeds(&self, mm: f64, deg: f64) -> Speeds {
+        Speeds {
+            linear: mm as f32 / self.geometry.radius_mm as f32,
+            angular: deg as f32 * (core::f32::consts::PI / 180.0),
         }
     }
 }

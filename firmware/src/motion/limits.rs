@@ -69,6 +69,12 @@ impl Limits {
             .all(|limit| ABOVE_ZERO.contains(&limit.to_bits()))
     }
 
+    /// Jerk of an urgent stop over that of ordinary motion.
+    pub(crate) fn urgent_jerk(&self) -> f32 {
+        let factor = self.stop_factor as f32;
+        factor * factor
+    }
+
     /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
     pub fn for_line(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
         let least = |translation: f64, rotation: f64| {

@@ -12,20 +12,32 @@
 //! | asked for | from | planner |
 //! |---|---|---|
 //! | a target | rest | [`plan_line`]: a straight line |
-//! | a target | motion | [`try_retarget`]; where it says so, [`plan_stop`] and then [`plan_line`] |
+//! | a target | motion | [`plan_retarget`]: the end of the motion under way, and a line, that overlap |
 //! | a velocity | rest or motion | [`plan_jog`] |
 //! | targets at a steady rate | rest | [`Stream`] |
 //! | a stop | motion | [`plan_stop`], smooth or urgent |
 //! | the stop of a fault | motion | none: the plan under way is followed slower and slower ([`FaultStop`]) |
 //!
-//! A new target in motion is planned in slices, so that the first setpoint towards it does not wait for all that lies
-//! ahead. All of what is handed over has been checked.
+//! There are two profiles. From rest to rest: seven segments, or the time-optimal ones where the pivots ask for it. From
+//! any velocity and acceleration to a velocity: three segments and a closing tick; a stop is that to zero, a jog that to
+//! a velocity, held, and to zero, the end of a stream that to zero. Everything else is a sum of these, because a plan is
+//! linear in its pieces:
 //!
-//! | slice | what comes of it |
-//! |---|---|
-//! | 1 ([`try_retarget`]) | the new plan, when there is little to check; else its head, which ends in a stop |
-//! | 2 ([`Ahead::go_on`]) | the rest of the new plan takes over from the head: the same motion to the bit |
-//! | 1 again, when 2 has found it too fast | a slower one that leaves the head; when 1 has, one that leaves a stop just begun |
+//! ```text
+//! speed  ______                            A new target in motion. The stop under way ends at A, a line goes from A to the
+//!              \    stop                   target. Begun when the stop is over it is "stop, then line"; begun sooner, the
+//!               \____                      two add up to a motion that ends at the target all the same. The least delay
+//!                 ________                 at which every limit is kept is taken. Towards a target straight ahead the
+//!           |    /  line  \                stop's braking and the line's acceleration cancel, and the stage goes on.
+//!           |___/          \____           Translation and rotation each have their own line and delay.
+//!           delay                    time
+//! ```
+//!
+//! A target in motion is planned in slices, so that the stage reacts soon: first the stop, then a first way that takes its
+//! place, then, some milliseconds into that, the soonest of all ([`Effort`]).
+//!
+//! Plans that are not lines are held against every limit by one check (`check`), with the tolerances of one table
+//! (`tolerances`); a line from rest is planned inside them, with what the table keeps back.
 //!
 //! # Where what is
 //!
@@ -33,19 +45,17 @@
 //!
 //! | file or folder | idea |
 //! |---|---|
-//! | `limits`, `refusal`, `turn_direction` | limits as a user states them; why a move is refused; which way round to an orientation |
+//! | `limits`, `refusal`, `turn_direction`, `tolerances` | limits as a user states them; why a move is refused; which way round to an orientation; what is granted over a limit |
 //! | `constraints` | what every plan keeps to: limits, mechanism, workspace, and the point that is moved |
-//! | `plan` | the plan, the integers it is made of, and how the tick follows it |
+//! | `plan` | the plan, the integers it is made of, sums of plans, and how the tick follows it |
 //! | `speeds` | translation and rotation as one pair |
-//! | `brake` | from any state to rest, and from a velocity to another |
-//! | `profile` | jerk-limited profiles: from rest to rest, and from any state to a target |
+//! | `profile` | the two profiles |
 //! | `check` | whether a plan is inside every limit |
 //! | `line`, `stop`, `jog`, `stream` | the planners of the table above |
 //! | `retarget` | a new target in motion |
 
 pub mod profile;
 
-mod brake;
 mod check;
 mod constraints;
 mod jog;
@@ -57,6 +67,7 @@ mod retarget;
 mod speeds;
 mod stop;
 mod stream;
+mod tolerances;
 mod turn_direction;
 
 pub use crate::number::float::Float;
@@ -71,20 +82,14 @@ pub use plan::follower::{PlanFollower, Stale};
 pub use plan::rotation_centre::{MAX_CENTRE_OFFSET, RotationCentre};
 pub use plan::setpoint::{Setpoint, SetpointScale};
 pub use plan::time_scaling::FaultStop;
-pub use plan::units::AxisLimits;
 pub use plan::{MAX_PIECES, Piece, Plan, PlanStart, Position};
-pub use profile::any_state::stop_distance;
-pub use profile::any_state::task::{AxisProfile, Task, Unusable};
 pub use profile::rest_to_rest::RestToRestProfile;
-pub use profile::tracks::synchronised;
 pub use refusal::Refusal;
 pub use refusal::RetargetError;
-pub use retarget::ahead::Ahead;
-pub use retarget::tries::Tries;
-pub use retarget::{Leave, plan_retarget, try_retarget};
+pub use retarget::{Effort, plan_retarget};
 pub use stop::{Stop, plan_stop};
 pub use stream::{
-    Clock, JERK_TOLERANCE, PERIOD_RANGE, PlanProgress, PushError, STREAM_CAPACITY, Stream,
-    StreamEnd, StreamStep,
+    Clock, PERIOD_RANGE, PlanProgress, PushError, STREAM_CAPACITY, Stream, StreamEnd, StreamStep,
 };
+pub use tolerances::JERK_TOLERANCE;
 pub use turn_direction::TurnDirection;

@@ -101,6 +101,4 @@ pub enum RetargetError {
     Refused(Refusal),
     /// It can, but not without a stop before, or not as soon.
     NeedsStop,
-    /// Not so fast: the next of the [`Tries`](super::Tries) may find one.
-    TooFast,
 }

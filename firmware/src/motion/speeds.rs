@@ -5,7 +5,7 @@ use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 
 /// Speed of the moved point, track radii per second, and rate of rotation, rad per second; or their derivatives.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Speeds {
+pub(crate) struct Speeds {
     pub linear: f32,
     pub angular: f32,
 }
@@ -16,6 +16,14 @@ impl Speeds {
         Self {
             linear: hypot(vector[0], vector[1]),
             angular: vector[2].abs(),
+        }
+    }
+
+    /// Both times a factor.
+    pub fn scaled(self, factor: f32) -> Self {
+        Self {
+            linear: self.linear * factor,
+            angular: self.angular * factor,
         }
     }
 

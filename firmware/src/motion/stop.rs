@@ -1,22 +1,22 @@
-//! Planning a stop from any tick of any plan: all axes brake together (see `brake`).
+//! Planning a stop from any tick of any plan: all axes brake together (see `profile/velocity`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
 //! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own.
 
-use super::brake::Brake;
 use super::check::platform::greatest;
 use super::check::violation::Violation;
-use super::check::{CheckBudget, CheckedPieces, PlanCheck};
+use super::check::{PlanCheck, is_over};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
-use super::plan::cubic_segment::CubicSegment;
-use super::plan::units::TickLimits;
-use super::plan::{Piece, Pieces, Plan, PlanStart};
-use super::profile::tracks::{brake, merged};
-use super::profile::whole_ticks::Track;
-use crate::number::float::FloatMinMax;
+use super::plan::cubic_segment::{CubicSegment, MotionState};
+use super::plan::quantise::velocity_pieces;
+use super::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
+use super::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
+use super::speeds::Speeds;
+use super::tolerances::PIVOT_PART_FOR_BRAKING;
+use crate::number::float::{FloatMinMax, ticks_to_f32};
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,24 +49,6 @@ pub fn plan_stop(
     constraints: &Constraints,
     stop: Stop,
 ) -> Option<Plan> {
-    let mut plan = Plan::default();
-    // A stop has to be found: what is still broken after the last attempt can not be helped.
-    let _ = write_stop(&mut plan, of, axes, at, constraints, stop, ATTEMPTS)?;
-    plan.id = id;
-    Some(plan)
-}
-
-/// Writes the same, found in so many attempts, and what is broken even so.
-#[inline(never)]
-pub(super) fn write_stop(
-    plan: &mut Plan,
-    of: &Plan,
-    axes: &[AxisState; 3],
-    at: u64,
-    constraints: &Constraints,
-    stop: Stop,
-    attempts: usize,
-) -> Option<Result<(), Violation>> {
     let whole = of.ticks();
     let last = of.pieces.last().map_or(0, |piece| piece.ticks);
     if at + last >= whole {
@@ -79,49 +61,76 @@ pub(super) fn write_stop(
     {
         return None;
     }
-    let limits = TickLimits::new(constraints);
+    let mut plan = Plan {
+        id,
+        start: PlanStart::Splice {
+            plan: of.id,
+            tick: at,
+        },
+        nudge: of.nudge,
+        ..Plan::default()
+    };
+    write_stop(&mut plan, &state, whole - at, constraints, stop)?;
+    Some(plan)
+}
+
+/// How hard a stop brakes, in limits of acceleration and of jerk.
+#[derive(Clone, Copy)]
+struct Hardness {
+    acceleration: f32,
+    jerk: f32,
+}
+
+/// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
+/// plan.
+#[inline(never)]
+fn write_stop(
+    plan: &mut Plan,
+    state: &[AxisState; 3],
+    left: u64,
+    constraints: &Constraints,
+    stop: Stop,
+) -> Option<()> {
     let plan_check = PlanCheck::for_stop(constraints);
-    let factor = constraints.limits.stop_factor as f32;
-    plan.start = PlanStart::Splice {
-        plan: of.id,
-        tick: at,
-    };
-    plan.nudge = of.nudge;
-    let (most, asked) = hardest_brake(&state, &limits, constraints);
+    let hz = constraints.limits.rate_hz as f32;
+    let limits = AccelerationLimits::new(constraints);
+    let now = MotionState::new(state, hz);
+    let urgent_jerk = constraints.limits.urgent_jerk();
+    let (most, asked) = hardest_brake(state, &limits, constraints);
     let mut hardness = match stop {
-        Stop::Smooth => [most.fmin(1.0), 1.0],
-        Stop::Urgent => [most, factor * factor],
+        Stop::Smooth => Hardness {
+            acceleration: most.fmin(1.0),
+            jerk: 1.0,
+        },
+        Stop::Urgent => Hardness {
+            acceleration: most,
+            jerk: urgent_jerk,
+        },
     };
-    let (mut apart, mut checked_pieces) = (false, CheckedPieces::new());
-    let mut checked = Ok(());
-    for _ in 0..attempts {
-        let brake = Brake::new(&state, &limits, hardness[0], hardness[1]);
-        let ticks = brake.ticks();
+    let mut apart = false;
+    for _ in 0..ATTEMPTS {
+        let limits = limits.scaled(hardness.acceleration, hardness.jerk);
+        let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
+        let ticks = profile.ticks(hz);
+        // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
+        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
         if apart {
-            write_pieces(
-                &state,
-                apart_ticks(&state, &limits, hardness),
-                &mut plan.pieces,
-            );
+            write_apart(&mut plan.pieces, state, &now, &limits, hz);
         } else {
-            write_pieces(&state, [ticks; 3], &mut plan.pieces);
+            write_together(&mut plan.pieces, state, ticks);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
-        let lasts = plan.ticks();
-        if at + lasts >= whole {
+        if plan.ticks() >= left {
             return None;
         }
-        let end = plan_check.prepare(&plan.pieces, &state, &mut checked_pieces);
-        plan.end = [0, 1, 2].map(|i| end[i].rest_position(lasts, plan.nudge[i]));
-        // A stop has to be found: none is left unlooked at because others have been looked at before.
-        checked = plan_check.check(&checked_pieces, &mut { CheckBudget::WHOLE });
-        match checked {
-            Ok(()) | Err(Violation::Unchecked) => break,
+        match plan_check.check(&plan.pieces, state) {
+            Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Violation::Workspace | Violation::NoRoomToStop) if !apart => apart = true,
             Err(Violation::Workspace | Violation::NoRoomToStop) => {
-                hardness = [hardness[0] * 1.3, factor * factor];
+                hardness.acceleration *= 1.3;
+                hardness.jerk = urgent_jerk;
             }
             Err(
                 Violation::PivotRate(over)
@@ -133,49 +142,79 @@ pub(super) fn write_stop(
                 if over <= asked {
                     break;
                 }
-                let used = hardness[0] * brake.part(ticks);
-                hardness[0] = (used * (0.98 / over).fmax(0.5)).fmax(GENTLEST);
+                let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / hz);
+                let used = hardness.acceleration * profile.peak_size(times_s);
+                hardness.acceleration =
+                    (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
             }
         }
     }
-    Some(checked)
+    // A stop has to be found: what is still broken after the last attempt can not be helped.
+    let end = state_after_pieces(state, &plan.pieces, &[0; 3]);
+    let ticks = plan.ticks();
+    plan.end = [0, 1, 2].map(|i| end[i].rest_position(ticks, plan.nudge[i]));
+    Some(())
 }
 
-/// Ticks in which translation and rotation each brake as soon as they can.
-fn apart_ticks(state: &[AxisState; 3], limits: &TickLimits, hardness: [f32; 2]) -> [[u64; 3]; 3] {
-    let [x, y, theta] = *state;
-    let still = AxisState::default();
-    let ticks =
-        |state: [AxisState; 3]| Brake::new(&state, limits, hardness[0], hardness[1]).ticks();
-    let way = ticks([x, y, still]);
-    [way, way, ticks([still, still, theta])]
+/// Whether the speed rises over its limit before the stop brakes.
+fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, constraints: &Constraints) -> bool {
+    let limits = &constraints.limits;
+    let limit = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
+    let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / hz);
+    is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
 }
 
-/// Writes the pieces that brake the axes in so many ticks.
-fn write_pieces(state: &[AxisState; 3], ticks: [[u64; 3]; 3], pieces: &mut Pieces) {
-    let mut tracks: [Track; 3] = Default::default();
-    for (track, (axis, ticks)) in tracks.iter_mut().zip(state.iter().zip(ticks)) {
-        brake(track, axis, ticks);
+/// Writes the pieces that bring all axes to rest in so many ticks.
+pub(super) fn write_together(pieces: &mut Pieces, state: &[AxisState; 3], ticks: [u64; 3]) {
+    pieces.clear();
+    for piece in velocity_pieces(state, &[0; 3], ticks) {
+        // Four of many.
+        let _ = push_piece(pieces, piece);
     }
-    merged(&tracks, pieces);
+}
+
+/// The same where translation and rotation each brake as soon as they can.
+fn write_apart(
+    pieces: &mut Pieces,
+    state: &[AxisState; 3],
+    now: &MotionState,
+    limits: &AccelerationLimits,
+    hz: f32,
+) {
+    let part = |axes: [usize; 3]| {
+        let still = AxisState::default();
+        let state = axes.map(|i| state.get(i).copied().unwrap_or(still));
+        let each = |vector: &[f32; 3]| axes.map(|i| vector.get(i).copied().unwrap_or(0.0));
+        let now = MotionState {
+            v: each(&now.v),
+            a: each(&now.a),
+            ..*now
+        };
+        let ticks = VelocityProfile::new(&now, &[0.0; 3], limits).ticks(hz);
+        velocity_pieces(&state, &[0; 3], ticks)
+    };
+    const NONE: usize = 3;
+    let (translation, rotation): ([Piece; 4], [Piece; 4]) =
+        (part([0, 1, NONE]), part([NONE, NONE, 2]));
+    // Eight of many.
+    let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
 /// comes of the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
 fn hardest_brake(
     state: &[AxisState; 3],
-    limits: &TickLimits,
+    limits: &AccelerationLimits,
     constraints: &Constraints,
 ) -> (f32, f32) {
     let hz = constraints.limits.rate_hz as f32;
     let centre = constraints.rotation_centre.map(|value| value as f32);
-    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * 0.98;
+    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
     let segment = CubicSegment::new(state, &Piece::default(), hz);
-    let peak = Brake::new(state, limits, 1.0, 1.0).peak_per_second(limits, hz);
     let mut drifting = segment.start;
     drifting.a = [0.0; 3];
     let mut braking = drifting;
-    braking.a = peak;
+    braking.a = VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits);
     let [_, drift] = segment.platform(&drifting, centre).pivots();
     let [_, braked] = segment.platform(&braking, centre).pivots();
     let mut hardest = HARDEST;

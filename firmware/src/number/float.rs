@@ -150,19 +150,6 @@ pub(crate) fn truncate(value: f32) -> i64 {
     }
 }
 
-/// A float rounded to nearest; it has to be within 63 bits.
-#[inline]
-pub(crate) fn round_i64(value: f32) -> i64 {
-    let size = Float::abs(value);
-    if size < 8_388_608.0 {
-        // Half is a number here.
-        let rounded = (size + 0.5) as i32;
-        i64::from(if value < 0.0 { -rounded } else { rounded })
-    } else {
-        value as i64
-    }
-}
-
 /// The same within 31 bits, which is hardware.
 #[inline]
 pub(crate) fn round_i32(value: f32) -> i32 {

@@ -1,12 +1,13 @@
 //! A tick that moves exactly as commanded.
 #![allow(dead_code)] // Each test file uses its part.
 
+use super::axes::{Axes, Course};
 use firmware::control::config::Config;
 use firmware::control::loop_counters::LoopCounters;
 use firmware::drivers::bridge::Duty;
 use firmware::fault::{Fault, FaultKind};
 use firmware::mode::Mode;
-use firmware::motion::{PlanFollower, Setpoint, SetpointScale};
+use firmware::motion::{AxisState, PlanFollower, Setpoint, SetpointScale};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, Snapshot, TickQueues};
 use firmware::recorder::Sample;
@@ -16,9 +17,12 @@ use kinematics::{Angle, Pose, inverse};
 pub const DWELL: u64 = 40;
 
 /// A tick without encoders and motors: pivots are where the setpoint puts them.
-pub struct FakeTick {
-    queues: TickQueues<'static>,
+pub struct FakeTick<'q> {
+    queues: TickQueues<'q>,
     motion: PlanFollower,
+    axes: Axes,
+    /// The plan accepted in the last tick, if one was.
+    pub accepted: Option<Course>,
     scale: SetpointScale,
     /// What the next snapshot says; tests set faults here.
     pub now: Snapshot,
@@ -34,12 +38,14 @@ pub struct FakeTick {
     pub refuses_settings: bool,
 }
 
-impl FakeTick {
+impl<'q> FakeTick<'q> {
     /// At this end of the queues, of a stage of these parameters: not referenced, at the origin.
-    pub fn new(queues: TickQueues<'static>, parameters: &Parameters) -> Self {
+    pub fn new(queues: TickQueues<'q>, parameters: &Parameters) -> Self {
         Self {
             queues,
             motion: PlanFollower::default(),
+            axes: Axes::default(),
+            accepted: None,
             scale: SetpointScale::new(parameters.limits.rate_hz),
             now: Snapshot::default(),
             at_rest: 0,
@@ -53,11 +59,13 @@ impl FakeTick {
 
     pub fn run(&mut self) {
         self.now.tick += 1;
+        self.accepted = None;
         if let Some(command) = self.queues.commands.dequeue() {
             self.now.commands += 1;
             self.obey(command);
         }
         self.motion.advance();
+        self.axes.follow(&self.motion);
         let setpoint = self.motion.setpoint(&self.scale);
         let on = matches!(self.now.mode, Mode::Holding | Mode::Moving);
         if on {
@@ -87,6 +95,16 @@ impl FakeTick {
             let _ = self.queues.snapshots.enqueue(self.now.clone());
             self.now.loop_counters = LoopCounters::default();
         }
+    }
+
+    /// Position, velocity and acceleration of the setpoint.
+    pub fn axes(&self) -> &[AxisState; 3] {
+        self.axes.now()
+    }
+
+    /// Commands sent and not taken yet.
+    pub fn commands_waiting(&self) -> usize {
+        self.queues.commands.len()
     }
 
     /// What the recorder sees of this tick.
@@ -134,10 +152,11 @@ impl FakeTick {
                 }
             }
             Command::Move(plan) => {
-                let accepted = self.motion.accept(plan).is_ok();
+                let accepted = self.motion.accept(&plan).is_ok();
                 self.log.push(if accepted { "move" } else { "refused" });
                 if accepted {
                     self.now.mode = Mode::Moving;
+                    self.accepted = Some(self.axes.accept(plan).clone());
                 } else {
                     self.now.refused += 1;
                 }

@@ -6,6 +6,7 @@ use firmware::gcs::{Identity, Interpreter, Session};
 use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Queues};
 
+pub mod axes;
 pub mod fake_tick;
 pub use fake_tick::{DWELL, FakeTick};
 
@@ -28,34 +29,35 @@ impl embedded_io::Write for Written {
     }
 }
 
+/// The command side of the reference stage.
+pub fn reference_panel() -> Interpreter {
+    let identity = Identity {
+        serial: "4711",
+        version: "0.1.0",
+    };
+    Interpreter::new(&Parameters::REFERENCE, identity)
+}
+
+/// A bench with queues of its own.
+pub type Bench = BenchBetween<'static>;
+
 /// The command side, its connections and the tick.
-pub struct Bench {
+pub struct BenchBetween<'q> {
     panel: Interpreter,
     sessions: Vec<(Session, Written)>,
-    pub queues: CommandQueues<'static>,
-    pub tick: FakeTick,
+    pub queues: CommandQueues<'q>,
+    pub tick: FakeTick<'q>,
 }
 
 impl Bench {
     /// One connection, nothing has run yet.
     pub fn cold() -> Self {
-        let identity = Identity {
-            serial: "4711",
-            version: "0.1.0",
-        };
-        Self::with(Interpreter::new(&Parameters::REFERENCE, identity))
+        Self::with(reference_panel())
     }
 
     /// The same with this command side.
     pub fn with(panel: Interpreter) -> Self {
-        let parameters = Parameters::REFERENCE;
-        let (tick, queues) = Box::leak(Box::new(Queues::new())).split();
-        Self {
-            panel,
-            sessions: vec![(Session::new(), Written::default())],
-            queues,
-            tick: FakeTick::new(tick, &parameters),
-        }
+        Self::new_between(panel, Box::leak(Box::new(Queues::new())))
     }
 
     /// Running, not referenced.
@@ -68,11 +70,30 @@ impl Bench {
     /// Referenced at the origin, settled.
     pub fn ready() -> Self {
         let mut bench = Self::new();
-        assert_eq!(bench.say("FRF\n"), "");
-        bench.run(2 * DWELL);
-        assert_eq!(bench.say("ERR?\n"), "0\n");
-        bench.tick.log.clear();
+        bench.reference();
         bench
+    }
+}
+
+impl<'q> BenchBetween<'q> {
+    /// One connection, nothing has run yet; for whoever makes thousands of benches and
+    /// has the queues back after each.
+    pub fn new_between(panel: Interpreter, queues: &'q mut Queues) -> Self {
+        let (tick, queues) = queues.split();
+        Self {
+            panel,
+            sessions: vec![(Session::new(), Written::default())],
+            queues,
+            tick: FakeTick::new(tick, &Parameters::REFERENCE),
+        }
+    }
+
+    /// References, and waits until the stage has settled.
+    pub fn reference(&mut self) {
+        assert_eq!(self.say("FRF\n"), "");
+        self.run(2 * DWELL);
+        assert_eq!(self.say("ERR?\n"), "0\n");
+        self.tick.log.clear();
     }
 
     /// One more connection; its number.

@@ -187,10 +187,14 @@ impl Worst {
     }
 
     /// Of a plan that was left with `before`: what an urgent stop has left over a limit can only be left.
-    pub fn left_with(mut self, before: &Self) -> Self {
+    pub fn left_with(mut self, before: &Self, constraints: &Constraints) -> Self {
         let within = |share: f64, before: f64| if share <= before { 0.0 } else { share };
         self.speed = within(self.speed, before.speed);
         self.acceleration = within(self.acceleration, before.acceleration);
+        // Out of an urgent stop with its jerk: with the ordinary one the stage would be pushed back.
+        if before.acceleration > 1.0 + 1e-4 {
+            self.jerk /= constraints.limits.stop_factor.powi(2);
+        }
         self
     }
 

@@ -70,32 +70,6 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
-        name: "profiles",
-        title: "Profiles of three axes beside rsruckig",
-        group: Group::Motion,
-        about: "Profiles from motion to rest, random states and limits, extremes included: the longest over rsruckig's \
-                synchronised duration, and how many rsruckig finds none for.",
-        command: "PROFILE_CASES=200000 cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
-        short: Some(
-            "cargo test --release -p firmware --test profile_reference -- --nocapture --test-threads 1",
-        ),
-        kind: Kind::Deterministic,
-        seconds: 3,
-        without: &[],
-    },
-    Section {
-        name: "played",
-        title: "Three axes as the tick plays them, beside rsruckig",
-        group: Group::Motion,
-        about: "From motion to rest in whole ticks, as the tick plays what the chip computes; limits of each axis its own. Duration \
-                over rsruckig's synchronised one.",
-        command: "cargo test --release -p firmware --test motion_reference three_axes -- --nocapture",
-        short: None,
-        kind: Kind::Deterministic,
-        seconds: 1,
-        without: &[],
-    },
-    Section {
         name: "retargets",
         title: "New targets in motion, beside rsruckig",
         group: Group::Motion,
@@ -122,6 +96,20 @@ pub const SECTIONS: &[Section] = &[
         short: Some("CHECK=1 cargo bench -p firmware-cost --bench retarget"),
         kind: Kind::Deterministic,
         seconds: 150,
+        without: &[],
+    },
+    Section {
+        name: "limits",
+        title: "Every tick of random scripts",
+        group: Group::Motion,
+        about: "Random GCS scripts of targets, velocities, stops, streams and waveforms at any instants, through the command side and \
+                the arithmetic of the tick: scripts with a tick over a limit of speed, acceleration, jerk, pivots or workspace.",
+        command: "SCRIPTS=10000 cargo test --release -p firmware --test gcs_limits -- --nocapture --test-threads 1",
+        short: Some(
+            "cargo test --release -p firmware --test gcs_limits -- --nocapture --test-threads 1",
+        ),
+        kind: Kind::Deterministic,
+        seconds: 180,
         without: &[],
     },
     Section {

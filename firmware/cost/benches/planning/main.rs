@@ -13,7 +13,8 @@
 mod reference;
 
 use firmware::motion::{
-    AxisState, Plan, PlanFollower, Position, SetpointScale, StreamStep, plan_line, plan_retarget,
+    AxisState, Effort, Plan, PlanFollower, Position, SetpointScale, StreamStep, plan_line,
+    plan_retarget,
 };
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
@@ -203,7 +204,16 @@ fn setpoint(trajectory: &Trajectory<3>, time_s: f64) -> [DataArrayOrVec<f64, 3>;
 
 /// All slices of a new target; whether there is a way to it without a stop before.
 fn retargeted(now: &Moving, to: Position) -> bool {
-    plan_retarget(3, &now.plan, &now.start, now.at, to, ground()).is_ok()
+    plan_retarget(
+        3,
+        &now.plan,
+        &now.start,
+        now.at,
+        to,
+        ground(),
+        Effort::First,
+    )
+    .is_ok()
 }
 
 /// A number from the environment.

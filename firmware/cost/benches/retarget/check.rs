@@ -32,7 +32,7 @@ fn walked(step: &Step, constraints: &Constraints) -> (Worst, bool) {
     let end = worst.walk(&motion.plan, &motion.from, constraints);
     let worst = match step.kind {
         Kind::Stop => worst.of_a_stop(constraints),
-        Kind::Transition => worst.left_with(&Worst::of(&motion.from, constraints)),
+        Kind::Transition => worst.left_with(&Worst::of(&motion.from, constraints), constraints),
         Kind::Line => worst,
     };
     let is_kept = worst.is_kept_but_for_a_thousandth() && ends_at_rest(&motion.plan, &end);

@@ -1,24 +1,23 @@
 //! The planner under test. Only [`retargeted`] knows how the way to a new target in motion is planned: another planner
 //! is put there, and nothing else changes.
 //!
-//! `LEAD` in the environment (ticks, 0 without it) is by how much later the way to the target takes over than a stop
-//! that has been handed over first: the way leaves that stop at its tick `LEAD`. A motion that comes to rest as soon by
-//! itself has no stop; then it is left so much later. Durations count from the tick at which the stop begins, so that
-//! the lead is in them.
+//! As the commander does it: a first way leaves the motion where a stop would, and the soonest way leaves the first one, or
+//! the stop where there is none, `LEAD` ticks later (80 unless the environment says otherwise), if it is over sooner.
+//! Durations count from the tick at which the motion is left.
 
 use crate::motion_bench::at_rest;
 use crate::motion_bench::setting::setting;
 use firmware::motion::{
-    AxisState, Constraints, Plan, Position, Refusal, RetargetError, Stop, plan_line, plan_retarget,
-    plan_stop,
+    AxisState, Constraints, Effort, Plan, Position, Refusal, RetargetError, Stop, plan_line,
+    plan_retarget, plan_stop,
 };
 use std::sync::LazyLock;
 
 static LEAD_TICKS: LazyLock<u64> = LazyLock::new(lead_ticks);
 
-/// How much later than a stop, as the environment says.
+/// How much later than the first way the soonest one takes over: twice the command side's time for planning.
 pub fn lead_ticks() -> u64 {
-    setting("LEAD", 0)
+    setting("LEAD", 80)
 }
 
 /// A plan, and the axes at its start.
@@ -71,25 +70,45 @@ pub fn retargeted(
 ) -> Result<Way, Refusal> {
     let mut way = Way::default();
     let stop = stopped(of, at, constraints);
-    let (left, tick) = match &stop {
-        Some(stop) if *LEAD_TICKS > 0 => {
-            way.push(at, stop.clone(), Kind::Stop);
-            (stop, *LEAD_TICKS)
-        }
-        _ => (of, at + *LEAD_TICKS),
-    };
-    let id = left.plan.id + 1;
-    match plan_retarget(id, &left.plan, &left.from, tick, to, constraints) {
+    let lead = *LEAD_TICKS;
+    let id = of.plan.id + 1;
+    match plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::First) {
         Ok(plan) => {
-            let from = left.state_after(tick);
-            way.push(tick, Motion { plan, from }, Kind::Transition);
+            let first = Motion {
+                plan,
+                from: of.state_after(at),
+            };
+            if let Some(better) = soonest(&first, lead, to, constraints)
+                && lead + better.plan.ticks() < first.plan.ticks()
+            {
+                way.push(at, first, Kind::Transition);
+                way.push(lead, better, Kind::Transition);
+            } else {
+                way.push(at, first, Kind::Transition);
+            }
             Ok(way)
         }
         Err(RetargetError::Refused(no)) => Err(no),
-        Err(RetargetError::NeedsStop | RetargetError::TooFast) => {
+        Err(RetargetError::NeedsStop) => {
+            if let Some(stop) = &stop
+                && let Some(plan) = soonest(stop, lead, to, constraints)
+            {
+                way.push(at, stop.clone(), Kind::Stop);
+                way.push(lead, plan, Kind::Transition);
+                return Ok(way);
+            }
             from_rest(of, at, stop, to, constraints)
         }
     }
+}
+
+/// The soonest way that leaves a motion at its tick `at`.
+fn soonest(of: &Motion, at: u64, to: Position, constraints: &Constraints) -> Option<Motion> {
+    let id = of.plan.id + 1;
+    Some(Motion {
+        plan: plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::All).ok()?,
+        from: of.state_after(at),
+    })
 }
 
 /// The stop, or what is left of a motion that comes to rest by itself, and the line from there.

@@ -7,17 +7,14 @@ use crate::motion::plan::setpoint::{ACCELERATION_CUT, VELOCITY_CUT};
 use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT};
 use crate::motion::refusal::Refusal;
 use crate::motion::speeds::Speeds;
+use crate::motion::tolerances::{STREAM_SLACK, WORKSPACE_RADII};
 use crate::number::Fixed;
 use crate::number::float::FloatMinMax;
 use kinematics::{Angle, Scalar};
 
-/// What is granted over a limit: the rounding of single precision, and of what a sender has computed to the limit
-/// itself.
-const STREAM_SLACK: f32 = 1.0 + 1e-3;
-
 /// The limits, per second, and the workspace, track radii.
 pub(crate) struct InstantCheck<'a> {
-    constraints: &'a Constraints,
+    pub constraints: &'a Constraints,
     pub hz: f32,
     usable: f32,
     centre: [f32; 2],
@@ -92,7 +89,7 @@ impl<'a> InstantCheck<'a> {
         let point = [radii(at[0]), radii(at[1])];
         let platform = Platform::new(point, direction, v, a, self.centre);
         let centre_distance = platform.radius();
-        if !(centre_distance <= self.usable + STREAM_RIM) {
+        if !(centre_distance <= self.usable + WORKSPACE_RADII) {
             return Err(self.outside(centre_distance));
         }
         let [pivot_rates, pivot_accelerations] = platform.pivots();
@@ -108,6 +105,11 @@ impl<'a> InstantCheck<'a> {
         })
     }
 
+    /// Whether speeds are over their limits.
+    pub fn is_too_fast(&self, speeds: Speeds) -> bool {
+        over(speeds, self.speed_limit)
+    }
+
     /// Whether an instant, and the `seconds` since `before` with one jerk in between, keep to everything.
     pub fn check(
         &self,
@@ -115,11 +117,7 @@ impl<'a> InstantCheck<'a> {
         now: &InstantState,
         seconds: f32,
     ) -> Result<(), Refusal> {
-        let over = |value: Speeds, limit: Speeds| {
-            value.linear > limit.linear * STREAM_SLACK
-                || value.angular > limit.angular * STREAM_SLACK
-        };
-        if over(now.velocity, self.speed_limit) {
+        if self.is_too_fast(now.velocity) {
             return Err(Refusal::Velocity);
         }
         if over(now.acceleration, self.acceleration_limit) {
@@ -139,7 +137,7 @@ impl<'a> InstantCheck<'a> {
     pub fn is_inside(&self, before: &InstantState, now: &InstantState, seconds: f32) -> bool {
         let segment =
             before.centre_acceleration.fmax(now.centre_acceleration) * seconds * seconds / 8.0;
-        before.centre_distance.fmax(now.centre_distance) + segment <= self.usable + STREAM_RIM
+        before.centre_distance.fmax(now.centre_distance) + segment <= self.usable + WORKSPACE_RADII
     }
 
     fn outside(&self, centre_distance: f32) -> Refusal {
@@ -149,6 +147,10 @@ impl<'a> InstantCheck<'a> {
             usable_mm: f64::from(self.usable) * mm,
         }
     }
+}
+
+fn over(value: Speeds, limit: Speeds) -> bool {
+    value.linear > limit.linear * STREAM_SLACK || value.angular > limit.angular * STREAM_SLACK
 }
 
 /// Rates of x and y in track radii, of theta in rad; cut to 32 bits, which a float loads in one instruction.
@@ -163,6 +165,3 @@ fn radii(units: i64) -> f32 {
     let most = i64::from(i32::MAX);
     (units >> CUT).clamp(-most, most) as i32 as f32 * (PER_POSITION_UNIT * (1 << CUT) as f32)
 }
-
-/// 0.05 um on the reference stage.
-const STREAM_RIM: f32 = 5e-7;

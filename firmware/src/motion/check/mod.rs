@@ -18,7 +18,6 @@
 //! |---|---|
 //! | `plan_check` | the pieces of a plan against every limit, interval by interval |
 //! | `interval` | an interval: its ends, and how large everything is in between |
-//! | `budget` | how many intervals, and how far it has come |
 //! | `violation` | which limit is broken, and by how much |
 //! | `platform` | the platform at an instant: its centre's motion and the pivots' |
 //! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
@@ -26,7 +25,6 @@
 //! | `target` | whether a target can be moved to |
 //! | `instant` | one instant against every limit: for streams |
 
-pub(super) mod budget;
 pub(crate) mod instant;
 pub(crate) mod interval;
 pub(super) mod pivot_bounds;
@@ -39,6 +37,4 @@ pub(super) mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use budget::{CheckBudget, MIN_CHECKED_TICKS};
-pub(crate) use plan_check::{CheckedPieces, PlanCheck};
-pub(crate) use violation::Violation;
+pub(crate) use plan_check::{PlanCheck, is_over};

@@ -1,20 +1,19 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
-use super::budget::CheckBudget;
 use super::interval::{IntervalBounds, IntervalEnd};
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
 use super::violation::Violation;
 use super::workspace::{StopLimits, Workspace};
-use crate::motion::brake::Brake;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::motion::plan::units::TickLimits;
-use crate::motion::plan::{MAX_PIECES, Piece};
+use crate::motion::plan::{Piece, Pieces};
+use crate::motion::profile::velocity::AccelerationLimits;
+use crate::motion::speeds::Speeds;
+use crate::motion::tolerances::PLAN_SLACK;
 use crate::number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use crate::number::sqrt_f32;
-use heapless::Vec;
 
 /// What a plan is held against.
 pub(crate) struct PlanCheck {
@@ -28,29 +27,34 @@ pub(crate) struct PlanCheck {
 
 /// Limits of translation and rotation.
 struct MotionLimits {
-    speed: [f32; 2],
-    acceleration: [f32; 2],
-    jerk: [f32; 2],
+    speed: Speeds,
+    acceleration: Speeds,
+    jerk: Speeds,
     /// With which a stop brakes, and the same for a bound of its way.
-    stop: TickLimits,
+    stop: AccelerationLimits,
     braking: StopLimits,
 }
 
-/// A piece as it is looked at.
-pub(crate) struct CheckedPiece {
-    segment: CubicSegment,
+/// An interval of a piece.
+struct Interval<'a> {
+    segment: &'a CubicSegment,
     /// Of translation and of rotation.
     jerk: [f32; 2],
-    /// How far each axis may go from its start.
-    bound_distances: [[f32; 2]; 3],
-    ticks: u64,
+    /// How far each axis may go from where the motion began.
+    bound_distances: &'a [[f32; 2]; 3],
+    seconds: f32,
 }
 
-/// The pieces of a plan.
-pub(crate) type CheckedPieces = Vec<CheckedPiece, MAX_PIECES>;
+/// What a check has used up, and found.
+struct Budget<'a> {
+    /// Intervals that may be looked at, failed ones included, before the next failure counts.
+    intervals: &'a mut usize,
+    /// What was broken in intervals that have been taken in shorter ones since.
+    worst: Option<Violation>,
+    pivots_sampled: bool,
+}
 
-/// Slack of single precision.
-const PLAN_SLACK: f32 = 1.0 + 1e-4;
+pub(super) const MAX_INTERVALS: usize = 60;
 
 /// Pieces up to this many ticks have no middle to sample.
 const SHORT: u64 = 200;
@@ -61,32 +65,19 @@ const SHORTEST: u64 = 4;
 impl PlanCheck {
     /// The check of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
-    pub fn new(constraints: &Constraints, stop: TickLimits, start: &[AxisState; 3]) -> Self {
+    pub fn new(constraints: &Constraints, start: &[AxisState; 3]) -> Self {
         let limits = &constraints.limits;
-        let mm = constraints.geometry.radius_mm as f32;
-        let pair = |translation: f64, rotation_deg: f64| {
-            [
-                translation as f32 / mm,
-                rotation_deg as f32 * (core::f32::consts::PI / 180.0),
-            ]
-        };
-        let hz = limits.rate_hz as f32;
-        let MotionState { v, a, .. } = CubicSegment::new(start, &Piece::default(), hz).start;
-        let wider = |limit: [f32; 2], now: [f32; 3]| {
-            [
-                limit[0].fmax(hypot(now[0], now[1])),
-                limit[1].fmax(now[2].abs()),
-            ]
-        };
+        let stop = AccelerationLimits::new(constraints);
+        let speed = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
+        let now = MotionState::new(start, limits.rate_hz as f32);
+        // What is granted over a limit is not granted over a state again: it would add up from plan to plan.
+        let kept = |state: &[f32; 3]| Speeds::of(state).scaled(1.0 / PLAN_SLACK);
         let motion_limits = MotionLimits {
-            speed: wider(pair(limits.speed_mm_s, limits.turn_speed_deg_s), v),
-            acceleration: wider(
-                pair(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
-                a,
-            ),
-            jerk: pair(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
+            speed: speed.max(kept(&now.v)),
+            acceleration: stop.acceleration.max(kept(&now.a)),
+            jerk: stop.jerk,
             stop,
-            braking: StopLimits::new(&stop, hz),
+            braking: StopLimits::new(&stop),
         };
         Self {
             motion_limits: Some(motion_limits),
@@ -108,80 +99,94 @@ impl PlanCheck {
         }
     }
 
-    /// Writes pieces as they are looked at, from `start`; where they lead to. A plan's nudge does not show in them.
-    pub fn prepare(
-        &self,
-        pieces: &[Piece],
-        start: &[AxisState; 3],
-        checked_pieces: &mut CheckedPieces,
-    ) -> [AxisState; 3] {
-        let mut axes = *start;
-        checked_pieces.clear();
+    /// Whether a motion by the pieces of a plan from `start` keeps to everything. The plan's nudge does not show in it.
+    pub fn check(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
+        let mut floats: Pieces<f32> = Pieces::new();
         for piece in pieces {
-            let segment = CubicSegment::new(&axes, piece, self.hz);
-            // Room for all pieces of a plan.
-            let _ = checked_pieces.push(CheckedPiece {
-                jerk: [
-                    hypot(segment.jerk[0], segment.jerk[1]),
-                    segment.jerk[2].abs(),
-                ],
-                segment,
-                bound_distances: self.workspace.bound_distances(&axes),
+            // As many.
+            let _ = floats.push(Piece {
                 ticks: piece.ticks,
+                jerk: CubicSegment::jerk(piece, self.hz),
             });
-            piece.advance(&mut axes, piece.ticks, &[0; 3]);
         }
-        axes
+        self.check_floats(&floats, start, &mut { MAX_INTERVALS })
     }
 
-    /// Whether these stay inside, from what has been checked of them before.
-    pub fn check(
+    /// The same, of pieces in floats, in at most so many `intervals`; those that are taken are taken off.
+    #[inline(never)]
+    pub fn check_floats(
         &self,
-        checked_pieces: &[CheckedPiece],
-        budget: &mut CheckBudget,
+        pieces: &[Piece<f32>],
+        start: &[AxisState; 3],
+        intervals: &mut usize,
     ) -> Result<(), Violation> {
-        let (mut worst, mut pivots_sampled) = (None, false);
-        let mut before = budget.checked_ticks;
-        for piece in checked_pieces {
-            if before >= piece.ticks {
-                before -= piece.ticks;
-                continue;
-            }
-            self.check_jerk(piece)?;
-            let (mut done, mut ticks) = (core::mem::take(&mut before), piece.ticks);
-            let [mut first, mut second] = [IntervalEnd::default(); 2];
-            let (mut from, mut to) = (&mut first, &mut second);
-            self.evaluate(&piece.segment, done, from);
+        let mut budget = Budget {
+            intervals,
+            worst: None,
+            pivots_sampled: false,
+        };
+        let bound_distances = self.workspace.bound_distances(start);
+        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        let [mut first, mut second] = [IntervalEnd::default(); 2];
+        let (mut from, mut to) = (&mut first, &mut second);
+        self.evaluate(&segment, 0, from);
+        for piece in pieces {
+            segment.start = from.sample;
+            segment.jerk = piece.jerk;
+            let [x, y, theta] = segment.jerk;
+            let jerk = [hypot(x, y), theta.abs()];
+            self.check_jerk(jerk)?;
+            let (mut done, mut ticks) = (0, piece.ticks);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
-                budget.take()?;
-                self.evaluate(&piece.segment, done + ticks, to);
-                match self.check_interval(piece, [from, to], ticks_to_f32(ticks) / self.hz) {
+                *budget.intervals = budget.intervals.saturating_sub(1);
+                self.evaluate(&segment, done + ticks, to);
+                let interval = Interval {
+                    segment: &segment,
+                    jerk,
+                    bound_distances: &bound_distances,
+                    seconds: ticks_to_f32(ticks) / self.hz,
+                };
+                match self.check_interval(&interval, [from, to]) {
                     Ok(longer) => {
                         core::mem::swap(&mut from, &mut to);
                         done += ticks;
-                        budget.checked_ticks += ticks;
                         ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
-                    // In shorter intervals the same instant would be met.
-                    Err((Violation::NoRoomToStop, _)) => return Err(Violation::Workspace),
                     Err((broken, shorter)) => {
-                        if broken.is_of_pivots() && !pivots_sampled {
-                            budget.leave_for_later()?;
-                            // Where a limit is passed indeed, sampling the pivots tells by how much.
-                            self.sample_pivots(checked_pieces)?;
-                            pivots_sampled = true;
-                        }
-                        // Intervals close in on where a limit is met; how far it is passed was seen before.
-                        worst = Some(broken.or_worse(worst));
-                        if ticks <= SHORTEST || budget.left == 0 {
-                            return worst.map_or(Ok(()), Err);
-                        }
+                        self.failed(broken, ticks, &mut budget, pieces, start)?;
                         ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
                     }
                 }
                 ticks = ticks.max(SHORTEST);
             }
+        }
+        Ok(())
+    }
+
+    /// After an interval that has failed: whether it is worth a shorter one.
+    fn failed(
+        &self,
+        broken: Violation,
+        ticks: u64,
+        budget: &mut Budget<'_>,
+        pieces: &[Piece<f32>],
+        start: &[AxisState; 3],
+    ) -> Result<(), Violation> {
+        // In shorter intervals the same instant would be met.
+        if broken == Violation::NoRoomToStop {
+            return Err(Violation::Workspace);
+        }
+        if broken.is_of_pivots() && !budget.pivots_sampled {
+            // Where a limit is passed indeed, sampling the pivots tells by how much.
+            self.sample_pivots(pieces, start)?;
+            budget.pivots_sampled = true;
+        }
+        // Intervals close in on where a limit is met; how far it is passed was seen before.
+        let worst = broken.or_worse(budget.worst);
+        budget.worst = Some(worst);
+        if ticks <= SHORTEST || *budget.intervals == 0 {
+            return Err(worst);
         }
         Ok(())
     }
@@ -206,18 +211,25 @@ impl PlanCheck {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn sample_pivots(&self, checked_pieces: &[CheckedPiece]) -> Result<(), Violation> {
+    fn sample_pivots(
+        &self,
+        pieces: &[Piece<f32>],
+        start: &[AxisState; 3],
+    ) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        for CheckedPiece { segment, ticks, .. } in checked_pieces {
-            let seconds = ticks_to_f32(*ticks) / self.hz;
+        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        for piece in pieces {
+            segment.jerk = piece.jerk;
+            let seconds = ticks_to_f32(piece.ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
-            for &t in &spots[..1 + usize::from(*ticks > SHORT)] {
+            for &t in &spots[..1 + usize::from(piece.ticks > SHORT)] {
                 let [rates, accelerations] = segment
                     .platform(&segment.at(t), self.workspace.centre)
                     .pivots();
                 rate = rate.fmax(greatest(&rates));
                 acceleration = acceleration.fmax(greatest(&accelerations));
             }
+            segment.start = segment.at(seconds);
         }
         let [rate_limit, acceleration_limit] = self.pivots;
         within(
@@ -227,13 +239,12 @@ impl PlanCheck {
         within(rate / rate_limit, Violation::PivotRate)
     }
 
-    fn check_jerk(&self, piece: &CheckedPiece) -> Result<(), Violation> {
+    fn check_jerk(&self, [linear, angular]: [f32; 2]) -> Result<(), Violation> {
         let Some(motion_limits) = &self.motion_limits else {
             return Ok(());
         };
-        let [way, turn] = piece.jerk;
         within(
-            (way / motion_limits.jerk[0]).fmax(turn / motion_limits.jerk[1]),
+            part(linear, angular, &motion_limits.jerk),
             Violation::Acceleration,
         )
     }
@@ -242,46 +253,44 @@ impl PlanCheck {
     /// try.
     fn check_interval(
         &self,
-        piece: &CheckedPiece,
+        interval: &Interval<'_>,
         [from, to]: [&mut IntervalEnd; 2],
-        t: f32,
     ) -> Result<f32, (Violation, f32)> {
         const HALF: f32 = 0.5;
-        let sizes = IntervalBounds::new(piece.jerk, from, to, t);
+        let sizes = IntervalBounds::new(interval.jerk, from, to, interval.seconds);
         let moving = sizes.at_offset(self.workspace.arm);
         let radius = self
-            .path(piece, [from, to], t, [&sizes, &moving])
+            .path(interval, [from, to], [&sizes, &moving])
             .map_err(|broken| (broken, HALF))?;
-        self.check_pivots(&piece.segment, [from, to], t, &moving, radius)
+        self.check_pivots(interval, [from, to], &moving, radius)
     }
 
     /// All but the pivots; the greatest distance of the platform's centre from the track's.
     fn path(
         &self,
-        piece: &CheckedPiece,
+        interval: &Interval<'_>,
         [from, to]: [&IntervalEnd; 2],
-        t: f32,
         [sizes, moving]: [&IntervalBounds; 2],
     ) -> Result<f32, Violation> {
         if let Some(motion_limits) = &self.motion_limits {
-            let [v, turn] = sizes.v;
+            let [linear, angular] = sizes.v;
             within(
-                (v / motion_limits.speed[0]).fmax(turn / motion_limits.speed[1]),
+                part(linear, angular, &motion_limits.speed),
                 Violation::Speed,
             )?;
-            let [a, spin] = sizes.a;
+            let [linear, angular] = sizes.a;
             within(
-                (a / motion_limits.acceleration[0]).fmax(spin / motion_limits.acceleration[1]),
+                part(linear, angular, &motion_limits.acceleration),
                 Violation::Acceleration,
             )?;
         }
-        let eighth = t * t / 8.0;
+        let eighth = interval.seconds * interval.seconds / 8.0;
         let rise = sizes.a.map(|a| a * eighth);
-        (self.workspace).check_bounds(&piece.bound_distances, &from.sample, &to.sample, rise)?;
+        (self.workspace).check_bounds(interval.bound_distances, &from.sample, &to.sample, rise)?;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
         let radius = self.workspace.check_disk(furthest)?;
         if let Some(motion_limits) = &self.motion_limits {
-            self.check_stop(piece, to, motion_limits)?;
+            self.check_stop(interval, to, motion_limits)?;
         }
         Ok(radius)
     }
@@ -289,33 +298,31 @@ impl PlanCheck {
     /// A stop from here.
     fn check_stop(
         &self,
-        piece: &CheckedPiece,
+        interval: &Interval<'_>,
         at: &IntervalEnd,
         motion_limits: &MotionLimits,
     ) -> Result<(), Violation> {
-        if self
-            .workspace
-            .stop_is_clear_of_edges(&piece.bound_distances, at, &motion_limits.braking)
-        {
+        if self.workspace.stop_is_clear_of_edges(
+            interval.bound_distances,
+            at,
+            &motion_limits.braking,
+        ) {
             return Ok(());
         }
-        let brake = Brake::in_seconds(&at.sample, &motion_limits.stop, self.hz);
         (self.workspace)
             .check_stop(
-                &piece.segment,
-                &piece.bound_distances,
+                interval.segment,
+                interval.bound_distances,
                 &at.sample,
-                &brake,
-                self.hz,
+                &motion_limits.stop,
             )
             .map_err(|_| Violation::NoRoomToStop)
     }
 
     fn check_pivots(
         &self,
-        segment: &CubicSegment,
+        interval: &Interval<'_>,
         ends: [&mut IntervalEnd; 2],
-        t: f32,
         moving: &IntervalBounds,
         radius: f32,
     ) -> Result<f32, (Violation, f32)> {
@@ -329,14 +336,14 @@ impl PlanCheck {
         }
         let [mut rates, mut accelerations] = [0.0_f32; 2];
         for end in ends {
-            let [rate, acceleration] = end.pivots(segment, self.workspace.centre);
+            let [rate, acceleration] = end.pivots(interval.segment, self.workspace.centre);
             rates = rates.fmax(rate);
             accelerations = accelerations.fmax(acceleration);
         }
         // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
         let mut most = [rate, acceleration];
         for _ in 0..ROUNDS {
-            let rises = moving.pivot_rises(most, &bound, t);
+            let rises = moving.pivot_rises(most, &bound, interval.seconds);
             most = [
                 most[0].fmin(rates + rises[0]),
                 most[1].fmin(accelerations + rises[1]),
@@ -373,6 +380,17 @@ fn rise_within(
         broken((value / limit).fmax(1.0)),
         shorter.clamp(1.0 / 16.0, 0.7),
     ))
+}
+
+/// The part of its limit that translation or rotation reaches, the greater.
+fn part(linear: f32, angular: f32, limit: &Speeds) -> f32 {
+    (linear / limit.linear).fmax(angular / limit.angular)
+}
+
+/// Whether speeds or accelerations are over a limit of ordinary motion by more than what is granted.
+pub(crate) fn is_over(value: Speeds, limit: Speeds) -> bool {
+    const MORE: f32 = 1.0 + 2.0 * (PLAN_SLACK - 1.0);
+    part(value.linear, value.angular, &limit) > MORE
 }
 
 /// The part of a limit that is used is not over one.

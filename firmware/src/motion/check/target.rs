@@ -4,17 +4,13 @@ use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
 use crate::motion::plan::units::{PER_POSITION_UNIT, xy_radii};
 use crate::motion::refusal::Refusal;
+use crate::motion::tolerances::{TARGET_RADII, TARGET_RADII_OFF_CENTRE};
 use crate::number::Fixed;
 use crate::number::float::i64_to_f32_fast;
 use kinematics::{Angle, Scalar};
 
 /// Most turns that a target may have, a thousand million, in units of a position.
 pub(crate) const MAX_TURNS: i64 = 1_000_000_000 << 32;
-
-/// Slack for a target on the rim itself, track radii: its coordinates are rounded to 2^-32.
-const TARGET_RIM: f64 = 1e-9;
-/// The same where the platform centre follows from another point by sines that are good to 2^-29.
-const TARGET_RIM_OFF_CENTRE: f64 = 1e-8;
 
 /// Whether `target` lies inside the workspace.
 pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
@@ -46,14 +42,14 @@ const NEARLY: f32 = 0.999_99;
 #[inline(never)]
 fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
     let [mut x, mut y] = xy_radii(target);
-    let mut rim = TARGET_RIM;
+    let mut rim = TARGET_RADII;
     if constraints.rotation_centre != [0.0; 2] {
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
         let (sin, cos) = (sin.to_f64(), cos.to_f64());
         let [p, q] = constraints.rotation_centre;
         x -= cos * p - sin * q;
         y -= sin * p + cos * q;
-        rim = TARGET_RIM_OFF_CENTRE;
+        rim = TARGET_RADII_OFF_CENTRE;
     }
     let most = constraints.usable_radius + rim;
     let square = x * x + y * y;

@@ -1,10 +1,11 @@
 //! One plan of one piece for each thing that can be broken, and its twin that keeps it.
 
-use super::budget::MAX_INTERVALS;
+use super::plan_check::MAX_INTERVALS;
+use super::violation::Violation;
 use super::*;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::units::{AXIS_UNITS, TickLimits};
+use crate::motion::plan::units::AXIS_UNITS;
 use crate::motion::plan::{Piece, Plan, PlanStart};
 use crate::parameters::Parameters;
 use core::f64::consts::TAU;
@@ -39,19 +40,7 @@ fn plan(ticks: u64, jerk: [f64; 3]) -> Plan {
 }
 
 fn check(plan: &Plan, start: &[AxisState; 3], constraints: &Constraints) -> Result<(), Violation> {
-    let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), start);
-    looked(&plan_check, plan, start, CheckBudget::WHOLE)
-}
-
-fn looked(
-    plan_check: &PlanCheck,
-    plan: &Plan,
-    start: &[AxisState; 3],
-    mut budget: CheckBudget,
-) -> Result<(), Violation> {
-    let mut checked_pieces = CheckedPieces::new();
-    plan_check.prepare(&plan.pieces, start, &mut checked_pieces);
-    plan_check.check(&checked_pieces, &mut budget)
+    PlanCheck::new(constraints, start).check(&plan.pieces, start)
 }
 
 #[test]
@@ -158,14 +147,7 @@ fn the_disk_is_kept_by_the_way_and_by_a_stop_from_it() {
         Err(Violation::Workspace)
     );
     // A stop needs no room to stop.
-    let stop = |x: f64| {
-        looked(
-            &PlanCheck::for_stop(&CONSTRAINTS),
-            &way,
-            &out(x),
-            CheckBudget::WHOLE,
-        )
-    };
+    let stop = |x: f64| PlanCheck::for_stop(&CONSTRAINTS).check(&way.pieces, &out(x));
     assert_eq!(stop(0.785), Ok(()));
     assert_eq!(stop(0.795), Err(Violation::Workspace));
 }
@@ -215,15 +197,13 @@ fn without_looks_left_it_fails() {
     for part in 0..12 {
         let mut now = start;
         turn.pieces[0].advance(&mut now, part * 2_000, &[0; 3]);
-        let plan_check = PlanCheck::new(&constraints, TickLimits::new(&constraints), &now);
-        let part = plan(2_000, [0.0; 3]);
-        let with = |left: usize| {
-            let budget = CheckBudget {
-                left,
-                ..CheckBudget::WHOLE
-            };
-            looked(&plan_check, &part, &now, budget).is_ok()
-        };
+        let plan_check = PlanCheck::new(&constraints, &now);
+        let part = [Piece {
+            ticks: 2_000,
+            jerk: [0.0; 3],
+        }];
+        let with =
+            |mut intervals: usize| plan_check.check_floats(&part, &now, &mut intervals).is_ok();
         assert!(with(MAX_INTERVALS) || !with(1));
         undecided += usize::from(with(MAX_INTERVALS) && !with(1));
     }

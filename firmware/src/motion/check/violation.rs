@@ -17,8 +17,6 @@ pub(crate) enum Violation {
     PivotAcceleration(f32),
     /// Disk or bounds, in a stop from an instant on the way.
     NoRoomToStop,
-    /// Nothing yet: not all has been looked at.
-    Unchecked,
 }
 
 impl Violation {

@@ -2,11 +2,12 @@
 
 use super::interval::IntervalEnd;
 use super::violation::Violation;
-use crate::motion::brake::Brake;
 use crate::motion::constraints::{Bounds, Constraints};
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::motion::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, TickLimits};
+use crate::motion::plan::units::PER_POSITION_UNIT;
+use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
+use crate::motion::tolerances::WORKSPACE_RADII;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use core::f32::consts::TAU;
 
@@ -29,21 +30,16 @@ pub(crate) struct StopLimits {
 }
 
 impl StopLimits {
-    /// Of limits at `hz` ticks a second.
-    pub fn new(limits: &TickLimits, hz: f32) -> Self {
-        let units = [PER_AXIS_UNIT * hz * hz, PER_AXIS_UNIT * TAU * hz * hz];
-        let each = [&limits.translation, &limits.rotation];
-        let most = [0, 1].map(|i| each[i].acceleration * units[i]);
+    pub fn new(limits: &AccelerationLimits) -> Self {
+        let most = [limits.acceleration.linear, limits.acceleration.angular];
+        let jerk = [limits.jerk.linear, limits.jerk.angular];
         Self {
             most,
             over_most: most.map(|most| 1.0 / most),
-            over_jerk: [0, 1].map(|i| 1.0 / (each[i].jerk * units[i] * hz)),
+            over_jerk: jerk.map(|jerk| 1.0 / jerk),
         }
     }
 }
-
-/// Slack of single precision: 0.02 um on the reference stage.
-const PLAN_RIM: f32 = 2e-7;
 
 impl Workspace {
     pub fn new(constraints: &Constraints) -> Self {
@@ -83,8 +79,8 @@ impl Workspace {
                 from.displacement[i].fmin(to.displacement[i]) - rise,
                 from.displacement[i].fmax(to.displacement[i]) + rise,
             );
-            if !(bound_distances[i][0] - PLAN_RIM <= low
-                && high <= bound_distances[i][1] + PLAN_RIM)
+            if !(bound_distances[i][0] - WORKSPACE_RADII <= low
+                && high <= bound_distances[i][1] + WORKSPACE_RADII)
             {
                 return Err(Violation::Workspace);
             }
@@ -94,7 +90,7 @@ impl Workspace {
 
     /// A distance of the platform's centre from the track's, if that is inside the disk.
     pub fn check_disk(&self, distance: f32) -> Result<f32, Violation> {
-        if distance <= self.radius + PLAN_RIM {
+        if distance <= self.radius + WORKSPACE_RADII {
             Ok(distance)
         } else {
             Err(Violation::Workspace)
@@ -137,27 +133,16 @@ impl Workspace {
         segment: &CubicSegment,
         bound_distances: &[[f32; 2]; 3],
         at: &MotionState,
-        brake: &Brake,
-        hz: f32,
+        limits: &AccelerationLimits,
     ) -> Result<(), Violation> {
-        let [t1, t2, t3] = brake.about().map(|ticks| ticks / hz);
-        let mut spots = [*at; 3];
-        for i in 0..3 {
-            let (v, a) = (at.v[i], at.a[i]);
-            let whole = t1 / 2.0 + t2 + t3 / 2.0;
-            if !(whole > 0.0) {
-                continue;
-            }
-            let peak = -(v + a * t1 / 2.0) / whole;
-            let v1 = v + (a + peak) * t1 / 2.0;
-            let v2 = v1 + peak * t2;
-            spots[0].displacement[i] = at.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
-            spots[1].displacement[i] = spots[0].displacement[i] + t2 * (v1 + peak * t2 / 2.0);
-            spots[2].displacement[i] = spots[1].displacement[i] + t3 * (v2 + peak * t3 / 3.0);
-        }
-        for spot in &spots {
-            self.check_bounds(bound_distances, spot, spot, [0.0; 2])?;
-            self.check_disk(self.centre_distance(segment, spot))?;
+        let stop = VelocityProfile::new(at, &[0.0; 3], limits);
+        for displacement in stop_displacements(at, stop.rough_times_s()) {
+            let spot = MotionState {
+                displacement,
+                ..*at
+            };
+            self.check_bounds(bound_distances, &spot, &spot, [0.0; 2])?;
+            self.check_disk(self.centre_distance(segment, &spot))?;
         }
         Ok(())
     }

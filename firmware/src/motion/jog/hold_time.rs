@@ -1,10 +1,9 @@
 //! How long a jog can be held before its axes have to brake, and how much slower it has to be where that is too short.
 
 use super::request::JogRequest;
-use super::trajectory::Jog;
-use crate::motion::brake::velocity_change::VelocityRamp;
+use super::trajectory::{Jog, change};
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::speeds::{Speeds, per_second};
+use crate::motion::speeds::per_second;
 use crate::number::float::{FloatMinMax, ticks_to_f32, truncate};
 
 /// Some axes would be over after so many seconds at the velocity wanted: too soon to reach it and to stop.
@@ -47,7 +46,7 @@ impl Jog {
             point = point.fmin(turn);
             turn = point;
         }
-        let brake = ticks_to_f32(self.brake.ticks()) / (2.0 * hz);
+        let brake = ticks_to_f32(self.brake.iter().sum()) / (2.0 * hz);
         let is_short = [
             self.wanted[..2] != [0, 0] && point < brake,
             self.wanted[2] != 0 && turn < brake,
@@ -78,13 +77,12 @@ impl Jog {
             })
         };
         let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..16 {
+        // To a thousandth.
+        for _ in 0..10 {
             let share = (low + high) / 2.0;
-            let speeds = Speeds::of(&per_second(&slower(share), request.hz));
-            let ticks = ticks_to_f32(
-                VelocityRamp::new(speeds, &self.acceleration_limits, request.hz).ticks(),
-            );
-            if share * ticks <= short.seconds * request.hz {
+            let velocity = per_second(&slower(share), request.hz);
+            let brake = change(&velocity, &self.acceleration_limits);
+            if share * brake.times_s().iter().sum::<f32>() <= short.seconds {
                 low = share;
             } else {
                 high = share;

@@ -1,7 +1,7 @@
 //! Jogging: from any state to a constant velocity, held until somebody changes it, or up to the workspace's edge.
 //!
 //! ```text
-//! speed of    ________________________                 The velocity is changed (see `brake`), held, and given up in time:
+//! speed of    ________________________                 The velocity is changed (see `profile/velocity`), held, and given up in time:
 //! the point  /                        \                a plan that ends at rest like any other, exactly where it can stop.
 //!          _/                          \______         Theta alone never meets an edge: its plan ends at a thousand million
 //! of theta   ______________________________..          turns, 30 years away at a turn a second.
@@ -23,9 +23,7 @@
 //! | `travel_time` | how long a steady motion can go before the edge or a bound |
 //! | `trajectory` | the way to the velocity, the velocity held, the way to rest |
 //! | `hold_time` | how long it is held, and how much slower it has to be |
-//! | `hold_then_stop` | point and theta, each held and stopped for itself |
 
-mod hold_then_stop;
 mod hold_time;
 mod planner;
 mod request;

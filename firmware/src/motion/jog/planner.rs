@@ -2,12 +2,12 @@
 
 use super::request::{InitialState, JogRequest};
 use super::trajectory::Jog;
-use crate::motion::check::{CheckBudget, CheckedPieces, PlanCheck};
+use crate::motion::check::{PlanCheck, is_over};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::units::TickLimits;
-use crate::motion::plan::{Pieces, Plan, PlanStart};
+use crate::motion::plan::{Plan, PlanStart};
 use crate::motion::refusal::{Refusal, RetargetError};
+use crate::motion::speeds::Speeds;
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where
 /// `start` says. Zero is a velocity as any other: that axis stops smoothly.
@@ -46,6 +46,11 @@ fn write(
     let request = JogRequest::new(velocity, constraints).map_err(RetargetError::Refused)?;
     let now = InitialState::new(state, &request);
     let from_rest = matches!(plan.start, PlanStart::Rest(_));
+    // Out of an urgent stop only once it is over: its acceleration is more than a jog may have.
+    let acceleration = Speeds::of(&now.motion.a);
+    if is_over(acceleration, request.acceleration_limits.acceleration) {
+        return Err(RetargetError::NeedsStop);
+    }
     let mut wanted = request.velocity;
     for _ in 0..ATTEMPTS {
         if from_rest && wanted == [0; 3] && request.velocity != wanted {
@@ -57,7 +62,9 @@ fn write(
                 // From rest the way there is the first part of the way on, which was looked at for the time that it is
                 // held.
                 if !from_rest {
-                    check(&plan.pieces, state, constraints)?;
+                    PlanCheck::new(constraints, state)
+                        .check(&plan.pieces, state)
+                        .map_err(|_| RetargetError::NeedsStop)?;
                 }
                 jog.finish(plan, hold);
                 return Ok(());
@@ -71,17 +78,3 @@ fn write(
 
 /// The point may be too near to an edge, theta to a bound, and once more for what a lower velocity changes.
 const ATTEMPTS: usize = 4;
-
-/// Looks at the way to the velocity as at any other.
-fn check(
-    pieces: &Pieces,
-    state: &[AxisState; 3],
-    constraints: &Constraints,
-) -> Result<(), RetargetError> {
-    let plan_check = PlanCheck::new(constraints, TickLimits::new(constraints), state);
-    let mut checked_pieces = CheckedPieces::new();
-    plan_check.prepare(pieces, state, &mut checked_pieces);
-    plan_check
-        .check(&checked_pieces, &mut { CheckBudget::WHOLE })
-        .map_err(|_| RetargetError::NeedsStop)
-}

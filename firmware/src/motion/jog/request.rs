@@ -1,20 +1,20 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
 use super::travel_time::SteadyMotion;
-use crate::motion::brake::velocity_change::{AccelerationLimits, release_seconds};
 use crate::motion::check::pivot_bounds::PivotBound;
 use crate::motion::check::target::MAX_TURNS;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
+use crate::motion::plan::cubic_segment::MotionState;
 use crate::motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
+use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::refusal::{Refusal, RetargetError};
-use crate::motion::speeds::{Speeds, per_second};
+use crate::motion::speeds::Speeds;
+use crate::motion::tolerances::JOG_RADII;
 use crate::number::Fixed;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 use kinematics::{Angle, Scalar};
 
-/// 0.2 um on the reference stage.
-const JOG_RIM: f32 = 2e-6;
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
 
@@ -26,7 +26,7 @@ pub(super) struct JogRequest<'a> {
     usable: f32,
     /// Wanted, 2^-72 units a tick.
     pub velocity: [i64; 3],
-    acceleration_limits: AccelerationLimits,
+    pub acceleration_limits: AccelerationLimits,
 }
 
 /// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see
@@ -38,8 +38,7 @@ fn is_within(value: f64, most: f64) -> bool {
 /// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
 pub(super) struct InitialState {
     pub platform: [f32; 2],
-    pub velocity: [f32; 3],
-    pub acceleration: [f32; 3],
+    pub motion: MotionState,
 }
 
 impl<'a> JogRequest<'a> {
@@ -57,21 +56,13 @@ impl<'a> JogRequest<'a> {
         let mm = constraints.geometry.radius_mm;
         let units = f64::from(AXIS_UNITS) / limits.rate_hz;
         let (per_mm, per_deg) = (units / mm, units * (1.0 / 360.0));
-        let over_mm = 1.0 / mm as f32;
-        let speeds = |mm_s: f64, deg_s: f64| Speeds {
-            linear: mm_s as f32 * over_mm,
-            angular: (deg_s as f32).to_radians(),
-        };
         Ok(Self {
             constraints,
             hz: limits.rate_hz as f32,
             pivot_bound: PivotBound::new(constraints),
             usable: constraints.usable_radius as f32,
             velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
-            acceleration_limits: AccelerationLimits {
-                acceleration: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
-                jerk: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
-            },
+            acceleration_limits: AccelerationLimits::new(constraints),
         })
     }
 
@@ -89,21 +80,24 @@ impl<'a> JogRequest<'a> {
                 radius_mm: 0.0,
             }))?;
         let out = hypot(now.platform[0], now.platform[1]);
-        if out > most + JOG_RIM {
+        if out > most + JOG_RADII {
             let radius_mm = f64::from(most) * self.constraints.geometry.radius_mm;
             return Err(RetargetError::Refused(Refusal::PivotRate { radius_mm }));
         }
         let travels =
             |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm() > 0.0;
-        let (speed, acceleration) = (Speeds::of(&now.velocity), Speeds::of(&now.acceleration));
+        let MotionState { v, a, .. } = &now.motion;
+        let (speed, acceleration) = (Speeds::of(v), Speeds::of(a));
         let radius = if travels(speeds) || travels(speed) || travels(acceleration) {
             most
         } else {
             out
         };
         // An acceleration under way adds to the velocity while it is released: straight from the one to this.
-        let half = release_seconds(acceleration, self.acceleration_limits.jerk) / 2.0;
-        let released = [0, 1, 2].map(|i| now.velocity[i] + now.acceleration[i] * half);
+        let jerk = self.acceleration_limits.jerk;
+        let release_s =
+            (acceleration.linear / jerk.linear).fmax(acceleration.angular / jerk.angular);
+        let released = [0, 1, 2].map(|i| v[i] + a[i] * release_s / 2.0);
         let gained = speed.max(Speeds::of(&released));
         let margin = pivot_bound.acceleration_margin(radius, speeds.max(gained));
         let part =
@@ -112,17 +106,7 @@ impl<'a> JogRequest<'a> {
             return Err(RetargetError::NeedsStop);
         }
         let part = part.fmin(1.0);
-        let acceleration = Speeds {
-            linear: self.acceleration_limits.acceleration.linear * part,
-            angular: self.acceleration_limits.acceleration.angular * part,
-        };
-        Ok((
-            radius,
-            AccelerationLimits {
-                acceleration,
-                ..self.acceleration_limits
-            },
-        ))
+        Ok((radius, self.acceleration_limits.scaled(part, 1.0)))
     }
 
     /// Seconds of steady motion until theta meets its bounds.
@@ -158,7 +142,6 @@ impl<'a> JogRequest<'a> {
 
 impl InitialState {
     pub fn new(axes: &[AxisState; 3], request: &JogRequest) -> Self {
-        let acceleration = per_second(&axes.map(|axis| axis.acceleration), request.hz);
         let point = [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT);
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(axes[2].rounded()));
         let (sin, cos) = (sin.to_f32(), cos.to_f32());
@@ -168,8 +151,7 @@ impl InitialState {
                 point[0] - (a * cos - b * sin),
                 point[1] - (a * sin + b * cos),
             ],
-            velocity: per_second(&axes.map(|axis| axis.velocity), request.hz),
-            acceleration: acceleration.map(|rate| rate * request.hz),
+            motion: MotionState::new(axes, request.hz),
         }
     }
 }

@@ -1,14 +1,16 @@
 //! A jog: the way to a velocity, the velocity held, and the way to rest.
 
-use super::hold_then_stop::HoldThenStop;
 use super::request::{InitialState, JogRequest};
-use crate::motion::brake::velocity_change::{
-    AccelerationLimits, VelocityRamp, release_acceleration,
-};
 use crate::motion::plan::axis_state::AxisState;
-use crate::motion::plan::{Piece, Pieces, Plan, state_after_pieces};
+use crate::motion::plan::cubic_segment::MotionState;
+use crate::motion::plan::quantise::velocity_pieces;
+use crate::motion::plan::{
+    Piece, Pieces, Plan, pieces_after, push_piece, state_after_pieces, write_sum,
+};
+use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile};
 use crate::motion::refusal::RetargetError;
-use crate::motion::speeds::{Speeds, per_second};
+use crate::motion::speeds::per_second;
+use heapless::Vec;
 
 /// A jog from the state on in which its velocity is reached.
 pub(super) struct Jog {
@@ -16,13 +18,16 @@ pub(super) struct Jog {
     pub(super) wanted: [i64; 3],
     /// Where the velocity is reached.
     pub(super) steady: [AxisState; 3],
-    /// Ticks of the change of velocity, release not counted.
+    /// Ticks of the change of velocity.
     pub(super) ramp: u64,
-    /// Brings the velocity back to zero.
-    pub(super) brake: VelocityRamp,
+    /// Ticks that bring the velocity back to zero.
+    pub(super) brake: [u64; 3],
     pub(super) acceleration_limits: AccelerationLimits,
     pub(super) radius: f32,
 }
+
+/// A velocity held, and the three pieces and the tick that end it.
+type HoldThenStop = Vec<Piece, 5>;
 
 impl Jog {
     /// Writes the pieces of the way there, too.
@@ -35,67 +40,69 @@ impl Jog {
     ) -> Result<Self, RetargetError> {
         let hz = request.hz;
         let target = per_second(&wanted, hz);
-        let (radius, acceleration_limits) = request.limits_towards(now, &target)?;
+        let (radius, limits) = request.limits_towards(now, &target)?;
+        let ramp = VelocityProfile::new(&now.motion, &target, &limits).ticks(hz);
         pieces.clear();
-        let released = release_acceleration(
-            state,
-            Speeds::of(&now.acceleration),
-            acceleration_limits.jerk,
-            hz,
-            pieces,
-        );
-        let change = [0, 1, 2].map(|i| wanted[i] - released[i]);
-        let ramp = VelocityRamp::new(
-            Speeds::of(&per_second(&change, hz)),
-            &acceleration_limits,
-            hz,
-        );
-        for piece in ramp.pieces(change) {
-            // Release and ramp are five.
-            let _ = pieces.push(piece);
+        for piece in velocity_pieces(state, &wanted, ramp) {
+            // Four of many.
+            let _ = push_piece(pieces, piece);
         }
         Ok(Self {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),
-            ramp: ramp.ticks(),
-            brake: VelocityRamp::new(Speeds::of(&target), &acceleration_limits, hz),
-            acceleration_limits,
+            ramp: pieces.iter().map(|piece| piece.ticks).sum(),
+            brake: change(&target, &limits).ticks(hz),
+            acceleration_limits: limits,
             radius,
         })
     }
 
     /// Adds pieces for the velocities held for `hold` ticks and given up, the point's and theta's for themselves.
     pub(super) fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
-        let begun = plan.pieces.len();
-        let change = [0, 1, 2].map(|i| match self.wanted[i] {
-            0 => 0,
-            _ => -self.steady[i].velocity,
+        let [x, y, theta] = [0, 1, 2].map(|i| match self.wanted[i] {
+            // What rounding leaves of a velocity is not given up: the nudge takes it.
+            0 => AxisState::default(),
+            _ => self.steady[i],
         });
-        let brakes = self.brake.pieces(change);
-        let mut ends = [
-            HoldThenStop::new(change[..2] != [0, 0], point),
-            HoldThenStop::new(change[2] != 0, turn),
-        ];
-        // Whatever begins or ends somewhere begins a piece.
-        while let Some(ticks) = ends[0].next_change(&ends[1]) {
-            let jerks = [0, 1].map(|i| ends[i].jerk(&brakes));
-            if ticks > 0 {
-                // Room for the ramp's five and eight for two ends.
-                let _ = plan.pieces.push(Piece {
-                    ticks,
-                    jerk: [jerks[0][0], jerks[0][1], jerks[1][2]],
-                });
-            }
-            for end in &mut ends {
-                end.advance(ticks, &brakes);
-            }
-        }
-        let rest = state_after_pieces(&self.steady, &plan.pieces[begun..], &[0; 3]);
-        plan.pieces.retain(|piece| piece.ticks > 0);
-        // The velocity that rounding leaves an axis is less than one can see, but an axis may stand while another goes
-        // on.
-        plan.nudge = rest.map(|axis| -axis.velocity);
+        let still = AxisState::default();
+        let mut way: Vec<Piece, { 4 + 5 }> = Vec::new();
+        // Four, and five.
+        let _ = way.extend_from_slice(&plan.pieces);
+        let _ = way.extend_from_slice(&self.hold_then_stop(&[x, y, still], point));
+        let turning = self.hold_then_stop(&[still, still, theta], turn);
+        // Twice five, and four.
+        let _ = write_sum(&way, &turning, self.ramp, &mut plan.pieces);
         let ticks = plan.ticks();
+        let rest = self.rest(&plan.pieces);
+        plan.nudge = rest.map(|axis| -axis.velocity);
         plan.end = rest.map(|axis| axis.rest_position(ticks, -axis.velocity));
     }
+
+    /// Where the axes come to rest, but for what rounding leaves of their velocities.
+    fn rest(&self, pieces: &[Piece]) -> [AxisState; 3] {
+        let mut axes = self.steady;
+        for piece in pieces_after(pieces, self.ramp) {
+            piece.advance(&mut axes, piece.ticks, &[0; 3]);
+        }
+        axes
+    }
+
+    fn hold_then_stop(&self, axes: &[AxisState; 3], hold: u64) -> HoldThenStop {
+        let mut pieces = HoldThenStop::new();
+        if axes.iter().all(|axis| axis.velocity == 0) {
+            return pieces;
+        }
+        // Five of five.
+        let _ = pieces.push(Piece {
+            ticks: hold,
+            jerk: [0; 3],
+        });
+        let _ = pieces.extend_from_slice(&velocity_pieces(axes, &[0; 3], self.brake));
+        pieces
+    }
+}
+
+/// The change of velocity by `velocity`, to it or back.
+pub(super) fn change(velocity: &[f32; 3], limits: &AccelerationLimits) -> VelocityProfile {
+    VelocityProfile::new(&MotionState::default(), velocity, limits)
 }

@@ -7,6 +7,7 @@
 
 use crate::motion::constraints::Bounds;
 use crate::motion::plan::units::{PER_POSITION_UNIT, POSITION_UNITS};
+use crate::motion::tolerances::JOG_RADII;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use crate::number::{Fixed, sqrt_f32};
 use kinematics::{Angle, Scalar};
@@ -30,8 +31,6 @@ pub(super) struct TravelTime {
     pub theta_too: bool,
 }
 
-/// Distance to the edge, track radii: single precision, and 0.2 um on the reference stage.
-const JOG_EDGE_MARGIN: f32 = 2e-6;
 /// Steps along a curve at most. What has been looked at by then is safe to go.
 const MOST_STEPS: usize = 100;
 /// A step that is no way worth it any more, s.
@@ -41,7 +40,7 @@ const UNITS_PER_RAD: f32 = POSITION_UNITS / core::f32::consts::TAU;
 impl SteadyMotion {
     /// Until the platform's centre meets the edge of the disk of `radius`.
     pub fn time_to_edge(&self, radius: f32) -> TravelTime {
-        let radius = radius - JOG_EDGE_MARGIN;
+        let radius = radius - JOG_RADII;
         let arm = hypot(self.centre[0], self.centre[1]);
         if self.turning == 0.0 || arm == 0.0 {
             let centre = self.platform(0.0);
@@ -81,9 +80,9 @@ impl SteadyMotion {
         for ((bounds, &point), &velocity) in bounds.iter().zip(&self.point).zip(&self.velocity) {
             let [low, high] = bounds.map(|units| i64_to_f32_fast(units) * PER_POSITION_UNIT);
             let way = if velocity > 0.0 {
-                high - JOG_EDGE_MARGIN - point
+                high - JOG_RADII - point
             } else {
-                point - low - JOG_EDGE_MARGIN
+                point - low - JOG_RADII
             };
             if velocity != 0.0 {
                 seconds = seconds.fmin((way / velocity.abs()).fmax(0.0));

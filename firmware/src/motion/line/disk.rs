@@ -12,6 +12,7 @@ use crate::motion::constraints::Constraints;
 use crate::motion::plan::Position;
 use crate::motion::plan::units::POSITION_UNITS;
 use crate::motion::refusal::Refusal;
+use crate::motion::tolerances::LINE_SQUARED_RADII;
 use crate::number::float::{FloatMinMax, hypot};
 use crate::number::{Fixed, sqrt_f32};
 use core::f32::consts::TAU;
@@ -26,8 +27,6 @@ pub(super) struct Exit {
     pub fraction: f32,
 }
 
-/// How far out of the disk is still the rim, as a part of f: 50 nm on a track of 100 mm, ten roundings of an f32.
-const LINE_RIM: f32 = 1e-6;
 /// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
 const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
@@ -66,8 +65,8 @@ pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) ->
     let there = Walk::new(&path, from[2], constraints, false);
     let back = Walk::new(&path, to[2], constraints, true);
     let start = there.square(0.0).0;
-    let limit = start.fmax(usable * usable) + LINE_RIM;
-    let [first, second] = near_ends(&path, usable - there.arm + LINE_RIM / 2.0)?;
+    let limit = start.fmax(usable * usable) + LINE_SQUARED_RADII;
+    let [first, second] = near_ends(&path, usable - there.arm + LINE_SQUARED_RADII / 2.0)?;
     let ends = [(there, first), (back, second)];
     ends.into_iter()
         .find_map(|(walk, way)| walk.exit(way, limit))

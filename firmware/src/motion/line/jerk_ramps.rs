@@ -20,6 +20,7 @@ use super::ramp::{JerkRamp, JerkRamps};
 use super::rounded_ramps::RoundedRamps;
 use super::segments::Corners;
 use crate::motion::limits::PathLimits;
+use crate::motion::tolerances::WHOLE_DURATION;
 use crate::number::float::{FloatMinMax, ceil_i32};
 
 /// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
@@ -47,7 +48,7 @@ fn corner_ramps(corners: &Corners, slower: f32, hz: f32) -> Option<JerkRamps> {
     let (mut middle, mut before) = (0, 0.0);
     for pair in corners.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let ticks = 2.0 * (b.s - a.s) / (a.rate + b.rate) * (hz * slower * SHORT);
+        let ticks = 2.0 * (b.s - a.s) / (a.rate + b.rate) * (hz * slower * WHOLE_DURATION);
         // Nor is a NaN in it.
         if !(0.0..LONGEST as f32).contains(&ticks) {
             return None;
@@ -76,12 +77,9 @@ fn corner_ramps(corners: &Corners, slower: f32, hz: f32) -> Option<JerkRamps> {
     (middle < LONGEST).then_some(ramps)
 }
 
-/// A duration that is whole but for its roundings is not rounded up.
-const SHORT: f32 = 1.0 - 1e-6;
-
 /// Gives the ramps their lengths.
 fn widen(ramps: &mut JerkRamps, most: f32) {
-    let half = SHORT / (2.0 * most);
+    let half = WHOLE_DURATION / (2.0 * most);
     // Longer than anything when nearly nothing is allowed, and still within 31 bits.
     let even = |change: f32| 2 * ceil_i32((change * half).fmin(LONGEST as f32)).max(1);
     for ramp in ramps.iter_mut() {

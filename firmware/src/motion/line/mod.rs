@@ -23,7 +23,7 @@ pub(super) mod jerk_ramps;
 pub(crate) mod path;
 pub(super) mod path_profile;
 pub(super) mod pivot_demand;
-pub(super) mod planner;
+pub(crate) mod planner;
 pub(crate) mod ramp;
 pub(super) mod rounded_ramps;
 pub(crate) mod segments;

@@ -131,6 +131,13 @@ impl PathProfile {
 }
 
 impl RestToRestProfile {
+    /// Writes pieces and nudge of a plan from `from` to its end.
+    pub(crate) fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
+        let mut path_profile = PathProfile::default();
+        self.write(&mut path_profile);
+        path_profile.write_plan(plan, from)
+    }
+
     /// Writes it as a path profile: its jerks are 1 and -1.
     pub(super) fn write(&self, path_profile: &mut PathProfile) {
         path_profile.segments.clear();

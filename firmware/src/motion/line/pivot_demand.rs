@@ -2,16 +2,12 @@
 
 use super::path::Path;
 use crate::motion::limits::PathLimits;
+use crate::motion::tolerances::{PIVOT_MARGIN, PIVOT_MARGIN_PER_SQUARE};
 use crate::number::float::FloatMinMax;
 use heapless::Vec;
 
 /// Most intervals between places.
 const MOST: usize = 64;
-
-/// What the pivots are not granted of their limits in planning: demands are looked up between places, where they are
-/// curved. A part for everything, and one for the square of what an interval turns and moves (rad and track radii).
-const PIVOT_MARGIN: f32 = 0.002;
-const PIVOT_MARGIN_PER_SQUARE: f32 = 0.1;
 
 /// With less than this of it on the whole line, half a turn, half of the places do.
 const FEW: f32 = 10.0;

@@ -12,6 +12,7 @@ use crate::motion::limits::PathLimits;
 use crate::motion::plan::{Plan, PlanStart, Position};
 use crate::motion::profile::rest_to_rest::RestToRestProfile;
 use crate::motion::refusal::Refusal;
+use crate::motion::tolerances::ROUNDING_MARGIN;
 use crate::number::float::{FloatMinMax, i64_to_f32_fast, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 use heapless::Vec;
@@ -66,9 +67,6 @@ struct LinePlanner<'a> {
 
 /// Instants of a segment at which a motion is checked, besides those at the places it passes.
 const SAMPLES: u32 = 1;
-
-/// Room that a motion gets for roundings when it is slowed down.
-const ROUNDING_MARGIN: f32 = 1.001_5;
 
 impl<'a> LinePlanner<'a> {
     fn new(path: &'a Path, constraints: &Constraints) -> Self {

@@ -1,14 +1,14 @@
 //! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
 
-use super::Piece;
 use super::axis_state::AxisState;
 use super::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
+use super::{Piece, Position};
 use crate::number::Fixed;
 use crate::number::float::{i64_to_f32_fast, truncate};
 use core::f32::consts::TAU;
 use kinematics::{Angle, Scalar};
 
-/// Position of the moved point relative to where its piece began, its velocity and acceleration; theta in rad.
+/// Position of the moved point relative to where its motion began, its velocity and acceleration; theta in rad.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MotionState {
     pub displacement: [f32; 3],
@@ -19,9 +19,9 @@ pub(crate) struct MotionState {
 /// A piece of constant jerk from its start on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CubicSegment {
-    /// x and y of its start.
+    /// x and y of where the motion began.
     pub from: [f32; 2],
-    /// Theta of its start, a fraction of a turn, 2^-32 turns.
+    /// Theta there, a fraction of a turn, 2^-32 turns.
     pub theta: u32,
     pub start: MotionState,
     pub jerk: [f32; 3],
@@ -30,32 +30,60 @@ pub(crate) struct CubicSegment {
 /// Radians of theta in what is a track radius of x and y.
 const RADIANS: [f32; 3] = [1.0, 1.0, TAU];
 
+impl MotionState {
+    /// Of the axes of a plan at `hz` ticks a second, where a displacement is counted from.
+    pub fn new(axes: &[AxisState; 3], hz: f32) -> Self {
+        let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
+        Self {
+            displacement: [0.0; 3],
+            v: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].velocity) * (once * RADIANS[i])),
+            a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
+        }
+    }
+}
+
+impl MotionState {
+    /// From where the axes are to a position.
+    pub fn between(axes: &[AxisState; 3], to: &Position) -> [f32; 3] {
+        [0, 1, 2].map(|i| {
+            let way = to[i].wrapping_sub(axes[i].rounded());
+            i64_to_f32_fast(way) * (PER_POSITION_UNIT * RADIANS[i])
+        })
+    }
+
+    /// The peak of the acceleration of a stop from here with these times.
+    pub fn stop_peak(&self, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
+        let over = -1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
+        [0, 1, 2].map(|i| (self.v[i] + self.a[i] * t1 / 2.0) * over)
+    }
+}
+
 impl CubicSegment {
+    /// A piece's jerk per second cubed.
+    pub fn jerk(piece: &Piece, hz: f32) -> [f32; 3] {
+        let thrice = PER_AXIS_UNIT * hz * hz * hz;
+        [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i]))
+    }
+
     /// A piece of a plan that starts from `axes`, at `hz` ticks a second.
     pub fn new(axes: &[AxisState; 3], piece: &Piece, hz: f32) -> Self {
-        let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
-        let thrice = twice * hz;
         Self {
             from: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
             theta: axes[2].rounded() as u32,
-            start: MotionState {
-                displacement: [0.0; 3],
-                v: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].velocity) * (once * RADIANS[i])),
-                a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
-            },
-            jerk: [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i])),
+            start: MotionState::new(axes, hz),
+            jerk: Self::jerk(piece, hz),
         }
     }
 
     /// The state `t` seconds after its start.
     pub fn at(&self, t: f32) -> MotionState {
-        let MotionState { v, a, .. } = self.start;
+        let MotionState { displacement, v, a } = self.start;
         let j = self.jerk;
         let half = t / 2.0;
         let third = t * (1.0 / 3.0);
         let mut sample = MotionState::default();
         for i in 0..3 {
-            sample.displacement[i] = t * (v[i] + half * (a[i] + third * j[i]));
+            sample.displacement[i] = displacement[i] + t * (v[i] + half * (a[i] + third * j[i]));
             sample.v[i] = v[i] + t * (a[i] + half * j[i]);
             sample.a[i] = a[i] + t * j[i];
         }

@@ -6,7 +6,9 @@
 //! | `axis_state` | one axis in integers: an exact cubic, tick by tick or many ticks at once |
 //! | `piece` | a position, a piece of constant jerk, a list of them |
 //! | `motion_plan` | the plan: what it starts from, its pieces, where it ends |
-//! | `units` | the units of positions and axes as floats, limits per tick |
+//! | `sum` | two motions that overlap, as one |
+//! | `units` | the units of positions and axes as floats |
+//! | `quantise` | times and velocities in whole ticks and integers |
 //! | `cubic_segment` | a piece in floats: the state at an instant of it |
 //! | `setpoint` | what the control loop is given at a tick |
 //! | `rotation_centre` | the point that is moved, and what its motion is for the platform's centre |
@@ -19,12 +21,15 @@ pub(crate) mod fault_stop;
 pub(super) mod follower;
 pub(super) mod motion_plan;
 pub(crate) mod piece;
+pub(crate) mod quantise;
 pub(crate) mod rotation_centre;
 pub(crate) mod setpoint;
+pub(super) mod sum;
 pub(super) mod time_scaling;
 pub(crate) mod units;
 
 pub(crate) use motion_plan::nudge_to;
 pub use motion_plan::{Plan, PlanStart};
 pub use piece::{MAX_PIECES, Piece, Position};
-pub(crate) use piece::{Pieces, state_after_pieces};
+pub(crate) use piece::{Pieces, pieces_after, state_after_pieces};
+pub(crate) use sum::{push_piece, write_sum};

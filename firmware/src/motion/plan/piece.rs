@@ -6,17 +6,17 @@ use heapless::Vec;
 /// x and y in 2^-32 track radii, theta in 2^-32 turns (multi-turn).
 pub type Position = [i64; 3];
 
-/// Pieces a plan can hold: the nine segments of three axes' profiles, no two of which begin together.
-pub const MAX_PIECES: usize = 27;
+/// Pieces a plan can hold: those of the longest line and of a stop that it overlaps.
+pub const MAX_PIECES: usize = 32;
 
 /// So many ticks of constant jerk, of all axes together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Piece {
+pub struct Piece<J = i64> {
     /// Length in ticks.
     pub ticks: u64,
-    /// Jerk of each axis, 2^-72 track radii or turns per tick cubed, a multiple of
-    /// [`JERK_STEP`](super::axis_state::JERK_STEP).
-    pub jerk: [i64; 3],
+    /// Jerk of each axis: in integers 2^-72 track radii or turns per tick cubed, a multiple of
+    /// [`JERK_STEP`](super::axis_state::JERK_STEP); in floats track radii and rad per second cubed.
+    pub jerk: [J; 3],
 }
 
 impl Piece {
@@ -31,7 +31,7 @@ impl Piece {
 }
 
 /// Pieces of a plan.
-pub(crate) type Pieces = Vec<Piece, MAX_PIECES>;
+pub(crate) type Pieces<J = i64> = Vec<Piece<J>, MAX_PIECES>;
 
 /// The axes after all of these pieces.
 pub(crate) fn state_after_pieces(
@@ -44,4 +44,14 @@ pub(crate) fn state_after_pieces(
         piece.advance(&mut axes, piece.ticks, nudge);
     }
     axes
+}
+
+/// What of the pieces lies after a tick.
+pub(crate) fn pieces_after(pieces: &[Piece], tick: u64) -> impl Iterator<Item = Piece> {
+    let mut ends = 0;
+    pieces.iter().filter_map(move |piece| {
+        ends += piece.ticks;
+        let ticks = piece.ticks.min(u64::saturating_sub(ends, tick));
+        (ticks > 0).then_some(Piece { ticks, ..*piece })
+    })
 }

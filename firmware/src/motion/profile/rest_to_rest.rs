@@ -13,6 +13,7 @@
 //! themselves, a millionth.
 
 use crate::motion::limits::PathLimits;
+use crate::motion::tolerances::WHOLE_DURATION;
 use crate::number::float::{FloatMinMax, ceil_ticks, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
 
@@ -48,7 +49,8 @@ impl RestToRestProfile {
         Self::lasting([self.jerk, self.ramp, self.travel].map(|ticks| ticks_to_f32(ticks) * slower))
     }
 
-    fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
+    /// Of lengths in ticks, rounded up; `None` beyond what can be counted.
+    pub(crate) fn lasting([b1, b2, b3]: [f32; 3]) -> Option<Self> {
         let jerk = ticks(b1)?;
         let ramp = ticks(b2)?.max(jerk);
         let travel = ticks(b3)?.max(jerk + ramp);
@@ -82,7 +84,8 @@ impl RestToRestProfile {
     }
 }
 
-fn shortest(limits: &PathLimits) -> [f32; 3] {
+/// Lengths of the shortest profile, s.
+pub(crate) fn shortest(limits: &PathLimits) -> [f32; 3] {
     let PathLimits {
         rate,
         acceleration,
@@ -109,7 +112,7 @@ fn shortest(limits: &PathLimits) -> [f32; 3] {
 fn ticks(duration: f32) -> Option<u64> {
     const LONGEST: f32 = 4_503_599_627_370_496.0;
     // A duration that is whole but for its rounding errors is not rounded up.
-    let duration = duration * (1.0 - 1e-6);
+    let duration = duration * WHOLE_DURATION;
     // A NaN is not that short either.
     (duration <= LONGEST).then(|| ceil_ticks(duration).max(1))
 }

@@ -1,66 +1,78 @@
-//! Planning from motion: a new target without coming to rest before.
-//!
-//! Position, velocity and acceleration of a stage in motion point anywhere, so there is no line to plan on: each axis
-//! gets the fastest profile of its own ([`AxisProfile`](super::AxisProfile)), and those of the faster axes are slowed
-//! down to the duration of the slowest.
+//! A new target in motion: the end of the motion under way, and a line from there, that overlap.
 //!
 //! ```text
-//!   across                     The axes of translation are one along the way to go and one across it (`heading`). What is
-//!  v * .                       under way across is braked while the axis along goes on. With shares of the limits of
-//!    |    .                    acceleration in proportion to what each has to change, the velocity goes straight from where
-//!    |       .                 it is to what it is to be: it stays within the circle that both lie in, and a turn is no
-//!  --+----------*--- along     faster than the straight. Shares more even, with a lower speed along, may be sooner: each of
-//!    |          V              a few is tried (`Choice`), and the soonest planned.
+//! speed  ____                              A plan is linear in its pieces: a stop that ends at A, and a line from A to the
+//!            \    stop                     target that begins before the stop is over, add up to a motion that ends at the
+//!             \____                        target, at rest, whatever the delay. With a delay as long as the stop it is
+//!               ________                   "stop, then line", of which both were planned within every limit. The least
+//!         |    /  line  \                  delay at which the check is content is taken. Towards a target straight ahead
+//!         |___/          \____             the stop's braking and the line's acceleration cancel: the stage goes on.
+//!         delay
 //! ```
 //!
-//! What couples the axes otherwise (disk, bounds, pivots, a start over the shares) is checked on the plan that comes of
-//! it ([`PlanCheck`]); where the pivots ask for less, it is planned once more, slower. Where the workspace is too
-//! narrow, or where a stop and a straight line are sooner, the stage has to stop first.
+//! Some pairs of shares of the limits for stop and line are tried, and the motion under way as it is, followed to its
+//! end, in place of a stop: for a target that is corrected, and out of a stop. The soonest wins. PLCopen calls it
+//! superimposed motion.
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | one slice of planning |
-//! | `heading` | the frame along the way to go and across it |
-//! | `choice` | shares, heading and speeds: the soonest of a few |
-//! | `slower`, `expected_demand` | by how much less than the limits, and why |
-//! | `tries` | what has been tried, and what is tried next |
-//! | `ahead` | what is checked in the next slice |
+//! | here | candidates, and the soonest that the check is content with |
+//! | `candidate` | one way to come to rest, the line from there, and the least delay between them |
+//! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats |
 
+mod candidate;
+mod ending;
+mod line;
+mod overlap;
+
+use super::check::PlanCheck;
 use super::check::target::check_target;
 use super::check::violation::Violation;
-use super::check::{CheckBudget, CheckedPieces, MIN_CHECKED_TICKS, PlanCheck};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
-use super::plan::units::TickLimits;
-use super::plan::{Piece, Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces};
-use super::profile::tracks::{brake, merged};
-use super::profile::whole_ticks::{Track, fit};
+use super::plan::cubic_segment::MotionState;
+use super::plan::{Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces};
 use super::refusal::{Refusal, RetargetError};
-use crate::number::float::ceil_ticks;
-use ahead::{Ahead, HEAD};
-use choice::Choice;
-use tries::Tries;
+use super::tolerances::SLOWER_FOR_PIVOTS;
+use crate::number::sqrt_f32;
+use candidate::{Candidate, PartWay};
+use ending::{Ended, Ending, Leaving};
+use overlap::{Overlap, Part};
 
-pub(crate) mod ahead;
-pub(crate) mod choice;
-pub(super) mod expected_demand;
-pub(super) mod heading;
-pub(super) mod slower;
-pub(crate) mod tries;
+/// How the motion under way ends, and the shares of the limits that the line gets.
+const ENDINGS: [(Ending, &[f32]); 7] = [
+    (Ending::Followed, &[1.0, 0.5]),
+    (Ending::Stop(1.0, 1.0), &[1.0, 0.7]),
+    (Ending::Stop(0.7, 0.7), &[0.7, 1.0]),
+    (Ending::Stop(1.0, 0.7), &[0.7]),
+    (Ending::Stop(1.0, 0.5), &[0.5, 0.85]),
+    (Ending::Stop(0.5, 0.5), &[0.85]),
+    (Ending::Stop(0.85, 0.85), &[0.5]),
+];
 
-/// What is left for another target.
-#[derive(Clone, Copy)]
-pub struct Leave<'a> {
-    /// The plan under way.
-    pub of: &'a Plan,
-    /// The axes at its start.
-    pub from: &'a [AxisState; 3],
-    /// The tick of it at which it is left.
-    pub at: u64,
+/// How many of the ways are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// So many that the stage is soon on its way.
+    First,
+    /// All.
+    All,
 }
 
-/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`: with as many tries
-/// as it takes, all of it at once.
+/// Of the endings, how many are tried at first.
+const FIRST: usize = 2;
+
+const PARTS: [Part; 2] = [Part::Translation, Part::Rotation];
+
+/// How often the check may be asked.
+const CHECKS: usize = 4;
+
+/// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
+///
+/// # Errors
+/// [`RetargetError::Refused`] where the target can not be moved to; [`RetargetError::NeedsStop`] where there is no way
+/// but to come to rest first.
+#[inline(never)]
 pub fn plan_retarget(
     id: u32,
     of: &Plan,
@@ -68,36 +80,12 @@ pub fn plan_retarget(
     at: u64,
     to: Position,
     constraints: &Constraints,
+    effort: Effort,
 ) -> Result<Plan, RetargetError> {
-    let (mut tries, mut plan) = (Tries::NONE, Plan::default());
-    loop {
-        let mut ahead = None;
-        let next = &mut plan;
-        let leave = Leave { of, from, at };
-        let tried = try_retarget(next, id, leave, to, constraints, &mut tries, &mut ahead);
-        let tried = match ahead {
-            Some(ahead) => ahead.whole(&mut plan, constraints, &mut tries),
-            None => tried,
-        };
-        if tried != Err(RetargetError::TooFast) {
-            return tried.map(|()| plan);
-        }
-    }
-}
-
-/// Writes the first slice of the same: one try, and where all of it can not be looked at in the time, its head; then
-/// the rest is left `ahead`. After a try that was too fast the next can leave what takes the place of the motion, as a
-/// rule a stop.
-#[inline(never)]
-pub fn try_retarget(
-    plan: &mut Plan,
-    id: u32,
-    Leave { of, from, at }: Leave<'_>,
-    to: Position,
-    constraints: &Constraints,
-    tries: &mut Tries,
-    ahead: &mut Option<Ahead>,
-) -> Result<(), RetargetError> {
+    let (tried, mut intervals) = match effort {
+        Effort::First => (FIRST, 24),
+        Effort::All => (ENDINGS.len(), 60),
+    };
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
@@ -105,85 +93,107 @@ pub fn try_retarget(
     if at >= of.ticks() {
         return Err(RetargetError::NeedsStop);
     }
-    let state = of.state_after(from, at);
-    let limits = TickLimits::new(constraints);
-    let choice = tries
-        .choice(&state, &to, &limits, constraints)
-        .ok_or(RetargetError::NeedsStop)?;
-    (plan.id, plan.end) = (id, to);
-    plan.start = PlanStart::Splice {
-        plan: of.id,
-        tick: at,
-    };
-    choice
-        .lay(&state, &to, &mut plan.pieces)
-        .ok_or(RetargetError::NeedsStop)?;
-    let plan_check = PlanCheck::new(constraints, limits, &state);
-    let mut checked_pieces = CheckedPieces::new();
-    let first = first_slice(&plan.pieces);
-    let (now, later) = plan.pieces.split_at(first);
-    let then = plan_check.prepare(now, &state, &mut checked_pieces);
-    let end = state_after_pieces(&then, later, &[0; 3]);
-    plan.nudge = nudge_to(&end, &to, plan.ticks()).ok_or(RetargetError::NeedsStop)?;
-    let mut budget = CheckBudget::SLICE;
-    let looked = match plan_check.check(&checked_pieces, &mut budget) {
-        Ok(()) if first == plan.pieces.len() => return Ok(()),
-        Ok(()) | Err(Violation::Unchecked) if budget.checked_ticks >= MIN_CHECKED_TICKS => {
-            Ahead::divide(plan, &state, budget.checked_ticks, constraints, ahead)
+    let leaving = Leaving::new(of, from, at, constraints);
+    if leaving.is_outside() {
+        return Err(RetargetError::NeedsStop);
+    }
+    let mut ended = Ended::default();
+    let mut candidate =
+        soonest(&leaving, &to, tried, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut pieces = Pieces::new();
+    let plan_check = PlanCheck::new(constraints, &leaving.state);
+    for _ in 0..CHECKS {
+        if intervals == 0 {
+            break;
         }
-        Ok(()) => Ok(false),
-        Err(broken) => Err(broken),
-    };
-    let looked = looked.and_then(|divided| {
-        if divided {
-            return Ok(());
+        (candidate.write_floats(&leaving, &mut ended, &mut pieces))
+            .ok_or(RetargetError::NeedsStop)?;
+        match plan_check.check_floats(&pieces, &leaving.state, &mut intervals) {
+            Ok(()) => {
+                let start = PlanStart::Splice {
+                    plan: of.id,
+                    tick: at,
+                };
+                return written(id, start, &candidate, &leaving, &to)
+                    .ok_or(RetargetError::NeedsStop);
+            }
+            Err(Violation::PivotRate(over)) => candidate.slow(margin(over)),
+            Err(Violation::PivotAcceleration(over)) => {
+                candidate.slow(margin(sqrt_f32(over)));
+            }
+            Err(_) => {
+                if !candidate.later() {
+                    break;
+                }
+            }
         }
-        plan_check.prepare(&plan.pieces, &state, &mut checked_pieces);
-        plan_check.check(
-            &checked_pieces,
-            &mut CheckBudget::after(budget.checked_ticks),
-        )
-    });
-    looked.map_err(|broken| tries.after(&broken))
+    }
+    Err(RetargetError::NeedsStop)
 }
 
-/// How many pieces are looked at in the first slice: all of a few, or as many as a head takes.
-fn first_slice(pieces: &[Piece]) -> usize {
-    if pieces.len() <= FEW {
-        return pieces.len();
-    }
-    let mut ticks = 0;
-    let reaches = |piece: &Piece| {
-        ticks += piece.ticks;
-        ticks >= HEAD
-    };
-    let before = pieces.iter().position(reaches);
-    before.map_or(pieces.len(), |before| before + 1)
+/// What a sample of the pivots says is not taken for more than this.
+const MOST_SLOWER: f32 = 1.3;
+
+/// By how much slower a line is made that asks for so much more of the pivots than they can.
+fn margin(over: f32) -> f32 {
+    (over * SLOWER_FOR_PIVOTS).clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER)
 }
 
-/// So many pieces are looked at at once.
-const FEW: usize = 12;
-
-impl Choice {
-    /// Writes the pieces of this choice.
-    fn lay(&self, state: &[AxisState; 3], to: &Position, pieces: &mut Pieces) -> Option<()> {
-        let view = self.heading.view(state, to);
-        let mut tracks: [Track; 3] = Default::default();
-        brake(&mut tracks[1], &view[1].0, self.across.map(ceil_ticks));
-        for i in [0, 2] {
-            let (axis, way) = view[i];
-            fit(
-                &mut tracks[i],
-                axis,
-                way,
-                &self.limits[i / 2],
-                self.duration(),
-            )?;
+/// The soonest of the candidates, and the part that is over sooner slowed down to the other.
+fn soonest(
+    leaving: &Leaving<'_>,
+    to: &Position,
+    tried: usize,
+    ended: &mut Ended,
+) -> Option<Candidate> {
+    let overlap = Overlap::new(leaving);
+    let way = MotionState::between(&leaving.state, to);
+    let mut best: [Option<PartWay>; 2] = [None; 2];
+    for (ending, shares) in ENDINGS.into_iter().take(tried) {
+        if leaving.write_ended(ending, ended).is_none() {
+            continue;
         }
-        merged(&tracks, pieces);
-        let seen = [0, 1].map(|i| view[i].0.acceleration);
-        let from = [0, 1].map(|i| state[i].acceleration);
-        self.heading.turn_back(pieces, seen, from);
-        Some(())
+        for (part, best) in PARTS.into_iter().zip(&mut best) {
+            for &share in shares {
+                let soonest = best.as_ref().map_or(u64::MAX, |best| best.ticks());
+                let ending = (ending, &*ended);
+                let other = PartWay::new(leaving, &overlap, ending, share, &way, part, soonest);
+                *best = other.or(*best);
+            }
+        }
     }
+    let [Some(translation), Some(rotation)] = best else {
+        return None;
+    };
+    let mut candidate = Candidate {
+        parts: [translation, rotation],
+    };
+    let ticks = candidate.ticks();
+    for (way, part) in candidate.parts.iter_mut().zip(PARTS) {
+        if way.ticks() < ticks && leaving.write_ended(way.ending, ended).is_some() {
+            way.level(&overlap, ended, part, ticks);
+        }
+    }
+    Some(candidate)
+}
+
+/// The plan of a candidate.
+#[inline(never)]
+fn written(
+    id: u32,
+    start: PlanStart,
+    candidate: &Candidate,
+    leaving: &Leaving<'_>,
+    to: &Position,
+) -> Option<Plan> {
+    let mut plan = Plan {
+        id,
+        start,
+        end: *to,
+        ..Plan::default()
+    };
+    candidate.write(leaving, to, &mut plan.pieces)?;
+    let end = state_after_pieces(&leaving.state, &plan.pieces, &[0; 3]);
+    plan.nudge = nudge_to(&end, to, plan.ticks())?;
+    Some(plan)
 }

@@ -1,22 +1,21 @@
 //! The stop that a motion carries with it: from any state, whatever the velocity and the acceleration point to.
 //!
-//! The acceleration is released, then the velocity given up, along its own direction: the pieces of a change of
-//! velocity (see `brake/velocity_change`). Every instant that may be the worst is held against the limits; where a
-//! pivot is asked for too much, the stop is softer.
+//! The velocity is given up in three segments (see `profile/velocity`), the first with as much jerk as a stream may have:
+//! an acceleration under way that is released slowly would end over the limit of speed. Every instant that may be the
+//! worst is held against the limits; where a pivot is asked for too much, the stop is softer.
 
-use crate::motion::brake::velocity_change::{
-    AccelerationLimits, VelocityRamp, release_acceleration,
-};
 use crate::motion::check::instant::{InstantCheck, InstantState};
 use crate::motion::plan::Piece;
 use crate::motion::plan::axis_state::AxisState;
+use crate::motion::plan::cubic_segment::MotionState;
+use crate::motion::plan::quantise::velocity_pieces;
+use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
 use crate::motion::refusal::Refusal;
-use crate::motion::speeds::{Speeds, per_second};
-use crate::number::float::FloatMinMax;
-use heapless::Vec;
+use crate::motion::tolerances::JERK_TOLERANCE;
+use crate::number::float::{FloatMinMax, ticks_to_f32};
 
-/// Release, what it leaves, and the ramp.
-pub(super) type StopPieces = Vec<Piece, 5>;
+/// Three, and the closing tick; some have no ticks.
+pub(super) type StopPieces = [Piece; 4];
 
 /// How often a softer stop is tried.
 const ATTEMPTS: usize = 3;
@@ -29,16 +28,19 @@ pub(super) fn final_stop(
     now: &InstantState,
     instant_check: &InstantCheck<'_>,
 ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
+    let motion = MotionState::new(state, instant_check.hz);
+    let limits = AccelerationLimits::new(instant_check.constraints);
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
-        let limits = AccelerationLimits {
-            acceleration: Speeds {
-                linear: instant_check.acceleration_limit.linear * part,
-                angular: instant_check.acceleration_limit.angular * part,
-            },
-            jerk: instant_check.jerk_limit,
-        };
-        let pieces = pieces(state, now, &limits, instant_check);
+        let limits = limits.scaled(part, 1.0);
+        let ticks = VelocityProfile::new(&motion, &[0.0; 3], &limits)
+            .with_first_jerk(JERK_TOLERANCE)
+            .ticks(instant_check.hz);
+        let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / instant_check.hz);
+        if instant_check.is_too_fast(stop_speeds(&motion, times_s)) {
+            return Err(Refusal::Velocity);
+        }
+        let pieces = velocity_pieces(state, &[0; 3], ticks);
         let (worst, end) = walk(state, now, &pieces, instant_check).ok_or(Refusal::NoRoomToStop)?;
         if worst <= 1.0 {
             return Ok((pieces, end));
@@ -46,26 +48,6 @@ pub(super) fn final_stop(
         part *= (0.9 / worst).fmin(0.7);
     }
     Err(Refusal::NoRoomToStop)
-}
-
-fn pieces(
-    state: &[AxisState; 3],
-    now: &InstantState,
-    limits: &AccelerationLimits,
-    instant_check: &InstantCheck<'_>,
-) -> StopPieces {
-    let mut pieces = StopPieces::new();
-    let (hz, jerk) = (instant_check.hz, limits.jerk);
-    let change = release_acceleration(state, now.acceleration, jerk, hz, &mut pieces)
-        .map(|velocity| -velocity);
-    if change != [0; 3] {
-        let ramp = VelocityRamp::new(Speeds::of(&per_second(&change, hz)), limits, hz);
-        for piece in ramp.pieces(change) {
-            // Two and three of five.
-            let _ = pieces.push(piece);
-        }
-    }
-    pieces
 }
 
 /// The largest part of its limit that a pivot reaches, and the end; `None` where the workspace is left.
@@ -154,10 +136,9 @@ mod tests {
     }
 
     #[test]
-    fn an_acceleration_under_way_is_released_first() {
+    fn an_acceleration_under_way_is_given_up_too() {
         let axes = state(0.0, [100.0, 30.0, 90.0], 3_000.0);
-        let (pieces, end) = stopped(&axes, &CONSTRAINTS).unwrap();
-        assert_eq!(pieces.len(), 5);
+        let (_, end) = stopped(&axes, &CONSTRAINTS).unwrap();
         assert!(end.iter().all(|axis| axis.acceleration == 0));
         assert!(
             end.iter().all(|axis| axis.velocity.abs() < 1 << 32),
@@ -168,7 +149,7 @@ mod tests {
     #[test]
     fn at_rest_there_is_nothing_to_do() {
         let (pieces, _) = stopped(&state(0.0, [0.0; 3], 0.0), &CONSTRAINTS).unwrap();
-        assert!(pieces.is_empty());
+        assert!(pieces.iter().all(|piece| piece.jerk == [0; 3]));
     }
 
     #[test]

@@ -16,7 +16,7 @@
 //!
 //! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held
 //! against the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth.
-//! Jerk is the sender's own business within [`JERK_TOLERANCE`] times its limit: samples that are rounded, or a path
+//! Jerk is the sender's own business within [`JERK_TOLERANCE`](super::tolerances::JERK_TOLERANCE) times its limit: samples that are rounded, or a path
 //! with corners in its acceleration, have no better.
 //!
 //! The distance of the samples in time is what the sender says it is, not when they arrive. A sender whose clock
@@ -41,4 +41,4 @@ mod spline;
 mod state;
 
 pub use messages::{Clock, PlanProgress, PushError, StreamEnd, StreamStep};
-pub use state::{JERK_TOLERANCE, PERIOD_RANGE, STREAM_CAPACITY, Stream};
+pub use state::{PERIOD_RANGE, STREAM_CAPACITY, Stream};

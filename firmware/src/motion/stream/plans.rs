@@ -2,13 +2,14 @@
 
 use super::final_stop::final_stop;
 use super::spline::curve_point;
-use super::state::{JERK_TOLERANCE, PART_BITS, SentPlan, Stream};
+use super::state::{PART_BITS, SentPlan, Stream};
 use crate::motion::check::instant::{InstantCheck, InstantState};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::{AxisState, SUB_BITS};
 use crate::motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use crate::motion::refusal::Refusal;
 use crate::motion::speeds::{Speeds, per_second};
+use crate::motion::tolerances::JERK_TOLERANCE;
 use heapless::Vec;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.

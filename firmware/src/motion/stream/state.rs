@@ -15,9 +15,6 @@ pub const STREAM_CAPACITY: usize = 32;
 /// Ticks between two targets: from 2 kHz at a control rate of 20 kHz down to a target in 100 ms.
 pub const PERIOD_RANGE: core::ops::RangeInclusive<f64> = 10.0..=2_000.0;
 
-/// By how much the jerk that targets ask for may be over its limit.
-pub const JERK_TOLERANCE: f32 = 10.0;
-
 /// Ticks that a plan lasts at least before its stop: time to send the next.
 const LEAST_AHEAD: u32 = 60;
 

@@ -3,14 +3,11 @@
 use crate::bench::Bench;
 use crate::table::CallResult;
 use firmware::motion::{
-    AxisState, Plan, PlanStart, RetargetError, Stop, StreamStep, plan_jog, plan_line,
+    AxisState, Effort, Plan, PlanStart, RetargetError, Stop, StreamStep, plan_jog, plan_line,
 };
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
 use firmware_cost::streaming::Streaming;
-
-/// Tick of a head at which the next slice takes over.
-const TAKEN_OVER: u64 = 40;
 
 /// Counts the planners.
 #[inline(never)]
@@ -22,20 +19,18 @@ pub fn run(bench: &mut Bench) {
         |(from, to)| plan_line(3, *from, *to, ground()),
         |_, plan| of_plan(plan.as_ref().ok()),
     );
-    bench.part(
-        "motion: new target in motion",
-        1,
-        |random| (Moving::new(random), position(random)),
-        |(now, to)| now.retargeted(*to),
-        |_, plan| of_plan(plan.as_ref()),
-    );
-    bench.part(
-        "motion: rest of a new target, next slice",
-        1,
-        Moving::headed,
-        |(ahead, tries)| ahead.go_on(4, TAKEN_OVER, ground(), &mut { *tries }),
-        |_, plan| of_plan(plan.as_ref().ok()),
-    );
+    for (name, effort) in [
+        ("motion: new target in motion, first way", Effort::First),
+        ("motion: new target in motion, soonest way", Effort::All),
+    ] {
+        bench.part(
+            name,
+            1,
+            |random| (Moving::new(random), position(random)),
+            |(now, to)| now.retargeted(*to, effort),
+            |_, plan| of_plan(plan.as_ref()),
+        );
+    }
     bench.part(
         "motion: jog from rest",
         1,
@@ -76,7 +71,7 @@ fn jog(now: &Moving, velocity: &[f64; 3]) -> Option<Plan> {
     };
     match plan_jog(3, start, &state, velocity, ground()) {
         Ok(plan) => Some(plan),
-        Err(RetargetError::NeedsStop | RetargetError::TooFast) => now.stopped(Stop::Smooth),
+        Err(RetargetError::NeedsStop) => now.stopped(Stop::Smooth),
         Err(RetargetError::Refused(_)) => None,
     }
 }

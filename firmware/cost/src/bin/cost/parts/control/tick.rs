@@ -9,7 +9,9 @@ use firmware::control::config::Config;
 use firmware::control::{Inputs, State, tick};
 use firmware::drivers::biss::RawFrame;
 use firmware::mode::Mode;
-use firmware::motion::{AxisState, Constraints, Plan, RotationCentre, plan_line, plan_retarget};
+use firmware::motion::{
+    AxisState, Constraints, Effort, Plan, RotationCentre, plan_line, plan_retarget,
+};
 use firmware::number::Fixed;
 use firmware::queues::{Command, CommandQueues, Queues, TickQueues};
 use firmware::recorder::{RawSignal, RecordSetup, RunningHash, Sample, TickObserver};
@@ -205,7 +207,7 @@ impl Control<'_> {
             }
             Mode::Moving if snapshot.plan == self.plan.id && random.once_in(RETARGETS) => {
                 let (plan, at) = (&self.plan, snapshot.plan_tick + AHEAD);
-                let next = plan_retarget(id, plan, &self.start, at, to, &self.ground);
+                let next = plan_retarget(id, plan, &self.start, at, to, &self.ground, Effort::All);
                 next.ok()
                     .map(|next| (next, plan.state_after(&self.start, at)))
             }

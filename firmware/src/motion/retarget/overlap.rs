@@ -1,0 +1,185 @@
+//! Whether an ending and a line that overlap keep to the limits of path and rotation, in floats: what the pivots and
+//! the workspace ask for is left to the check.
+
+use super::ending::Leaving;
+use super::line::{Line, LineCorner};
+use crate::motion::plan::MAX_PIECES;
+use crate::motion::profile::velocity::AccelerationLimits;
+use crate::motion::speeds::Speeds;
+use crate::motion::tolerances::OVERLAP;
+use crate::number::float::{FloatMinMax, ticks_to_f32};
+use heapless::Vec;
+
+/// Where a motion's jerk changes: the state there, track radii, rad and seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corner {
+    pub at_s: f32,
+    pub v: [f32; 3],
+    pub a: [f32; 3],
+    pub j: [f32; 3],
+}
+
+/// A motion to rest by its corners; the last one is rest.
+pub(super) type Corners = Vec<Corner, { MAX_PIECES + 1 }>;
+
+impl Corner {
+    /// The state at a later time.
+    pub fn next(&self, at_s: f32) -> Self {
+        let seconds = at_s - self.at_s;
+        let half = seconds / 2.0;
+        Self {
+            at_s,
+            v: [0, 1, 2].map(|i| self.v[i] + seconds * (self.a[i] + half * self.j[i])),
+            a: [0, 1, 2].map(|i| self.a[i] + seconds * self.j[i]),
+            j: [0.0; 3],
+        }
+    }
+}
+
+/// Translation or rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Translation,
+    Rotation,
+}
+
+impl Part {
+    /// The sizes of a sum of two vectors are within a limit.
+    #[inline]
+    fn is_within(self, a: &[f32; 3], way: &[f32; 3], rate: f32, limit: &Speeds) -> bool {
+        match self {
+            Self::Translation => {
+                let (x, y) = (a[0] + way[0] * rate, a[1] + way[1] * rate);
+                x * x + y * y <= limit.linear * limit.linear
+            }
+            Self::Rotation => (a[2] + way[2] * rate).abs() <= limit.angular,
+        }
+    }
+}
+
+/// What the sum keeps to.
+pub(super) struct Overlap {
+    speed: Speeds,
+    acceleration: Speeds,
+    jerk: Speeds,
+    hz: f32,
+}
+
+/// How often a delay is halved in the search.
+const HALVINGS: usize = 5;
+
+impl Overlap {
+    pub fn new(leaving: &Leaving<'_>) -> Self {
+        let AccelerationLimits { acceleration, jerk } = leaving.limits;
+        Self {
+            speed: leaving.speed.scaled(OVERLAP),
+            acceleration: acceleration.scaled(OVERLAP),
+            jerk: jerk.scaled(OVERLAP),
+            hz: leaving.hz,
+        }
+    }
+
+    /// The least delay up to `most` ticks that is found; `None` where `most` is too short.
+    pub fn least_delay(
+        &self,
+        ending: &[Corner],
+        line: &Line,
+        part: Part,
+        most: u64,
+    ) -> Option<u64> {
+        let corners = line.corners(self.hz);
+        let is_kept = |delay: u64| self.corners_are_kept(ending, &line.way, &corners, part, delay);
+        if !is_kept(most) {
+            return None;
+        }
+        if is_kept(0) {
+            return Some(0);
+        }
+        let (mut low, mut high) = (0_u64, most);
+        for _ in 0..HALVINGS {
+            let middle = low.midpoint(high);
+            if is_kept(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(high)
+    }
+
+    /// Whether the limits are kept while both are under way: at every corner of either, and speed in the middle between.
+    pub fn is_kept(&self, ending: &[Corner], line: &Line, part: Part, delay: u64) -> bool {
+        self.corners_are_kept(ending, &line.way, &line.corners(self.hz), part, delay)
+    }
+
+    fn corners_are_kept(
+        &self,
+        ending: &[Corner],
+        way: &[f32; 3],
+        line: &[LineCorner],
+        part: Part,
+        delay: u64,
+    ) -> bool {
+        let delay_s = ticks_to_f32(delay) / self.hz;
+        let (mut endings, mut lines) = (ending.windows(2), line.windows(2));
+        let next_ending = |endings: &mut core::slice::Windows<'_, Corner>| {
+            endings.next().map(|pair| (pair[0], pair[1].at_s))
+        };
+        let next_line = |lines: &mut core::slice::Windows<'_, LineCorner>| {
+            (lines.next()).map(|pair| (pair[0], pair[1].at_s + delay_s))
+        };
+        let Some(mut ended) = next_ending(&mut endings) else {
+            return true;
+        };
+        let Some(mut lined) = next_line(&mut lines) else {
+            return true;
+        };
+        let mut now_s = delay_s;
+        while ended.1 <= now_s {
+            match next_ending(&mut endings) {
+                Some(next) => ended = next,
+                None => return true,
+            }
+        }
+        loop {
+            let (a, b) = (&ended.0, &lined.0);
+            let until_s = ended.1.fmin(lined.1);
+            let (t, u) = (now_s - a.at_s, now_s - delay_s - b.at_s);
+            let middle = (until_s - now_s) / 2.0;
+            let state = |t: f32, u: f32| {
+                let (half, late) = (t / 2.0, u / 2.0);
+                (
+                    [0, 1, 2].map(|i| a.v[i] + t * (a.a[i] + half * a.j[i])),
+                    [0, 1, 2].map(|i| a.a[i] + t * a.j[i]),
+                    b.rate + u * (b.acceleration + late * b.jerk),
+                    b.acceleration + u * b.jerk,
+                )
+            };
+            let (v, acc, rate, acceleration) = state(t, u);
+            let (v_middle, _, rate_middle, _) = state(t + middle, u + middle);
+            let kept = |vector: &[f32; 3], times: f32, limit: &Speeds| {
+                part.is_within(vector, way, times, limit)
+            };
+            if !(kept(&a.j, b.jerk, &self.jerk)
+                && kept(&acc, acceleration, &self.acceleration)
+                && kept(&v, rate, &self.speed)
+                && kept(&v_middle, rate_middle, &self.speed))
+            {
+                return false;
+            }
+            now_s = until_s;
+            if ended.1 <= now_s {
+                match next_ending(&mut endings) {
+                    Some(next) => ended = next,
+                    None => return true,
+                }
+            }
+            if lined.1 <= now_s {
+                match next_line(&mut lines) {
+                    Some(next) => lined = next,
+                    None => return true,
+                }
+            }
+        }
+    }
+}
