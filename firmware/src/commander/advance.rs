@@ -10,6 +10,10 @@ use crate::mode::Mode;
 use crate::motion::{Constraints, Effort, PlanStart, RetargetError, Stop, check_target};
 use crate::queues::{Command, CommandQueues};
 
+/// A sooner way takes over from the one under way if it saves this part of what is left: each has more pieces than the one
+/// before.
+const WORTH_TAKING: u64 = 64;
+
 impl Commander {
     /// Takes the next step of what is pending, if its time has come. To be called after every [`update`](Self::update).
     pub fn advance_pending(&mut self, queues: &mut CommandQueues<'_>) {

@@ -20,6 +20,9 @@ pub fn lead_ticks() -> u64 {
     setting("LEAD", 80)
 }
 
+/// A sooner way is taken if it saves this part of what is left, as by the commander.
+const WORTH_TAKING: u64 = 64;
+
 /// A plan, and the axes at its start.
 #[derive(Clone)]
 pub struct Motion {
@@ -79,7 +82,8 @@ pub fn retargeted(
                 from: of.state_after(at),
             };
             if let Some(better) = soonest(&first, lead, to, constraints)
-                && lead + better.plan.ticks() < first.plan.ticks()
+                && let left = first.plan.ticks().saturating_sub(lead)
+                && better.plan.ticks() + left / WORTH_TAKING < left
             {
                 way.push(at, first, Kind::Transition);
                 way.push(lead, better, Kind::Transition);
