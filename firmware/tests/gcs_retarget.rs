@@ -135,3 +135,25 @@ fn a_stop_that_nothing_follows_comes_to_rest() {
     assert!((bench.value("POS? Y") - 60.0).abs() < 8.4e-8);
     assert!(bench.tick.worst_jump < 6.92e-3, "{}", bench.tick.worst_jump);
 }
+
+/// Whoever stops a stage urgently finds it at rest, whatever comes after.
+#[test]
+fn what_comes_after_an_urgent_stop_waits_for_rest() {
+    for command in ["MOV X -60", "JOG X -50"] {
+        for wait in [0, 4, 20, 60, 200, 400] {
+            let mut bench = Bench::ready();
+            bench.say("MOV X 60\n");
+            bench.run(3_000);
+            assert_eq!(bench.error_after("STP"), "10");
+            bench.run(wait);
+            assert_eq!(bench.error_after(command), "0");
+            let rests = (0..1_000).any(|_| {
+                bench.run(1);
+                bench.tick.now.mode == Mode::Holding
+            });
+            assert!(rests, "{command} {wait}");
+            bench.run(2_000);
+            assert_eq!(bench.tick.now.mode, Mode::Moving, "{command} {wait}");
+        }
+    }
+}

@@ -96,8 +96,8 @@ impl Commander {
         Ok(())
     }
 
-    /// Sends a way to another goal. For a target in slices: a stop, so that the stage reacts soon and whatever becomes of
-    /// the next slice has a way to rest; at the same tick of the plan under way, a first way to the target that takes the
+    /// Sends a way to another goal. For a target in steps: a stop, so that the stage reacts soon and whatever becomes of
+    /// the next step has a way to rest; at the same tick of the plan under way, a first way to the target that takes the
     /// stop's place; and [the soonest](Self::take_soonest_way), which takes longer to find.
     fn retarget(&mut self, goal: Goal, queues: &mut CommandQueues<'_>) -> Result<(), CommandError> {
         let constraints = self.goal_constraints(&goal);
@@ -138,8 +138,8 @@ impl Commander {
         }
     }
 
-    /// Sends the soonest way to a target. When a first one `is_under_way`, only if it is sooner; it does not matter then
-    /// if it comes too late. Where there is none out of a stop, there is nothing else to do but to wait for rest.
+    /// Sends the soonest way to a target. When a first one `is_under_way`, only if it saves enough; it does not matter then
+    /// if it comes too late. Where there is none out of what is under way, there is nothing else to do but to wait for rest.
     fn take_soonest_way(
         &mut self,
         goal: Goal,
@@ -158,9 +158,9 @@ impl Commander {
         let at = at + lead;
         let left = under_way.plan.ticks().saturating_sub(at);
         let way = under_way.retargeted(goal, id, at, &constraints, Effort::All);
-        let way = way
-            .ok()
-            .filter(|way| !is_under_way || way.plan.ticks() < left);
+        let way = way.ok().filter(|way| {
+            !is_under_way || way.plan.ticks().saturating_add(left / WORTH_TAKING) < left
+        });
         self.pending = match way {
             Some(way) => {
                 self.send_plan(way, (!is_under_way).then_some(goal), queues)?;

@@ -1,15 +1,15 @@
 //! What is asked of the stage and not handed over to the tick yet: the command side's state machine.
 //!
 //! A request for motion is carried out at once where that can be. What has to wait, because the stage moves or because
-//! the planning takes several slices, waits here as one of the variants of [`Pending`]. There is room for one thing to
+//! the planning takes several steps, waits here as one of the variants of [`Pending`]. There is room for one thing to
 //! do and one to follow it; what is asked later takes the place of what was asked before.
 //!
 //! | state | what happens next, as soon as nothing is in flight |
 //! |---|---|
 //! | `Nothing` | nothing |
-//! | `Goal` | at rest: a plan from rest; in motion: a stop, and then a first way that takes its place and ends at the goal |
-//! | `Improving` | the soonest way to the goal, which takes over from the first if it is sooner |
-//! | `GoalInStop` | the soonest way to the goal, once the stop is under way |
+//! | `Goal` | at rest: a plan from rest; in motion: a jog at once; for a target a stop, and then a first way that takes its place |
+//! | `Improving` | the soonest way to the goal, which takes over from the first if it saves enough |
+//! | `GoalInStop` | the soonest way to the goal, once the stop is under way, or out of the end of the motion itself |
 //! | `GoalFromRest` | a plan from rest, once the stage holds |
 //! | `Stop` | a stop for the plan under way |
 //! | `StopThenGoal` | the same, and the goal stays |
@@ -22,15 +22,15 @@
 //! | a goal, at rest | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Nothing` | sent: `Stop` | | refused |
 //! | a goal, in motion | as `Goal` here | `Goal`, the new one | `Goal`, the new one | `Goal`, the new one | `Goal`, the new one | `StopThenGoal` | `StopThenGoal`, the new one | refused |
 //! | a stop | `Stop` | `Stop` | `Stop` | `Stop` | `Stop` | `Stop`, the more urgent | `Stop`, the more urgent | `Stop` |
-//! | planned: the stop before it | | sent: `Goal` | | | | | | |
-//! | planned: a way to it | | sent: `Improving` | sent: `Nothing` | sent: `Nothing` | | | | |
+//! | planned: the stop before a target | | sent: `Goal` | | | | | | |
+//! | planned: a way to it | | a target's sent: `Improving`, a jog: `Nothing` | sent: `Nothing` | sent: `Nothing` | | | | |
 //! | planned: none without rest | | `GoalInStop`, a jog `StopThenGoal` or in a stop `GoalFromRest` | `Nothing` | `GoalFromRest` | | | | |
-//! | planned: refused | | `Nothing`, and an error | `Nothing` | `Nothing`, and an error | | | | |
+//! | planned: refused | | `Nothing`, and an error | `Nothing` | `GoalFromRest` | `Nothing`, and an error | | | |
 //! | the tick takes a plan | the same | the same | the same | the same | the same | the same | the same | the same |
 //! | the tick takes the stop | | | | | | `Nothing` | `Goal` | |
 //! | the tick refuses a plan | `Goal` again; a better way: the same | | `Goal` again | | | | | `GoalThenStream`; of the stream: `Nothing`, and an error |
 //! | the tick refuses the stop | | the same | | | | the same | the same | |
-//! | the stage holds | | | `Nothing` | `Goal` | sent: `Nothing` | `Nothing` | `Goal` | |
+//! | the stage holds | | sent: `Nothing` | `Nothing` | sent: `Nothing` | sent: `Nothing` | `Nothing` | `Goal` | |
 //! | the stage is off or at fault | | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` | `Nothing` |
 //!
 //! What is in flight ([`InFlight`](super::in_flight::InFlight)) and what is under way (the plans that the tick has
@@ -52,7 +52,7 @@ pub(super) enum Pending {
     Goal(Goal),
     /// On the way to a goal; there may be a sooner one.
     Improving(Goal),
-    /// To get to a goal, to which no first way has been found: out of the stop that was sent.
+    /// To get to a goal, to which no first way has been found: out of the stop, or of the end of the motion, under way.
     GoalInStop(Goal),
     /// To get to a goal, to which there is no way without coming to rest before.
     GoalFromRest(Goal),

@@ -82,6 +82,10 @@ impl SentPlan {
         constraints: &Constraints,
         effort: Effort,
     ) -> Result<Self, RetargetError> {
+        // An urgent stop is not softened: what is asked in it waits until it is over.
+        if self.stop == Some(Stop::Urgent) {
+            return Err(RetargetError::NeedsStop);
+        }
         let start = self.plan.state_after(&self.start, at);
         let plan = match goal {
             // It makes its plans itself.

@@ -33,7 +33,7 @@
 //!           delay                    time
 //! ```
 //!
-//! A target in motion is planned in slices, so that the stage reacts soon: first the stop, then a first way that takes its
+//! A target in motion is planned in three steps, so that the stage reacts soon: first the stop, then a first way that takes its
 //! place, then, some milliseconds into that, the soonest of all ([`Effort`]).
 //!
 //! Plans that are not lines are held against every limit by one check (`check`), with the tolerances of one table

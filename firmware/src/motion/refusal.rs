@@ -94,11 +94,11 @@ impl fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// Why there is no transition. Nothing has changed.
+/// Why a motion can not be left for another. Nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RetargetError {
     /// The target can not be moved to at all.
     Refused(Refusal),
-    /// It can, but not without a stop before, or not as soon.
+    /// It can, but not without a stop before.
     NeedsStop,
 }

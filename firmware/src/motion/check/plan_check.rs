@@ -56,6 +56,9 @@ struct Budget<'a> {
 
 pub(super) const MAX_INTERVALS: usize = 60;
 
+/// Intervals of one plan at most: a way of many turns that asks for more is not worth the time. A stop waits meanwhile.
+const MOST_INTERVALS: usize = 1_000;
+
 /// Pieces up to this many ticks have no middle to sample.
 const SHORT: u64 = 200;
 
@@ -112,7 +115,8 @@ impl PlanCheck {
         self.check_floats(&floats, start, &mut { MAX_INTERVALS })
     }
 
-    /// The same, of pieces in floats, in at most so many `intervals`; those that are taken are taken off.
+    /// The same, of pieces in floats. After so many `intervals`, of which those that are taken are taken off, the next
+    /// failure counts.
     #[inline(never)]
     pub fn check_floats(
         &self,
@@ -125,6 +129,7 @@ impl PlanCheck {
             worst: None,
             pivots_sampled: false,
         };
+        let mut looked_at = 0;
         let bound_distances = self.workspace.bound_distances(start);
         let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
         let [mut first, mut second] = [IntervalEnd::default(); 2];
@@ -140,6 +145,10 @@ impl PlanCheck {
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
                 *budget.intervals = budget.intervals.saturating_sub(1);
+                looked_at += 1;
+                if looked_at > MOST_INTERVALS {
+                    return Err(budget.worst.unwrap_or(Violation::Workspace));
+                }
                 self.evaluate(&segment, done + ticks, to);
                 let interval = Interval {
                     segment: &segment,

@@ -9,7 +9,7 @@ use kinematics::{Acceleration, Twist};
 
 /// The motion of the setpoint: at rest, or following a plan.
 ///
-/// A plan is 900 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
+/// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
 pub struct PlanFollower {
     pub(super) axes: [AxisState; 3],

@@ -28,15 +28,13 @@ impl PartWay {
         overlap: &Overlap,
         (ending, ended): (Ending, &Ended),
         share: f32,
-        way: &[f32; 3],
         part: Part,
         soonest: u64,
     ) -> Option<Self> {
-        let left = [0, 1, 2].map(|i| way[i] - ended.displacement[i]);
         let mut way = Self {
             ending,
             ending_ticks: ended.ticks,
-            line: Line::new(part.only(left), share, leaving),
+            line: Line::new(part.only(ended.left), share, leaving),
             delay: 0,
         };
         if way.ticks() >= soonest {
@@ -72,7 +70,7 @@ impl PartWay {
     fn later(&mut self) {
         let left = self.ending_ticks.saturating_sub(self.delay);
         self.delay += if left > self.ending_ticks / 16 {
-            left / LATER
+            left.div_ceil(LATER)
         } else {
             left
         };
@@ -102,10 +100,12 @@ impl Candidate {
         true
     }
 
-    /// Slower lines.
+    /// Slower lines; one that would take longer than can be counted stays as it is.
     pub fn slow(&mut self, slower: f32) {
-        for part in &mut self.parts {
-            part.line = part.line.and_then(|line| line.slowed(slower));
+        for line in self.parts.iter_mut().filter_map(|part| part.line.as_mut()) {
+            if let Some(slowed) = line.slowed(slower) {
+                *line = slowed;
+            }
         }
     }
 

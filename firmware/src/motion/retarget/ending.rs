@@ -6,7 +6,7 @@ use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::motion::plan::quantise::velocity_pieces;
-use crate::motion::plan::{Piece, Pieces, Plan, pieces_after, push_piece};
+use crate::motion::plan::{Piece, Pieces, Plan, Position, pieces_after, push_piece};
 use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
 use crate::motion::speeds::Speeds;
 use crate::number::float::ticks_to_f32;
@@ -24,6 +24,7 @@ pub(super) enum Ending {
 pub(super) struct Leaving<'a> {
     of: &'a Plan,
     at: u64,
+    to: Position,
     /// The axes where it is left.
     pub state: [AxisState; 3],
     pub now: MotionState,
@@ -38,17 +39,25 @@ pub(super) struct Ended {
     pub pieces: Pieces<f32>,
     pub corners: Corners,
     pub ticks: u64,
-    pub displacement: [f32; 3],
+    /// The way from its end to the target, track radii and rad.
+    pub left: [f32; 3],
 }
 
 impl<'a> Leaving<'a> {
-    pub fn new(of: &'a Plan, from: &'a [AxisState; 3], at: u64, constraints: &Constraints) -> Self {
+    pub fn new(
+        of: &'a Plan,
+        from: &'a [AxisState; 3],
+        at: u64,
+        to: Position,
+        constraints: &Constraints,
+    ) -> Self {
         let state = of.state_after(from, at);
         let limits = &constraints.limits;
         let hz = limits.rate_hz as f32;
         Self {
             of,
             at,
+            to,
             state,
             now: MotionState::new(&state, hz),
             speed: constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s),
@@ -63,12 +72,22 @@ impl<'a> Leaving<'a> {
             || is_over(Speeds::of(&self.now.v), self.speed)
     }
 
+    /// Whether an ending is over the limits by itself: a stop at an edge, or the end of a stream.
+    pub fn is_over(&self, ended: &Ended) -> bool {
+        let AccelerationLimits { acceleration, jerk } = self.limits;
+        (ended.corners.iter()).any(|corner| {
+            is_over(Speeds::of(&corner.a), acceleration) || is_over(Speeds::of(&corner.j), jerk)
+        })
+    }
+
     /// Writes an ending; `None` where there is none.
     pub fn write_ended(&self, ending: Ending, ended: &mut Ended) -> Option<()> {
         ended.pieces.clear();
         match ending {
             Ending::Followed => {
-                ended.displacement = MotionState::between(&self.state, &self.of.end);
+                // In whole numbers: of a long way a float does not hold a small correction.
+                let rest = self.of.end.map(AxisState::at_rest);
+                ended.left = MotionState::between(&rest, &self.to);
                 for piece in pieces_after(&self.of.pieces, self.at) {
                     let jerk = CubicSegment::jerk(&piece, self.hz);
                     let ticks = piece.ticks;
@@ -79,7 +98,8 @@ impl<'a> Leaving<'a> {
                 let ticks = self.stop(acceleration, jerk).ticks(self.hz);
                 let times = ticks.map(|ticks| ticks_to_f32(ticks) / self.hz);
                 let [.., displacement] = stop_displacements(&self.now, times);
-                ended.displacement = displacement;
+                let way = MotionState::between(&self.state, &self.to);
+                ended.left = [0, 1, 2].map(|i| way[i] - displacement[i]);
                 let peak = self.now.stop_peak(times);
                 let first = [0, 1, 2].map(|i| (peak[i] - self.now.a[i]) / times[0]);
                 let last = peak.map(|peak| -peak / times[2]);

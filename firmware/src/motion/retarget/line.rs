@@ -27,7 +27,7 @@ pub(super) struct Line {
 
 impl Line {
     /// Along `way` (zero in what does not move) with a share of the limits of acceleration and jerk; `None` where there
-    /// is no way to go.
+    /// is no way to go, or one that takes longer than can be counted.
     pub fn new(way: [f32; 3], share: f32, leaving: &Leaving<'_>) -> Option<Self> {
         if way == [0.0; 3] {
             return None;

@@ -18,7 +18,7 @@ pub const PERIOD_RANGE: core::ops::RangeInclusive<f64> = 10.0..=2_000.0;
 /// Ticks that a plan lasts at least before its stop: time to send the next.
 const LEAST_AHEAD: u32 = 60;
 
-/// Knots of a plan at most: three pieces each, and five of the stop, have to fit.
+/// Knots of a plan at most: three pieces each, and four of the stop, have to fit.
 const MOST_KNOTS: u32 = 6;
 
 /// Targets that may be late.
