@@ -70,7 +70,6 @@ mod stream;
 mod tolerances;
 mod turn_direction;
 
-pub use crate::number::float::Float;
 pub use check::target::check_target;
 pub use constraints::{Bounds, Constraints};
 pub use jog::plan_jog;

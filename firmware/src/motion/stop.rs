@@ -3,7 +3,7 @@
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
 //! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
-//! has its own.
+//! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
 use super::check::platform::greatest;
 use super::check::violation::Violation;
@@ -127,17 +127,12 @@ fn write_stop(
         match plan_check.check(&plan.pieces, state) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Violation::Workspace | Violation::NoRoomToStop) if !apart => apart = true,
-            Err(Violation::Workspace | Violation::NoRoomToStop) => {
+            Err(Violation::Workspace) if !apart => apart = true,
+            Err(Violation::Workspace) => {
                 hardness.acceleration *= 1.3;
                 hardness.jerk = urgent_jerk;
             }
-            Err(
-                Violation::PivotRate(over)
-                | Violation::PivotAcceleration(over)
-                | Violation::Speed(over)
-                | Violation::Acceleration(over),
-            ) => {
+            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
                 // What the motion asks of the pivots already, no brake takes from them.
                 if over <= asked {
                     break;
@@ -146,6 +141,10 @@ fn write_stop(
                 let used = hardness.acceleration * profile.peak_size(times_s);
                 hardness.acceleration =
                     (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
+            }
+            // A stop has no limits of its own, and needs no room for another.
+            Err(Violation::Speed(_) | Violation::Acceleration(_) | Violation::NoRoomToStop) => {
+                break;
             }
         }
     }

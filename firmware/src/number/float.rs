@@ -1,69 +1,7 @@
-//! The float that profiles are computed in: `f32` on the chip, where it is hardware, and `f64` for comparing with
-//! references.
+//! Single precision without the library's detours: conversions, roundings and comparisons that the chip does in a few
+//! instructions, the same bits on a desktop.
 
 use super::root::sqrt_f32;
-use kinematics::Real;
-
-/// What a profile asks of its numbers, besides what the kinematics do. All of it is correctly rounded, or the same
-/// integer arithmetic everywhere: the chip and a desktop get the same bits.
-pub trait Float: Real + Default {
-    /// Whether differences of large numbers are worth more digits than this float has.
-    const COARSE: bool;
-
-    /// Square root by the chip's instruction, where it has one: that of [`Real`] is a program there.
-    fn root(self) -> Self;
-
-    /// Cube root of a number that is not negative, right to some percent at least: a first guess.
-    fn cbrt_estimate(self) -> Self;
-
-    /// Size.
-    fn abs(self) -> Self {
-        if self < Self::ZERO { -self } else { self }
-    }
-
-    /// The greater of two numbers.
-    fn max(self, other: Self) -> Self {
-        if self < other { other } else { self }
-    }
-
-    /// The smaller of two numbers.
-    fn min(self, other: Self) -> Self {
-        if other < self { other } else { self }
-    }
-
-    /// Its square.
-    fn square(self) -> Self {
-        self * self
-    }
-}
-
-impl Float for f32 {
-    const COARSE: bool = true;
-
-    #[inline]
-    fn root(self) -> Self {
-        sqrt_f32(self)
-    }
-
-    /// A third of the exponent, and so of the logarithm (off by 3.5 %), and one step of Newton's method.
-    #[inline]
-    fn cbrt_estimate(self) -> Self {
-        let guess = Self::from_bits(self.to_bits() / 3 + 0x2A51_37A0);
-        (2.0 * guess + self / (guess * guess)) / 3.0
-    }
-}
-
-impl Float for f64 {
-    const COARSE: bool = false;
-
-    fn root(self) -> Self {
-        libm::sqrt(self)
-    }
-
-    fn cbrt_estimate(self) -> Self {
-        libm::cbrt(self)
-    }
-}
 
 /// 2^32.
 const UPPER: f32 = 4_294_967_296.0;
@@ -143,7 +81,7 @@ fn long_f32_to_ticks(duration: f32) -> u64 {
 #[inline]
 pub(crate) fn truncate(value: f32) -> i64 {
     const MOST: f32 = UPPER / 2.0;
-    if Float::abs(value) < MOST {
+    if value.abs() < MOST {
         i64::from(value as i32)
     } else {
         value as i64
@@ -153,7 +91,7 @@ pub(crate) fn truncate(value: f32) -> i64 {
 /// The same within 31 bits, which is hardware.
 #[inline]
 pub(crate) fn round_i32(value: f32) -> i32 {
-    if Float::abs(value) < 8_388_608.0 {
+    if value.abs() < 8_388_608.0 {
         (value + if value < 0.0 { -0.5 } else { 0.5 }) as i32
     } else {
         value as i32

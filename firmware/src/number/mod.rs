@@ -37,6 +37,8 @@
 //! `all_inputs`.
 
 pub(crate) mod float;
+#[cfg(test)]
+pub(crate) mod random;
 pub(crate) mod wide_integer;
 
 mod arcsine;

@@ -130,6 +130,7 @@ impl PivotBound {
 #[cfg(test)]
 mod tests {
     use crate::motion::check::pivot_bounds::*;
+    use crate::number::random::Random;
     use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
     use std::f64::consts::TAU;
 
@@ -137,13 +138,8 @@ mod tests {
     /// what the worst of the pivots does.
     #[test]
     fn no_pivot_is_asked_for_more_than_the_bounds_say() {
-        let mut random = 1_u64;
-        let mut next = move || {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut random = Random::new(1);
+        let mut next = move || random.within_one();
         let (mut rates, mut largest) = (0.0_f64, 0.0_f64);
         for round in 0..40_000 {
             let arm = if round % 2 == 0 {

@@ -135,16 +135,12 @@ impl AxisState {
 #[cfg(test)]
 mod tests {
     use crate::motion::plan::axis_state::*;
+    use crate::number::random::Random;
 
     #[test]
     fn many_ticks_at_once_are_as_many_ticks() {
-        let mut random = 7_u64;
-        let mut next = |bits: u32| {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (random as i64) >> (64 - bits)
-        };
+        let mut random = Random::new(7);
+        let mut next = |bits: u32| random.bits(bits);
         for _ in 0..200 {
             let start = AxisState {
                 position: i128::from(next(60)) << 42,

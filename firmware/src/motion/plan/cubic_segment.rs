@@ -50,12 +50,6 @@ impl MotionState {
             i64_to_f32_fast(way) * (PER_POSITION_UNIT * RADIANS[i])
         })
     }
-
-    /// The peak of the acceleration of a stop from here with these times.
-    pub fn stop_peak(&self, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
-        let over = -1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
-        [0, 1, 2].map(|i| (self.v[i] + self.a[i] * t1 / 2.0) * over)
-    }
 }
 
 impl CubicSegment {

@@ -66,18 +66,14 @@ fn over(value: i64, divisor: i64) -> i64 {
 mod tests {
     use super::*;
     use crate::motion::plan::state_after_pieces;
+    use crate::number::random::Random;
 
     /// From any state to any velocity in any ticks: no acceleration is left, and of the velocity less than the ticks,
     /// squared, times the step of a jerk.
     #[test]
     fn the_velocity_is_reached_without_an_acceleration() {
-        let mut random = 7_u64;
-        let mut next = |bits: u32| {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (random as i64) >> (64 - bits)
-        };
+        let mut random = Random::new(7);
+        let mut next = |bits: u32| random.bits(bits);
         for _ in 0..2_000 {
             let state = [0; 3].map(|_| AxisState {
                 position: 0,

@@ -249,16 +249,21 @@ impl VelocityProfile {
     }
 }
 
+/// P of a stop from `from` that takes so much time, track radii and rad per second squared.
+pub(crate) fn stop_peak(from: &MotionState, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
+    let over = -1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
+    [0, 1, 2].map(|i| (from.v[i] + from.a[i] * t1 / 2.0) * over)
+}
+
 /// Where the three segments of a stop from `from` that takes so much time end: displacements, track radii and rad.
-pub(crate) fn stop_displacements(from: &MotionState, [t1, t2, t3]: [f32; 3]) -> [[f32; 3]; 3] {
+pub(crate) fn stop_displacements(from: &MotionState, times_s: [f32; 3]) -> [[f32; 3]; 3] {
     let mut displacements = [from.displacement; 3];
-    let whole = t1 / 2.0 + t2 + t3 / 2.0;
-    if !(whole > 0.0) {
+    if times_s == [0.0; 3] {
         return displacements;
     }
+    let ([t1, t2, t3], peaks) = (times_s, stop_peak(from, times_s));
     for i in 0..3 {
-        let (v, a) = (from.v[i], from.a[i]);
-        let peak = -(v + a * t1 / 2.0) / whole;
+        let (v, a, peak) = (from.v[i], from.a[i], peaks[i]);
         let v1 = v + (a + peak) * t1 / 2.0;
         let v2 = v1 + peak * t2;
         let first = from.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
@@ -274,7 +279,7 @@ pub(crate) fn stop_displacements(from: &MotionState, [t1, t2, t3]: [f32; 3]) -> 
 /// The largest speeds in the first segment of a stop from `from`, in which the acceleration turns round: where that of
 /// an axis passes zero, which is where a speed is highest, or close to it.
 pub(crate) fn stop_speeds(from: &MotionState, times_s: [f32; 3]) -> Speeds {
-    let peak = from.stop_peak(times_s);
+    let peak = stop_peak(from, times_s);
     (0..3).fold(Speeds::of(&from.v), |most, axis| {
         let part = from.a[axis] / (from.a[axis] - peak[axis]);
         if !(0.0 < part && part < 1.0) {
@@ -297,6 +302,7 @@ mod tests {
     use crate::motion::plan::axis_state::AxisState;
     use crate::motion::plan::quantise::velocity_pieces;
     use crate::motion::plan::units::AXIS_UNITS;
+    use crate::number::random::Random;
 
     const HZ: f32 = 20_000.0;
     /// 40 track radii and 126 rad per second squared; a hundred times as much per second cubed.
@@ -324,13 +330,8 @@ mod tests {
     /// Stops out of any state, most of them out of one that is nearly at rest by itself.
     #[test]
     fn acceleration_and_jerk_keep_their_limits() {
-        let mut random = 7_u64;
-        let mut next = || {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut random = Random::new(7);
+        let mut next = || random.within_one();
         for round in 0..40_000 {
             let (mut v, mut a) = ([0.0; 3], [0.0; 3]);
             for i in 0..3 {

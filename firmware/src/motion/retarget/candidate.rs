@@ -3,12 +3,13 @@
 
 use super::ending::{Ended, Ending, Leaving};
 use super::line::Line;
-use super::overlap::{Overlap, Part};
+use super::overlap::Overlap;
+use super::part::Part;
 use crate::motion::plan::{Piece, Pieces, Plan, Position, state_after_pieces, write_sum};
 use crate::number::float::{FloatMinMax, ticks_to_f32};
 
 /// The way of translation, or of rotation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct PartWay {
     pub ending: Ending,
     ending_ticks: u64,
@@ -78,7 +79,6 @@ impl PartWay {
 }
 
 /// See the module.
-#[derive(Debug)]
 pub(super) struct Candidate {
     pub parts: [PartWay; 2],
 }

@@ -1,13 +1,15 @@
 //! How the motion under way comes to rest.
 
-use super::overlap::{Corner, Corners};
+use super::corner::{Corner, Corners};
 use crate::motion::check::is_over;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::motion::plan::quantise::velocity_pieces;
 use crate::motion::plan::{Piece, Pieces, Plan, Position, pieces_after, push_piece};
-use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
+use crate::motion::profile::velocity::{
+    AccelerationLimits, VelocityProfile, stop_displacements, stop_peak,
+};
 use crate::motion::speeds::Speeds;
 use crate::number::float::ticks_to_f32;
 
@@ -100,7 +102,7 @@ impl<'a> Leaving<'a> {
                 let [.., displacement] = stop_displacements(&self.now, times);
                 let way = MotionState::between(&self.state, &self.to);
                 ended.left = [0, 1, 2].map(|i| way[i] - displacement[i]);
-                let peak = self.now.stop_peak(times);
+                let peak = stop_peak(&self.now, times);
                 let first = [0, 1, 2].map(|i| (peak[i] - self.now.a[i]) / times[0]);
                 let last = peak.map(|peak| -peak / times[2]);
                 for (ticks, jerk) in ticks.into_iter().zip([first, [0.0; 3], last]) {

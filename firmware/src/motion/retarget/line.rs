@@ -1,13 +1,12 @@
 //! The line of a candidate, in floats: a plain profile along a way.
 
 use super::ending::Leaving;
-use super::overlap::Part;
 use crate::motion::limits::PathLimits;
 use crate::motion::plan::Piece;
 use crate::motion::profile::rest_to_rest::RestToRestProfile;
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
-use crate::number::float::{FloatMinMax, hypot, ticks_to_f32};
+use crate::number::float::{FloatMinMax, hypot, i128_to_f32_fast, ticks_to_f32};
 
 /// Where the jerk of the path parameter changes: times since the line began, and the state there.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,20 +80,10 @@ impl Line {
 
     /// Its pieces in floats.
     pub fn pieces(&self, hz: f32) -> [Piece<f32>; 7] {
-        let jerk = hz * hz * hz / self.profile.volume() as f32;
+        let jerk = hz * hz * hz / i128_to_f32_fast(self.profile.volume());
         self.profile.segments().map(|(ticks, sign)| Piece {
             ticks,
             jerk: self.way.map(|way| way * (jerk * sign as f32)),
         })
-    }
-}
-
-impl Part {
-    /// Of a way, what is of this part.
-    pub fn only(self, [x, y, theta]: [f32; 3]) -> [f32; 3] {
-        match self {
-            Self::Translation => [x, y, 0.0],
-            Self::Rotation => [0.0, 0.0, theta],
-        }
     }
 }

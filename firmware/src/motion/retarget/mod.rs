@@ -17,15 +17,18 @@
 //! | file | idea |
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
+//! | `part`, `corner` | translation or rotation; a motion by its corners |
 //! | `ending` | how the motion under way comes to rest |
 //! | `line` | the plain line from there |
 //! | `candidate` | for translation and for rotation an ending, a line, and the least delay between them |
 //! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats |
 
 mod candidate;
+mod corner;
 mod ending;
 mod line;
 mod overlap;
+mod part;
 
 use super::check::PlanCheck;
 use super::check::target::check_target;
@@ -38,7 +41,8 @@ use super::tolerances::SLOWER_FOR_PIVOTS;
 use crate::number::sqrt_f32;
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
-use overlap::{Overlap, Part};
+use overlap::Overlap;
+use part::Part;
 
 /// How the motion under way ends, and the shares of the limits that the line gets.
 const ENDINGS: [(Ending, &[f32]); 7] = [
@@ -62,6 +66,9 @@ pub enum Effort {
 
 /// Of the endings, how many are tried at first.
 const FIRST: usize = 2;
+/// Intervals that the checks of a first way may take together, and those of all.
+const FIRST_INTERVALS: usize = 24;
+const ALL_INTERVALS: usize = 60;
 
 const PARTS: [Part; 2] = [Part::Translation, Part::Rotation];
 
@@ -84,8 +91,8 @@ pub fn plan_retarget(
     effort: Effort,
 ) -> Result<Plan, RetargetError> {
     let (tried, mut intervals) = match effort {
-        Effort::First => (FIRST, 24),
-        Effort::All => (ENDINGS.len(), 60),
+        Effort::First => (FIRST, FIRST_INTERVALS),
+        Effort::All => (ENDINGS.len(), ALL_INTERVALS),
     };
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {

@@ -1,61 +1,14 @@
 //! Whether an ending and a line that overlap keep to the limits of path and rotation, in floats: what the pivots and
 //! the workspace ask for is left to the check.
 
+use super::corner::Corner;
 use super::ending::Leaving;
 use super::line::{Line, LineCorner};
-use crate::motion::plan::MAX_PIECES;
+use super::part::Part;
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
 use crate::motion::tolerances::OVERLAP;
 use crate::number::float::{FloatMinMax, ticks_to_f32};
-use heapless::Vec;
-
-/// Where a motion's jerk changes: the state there, track radii, rad and seconds.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Corner {
-    pub at_s: f32,
-    pub v: [f32; 3],
-    pub a: [f32; 3],
-    pub j: [f32; 3],
-}
-
-/// A motion to rest by its corners; the last one is rest.
-pub(super) type Corners = Vec<Corner, { MAX_PIECES + 1 }>;
-
-impl Corner {
-    /// The state at a later time.
-    pub fn next(&self, at_s: f32) -> Self {
-        let seconds = at_s - self.at_s;
-        let half = seconds / 2.0;
-        Self {
-            at_s,
-            v: [0, 1, 2].map(|i| self.v[i] + seconds * (self.a[i] + half * self.j[i])),
-            a: [0, 1, 2].map(|i| self.a[i] + seconds * self.j[i]),
-            j: [0.0; 3],
-        }
-    }
-}
-
-/// Translation or rotation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Part {
-    Translation,
-    Rotation,
-}
-
-impl Part {
-    /// The sizes of a sum of two vectors are within a limit.
-    #[inline]
-    fn is_within(self, a: &[f32; 3], way: &[f32; 3], rate: f32, limit: &Speeds) -> bool {
-        match self {
-            Self::Translation => {
-                let (x, y) = (a[0] + way[0] * rate, a[1] + way[1] * rate);
-                x * x + y * y <= limit.linear * limit.linear
-            }
-            Self::Rotation => (a[2] + way[2] * rate).abs() <= limit.angular,
-        }
-    }
-}
 
 /// What the sum keeps to.
 pub(super) struct Overlap {
