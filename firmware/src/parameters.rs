@@ -25,10 +25,12 @@ pub struct Parameters {
     pub limits: Limits,
     /// What the pivots carry, for torque feedforward.
     pub platform: Platform,
-    /// Ring drives, for feedforward.
-    pub drive: Drive,
-    /// Servo gains.
-    pub servo: Gains,
+    /// The bridges' common supply and PWM.
+    pub power: PowerStage,
+    /// Ring drives, pivot by pivot.
+    pub drives: [Drive; 3],
+    /// Servo.
+    pub servo: Servo,
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderMounting; 3],
     /// When the stage counts as settled.
@@ -65,6 +67,17 @@ pub struct Platform {
     pub payload_centre_mm: [f64; 2],
 }
 
+/// What the three bridges share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerStage {
+    /// PWM frequency.
+    pub pwm_hz: f64,
+    /// Counts of a full PWM period; at most 32,767.
+    pub pwm_counts: u16,
+    /// Nominal supply; the duty is computed from the measured one.
+    pub supply_v: f64,
+}
+
 /// A brushed DC motor behind a gear, as seen at the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
@@ -80,12 +93,6 @@ pub struct Drive {
     pub dead_time_s: f64,
     /// Current from which the whole dead time counts; below, the PWM's ripple makes up for a part of it.
     pub dead_time_knee_a: f64,
-    /// PWM frequency.
-    pub pwm_hz: f64,
-    /// Counts of a full PWM period; at most 32,767.
-    pub pwm_counts: u16,
-    /// Nominal supply; the duty is computed from the measured one.
-    pub supply_v: f64,
     /// Ring, carriage, gear and rotor together, at the ring.
     pub inertia_kg_m2: f64,
     /// Viscous friction at the ring.
@@ -112,6 +119,20 @@ pub struct Gains {
     pub velocity_v_s_rad: f64,
     /// Voltage per integral of the velocity error.
     pub integral_v_rad: f64,
+}
+
+/// What the loops of the pivots have in common, and their gains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Servo {
+    /// Gains, pivot by pivot.
+    pub gains: [Gains; 3],
+    /// Filters of the feedback, pivot by pivot.
+    pub filters: [FeedbackFilters; 3],
+    /// Torque ripple that is made up for, pivot by pivot.
+    pub ripple: [Ripple; 3],
+    /// Inertia of a pivot, ring and share of the platform, that velocity gain and integral gain are for: where a pivot moves more
+    /// they are larger by as much. 0: they are the same everywhere.
+    pub scheduled_inertia_kg_m2: f64,
     /// How fast feedforward learns, as a share of the integral gain (0: not at all); see `control/servo`.
     pub learning: f64,
     /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the
@@ -120,6 +141,70 @@ pub struct Gains {
     /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
     /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
     pub latency_s: f64,
+    /// What becomes of the gains while the setpoint rests.
+    pub rest: RestMode,
+}
+
+/// Filters between feedback and voltage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeedbackFilters {
+    /// Against resonances.
+    pub notches: [Notch; 2],
+    /// Against the winding's lag.
+    pub lead: Lead,
+}
+
+/// A notch filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Notch {
+    /// Centre; 0: no filter.
+    pub frequency_hz: f64,
+    /// Distance of the frequencies at which it lets 1/sqrt(2) pass, if it lets nothing pass at its centre.
+    pub width_hz: f64,
+    /// What it lets pass at its centre, 0 to 1.
+    pub gain: f64,
+}
+
+/// A lead: the gain grows between two frequencies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lead {
+    /// From here on; 0: no lead.
+    pub from_hz: f64,
+    /// Up to here.
+    pub to_hz: f64,
+}
+
+/// Sines of a pivot's torque ripple.
+pub const HARMONICS: usize = 4;
+
+/// Torque ripple of a drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ripple {
+    /// Its sines.
+    pub harmonics: [Harmonic; HARMONICS],
+}
+
+/// A sine of the pivot's angle in a drive's torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonic {
+    /// Periods in a turn of the ring.
+    pub periods: f64,
+    /// Amplitude at the ring; 0: there is none.
+    pub amplitude_n_m: f64,
+    /// Phase at pivot angle 0, of a sine.
+    pub phase_deg: f64,
+}
+
+/// Rest mode: with the setpoint at rest for some time the loop becomes slower, so that it does not answer the noise of the
+/// encoders and does not hunt in the gap of the transmission; a push brings the full loop back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestMode {
+    /// What is left of velocity gain, position gain and integral rate; 1: there is no rest mode.
+    pub stiffness: f64,
+    /// Time at rest after which they fall.
+    pub delay_s: f64,
+    /// Following error, encoder counts, mean of the settling window's time, from which on the loop is the full one.
+    pub wake_counts: f64,
 }
 
 /// How an encoder is mounted.
@@ -138,6 +223,8 @@ pub struct SettlingWindow {
     pub counts: f64,
     /// For how long.
     pub dwell_s: f64,
+    /// The error is the mean of this time: the window may be smaller than the encoders' noise.
+    pub mean_s: f64,
 }
 
 /// Thresholds of the faults.
@@ -159,6 +246,8 @@ pub struct Supervision {
     pub frozen_rad: f64,
     /// Change of a drive's voltage after which its encoder must show something new.
     pub frozen_v: f64,
+    /// Swing of the voltage that the feedback asks for which, to and fro at a setpoint that hardly moves, is an oscillation.
+    pub oscillation_v: f64,
     /// Longest time of a bridge at its largest duty (saturated).
     pub max_saturation_s: f64,
     /// Current that a motor bears for ever.
@@ -188,6 +277,32 @@ pub struct RecorderParameters {
     pub before: u32,
 }
 
+impl FeedbackFilters {
+    /// No filter.
+    pub const NONE: Self = Self {
+        notches: [Notch {
+            frequency_hz: 0.0,
+            width_hz: 200.0,
+            gain: 0.1,
+        }; 2],
+        lead: Lead {
+            from_hz: 0.0,
+            to_hz: 3_000.0,
+        },
+    };
+}
+
+impl Ripple {
+    /// No ripple.
+    pub const NONE: Self = Self {
+        harmonics: [Harmonic {
+            periods: 0.0,
+            amplitude_n_m: 0.0,
+            phase_deg: 0.0,
+        }; HARMONICS],
+    };
+}
+
 impl Parameters {
     /// The reference stage.
     pub const REFERENCE: Self = Self {
@@ -212,7 +327,12 @@ impl Parameters {
             payload_inertia_kg_m2: 0.0,
             payload_centre_mm: [0.0, 0.0],
         },
-        drive: Drive {
+        power: PowerStage {
+            pwm_hz: 40e3,
+            pwm_counts: PWM_COUNTS,
+            supply_v: 48.0,
+        },
+        drives: [Drive {
             torque_constant_n_m_a: 0.06,
             gear_ratio: 50.0,
             resistance_ohm: 2.1,
@@ -221,21 +341,28 @@ impl Parameters {
             dead_time_s: 200e-9,
             // A tenth of the largest current ripple, 48 V / (4 L 40 kHz): near rest the pulses are short.
             dead_time_knee_a: 0.043,
-            pwm_hz: 40e3,
-            pwm_counts: PWM_COUNTS,
-            supply_v: 48.0,
             inertia_kg_m2: 0.02,
             viscous_n_m_s: 0.05,
             coulomb_n_m: 0.1,
             presliding_rad: 100e-6,
-        },
-        servo: Gains {
-            position_1_s: 400.0,
-            velocity_v_s_rad: 40.0,
-            integral_v_rad: 14_000.0,
+        }; 3],
+        servo: Servo {
+            gains: [Gains {
+                position_1_s: 400.0,
+                velocity_v_s_rad: 40.0,
+                integral_v_rad: 14_000.0,
+            }; 3],
+            filters: [FeedbackFilters::NONE; 3],
+            ripple: [Ripple::NONE; 3],
+            scheduled_inertia_kg_m2: 0.0,
             learning: 2.0,
             friction_learning: 0.1,
             latency_s: 65e-6,
+            rest: RestMode {
+                stiffness: 0.13,
+                delay_s: 0.05,
+                wake_counts: 6.0,
+            },
         },
         encoders: [
             EncoderMounting {
@@ -254,6 +381,7 @@ impl Parameters {
         window: SettlingWindow {
             counts: 2.0,
             dwell_s: 2e-3,
+            mean_s: 1e-3,
         },
         supervision: Supervision {
             // A push of 40 N m on a ring, nearly all that a motor can hold, leaves half of it.
@@ -267,6 +395,8 @@ impl Parameters {
             frozen_rad: 2e-4,
             // Half a volt is 0.7 N m, seven times the friction.
             frozen_v: 0.5,
+            // Ten times what the noise of encoders makes of the reference gains.
+            oscillation_v: 8.0,
             max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,

@@ -186,7 +186,9 @@ fn the_tick_is_told_when_what_it_computes_with_changes() {
     );
     assert_eq!(bench.tick.log, ["configure"]);
     let mut wanted = Parameters::REFERENCE;
-    wanted.servo.position_1_s = 250.0;
+    for gains in &mut wanted.servo.gains {
+        gains.position_1_s = 250.0;
+    }
     wanted.platform.payload_kg = 2.5;
     wanted.limits.speed_mm_s = 100.0;
     assert_eq!(bench.tick.config, Config::new(&wanted));

@@ -623,7 +623,7 @@ fn mon_tells_the_lowest_and_the_highest_since_it_was_last_asked_on_this_connecti
         "{reply}"
     );
     assert_eq!(range(&reply, "ERROR1="), [0.0; 2]);
-    let counts = f64::from(Parameters::REFERENCE.drive.pwm_counts);
+    let counts = f64::from(Parameters::REFERENCE.power.pwm_counts);
     let [low, high] = range(&reply, "DUTY3=");
     assert!(
         (low + 100.0 / counts).abs() < 1e-5 && (high - 50.0 / counts).abs() < 1e-5,

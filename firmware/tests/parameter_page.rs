@@ -34,8 +34,13 @@ fn row(parameter: &Parameter) -> String {
         format!("{} to {}", parameter.range[0], parameter.range[1])
     };
     format!(
-        "| 0x{:08X} | {} | {} | {kind} | {value} | {range} | {} | {} |\n",
-        parameter.id, parameter.text, parameter.unit, parameter.level, parameter.when
+        "| 0x{:08X} | {}{} | {} | {kind} | {value} | {range} | {} | {} |\n",
+        parameter.id,
+        parameter.text,
+        parameter.whose(),
+        parameter.unit,
+        parameter.level,
+        parameter.when
     )
 }
 

@@ -1,6 +1,9 @@
 //! The servo of one pivot: duties that are right on average, no windup, and a loop that is stable on a simple plant.
 
-use firmware::control::servo::{PivotServo, PivotSetpoint, ServoConfig};
+use firmware::control::rest_mode::Stiffness;
+use firmware::control::servo::{
+    LoopSetpoint, PivotServo, PivotServoConfig, PivotSetpoint, ServoConfig,
+};
 use firmware::drivers::bridge::Duty;
 use firmware::parameters::{Drive, Parameters};
 use proptest::prelude::*;
@@ -13,14 +16,26 @@ const UNITS_PER_RAD: f64 = 4_294_967_296.0 / std::f64::consts::TAU;
 const VOLT_PER_N_M: f32 = 2.1 / 3.0;
 
 /// The reference servo on bridges without dead time.
-fn config() -> ServoConfig {
+fn config() -> PivotServoConfig {
+    servos().pivots[0]
+}
+
+fn servos() -> ServoConfig {
     ServoConfig::new(&Parameters {
-        drive: Drive {
+        drives: Parameters::REFERENCE.drives.map(|drive| Drive {
             dead_time_s: 0.0,
-            ..Parameters::REFERENCE.drive
-        },
+            ..drive
+        }),
         ..Parameters::REFERENCE
     })
+}
+
+/// The full loop at a supply, ADC counts.
+fn full_loop(supply_counts: f32) -> LoopSetpoint {
+    LoopSetpoint {
+        counts_per_volt: servos().counts_per_volt(supply_counts),
+        stiffness: Stiffness::FULL,
+    }
 }
 
 fn asking(torque_n_m: f32, error_rad: f64) -> PivotSetpoint {
@@ -53,9 +68,9 @@ proptest! {
     #[test]
     fn duty_is_right_on_average(torque_n_m in -20.0..20.0_f32) {
         let config = config();
-        let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+        let full = full_loop(SUPPLY_COUNTS);
         let mut servo = PivotServo::default();
-        let mut duty = || servo.step(&config, &asking(torque_n_m, 0.0), per_volt).0;
+        let mut duty = || servo.step(&config, &asking(torque_n_m, 0.0), &full).0;
         // The first tick sees the torque jump, and looks ahead.
         duty();
         let mut sum = 0i64;
@@ -65,7 +80,7 @@ proptest! {
             sum += i64::from(now);
             (least, most) = (least.min(now), most.max(now));
         }
-        let wanted = f64::from(torque_n_m * VOLT_PER_N_M * per_volt);
+        let wanted = f64::from(torque_n_m * VOLT_PER_N_M * full.counts_per_volt);
         let mean = sum as f64 / 10_000.0;
         prop_assert!((mean - wanted).abs() < 8e-5 + 3.5e-7 * wanted.abs(), "{mean} for {wanted}");
         prop_assert!(most - least <= 1, "{least} to {most}");
@@ -74,10 +89,10 @@ proptest! {
     #[test]
     fn full_is_never_passed(torque_n_m in -1e3..1e3_f32, error_rad in -1e-2..1e-2_f64) {
         let config = config();
-        let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+        let full = full_loop(SUPPLY_COUNTS);
         let mut servo = PivotServo::default();
         for _ in 0..200 {
-            let Duty(counts) = servo.step(&config, &asking(torque_n_m, error_rad), per_volt);
+            let Duty(counts) = servo.step(&config, &asking(torque_n_m, error_rad), &full);
             // 98 % of 4,200.
             prop_assert!(counts.abs() <= 4_116, "{counts}");
         }
@@ -87,16 +102,16 @@ proptest! {
 #[test]
 fn saturation_does_not_wind_up() {
     let config = config();
-    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     for sign in [1.0, -1.0] {
         let mut servo = PivotServo::default();
         for _ in 0..20_000 {
-            let Duty(counts) = servo.step(&config, &asking(0.0, sign * 0.01), per_volt);
+            let Duty(counts) = servo.step(&config, &asking(0.0, sign * 0.01), &full);
             assert_eq!(f64::from(counts), -sign * 4_116.0);
         }
         // The error is gone: one tick sees it go, then nothing is left.
-        servo.step(&config, &asking(0.0, 0.0), per_volt);
-        let Duty(counts) = servo.step(&config, &asking(0.0, 0.0), per_volt);
+        servo.step(&config, &asking(0.0, 0.0), &full);
+        let Duty(counts) = servo.step(&config, &asking(0.0, 0.0), &full);
         assert_eq!(counts, 0, "counts left");
     }
 }
@@ -104,18 +119,18 @@ fn saturation_does_not_wind_up() {
 #[test]
 fn an_error_that_stays_is_collected_below_saturation() {
     let config = config();
-    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     let mut servo = PivotServo::default();
     // 1 urad: 400 / s of it for 1 s times 14,000 V/rad is 5.6 V, where proportional action gives 16 mV.
     for _ in 0..20_000 {
-        servo.step(&config, &asking(0.0, 1e-6), per_volt);
+        servo.step(&config, &asking(0.0, 1e-6), &full);
     }
-    let Duty(counts) = servo.step(&config, &asking(0.0, 1e-6), per_volt);
-    let volts = f32::from(counts) / per_volt;
+    let Duty(counts) = servo.step(&config, &asking(0.0, 1e-6), &full);
+    let volts = f32::from(counts) / full.counts_per_volt;
     assert!((volts + 5.6).abs() < 0.026, "{volts} V");
     // A fresh start forgets it.
     servo.restart();
-    assert_eq!(servo.step(&config, &asking(0.0, 0.0), per_volt), Duty(0));
+    assert_eq!(servo.step(&config, &asking(0.0, 0.0), &full), Duty(0));
 }
 
 #[test]
@@ -123,9 +138,7 @@ fn duty_follows_the_supply() {
     let config = config();
     let first = |supply: f32| {
         let mut servo = PivotServo::default();
-        servo
-            .step(&config, &asking(0.5, 0.0), config.counts_per_volt(supply))
-            .0
+        servo.step(&config, &asking(0.5, 0.0), &full_loop(supply)).0
     };
     let (full, half) = (first(SUPPLY_COUNTS), first(SUPPLY_COUNTS / 2.0));
     assert!(full > 0 && (half - 2 * full).abs() <= 1, "{full} {half}");
@@ -134,14 +147,13 @@ fn duty_follows_the_supply() {
 
 #[test]
 fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
-    let with = ServoConfig::new(&Parameters::REFERENCE);
+    let with = ServoConfig::new(&Parameters::REFERENCE).pivots[0];
     let without = config();
-    let per_volt = with.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     for torque_n_m in [6.0, -6.0] {
-        let settled = |config: &ServoConfig| {
+        let settled = |config: &PivotServoConfig| {
             let mut servo = PivotServo::default();
-            let duties =
-                (0..2_000).map(|_| servo.step(config, &asking(torque_n_m, 0.0), per_volt).0);
+            let duties = (0..2_000).map(|_| servo.step(config, &asking(torque_n_m, 0.0), &full).0);
             duties.last().unwrap_or_default()
         };
         // 200 ns of 25 us: 33.6 counts of 4,200.
@@ -154,14 +166,14 @@ fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
 #[test]
 fn the_loop_is_stable_on_a_ring() {
     let config = config();
-    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     let mut servo = PivotServo::default();
     let (mut angle, mut rate, mut current) = (100e-6, 0.0, 0.0);
     let mut pending = 0.0;
     let step_s = 50e-6 / 8.0;
     let mut late = 0.0_f64;
     for tick in 0..4_000 {
-        let duty = servo.step(&config, &asking(0.0, angle), per_volt);
+        let duty = servo.step(&config, &asking(0.0, angle), &full);
         for part in 0..8 {
             // The duty acts half a period late.
             if part == 4 {
@@ -183,7 +195,7 @@ fn the_loop_is_stable_on_a_ring() {
 #[test]
 fn what_is_no_number_asks_for_no_drive() {
     let config = config();
-    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     for broken in [
         PivotSetpoint {
             rate: f32::NAN,
@@ -196,9 +208,9 @@ fn what_is_no_number_asks_for_no_drive() {
         asking(f32::NAN, 1e-5),
     ] {
         let mut servo = PivotServo::default();
-        servo.step(&config, &asking(1.0, 1e-5), per_volt);
+        servo.step(&config, &asking(1.0, 1e-5), &full);
         for _ in 0..3 {
-            let duty = servo.step(&config, &broken, per_volt).0;
+            let duty = servo.step(&config, &broken, &full).0;
             assert_eq!(duty, 0, "{broken:?}");
         }
     }
@@ -208,18 +220,18 @@ fn what_is_no_number_asks_for_no_drive() {
 #[test]
 fn what_was_learnt_leads_as_the_model_does() {
     let config = config();
-    let per_volt = config.counts_per_volt(SUPPLY_COUNTS);
+    let full = full_loop(SUPPLY_COUNTS);
     let lead = (65e-6 + 0.7e-3 / 2.1) * 20e3;
     let mut learnt = PivotServo::default();
     for _ in 0..4_000 {
         // It comes 1 urad short of what 6 N m should do.
-        learnt.step(&config, &asking(6.0, -1e-6), per_volt);
+        learnt.step(&config, &asking(6.0, -1e-6), &full);
         learnt.learn(&config);
     }
     let mut torques = Vec::new();
     for mut servo in [PivotServo::default(), learnt] {
         servo.restart();
-        let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), per_volt).0);
+        let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), &full).0);
         let ratio = f64::from(first) / f64::from(then);
         assert!((ratio / (1.0 + lead) - 1.0).abs() < 1.26e-3, "{ratio}");
         torques.push(then);

@@ -202,7 +202,7 @@ fn moves(mismatch_percent: f64) -> Rest {
         after_ms.push(since.map_or(f64::INFINITY, |at| (at - profile) as f64 / ticks_a_ms));
         if number % 10 == 9 {
             bench.run(REST);
-            rest.look(&mut bench, f64::from(parameters.drive.pwm_counts));
+            rest.look(&mut bench, f64::from(parameters.power.pwm_counts));
         }
     }
     print(mismatch_percent, inside, &told, after_ms);

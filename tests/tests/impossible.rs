@@ -161,7 +161,7 @@ fn the_way_back_into_the_disk_leads_only_inwards() {
 fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
     for (velocity_v_s_rad, fault) in [(1e300, Some(FaultKind::NotFinite)), (40.0, None)] {
         let mut parameters = Parameters::REFERENCE;
-        parameters.servo.velocity_v_s_rad = velocity_v_s_rad;
+        parameters.servo.gains[0].velocity_v_s_rad = velocity_v_s_rad;
         let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
         let mut queues = Queues::new();
         let (mut tick_queues, mut commands) = queues.split();

@@ -112,7 +112,7 @@ fn another_encoder_zero_takes_the_reference_and_moves_the_angle() {
 #[test]
 fn the_loop_takes_settings_only_at_rest_and_mountings_only_off() {
     let mut gains = Parameters::REFERENCE;
-    gains.servo.position_1_s = 250.0;
+    gains.servo.gains[0].position_1_s = 250.0;
     let mut mounting = Parameters::REFERENCE;
     mounting.encoders[1].reversed = !mounting.encoders[1].reversed;
     let (gains, mounting) = (Config::new(&gains), Config::new(&mounting));

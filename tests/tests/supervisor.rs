@@ -145,7 +145,7 @@ impl Run {
                 self.command(Command::Centre(centre));
             }
             Event::Constants => {
-                wanted.servo.position_1_s += 1.0;
+                wanted.servo.gains[0].position_1_s += 1.0;
                 self.command(Command::Configure(Config::new(&wanted)));
             }
             Event::Mounting => {

@@ -3,10 +3,16 @@
 use crate::control::encoder::EncoderConfig;
 use crate::control::held_position::PositionSteps;
 use crate::control::inspection::INSPECTION_PERIOD_TICKS;
+use crate::control::oscillation::MEMORY_S;
+use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
+use crate::control::settling::MAX_MEAN_TICKS;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
+
+/// Share of the limits of a pivot's motion under which its setpoint hardly moves.
+const SLOW: f64 = 0.1;
 
 /// The tick's constants.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +25,8 @@ pub struct Config {
     pub steps: PositionSteps,
     /// Servo.
     pub servo: ServoConfig,
+    /// What becomes of its gains at rest.
+    pub rest_mode: RestModeConfig,
     /// Supervision.
     pub limits: SupervisionConfig,
     /// The controlled stop of a fault.
@@ -32,8 +40,10 @@ pub struct SupervisionConfig {
     pub following_error: i32,
     /// What is allowed besides for each rad/s of the setpoint, 2^-32 turns.
     pub following_error_per_rate: f32,
-    /// Window of a settled pivot, 2^-32 turns.
-    pub settling_window: i32,
+    /// Window of a settled pivot, 2^-32 turns, times the ticks of the mean.
+    pub settling_window: u32,
+    /// Ticks of the mean error that is held against it.
+    pub mean_ticks: usize,
     /// Ticks inside the window that count as settled.
     pub settling_ticks: u32,
     /// Lowest supply in ADC counts.
@@ -56,8 +66,12 @@ pub struct SupervisionConfig {
     pub winding_smoothing: f32,
     /// Distance of a setpoint in which a reading must change, 2^-32 turns.
     pub frozen_distance: u64,
-    /// Change of a duty that must change a reading, PWM counts.
-    pub frozen_duty: u16,
+    /// Rate under which a pivot's setpoint hardly moves, rad/s.
+    pub slow_rate: f32,
+    /// The same for its acceleration, rad/s^2.
+    pub slow_acceleration: f32,
+    /// What is left of counted reversals from one inspection to the next.
+    pub oscillation_memory: f32,
     /// Ticks in a second.
     pub rate_hz: f32,
 }
@@ -69,7 +83,8 @@ impl Config {
         let period_s = 1.0 / rate_hz;
         let supervision = &parameters.supervision;
         let window = &parameters.window;
-        let (geometry, drive) = (&parameters.geometry, &parameters.drive);
+        let geometry = &parameters.geometry;
+        let mean_ticks = (libm::rint(window.mean_s * rate_hz) as usize).clamp(1, MAX_MEAN_TICKS);
         let margin = supervision.guide_margin;
         let reach = geometry.usable_radius() + supervision.disk_margin_mm / geometry.radius_mm;
         let bearable = supervision.motor_current_a / CURRENT_A_PER_COUNT;
@@ -81,10 +96,13 @@ impl Config {
             scale: SetpointScale::new(rate_hz),
             steps: PositionSteps::new(geometry.radius_mm),
             servo: ServoConfig::new(parameters),
+            rest_mode: RestModeConfig::new(parameters, mean_ticks),
             limits: SupervisionConfig {
                 following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,
                 // A count is 64 units; the half lets a setpoint between two counts be met.
-                settling_window: ((window.counts + 0.5) * 64.0) as i32,
+                settling_window: ((window.counts + 0.5) * UNITS_PER_COUNT * mean_ticks as f64)
+                    as u32,
+                mean_ticks,
                 settling_ticks: libm::ceil(window.dwell_s * rate_hz) as u32,
                 following_error_per_rate: (supervision.following_error_s * UNITS_PER_RAD) as f32,
                 min_supply_counts: (supervision.supply_min_v / SUPPLY_V_PER_COUNT) as u16,
@@ -105,8 +123,11 @@ impl Config {
                             / supervision.motor_heating_s,
                     )) as f32,
                 frozen_distance: (supervision.frozen_rad * UNITS_PER_RAD) as u64,
-                frozen_duty: (supervision.frozen_v / drive.supply_v * f64::from(drive.pwm_counts))
-                    as u16,
+                slow_rate: (SLOW * parameters.limits.pivot_rate_rad_s) as f32,
+                slow_acceleration: (SLOW * parameters.limits.pivot_acceleration_rad_s2) as f32,
+                oscillation_memory: libm::exp(
+                    -f64::from(INSPECTION_PERIOD_TICKS) * period_s / MEMORY_S,
+                ) as f32,
                 rate_hz: rate_hz as f32,
             },
             fault_stop: FaultStop::new(supervision.stop_s, rate_hz),

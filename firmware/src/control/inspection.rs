@@ -1,5 +1,6 @@
 //! Inspection of one pivot a tick: in which tick which, what an inspection is given, and what is kept until the next.
 
+use crate::control::oscillation::OscillationWatch;
 use crate::drivers::bridge::Duty;
 use kinematics::Angle;
 
@@ -16,6 +17,8 @@ pub(super) struct PivotWatch {
     pub mean_square_current: f32,
     /// Ticks at its largest duty.
     pub saturated_ticks: u32,
+    /// The feedback's voltage.
+    pub oscillation: OscillationWatch,
     /// Duty when the encoder last showed something new.
     pub duty: i16,
     /// Setpoint at the first inspection since then.
@@ -27,6 +30,8 @@ pub(super) struct PivotWatch {
 /// The pivot that is inspected in this tick, what belongs to it, and the next one.
 pub(super) struct Inspection {
     pub pivot: usize,
+    /// The setpoint hardly moves.
+    pub slowly: bool,
     pub setpoint: Angle,
     pub angle: Angle,
     pub next: Angle,

@@ -11,9 +11,11 @@
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
+//! | `rest_mode` | slower loops while the setpoint rests |
 //! | `settling` | whether the stage has settled |
 //! | `supervisor/` | which commands are taken in which state, and what is a fault |
 //! | `inspection` | which pivot is inspected in which tick |
+//! | `oscillation` | whether a servo oscillates |
 //! | `command`, `snapshot` | what the command side asks, and what is reported to it |
 //! | `report` | when and how a snapshot is sent |
 //! | `tick_queues` | the tick's ends of the queues and recorders |
@@ -25,9 +27,11 @@ pub mod encoder;
 pub mod held_position;
 mod inspection;
 pub mod loop_counters;
+mod oscillation;
 mod pivot_setpoints;
 mod referencing;
 mod report;
+pub mod rest_mode;
 pub mod servo;
 mod settling;
 mod snapshot;

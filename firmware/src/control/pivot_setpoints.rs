@@ -14,8 +14,10 @@ pub(super) struct PivotSetpoints {
     pub angles: [Angle; 3],
     pub motion: PivotMotion<f32>,
     pub torques: [f32; 3],
-    /// Distances along the guides, track radii: all that is used of the guides later.
+    /// Distances along the guides, track radii, and the cosines of their angles to the tangents: all that is used of the guides
+    /// later.
     pub lengths: [f32; 3],
+    pub cosines: [f32; 3],
 }
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
@@ -29,6 +31,7 @@ pub(super) fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<Pi
         motion: pivot_motion_in_platform_axes(&guides, &twist, &acceleration),
         torques: platform_torques(&config.servo.body, &guides, &twist, &acceleration),
         lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
+        cosines: guides.map(|guide| guide.cosine),
     })
 }
 

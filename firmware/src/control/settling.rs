@@ -3,9 +3,21 @@
 use crate::control::config::SupervisionConfig;
 use crate::control::units::UNITS_PER_RAD;
 
+/// Most ticks of the mean.
+pub(super) const MAX_MEAN_TICKS: usize = 32;
+/// Errors count as no more than this, 2^-32 turns (0.05 rad), so that the sums fit.
+const MOST: i32 = 1 << 25;
+
 /// Settled means at rest, and every pivot inside the window for the dwell time.
+///
+/// What is held against the window is the mean error of the last ticks, so that the window may be smaller than the
+/// encoders' noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settling {
+    /// Following errors of the last ticks, 2^-32 turns, and their sums, pivot by pivot.
+    errors: [[i32; 3]; MAX_MEAN_TICKS],
+    sums: [i32; 3],
+    place: usize,
     ticks_inside: u32,
     settled: bool,
     peak_error: u32,
@@ -14,19 +26,53 @@ pub struct Settling {
 impl Settling {
     /// A motion starts, or what was settled is no longer.
     pub fn start(&mut self) {
+        self.ticks_inside = 0;
+        self.settled = false;
+        self.peak_error = 0;
+    }
+
+    /// The servo goes on: what was before says nothing of what is now.
+    pub fn restart(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes the largest following error of a tick, 2^-32 turns.
+    /// Takes the following errors of a tick and the largest of them, 2^-32 turns.
     #[inline]
-    pub fn update(&mut self, limits: &SupervisionConfig, worst: u32, moving: bool) {
+    pub fn update(
+        &mut self,
+        limits: &SupervisionConfig,
+        errors: &[i32; 3],
+        worst: u32,
+        moving: bool,
+    ) {
+        let place = self.place;
+        self.place = if place + 1 < limits.mean_ticks {
+            place + 1
+        } else {
+            0
+        };
+        let mut largest = 0;
+        if let Some(oldest) = self.errors.get_mut(place) {
+            for i in 0..3 {
+                let error = errors[i].clamp(-MOST, MOST);
+                self.sums[i] += error - oldest[i];
+                oldest[i] = error;
+                largest = self.sums[i].unsigned_abs().max(largest);
+            }
+        }
         self.peak_error = self.peak_error.max(worst);
-        if moving || worst > limits.settling_window.unsigned_abs() {
+        if moving || largest > limits.settling_window {
             self.ticks_inside = 0;
         } else if self.ticks_inside < limits.settling_ticks {
             self.ticks_inside += 1;
         }
         self.settled = self.ticks_inside >= limits.settling_ticks;
+    }
+
+    /// Sums of the following errors over the ticks of the mean, pivot by pivot, 2^-32 turns.
+    #[inline]
+    pub fn error_sums(&self) -> &[i32; 3] {
+        &self.sums
     }
 
     /// Settled at the last tick.

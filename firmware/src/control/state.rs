@@ -3,6 +3,7 @@
 use super::encoder::Encoder;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
+use super::rest_mode::RestMode;
 use super::servo::PivotServo;
 use super::settling::Settling;
 use crate::drivers::biss::RawFrame;
@@ -56,6 +57,7 @@ pub struct State {
     pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
     pub(super) settling: Settling,
+    pub(super) rest_mode: RestMode,
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,

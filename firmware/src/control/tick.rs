@@ -4,7 +4,8 @@ use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
 use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
-use super::servo::PivotSetpoint;
+use super::rest_mode::Stiffness;
+use super::servo::{LoopSetpoint, PivotSetpoint};
 use super::state::{Inputs, Outputs, State};
 use super::tick_queues::TickQueues;
 use crate::drivers::biss::RawFrame;
@@ -61,7 +62,7 @@ pub fn tick(
     let point = advance(config, state);
     let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
-        state.drive(config, &setpoint, &mut pivots)
+        state.drive(config, &setpoint, &mut pivots, &inputs.current_counts)
     } else {
         None
     };
@@ -150,6 +151,7 @@ impl State {
         config: &Config,
         setpoint: &Setpoint,
         pivots: &mut [Angle; 3],
+        currents: &[u16; 3],
     ) -> Option<DriveOutputs> {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
@@ -167,12 +169,15 @@ impl State {
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, wanted)?;
-        (self.settling).update(&config.limits, worst, self.motion.is_moving());
+        let moving = self.motion.is_moving();
+        (self.settling).update(&config.limits, &errors, worst, moving);
+        let sums = self.settling.error_sums();
+        let stiffness = (self.rest_mode).update(&config.rest_mode, moving, sums);
         self.loop_counters.observe_error(worst);
         if self.mode != Mode::Holding && !self.motion.is_moving() {
             self.finish_motion();
         }
-        let (duty, sum) = self.step_servos(config, &errors, wanted);
+        let (duty, sum) = self.step_servos(config, &errors, wanted, stiffness, currents);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
             self.raise_fault(FaultKind::NotFinite, None, 0.0, 0.0);
@@ -188,8 +193,11 @@ impl State {
             pivots.get(after),
             duty.get(i),
         ) {
+            let slowly = wanted.motion.rates[i].abs() < config.limits.slow_rate
+                && wanted.motion.accelerations[i].abs() < config.limits.slow_acceleration;
             let inspection = Inspection {
                 pivot: i,
+                slowly,
                 setpoint,
                 angle,
                 next,
@@ -211,8 +219,14 @@ impl State {
         config: &Config,
         errors: &[i32; 3],
         wanted: &PivotSetpoints,
+        stiffness: Stiffness,
+        current_counts: &[u16; 3],
     ) -> ([Duty; 3], f32) {
-        let counts_per_volt = config.servo.counts_per_volt(self.supply);
+        let servos = &config.servo;
+        let common = LoopSetpoint {
+            counts_per_volt: servos.counts_per_volt(self.supply),
+            stiffness,
+        };
         let mut duty = [Duty(0); 3];
         let mut sum = 0.0;
         for i in 0..3 {
@@ -221,11 +235,16 @@ impl State {
                 rate: wanted.motion.rates[i],
                 acceleration: wanted.motion.accelerations[i],
                 platform_torque: wanted.torques[i],
+                angle: wanted.angles[i],
+                current_counts: current_counts[i],
             };
-            let servo = &mut self.servo[i];
-            duty[i] = servo.step(&config.servo, &setpoint, counts_per_volt);
+            let (servo, config) = (&mut self.servo[i], &servos.pivots[i]);
+            duty[i] = servo.step(config, &setpoint, &common);
             if i == self.inspection_slot {
-                servo.learn(&config.servo);
+                servo.learn(config);
+                if let Some(share) = servos.scheduled_share(&wanted.lengths, &wanted.cosines, i) {
+                    servo.schedule(share);
+                }
             }
             sum += servo.requested_counts();
         }

@@ -141,4 +141,10 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         thresholds: &[],
         reason: "nothing has moved yet; what is kept would be misread, and stays as it is",
     },
+    FaultDescription {
+        kind: FaultKind::Oscillation,
+        detection: "the voltage that the feedback asks for goes to and fro by more than a swing, or by what 25 encoder counts of change in a tick make of the velocity gain, over and over at 31 Hz or more, while the setpoint is slower than a tenth of a pivot's limits of rate and acceleration; each pivot every fourth tick while driven",
+        thresholds: &[0x5450_0511],
+        reason: "the loop that would lead a stop along the path is the one that oscillates",
+    },
 ];

@@ -43,6 +43,8 @@ pub enum FaultKind {
     SettingsDamaged,
     /// Kept settings are of a newer firmware: the controller has started with its own.
     SettingsNewer,
+    /// A servo oscillates; value and limit are swings of its voltage, V.
+    Oscillation,
 }
 
 /// What a fault does to the motors.
@@ -76,6 +78,7 @@ impl FaultKind {
             | Self::GuideRange
             | Self::WorkspaceLeft
             | Self::Stalled
+            | Self::Oscillation
             | Self::NotFinite => Reaction::Brake,
             // Nothing has moved yet when settings cannot be used.
             Self::BridgeFault | Self::SettingsDamaged | Self::SettingsNewer => Reaction::Coast,
@@ -114,6 +117,7 @@ impl FaultKind {
             Self::Stalled => "drive at its end for too long",
             Self::MotorHot => "motor too hot",
             Self::LoopLate => "control loop late too often",
+            Self::Oscillation => "servo oscillates",
             Self::NotFinite => "a computed value is not a number",
             Self::SettingsDamaged => {
                 "kept settings are damaged, the controller's own are in force (WPA 100 keeps those)"
@@ -128,7 +132,7 @@ impl FaultKind {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::FollowingError | Self::PivotsTooClose => "rad",
-            Self::SupplyLow => "V",
+            Self::SupplyLow | Self::Oscillation => "V",
             Self::Overspeed => "rad/s",
             Self::GuideRange | Self::WorkspaceLeft => "track radii",
             Self::Stalled => "s",

@@ -51,7 +51,7 @@ impl Parameters {
     }
 
     fn thresholds_agree(&self) -> bool {
-        let (supervision, drive) = (&self.supervision, &self.drive);
+        let (supervision, power) = (&self.supervision, &self.power);
         let braking = self.limits.pivot_acceleration_rad_s2 * self.limits.stop_factor;
         let silence_ms = supervision.host_silence_ms;
         let silence_fits = silence_ms == 0.0 || silence_ms >= MIN_HOST_SILENCE_MS;
@@ -61,8 +61,8 @@ impl Parameters {
             && supervision.separation_margin_rad < self.geometry.separation_rad.max(f64::MIN_POSITIVE)
             && supervision.guide_margin < self.geometry.guide_start
             && silence_fits
-            && supervision.supply_min_v < drive.supply_v
+            && supervision.supply_min_v < power.supply_v
             // Four times the dead time is what a bridge needs to put out anything at all in both directions.
-            && drive.dead_time_s * drive.pwm_hz < 0.25
+            && (self.drives.iter()).all(|drive| drive.dead_time_s * power.pwm_hz < 0.25)
     }
 }

@@ -117,7 +117,7 @@ impl<'a> Effects<'a> {
         let rate_hz = self.parameters.limits.rate_hz;
         let fastest_rad_s = self.parameters.limits.pivot_rate_rad_s * supervision.overspeed_factor;
         let most_counts = fastest_rad_s / rate_hz / TAU * f64::from(COUNTS_PER_TURN);
-        let full = FULL * f64::from(self.parameters.drive.pwm_counts);
+        let full = FULL * f64::from(self.parameters.power.pwm_counts);
         let part = 1.0 - (-1.0 / (rate_hz * supervision.motor_heating_s)).exp();
         for i in 0..AXES {
             let counts = now.shown[i].position();

@@ -74,7 +74,7 @@ impl Host {
     pub fn new(stage: &StageParameters, parameters: &Parameters) -> Self {
         let (bridges, drivers): (Vec<_>, Vec<_>) = (0..AXES)
             .filter_map(|_| {
-                let (bridge, pins) = Bridge::with_pwm_counts(parameters.drive.pwm_counts);
+                let (bridge, pins) = Bridge::with_pwm_counts(parameters.power.pwm_counts);
                 let driver = Driver::new(pins.pwm, pins.direction, pins.sleep, pins.fault);
                 Some((bridge, sure(driver)?))
             })

@@ -54,7 +54,7 @@ impl Observer {
             period_s: 1.0 / parameters.limits.rate_hz,
             // The half lets a setpoint between two counts be met; the controller's own window has it too.
             window_counts: parameters.window.counts + 0.5,
-            pwm_counts: f64::from(parameters.drive.pwm_counts),
+            pwm_counts: f64::from(parameters.power.pwm_counts),
             under_way: None,
             last: Default::default(),
         }

@@ -112,7 +112,7 @@ pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
 pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> RunOutcome {
     let stage = stage_parameters(options);
     let parameters = controller_parameters(options);
-    simulate(script, &parameters, &stage, options, flash)
+    run_machine(script, &parameters, &stage, options, flash)
 }
 
 /// The controller's parameters, as the imperfections that are left make them.
@@ -120,11 +120,13 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
 pub fn controller_parameters(options: &RunOptions) -> Parameters {
     let mut parameters = Parameters::REFERENCE;
     if !options.imperfections.pwm_quantisation {
-        parameters.drive.pwm_counts = FINE_PWM;
+        parameters.power.pwm_counts = FINE_PWM;
     }
     if !options.imperfections.dead_time {
         // What is not there must not be made up for: that would be positive feedback around rest.
-        parameters.drive.dead_time_s = 0.0;
+        for drive in &mut parameters.drives {
+            drive.dead_time_s = 0.0;
+        }
     }
     parameters
 }
@@ -139,7 +141,10 @@ struct Wire {
     to_stage: Vec<u8>,
 }
 
-fn simulate(
+/// Runs a script on any machine, under a controller that starts with these parameters. Of the options, the trace's spacing counts, and
+/// what the report is told.
+#[must_use]
+pub fn run_machine(
     script: &Script,
     parameters: &Parameters,
     stage: &StageParameters,

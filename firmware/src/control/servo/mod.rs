@@ -18,15 +18,27 @@
 //! | file | idea |
 //! |---|---|
 //! | `pivot` | the servo of one pivot: feedback, feedforward, learning, saturation with anti-windup, whole counts |
+//! | `config` | its constants, derived from the parameters |
+//! | `filter` | notches and lead of the feedback |
+//! | `inertia` | what a pivot moves, for the gains' schedule |
+//! | `ripple` | compensation of torque ripple |
 //! | `dead_time` | compensation of the bridges' dead time |
 //! | `presliding` | friction before a ring slides |
 //! | `platform_torque` | torque that platform and payload ask of the pivots |
 
+mod config;
 mod dead_time;
+mod filter;
+mod inertia;
 mod pivot;
 mod platform_torque;
 mod presliding;
+mod ripple;
 
-pub use pivot::{PivotServo, PivotSetpoint, ServoConfig};
+pub use config::{PivotServoConfig, ServoConfig};
+pub use filter::{FilterConfig, Filters};
+pub use inertia::carried_inertia;
+pub use pivot::{LoopSetpoint, PivotServo, PivotSetpoint};
 pub use platform_torque::{Body, platform_torques};
 pub use presliding::Presliding;
+pub use ripple::RippleConfig;

@@ -1,125 +1,16 @@
 //! The servo of one pivot.
 
+use super::config::{FEATURES, PivotServoConfig};
 use super::dead_time::{compensate_dead_time, dead_time_share};
-use super::platform_torque::Body;
+use super::filter::Filters;
 use super::presliding::Presliding;
-use crate::control::units::{SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::control::rest_mode::Stiffness;
 use crate::drivers::bridge::Duty;
 use crate::number;
-use crate::parameters::Parameters;
+use kinematics::Angle;
 
-/// Constants of the servo.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ServoConfig {
-    /// What the pivots carry.
-    pub body: Body,
-    /// Of the following error's change in a tick and of the error itself (2^-32 turns, measured minus setpoint) to r.
-    rate_gain: f32,
-    position_gain: f32,
-    velocity_gain: f32,
-    integral_gain: f32,
-    learning_gains: [f32; FEATURES],
-    inertia: f32,
-    /// Volts a signal asks for by the model: viscous friction's per rad/s, per torque, Coulomb friction's.
-    model_weights: [f32; FEATURES],
-    /// Back-EMF.
-    volt_per_rate: f32,
-    /// Ticks by which torque and friction look ahead: latency and the winding's time constant.
-    lead_ticks: f32,
-    latency_s: f32,
-    /// Presliding lengths a tick, for a rate of 1 rad/s.
-    presliding_per_rate: f32,
-    /// Current over the dead time's knee, for a volt at rest.
-    knee_currents_per_volt: f32,
-    /// Share of the way to its final value that the current goes in a tick.
-    current_step: f32,
-    /// What the dead time takes of a pulse, PWM counts.
-    dead_time_counts: f32,
-    /// Largest duty, PWM counts.
-    max_counts: f32,
-    /// PWM counts a volt where the supply reads one ADC count.
-    counts_per_volt_at_one_count: f32,
-    /// Anti-windup: largest size of the integral, V.
-    integral_limit: f32,
-    learnt_weight_limit: [f32; FEATURES],
-}
-
-/// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
-const FEATURES: usize = 3;
-
-/// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
-const MAX_DUTY: f64 = 0.98;
-
-impl ServoConfig {
-    /// Derives the constants.
-    pub fn new(parameters: &Parameters) -> Self {
-        let Parameters {
-            geometry,
-            platform,
-            drive,
-            servo,
-            limits,
-            ..
-        } = parameters;
-        let radius_m = geometry.radius_mm * 1e-3;
-        let [x_m, y_m] = platform.payload_centre_mm.map(|mm| mm * 1e-3);
-        let period_s = 1.0 / limits.rate_hz;
-        let torque_per_ampere = drive.torque_constant_n_m_a * drive.gear_ratio;
-        let volt_per_torque = drive.resistance_ohm / torque_per_ampere;
-        // Torque at which its signal is 1: what the reference motion asks for.
-        let torque_scale = 6.0;
-        // What makes each signal about 1 is taken into its weight: gains carry it twice, limits once.
-        let scale = [1.0 / limits.pivot_rate_rad_s, 1.0 / torque_scale, 1.0];
-        let share = [1.0, 1.0, servo.friction_learning];
-        // By the volt that the integral has collected.
-        let learning = servo.learning;
-        let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
-        let rad_per_unit = 1.0 / UNITS_PER_RAD;
-        Self {
-            body: Body {
-                mass: ((platform.mass_kg + platform.payload_kg) * radius_m * radius_m) as f32,
-                inertia: (platform.inertia_kg_m2
-                    + platform.payload_inertia_kg_m2
-                    + platform.payload_kg * (x_m * x_m + y_m * y_m))
-                    as f32,
-                moment: [x_m, y_m].map(|m| (platform.payload_kg * m * radius_m) as f32),
-            },
-            rate_gain: (-limits.rate_hz * rad_per_unit) as f32,
-            position_gain: (-servo.position_1_s * rad_per_unit) as f32,
-            velocity_gain: servo.velocity_v_s_rad as f32,
-            integral_gain: (servo.integral_v_rad * period_s) as f32,
-            learning_gains: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
-            inertia: drive.inertia_kg_m2 as f32,
-            model_weights: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
-                .map(|torque| (volt_per_torque * torque) as f32),
-            volt_per_rate: torque_per_ampere as f32,
-            lead_ticks: (torque_lead_s * limits.rate_hz) as f32,
-            latency_s: servo.latency_s as f32,
-            presliding_per_rate: (period_s / drive.presliding_rad) as f32,
-            knee_currents_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
-            current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
-                as f32,
-            dead_time_counts: (drive.dead_time_s * drive.pwm_hz) as f32
-                * f32::from(drive.pwm_counts),
-            max_counts: (MAX_DUTY * f64::from(drive.pwm_counts)) as f32,
-            counts_per_volt_at_one_count: (f64::from(drive.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
-            integral_limit: (drive.supply_v * 0.5) as f32,
-            learnt_weight_limit: scale.map(|scale| (drive.supply_v * 0.25 * scale) as f32),
-        }
-    }
-}
-
-impl ServoConfig {
-    /// PWM counts per volt at a measured supply (ADC counts). A supply that reads as nothing gives no drive.
-    #[inline]
-    pub fn counts_per_volt(&self, supply_counts: f32) -> f32 {
-        if supply_counts < 1.0 {
-            0.0
-        } else {
-            self.counts_per_volt_at_one_count / supply_counts
-        }
-    }
-}
+/// Measured current, over the dead time's knee, from which on its size says something of the motor.
+const LEAST_MEASURED: f32 = 0.5;
 
 /// What one pivot should do at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -132,6 +23,19 @@ pub struct PivotSetpoint {
     pub acceleration: f32,
     /// Torque the platform asks for, N m.
     pub platform_torque: f32,
+    /// Angle.
+    pub angle: Angle,
+    /// Size of the motor's current as it was measured, ADC counts.
+    pub current_counts: u16,
+}
+
+/// What the three loops have in common at a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopSetpoint {
+    /// [`ServoConfig::counts_per_volt`](super::ServoConfig::counts_per_volt).
+    pub counts_per_volt: f32,
+    /// What is in force of the gains.
+    pub stiffness: Stiffness,
 }
 
 /// State of one pivot's servo.
@@ -146,9 +50,18 @@ pub struct PivotServo {
     /// Weights of the signals, volts per unit, and the integral when they were learnt last.
     learnt_weights: [f32; FEATURES],
     integral_when_learnt: f32,
-    /// Motor current over the dead time's knee.
+    /// Motor current over the dead time's knee, by the model.
     current: f32,
+    /// What the motor constant is more than the model has it, by the measured current, V s/rad.
+    motor_constant_excess: f32,
     rounding_residue: f32,
+    /// Velocity error with a share of the position error, smoothed at rest.
+    smoothed: f32,
+    filters: Filters,
+    /// Volts that the feedback asked for last.
+    feedback: f32,
+    /// What velocity gain and integral gain are more than their parameters, for the inertia.
+    scheduled_excess: f32,
     /// What it asked for last, PWM counts.
     requested_counts: f32,
 }
@@ -168,6 +81,18 @@ impl PivotServo {
         self.last_error = 0.0;
     }
 
+    /// Volts that the feedback asked for last.
+    #[inline]
+    pub fn feedback_volts(&self) -> f32 {
+        self.feedback
+    }
+
+    /// Velocity gain and integral gain are this share of their parameters from now on.
+    #[inline]
+    pub fn schedule(&mut self, share: f32) {
+        self.scheduled_excess = share - 1.0;
+    }
+
     /// What it asked for last, PWM counts: not a number where anything that it is made of is none.
     #[inline]
     pub fn requested_counts(&self) -> f32 {
@@ -176,20 +101,27 @@ impl PivotServo {
 
     /// Whether it asked for as much as the bridge can give, or more.
     #[inline]
-    pub fn is_saturated(&self, config: &ServoConfig) -> bool {
+    pub fn is_saturated(&self, config: &PivotServoConfig) -> bool {
         self.requested_counts.abs() > config.max_counts
     }
 
-    /// Duty for this tick; `counts_per_volt` is [`ServoConfig::counts_per_volt`].
+    /// Duty for this tick.
     #[inline]
     pub fn step(
         &mut self,
-        config: &ServoConfig,
+        config: &PivotServoConfig,
         setpoint: &PivotSetpoint,
-        counts_per_volt: f32,
+        common: &LoopSetpoint,
     ) -> Duty {
+        let Stiffness {
+            gains: share,
+            integral_rate,
+        } = common.stiffness;
         let error = setpoint.error as f32;
-        let r = config.rate_gain * (error - self.last_error) + config.position_gain * error;
+        let unsmoothed =
+            config.rate_gain * (error - self.last_error) + share * (config.position_gain * error);
+        self.smoothed += (unsmoothed - self.smoothed) * share;
+        let r = self.smoothed;
         self.last_error = error;
 
         let last_contact = self.friction.deflection();
@@ -208,21 +140,39 @@ impl PivotServo {
             + (config.model_weights[1] + self.learnt_weights[1]) * torque
             + (config.model_weights[2] + self.learnt_weights[2]) * friction;
 
-        // Without the back-EMF: what the current follows. It follows the voltage that is wanted, since what the dead
-        // time takes of it is made up for.
-        let over_emf = feedforward + self.integral + config.velocity_gain * r;
+        let r = r + self.scheduled_excess * r;
+        let feedback = self.filters.step(
+            &config.filters,
+            self.integral + share * (config.velocity_gain * r),
+        );
+        self.feedback = feedback;
+        let ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
+        let volts = feedforward + feedback + ripple + config.volt_per_rate * rate;
+        // Without the back-EMF: what the current follows. A weight that the rate has learnt is a motor constant that is
+        // off. It follows the voltage that is wanted, since what the dead time takes of it is made up for.
+        let measured = f32::from(setpoint.current_counts) * config.knee_currents_per_count;
+        if measured > LEAST_MEASURED {
+            let missing = measured.copysign(self.current) - self.current;
+            let excess = self.motor_constant_excess
+                - config.motor_constant_step * missing * rate / (1.0 + rate * rate);
+            self.motor_constant_excess = clamp_symmetric(excess, config.motor_constant_limit);
+        }
+        let over_emf = feedforward + feedback + ripple - self.motor_constant_excess * rate;
         self.current +=
             (over_emf * config.knee_currents_per_volt - self.current) * config.current_step;
-        let volts = over_emf + config.volt_per_rate * rate;
-        let share = dead_time_share(self.current);
-        let counts = compensate_dead_time(volts * counts_per_volt, share, config.dead_time_counts);
+        let lost = dead_time_share(self.current);
+        let counts = compensate_dead_time(
+            volts * common.counts_per_volt,
+            lost,
+            config.dead_time_counts,
+        );
         self.requested_counts = counts;
         let limited = clamp_symmetric(counts, config.max_counts);
 
         // Anti-windup: collecting stops while the bridge is saturated and the error asks for more.
         if counts == limited || counts * r < 0.0 {
             self.integral = clamp_symmetric(
-                self.integral + config.integral_gain * r,
+                self.integral + share * integral_rate * (config.integral_gain * r),
                 config.integral_limit,
             );
         }
@@ -232,7 +182,7 @@ impl PivotServo {
     /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
     /// that the pivots can take turns.
     #[inline]
-    pub fn learn(&mut self, config: &ServoConfig) {
+    pub fn learn(&mut self, config: &PivotServoConfig) {
         let collected = self.integral - self.integral_when_learnt;
         self.integral_when_learnt = self.integral;
         for (k, signal) in self.signals.into_iter().enumerate() {

@@ -1,5 +1,6 @@
 //! Torque that the platform and its payload ask of the pivots.
 
+use crate::parameters::Parameters;
 use kinematics::{Acceleration, Guide, Twist};
 
 /// The carried body, about the platform centre; lengths in track radii, masses times radius squared.
@@ -11,6 +12,22 @@ pub struct Body {
     pub inertia: f32,
     /// Static moment in the platform's axes: mass times the centre of mass, kg m^2.
     pub moment: [f32; 2],
+}
+
+impl Body {
+    /// Platform and payload together.
+    pub fn new(parameters: &Parameters) -> Self {
+        let platform = &parameters.platform;
+        let radius_m = parameters.geometry.radius_mm * 1e-3;
+        let [x_m, y_m] = platform.payload_centre_mm.map(|mm| mm * 1e-3);
+        Self {
+            mass: ((platform.mass_kg + platform.payload_kg) * radius_m * radius_m) as f32,
+            inertia: (platform.inertia_kg_m2
+                + platform.payload_inertia_kg_m2
+                + platform.payload_kg * (x_m * x_m + y_m * y_m)) as f32,
+            moment: [x_m, y_m].map(|m| (platform.payload_kg * m * radius_m) as f32),
+        }
+    }
 }
 
 /// Pivot torques (N m) for the body's acceleration: `tau = J^-T M x''`, velocity-dependent terms included. Twist and

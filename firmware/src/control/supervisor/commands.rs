@@ -110,7 +110,8 @@ impl State {
         let platform = config.steps.nearest(&position(pose));
         self.motion
             .rest_at(self.motion.centre().from_platform(&platform));
-        self.settling.start();
+        self.settling.restart();
+        self.rest_mode.restart();
         self.set_radius_limit_from(&platform);
         self.reset_watches();
         for servo in &mut self.servo {

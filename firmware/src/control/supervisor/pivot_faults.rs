@@ -3,6 +3,7 @@
 
 use crate::control::config::Config;
 use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
+use crate::control::oscillation::OscillationWatch;
 use crate::control::state::{Inputs, State};
 use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
 use crate::fault::FaultKind;
@@ -60,7 +61,7 @@ impl State {
         ) else {
             return true;
         };
-        watch.saturated_ticks = if servo.is_saturated(&config.servo) {
+        watch.saturated_ticks = if servo.is_saturated(&config.servo.pivots[i]) {
             watch
                 .saturated_ticks
                 .saturating_add(INSPECTION_PERIOD_TICKS)
@@ -71,6 +72,15 @@ impl State {
             let seconds = [watch.saturated_ticks, limits.max_saturated_ticks]
                 .map(|ticks| ticks as f32 / limits.rate_hz);
             self.raise_fault(FaultKind::Stalled, Some(i), seconds[0], seconds[1]);
+            return false;
+        }
+        let most = config.servo.pivots[i].oscillation_swing;
+        let watched = &mut watch.oscillation;
+        if inspection.slowly
+            && watched.update(servo.feedback_volts(), most, limits.oscillation_memory)
+        {
+            let swing = watched.swing();
+            self.raise_fault(FaultKind::Oscillation, Some(i), swing, most);
             return false;
         }
         if self.lost_pivot == Some(i) {
@@ -93,7 +103,11 @@ impl State {
         let gone = (inspection.setpoint - begun).units().unsigned_abs() > limits.frozen_distance;
         if gone && encoder.repeated_readings() >= REPEATED_READINGS {
             self.fault_frozen_encoder(i);
-        } else if drive_exceeds(inspection.duty.0, watch.duty, limits.frozen_duty) {
+        } else if drive_exceeds(
+            inspection.duty.0,
+            watch.duty,
+            config.servo.pivots[i].frozen_duty,
+        ) {
             // From here on: a reading that has rested for long may go on resting until the drive has had its time.
             watch.driven_ticks += INSPECTION_PERIOD_TICKS as u16;
             if watch.driven_ticks >= REPEATED_READINGS {
@@ -113,6 +127,7 @@ impl State {
     pub(in crate::control) fn reset_watches(&mut self) {
         for watch in &mut self.pivot_watches {
             watch.saturated_ticks = 0;
+            watch.oscillation = OscillationWatch::default();
             watch.duty = 0;
             watch.setpoint = None;
             watch.driven_ticks = 0;

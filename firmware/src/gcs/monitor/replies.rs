@@ -36,7 +36,7 @@ impl Interpreter {
             let [low, high] = [range.lowest, range.highest].map(|v| v as f32 * URAD_PER_UNIT);
             reply.line(format_args!("ERROR{number}={low:.3} {high:.3}"))?;
         }
-        let counts = f32::from(self.parameters.drive.pwm_counts);
+        let counts = f32::from(self.parameters.power.pwm_counts);
         for (number, range) in (1..).zip(session.monitor.duties) {
             let [low, high] = [range.lowest, range.highest].map(|v| v as f32 / counts);
             reply.line(format_args!("DUTY{number}={low:.5} {high:.5}"))?;

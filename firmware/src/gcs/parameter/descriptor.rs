@@ -59,7 +59,14 @@ pub(super) enum ValueSource {
     Axis(fn(Axis) -> &'static str),
     /// How it is read and set.
     Settable(fn(&Parameters) -> f64, fn(&mut Parameters, f64)),
+    /// The same for a pivot.
+    Pivot(usize, GetOfPivot, SetOfPivot),
+    /// One number for what each pivot has of its own: it sets all three, and reads as pivot 1's.
+    AllPivots(GetOfPivot, SetOfPivot),
 }
+
+pub(super) type GetOfPivot = fn(&Parameters, usize) -> f64;
+pub(super) type SetOfPivot = fn(&mut Parameters, usize, f64);
 
 /// A value as it is answered.
 pub(in crate::gcs) enum Value {
@@ -90,11 +97,8 @@ impl Parameter {
     /// Its value for an item that it [belongs to](Self::belongs_to).
     pub(in crate::gcs) fn value(&self, item: Item, parameters: &Parameters) -> Value {
         match (&self.source, item) {
-            (ValueSource::ReadOnly(get) | ValueSource::Settable(get, _), _) => {
-                Value::Number(get(parameters))
-            }
             (ValueSource::Axis(text), Item::Axis(axis)) => Value::Text(text(axis)),
-            (ValueSource::Axis(_), Item::System) => Value::Text(""),
+            _ => (self.number(parameters)).map_or(Value::Text(""), Value::Number),
         }
     }
 
@@ -102,6 +106,8 @@ impl Parameter {
     pub fn number(&self, parameters: &Parameters) -> Option<f64> {
         match self.source {
             ValueSource::ReadOnly(get) | ValueSource::Settable(get, _) => Some(get(parameters)),
+            ValueSource::Pivot(pivot, get, _) => Some(get(parameters, pivot)),
+            ValueSource::AllPivots(get, _) => Some(get(parameters, 0)),
             ValueSource::Axis(_) => None,
         }
     }
@@ -113,16 +119,41 @@ impl Parameter {
     /// [`ErrorCode::ReadOnly`], or [`ErrorCode::OutOfRange`] when it is out of its range or not whole where it has to
     /// be; nothing has changed then.
     pub fn set(&self, value: f64, parameters: &mut Parameters) -> Result<(), ErrorCode> {
-        let ValueSource::Settable(_, set) = self.source else {
+        if self.is_read_only() {
             return Err(ErrorCode::ReadOnly);
-        };
+        }
         let [lowest, highest] = self.range;
         let fits = self.kind != Kind::Int || libm::rint(value) == value;
         if !fits || !(lowest..=highest).contains(&value) {
             return Err(ErrorCode::OutOfRange);
         }
-        set(parameters, value);
+        match self.source {
+            ValueSource::Settable(_, set) => set(parameters, value),
+            ValueSource::Pivot(pivot, _, set) => set(parameters, pivot, value),
+            ValueSource::AllPivots(_, set) => {
+                (0..3).for_each(|pivot| set(parameters, pivot, value))
+            }
+            ValueSource::ReadOnly(_) | ValueSource::Axis(_) => {}
+        }
         Ok(())
+    }
+
+    /// Makes it what it is in others.
+    ///
+    /// # Errors
+    /// [`ErrorCode::ReadOnly`].
+    pub fn copy(&self, others: &Parameters, parameters: &mut Parameters) -> Result<(), ErrorCode> {
+        if let ValueSource::AllPivots(get, set) = self.source {
+            (0..3).for_each(|pivot| set(parameters, pivot, get(others, pivot)));
+            return Ok(());
+        }
+        let value = self.number(others).ok_or(ErrorCode::ReadOnly)?;
+        self.set(value, parameters)
+    }
+
+    /// Whether it is kept under this number: not where three others keep the same.
+    pub fn is_stored(&self) -> bool {
+        !self.is_read_only() && !matches!(self.source, ValueSource::AllPivots(..))
     }
 }
 
@@ -136,7 +167,11 @@ impl fmt::Display for Parameter {
         };
         let items = self.items().count();
         let (id, level, group, text) = (self.id, self.level, self.group, self.text);
-        write!(f, "0x{id:X}=\t{level}\t{items}\t{kind}\t{group}\t{text}")?;
+        write!(
+            f,
+            "0x{id:X}=\t{level}\t{items}\t{kind}\t{group}\t{text}{}",
+            self.whose()
+        )?;
         if !self.unit.is_empty() {
             write!(f, ", {}", self.unit)?;
         }
@@ -145,6 +180,19 @@ impl fmt::Display for Parameter {
         } else {
             let [lowest, highest] = self.range;
             write!(f, ", {lowest} to {highest}")
+        }
+    }
+}
+
+impl Parameter {
+    /// Which pivot's it is, as words behind what it is.
+    pub fn whose(&self) -> &'static str {
+        match self.source {
+            ValueSource::Pivot(0, ..) => " (pivot 1)",
+            ValueSource::Pivot(1, ..) => " (pivot 2)",
+            ValueSource::Pivot(..) => " (pivot 3)",
+            ValueSource::AllPivots(..) => " (all pivots; reads as pivot 1's)",
+            _ => "",
         }
     }
 }

@@ -55,8 +55,8 @@ fn write<S: Sink>(interpreter: &Interpreter, sink: &mut S) -> Result<(), S::Erro
 
 /// The parameters in which `stored` is not what the controller has by itself.
 fn settings(stored: &Parameters, defaults: &Parameters) -> impl Iterator<Item = (u32, f64)> {
-    let settable = PARAMETERS.iter().filter(|p| !p.is_read_only());
-    settable.filter_map(|parameter| {
+    let stored_ones = PARAMETERS.iter().filter(|p| p.is_stored());
+    stored_ones.filter_map(|parameter| {
         let (stored, defaults) = (parameter.number(stored)?, parameter.number(defaults)?);
         (stored != defaults).then_some((parameter.id, stored))
     })

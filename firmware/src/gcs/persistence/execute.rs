@@ -132,8 +132,7 @@ fn replaced(
     let mut replaced = parameters.clone();
     for address in addresses.iter().flatten() {
         let parameter = Parameter::find(address.id).ok_or(ErrorCode::UnknownParameter)?;
-        let value = parameter.number(others).ok_or(ErrorCode::ReadOnly)?;
-        parameter.set(value, &mut replaced)?;
+        parameter.copy(others, &mut replaced)?;
     }
     if replaced.are_sound() {
         Ok(replaced)

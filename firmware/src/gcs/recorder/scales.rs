@@ -24,7 +24,7 @@ impl Scales {
     pub fn new(parameters: &Parameters) -> Self {
         Self {
             geometry: parameters.geometry,
-            pwm_counts: f64::from(parameters.drive.pwm_counts),
+            pwm_counts: f64::from(parameters.power.pwm_counts),
             period_s: 1.0 / parameters.limits.rate_hz,
         }
     }

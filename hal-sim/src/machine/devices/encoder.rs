@@ -83,6 +83,7 @@ pub struct Encoder {
     with_eccentricity: bool,
     noise: Random,
     fault: Option<EncoderFault>,
+    offset_rad: f64,
     position: u32,
     frame: u64,
 }
@@ -102,6 +103,7 @@ impl Encoder {
             with_eccentricity,
             noise: Random::new(seed),
             fault: None,
+            offset_rad: 0.0,
             position: parameters.zero_counts % COUNTS_PER_TURN,
             frame: u64::MAX,
         }
@@ -116,6 +118,11 @@ impl Encoder {
     #[must_use]
     pub const fn fault(&self) -> Option<EncoderFault> {
         self.fault
+    }
+
+    /// It reads so much more than the ring's angle from the next latch on: a disturbance with which the loop can be measured.
+    pub fn set_offset(&mut self, offset_rad: f64) {
+        self.offset_rad = offset_rad;
     }
 
     /// Samples the ring at its angle (rad, multi-turn) and rate (rad/s).
@@ -153,7 +160,7 @@ impl Encoder {
             _ => 0.0,
         };
         let seen_rad = angle_rad - rate_rad_s * (self.parameters.latency_s + late_s);
-        let read_rad = seen_rad + self.eccentricity(seen_rad) + self.noise();
+        let read_rad = seen_rad + self.eccentricity(seen_rad) + self.noise() + self.offset_rad;
         let counts = (read_rad * (f64::from(COUNTS_PER_TURN) / TAU)).round() as i64;
         let counts = if self.parameters.reversed {
             -counts

@@ -7,7 +7,8 @@ use crate::bench::{Bench, no_result};
 use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
-use firmware::control::servo::{PivotServo, PivotSetpoint};
+use firmware::control::rest_mode::Stiffness;
+use firmware::control::servo::{LoopSetpoint, PivotServo, PivotSetpoint};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
 use firmware::parameters::Parameters;
 use firmware_cost::random::Random;
@@ -72,12 +73,15 @@ fn servo(bench: &mut Bench, config: &Config) {
         &mut [PivotServo::default(); 3],
         |_, random| [0; 3].map(|_| pivot(random)),
         |servo, pivots| {
-            let counts_per_volt = config.servo.counts_per_volt(f32::from(SUPPLY_COUNTS));
+            let common = LoopSetpoint {
+                counts_per_volt: config.servo.counts_per_volt(f32::from(SUPPLY_COUNTS)),
+                stiffness: Stiffness::FULL,
+            };
             let mut duty = [Duty(0); 3];
             for i in 0..3 {
-                duty[i] = servo[i].step(&config.servo, &pivots[i], counts_per_volt);
+                duty[i] = servo[i].step(&config.servo.pivots[i], &pivots[i], &common);
                 if i == 0 {
-                    servo[i].learn(&config.servo);
+                    servo[i].learn(&config.servo.pivots[i]);
                 }
             }
             duty
@@ -92,5 +96,6 @@ fn pivot(random: &mut Random) -> PivotSetpoint {
         rate: random.within(-10.0, 10.0) as f32,
         acceleration: random.within(-100.0, 100.0) as f32,
         platform_torque: random.within(-6.0, 6.0) as f32,
+        angle: Angle::from_units(random.within(-2e9, 2e9) as i64),
     }
 }

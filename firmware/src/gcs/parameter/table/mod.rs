@@ -4,12 +4,15 @@
 //! of them stands in `check`. Limits of motion can be lowered at level 0 and raised again as far as the stage was set
 //! up for; level 1 raises them further.
 
+mod pivots;
+
 use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
+use pivots::{DRIVES, GAINS, RIPPLE, of_pivots};
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -29,6 +32,7 @@ const ENCODER: Group = group("encoder", 1, When::ServoOff);
 const PLATFORM: Group = group("platform", 0, When::AtRest);
 const RECORDER: Group = group("recorder", 0, When::AtRest);
 const DRIVE: Group = group("drive", 1, When::AtRest);
+const RIPPLE_GROUP: Group = group("ripple", 1, When::AtRest);
 
 const fn group(name: &'static str, level: u8, when: When) -> Group {
     Group { name, level, when }
@@ -118,8 +122,39 @@ fn way_number(way: TurnDirection) -> f64 {
 }
 
 /// Every parameter, in the order of `HPA?`. A static: a constant would stand in the image once for each use.
+pub static PARAMETERS: &[Parameter] = &join::<COUNT>(&[
+    COMMON,
+    &of_pivots::<{ 4 * GAINS.len() }>(GAINS),
+    AFTER_GAINS,
+    &of_pivots::<{ 4 * DRIVES.len() }>(DRIVES),
+    POWER,
+    &of_pivots::<{ 4 * RIPPLE.len() }>(RIPPLE),
+]);
+
+const COUNT: usize = COMMON.len()
+    + AFTER_GAINS.len()
+    + POWER.len()
+    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len());
+
+/// Lists one after the other.
+const fn join<const N: usize>(lists: &[&[Parameter]]) -> [Parameter; N] {
+    let mut all = [COMMON[0]; N];
+    let (mut list, mut place) = (0, 0);
+    while list < lists.len() {
+        let mut i = 0;
+        while i < lists[list].len() {
+            all[place] = lists[list][i];
+            i += 1;
+            place += 1;
+        }
+        list += 1;
+    }
+    assert!(place == N);
+    all
+}
+
 #[rustfmt::skip]
-pub static PARAMETERS: &[Parameter] = &[
+const COMMON: &[Parameter] = &[
     read_only(0x0700_0601, Kind::Char, "unit of the axis", "", ValueSource::Axis(Axis::unit)),
     read_only(0x0E00_0200, Kind::Float, "servo update time", "s", ValueSource::ReadOnly(|p| 1.0 / p.limits.rate_hz)),
     TARGET.int(0x1900_1900, "trajectory source: 0 moves to targets, 1 streamed targets", [0.0, 1.0], flag!(targets.streamed)),
@@ -146,15 +181,20 @@ pub static PARAMETERS: &[Parameter] = &[
     GEOMETRY.float(0x5450_0203, "smallest angle between pivots", "deg", [0.0, 110.0],
         ValueSource::Settable(|p| p.geometry.separation_rad.to_degrees(), |p, deg| p.geometry.separation_rad = deg.to_radians())),
 
-    SERVO.float(0x5450_0300, "position gain", "1/s", [0.0, 2_000.0], at!(servo.position_1_s)),
-    SERVO.float(0x5450_0301, "velocity gain", "V s/rad", [0.0, 500.0], at!(servo.velocity_v_s_rad)),
-    SERVO.float(0x5450_0302, "integral gain", "V/rad", [0.0, 200_000.0], at!(servo.integral_v_rad)),
     SERVO.float(0x5450_0303, "learning, share of the integral gain", "", [0.0, 20.0], at!(servo.learning)),
     SERVO.float(0x5450_0304, "learning of friction, share of learning", "", [0.0, 1.0], at!(servo.friction_learning)),
     SERVO.float(0x5450_0305, "latency from latch to duty", "s", [0.0, 1e-3], at!(servo.latency_s)),
+    SERVO.float(0x5450_0306, "inertia of a pivot and its share of the platform that velocity and integral gain are for, 0: the same gains everywhere", "kg m^2", [0.0, 10.0], at!(servo.scheduled_inertia_kg_m2)),
+    SERVO.float(0x5450_0308, "what rest leaves of the gains' rates, 1: there is no rest mode", "", [0.05, 1.0], at!(servo.rest.stiffness)),
+    SERVO.float(0x5450_0309, "time at rest after which they fall", "s", [0.0, 10.0], at!(servo.rest.delay_s)),
+    SERVO.float(0x5450_030A, "mean following error that brings the full gains back", "encoder counts", [1.0, 1_000.0], at!(servo.rest.wake_counts)),
+];
+#[rustfmt::skip]
+const AFTER_GAINS: &[Parameter] = &[
 
     WINDOW.float(0x5450_0400, "settling window", "encoder counts", [0.5, 1_000.0], at!(window.counts)),
     WINDOW.float(0x5450_0401, "settling dwell", "s", [5e-5, 10.0], at!(window.dwell_s)),
+    WINDOW.float(0x5450_0402, "time over whose mean the error is taken, at most 32 ticks", "s", [5e-5, 1.6e-3], at!(window.mean_s)),
 
     SUPERVISION.float(0x5450_0500, "largest following error", "rad", [2e-5, 0.2], at!(supervision.following_error_rad)),
     SUPERVISION.float(0x5450_0501, "lowest supply", "V", [6.0, 60.0], at!(supervision.supply_min_v)),
@@ -174,6 +214,7 @@ pub static PARAMETERS: &[Parameter] = &[
     SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 20.0],
         ValueSource::Settable(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
     SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
+    SUPERVISION.float(0x5450_0511, "swing of a servo's voltage that is an oscillation", "V", [0.5, 120.0], at!(supervision.oscillation_v)),
     Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of the host, 0 for any (HBT); heard is any connection where none has sent HBT", "ms", [0.0, MAX_DELAY_MS], at!(supervision.host_silence_ms)) },
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
@@ -190,19 +231,12 @@ pub static PARAMETERS: &[Parameter] = &[
     PLATFORM.float(0x5450_0704, "x of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[0])),
     PLATFORM.float(0x5450_0705, "y of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[1])),
 
-    DRIVE.float(0x5450_0800, "torque constant of a motor", "N m/A", [1e-3, 2.0], at!(drive.torque_constant_n_m_a)),
-    DRIVE.float(0x5450_0801, "motor turns per ring turn", "", [1.0, 1_000.0], at!(drive.gear_ratio)),
-    DRIVE.float(0x5450_0802, "winding resistance", "ohm", [0.05, 100.0], at!(drive.resistance_ohm)),
-    DRIVE.float(0x5450_0803, "winding inductance", "H", [1e-6, 0.1], at!(drive.inductance_h)),
-    DRIVE.float(0x5450_0804, "dead time of a leg", "s", [0.0, 2e-6], at!(drive.dead_time_s)),
-    DRIVE.float(0x5450_0805, "current from which the whole dead time counts", "A", [1e-3, 10.0], at!(drive.dead_time_knee_a)),
-    DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(drive.supply_v)),
-    DRIVE.float(0x5450_0807, "inertia of a ring with its drive", "kg m^2", [1e-5, 2.0], at!(drive.inertia_kg_m2)),
-    DRIVE.float(0x5450_0808, "viscous friction of a ring", "N m s/rad", [0.0, 5.0], at!(drive.viscous_n_m_s)),
-    DRIVE.float(0x5450_0809, "Coulomb friction of a ring", "N m", [0.0, 5.0], at!(drive.coulomb_n_m)),
-    DRIVE.float(0x5450_080A, "presliding of a ring", "rad", [1e-6, 0.1], at!(drive.presliding_rad)),
-    Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.drive.pwm_hz)) },
-    Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.drive.pwm_counts))) },
+];
+#[rustfmt::skip]
+const POWER: &[Parameter] = &[
+    DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(power.supply_v)),
+    Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.power.pwm_hz)) },
+    Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.power.pwm_counts))) },
 ];
 
 impl Parameter {

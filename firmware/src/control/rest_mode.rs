@@ -1,0 +1,175 @@
+//! Rest mode: with the setpoint at rest the loop becomes slower, and with a push or a motion it is the full one again.
+//!
+//! At full stiffness the loop answers the noise of the encoders, and hunts: friction lets go in time, the motor then floats in the gap of
+//! its transmission with a third of the inertia that the gains are for. A loop that is seven times as slow does neither. Velocity
+//! gain and position gain fall to the share s, and the rate of the integral to between s, with which all rates of the loop have the
+//! proportions that they have at full stiffness, and sqrt(s). The faster one keeps up with the creep of the friction, which shows as an
+//! error that stays; but in a gap of 2 urad it hunts, which shows as none. So it is the faster one as long as an error stays.
+//! Everything changes over many ticks: no step in duty.
+
+use crate::parameters::Parameters;
+
+/// Time constants with which the loop becomes slower, and its integral slower and faster.
+const SOFTENING_S: f64 = 0.2;
+const SLACKENING_S: f64 = 1.0;
+const QUICKENING_S: f64 = 0.2;
+/// Error that lasts for about this time, encoder counts.
+const LASTING_COUNTS: f64 = 0.75;
+const LASTING_S: f64 = 0.2;
+/// Time in which it is the full one again.
+const STIFFENING_S: f64 = 5e-4;
+/// Mean error that counts as rest, of the one that wakes: a push that lasts does not send the loop to and fro.
+const QUIET_SHARE: f64 = 0.5;
+/// For this, over a longer mean: the full loop's hunting, 300 to 700 Hz, is no push.
+const SMOOTHING_S: f64 = 0.01;
+/// While the loop becomes slow it may still hunt: a push is what is so much larger.
+const HUNTING: f64 = 5.0;
+/// Units of an encoder count.
+pub(super) const UNITS_PER_COUNT: f64 = 64.0;
+
+/// Constants of rest mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestModeConfig {
+    delay_ticks: u32,
+    /// Sums of errors over the settling mean, 2^-32 turns: those that wake while the loop is not quite slow and when it is, and
+    /// that which keeps it from becoming slow.
+    wake_sums: [u32; 2],
+    quiet_sum: f32,
+    /// Share of the way to a new sum that the smoothed one goes in a tick.
+    smoothing: f32,
+    /// Shares at rest, and what is left of them after a tick.
+    stiffness: f32,
+    softening: f32,
+    integral_softening: f32,
+    /// Share of the integral's rate where an error lasts, how the rate gets there and away from there in a tick, and what an error
+    /// is that lasts.
+    fast_integral_rate: f32,
+    quickening: f32,
+    slackening: f32,
+    lasting_sum: f32,
+    lasting_smoothing: f32,
+    /// What of full shares comes back in a tick.
+    stiffening: f32,
+}
+
+impl RestModeConfig {
+    /// Derives the constants; the mean is over so many ticks.
+    pub fn new(parameters: &Parameters, mean_ticks: usize) -> Self {
+        let rate_hz = parameters.limits.rate_hz;
+        let rest = &parameters.servo.rest;
+        let wake_sum = rest.wake_counts * UNITS_PER_COUNT * mean_ticks as f64;
+        let decay = |time_s: f64| libm::exp(-1.0 / (time_s * rate_hz)) as f32;
+        Self {
+            delay_ticks: libm::ceil(rest.delay_s * rate_hz) as u32,
+            wake_sums: [HUNTING * wake_sum, wake_sum].map(|sum| sum as u32),
+            quiet_sum: (wake_sum * QUIET_SHARE) as f32,
+            smoothing: (1.0 / (SMOOTHING_S * rate_hz)) as f32,
+            stiffness: rest.stiffness as f32,
+            softening: decay(SOFTENING_S),
+            integral_softening: decay(2.0 * SOFTENING_S),
+            fast_integral_rate: libm::sqrt(rest.stiffness) as f32,
+            quickening: 1.0 / decay(QUICKENING_S),
+            slackening: decay(SLACKENING_S),
+            lasting_sum: (LASTING_COUNTS * UNITS_PER_COUNT * mean_ticks as f64) as f32,
+            lasting_smoothing: (1.0 / (LASTING_S * rate_hz)) as f32,
+            stiffening: (1.0 / (STIFFENING_S * rate_hz)) as f32,
+        }
+    }
+}
+
+/// What is in force of the gains in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    /// Share of velocity gain and position gain, 0 to 1.
+    pub gains: f32,
+    /// Share of the integral's rate.
+    pub integral_rate: f32,
+}
+
+impl Stiffness {
+    /// The full loop.
+    pub const FULL: Self = Self {
+        gains: 1.0,
+        integral_rate: 1.0,
+    };
+}
+
+impl Default for Stiffness {
+    fn default() -> Self {
+        Self::FULL
+    }
+}
+
+/// State of rest mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RestMode {
+    /// Sums of the pivots' errors over the settling mean, smoothed, and smoothed for longer.
+    slow_sums: [f32; 3],
+    lasting_sums: [f32; 3],
+    quiet_ticks: u32,
+    stiffness: Stiffness,
+}
+
+impl RestMode {
+    /// What is in force of the gains in this tick. Takes the sums of the following errors over the settling mean, 2^-32
+    /// turns.
+    #[inline]
+    pub fn update(&mut self, config: &RestModeConfig, moving: bool, sums: &[i32; 3]) -> Stiffness {
+        if moving {
+            (self.slow_sums, self.lasting_sums) = ([0.0; 3], [0.0; 3]);
+            self.stiffen(config);
+            return self.stiffness;
+        }
+        let (mut fast, mut slow, mut lasting) = (0, 0.0_f32, 0.0_f32);
+        for i in 0..3 {
+            let sum = &mut self.slow_sums[i];
+            *sum += (sums[i] as f32 - *sum) * config.smoothing;
+            slow = slow.max(sum.abs());
+            let lasting_sum = &mut self.lasting_sums[i];
+            *lasting_sum += (*sum - *lasting_sum) * config.lasting_smoothing;
+            lasting = lasting.max(lasting_sum.abs());
+            fast = sums[i].unsigned_abs().max(fast);
+        }
+        let is_soft = self.stiffness.gains <= config.stiffness;
+        if fast > config.wake_sums[usize::from(is_soft)] {
+            self.stiffen(config);
+        } else if slow > config.quiet_sum {
+            self.quiet_ticks = 0;
+        } else if self.quiet_ticks < config.delay_ticks {
+            self.quiet_ticks += 1;
+        } else {
+            self.soften(config, lasting > config.lasting_sum);
+        }
+        self.stiffness
+    }
+
+    fn soften(&mut self, config: &RestModeConfig, lasts: bool) {
+        let Stiffness {
+            gains,
+            integral_rate,
+        } = &mut self.stiffness;
+        *gains = (*gains * config.softening).max(config.stiffness);
+        *integral_rate = if *integral_rate > config.fast_integral_rate {
+            *integral_rate * config.integral_softening
+        } else if lasts {
+            (*integral_rate * config.quickening).min(config.fast_integral_rate)
+        } else {
+            (*integral_rate * config.slackening).max(config.stiffness)
+        };
+    }
+
+    fn stiffen(&mut self, config: &RestModeConfig) {
+        self.quiet_ticks = 0;
+        let Stiffness {
+            gains,
+            integral_rate,
+        } = &mut self.stiffness;
+        *gains = (*gains + config.stiffening).min(1.0);
+        *integral_rate = (*integral_rate + config.stiffening).min(1.0);
+    }
+
+    /// The full loop, from now on.
+    pub fn restart(&mut self) {
+        *self = Self::default();
+    }
+}

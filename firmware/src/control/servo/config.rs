@@ -1,0 +1,179 @@
+//! Constants of the servo, derived from the parameters.
+
+use super::filter::FilterConfig;
+use super::inertia::carried_inertia;
+use super::platform_torque::Body;
+use super::ripple::RippleConfig;
+use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::parameters::Parameters;
+
+/// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
+pub(super) const FEATURES: usize = 3;
+
+/// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
+const MAX_DUTY: f64 = 0.98;
+/// Encoder's resolution, 2^-26 turns.
+const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
+/// Counts of change in a tick whose voltage a frozen encoder's drive must exceed, and of which an oscillation's swing must be worth
+/// more: what noise does not reach.
+const FROZEN_COUNTS: f64 = 6.0;
+const OSCILLATION_COUNTS: f64 = 25.0;
+/// Time constant with which the measured current corrects the motor constant.
+const MOTOR_CONSTANT_S: f64 = 0.01;
+/// Torque at which its signal is 1, N m: what the reference motion asks for.
+const TORQUE_SCALE_N_M: f64 = 6.0;
+
+/// Constants of the servo.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ServoConfig {
+    /// What the pivots carry.
+    pub body: Body,
+    /// Loops and drives, pivot by pivot.
+    pub pivots: [PivotServoConfig; 3],
+    /// Share of velocity gain and integral gain for each kg m^2 that a pivot moves, where they are scheduled.
+    gains_per_inertia: Option<f32>,
+    /// PWM counts a volt where the supply reads one ADC count.
+    counts_per_volt_at_one_count: f32,
+}
+
+/// Constants of one pivot's servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PivotServoConfig {
+    /// Of the following error's change in a tick and of the error itself (2^-32 turns, measured minus setpoint) to r.
+    pub(super) rate_gain: f32,
+    pub(super) position_gain: f32,
+    pub(super) velocity_gain: f32,
+    pub(super) integral_gain: f32,
+    pub(super) filters: FilterConfig,
+    pub(super) ripple: RippleConfig,
+    pub(super) learning_gains: [f32; FEATURES],
+    pub(super) inertia: f32,
+    /// Volts a signal asks for by the model: viscous friction's per rad/s, per torque, Coulomb friction's.
+    pub(super) model_weights: [f32; FEATURES],
+    /// Back-EMF.
+    pub(super) volt_per_rate: f32,
+    /// Ticks by which torque and friction look ahead: latency and the winding's time constant.
+    pub(super) lead_ticks: f32,
+    pub(super) latency_s: f32,
+    /// Presliding lengths a tick, for a rate of 1 rad/s.
+    pub(super) presliding_per_rate: f32,
+    /// Current over the dead time's knee, for a volt at rest.
+    pub(super) knee_currents_per_volt: f32,
+    /// Current over the knee of an ADC count; share of what the current is off by that the motor constant is corrected by, in volts.
+    pub(super) knee_currents_per_count: f32,
+    pub(super) motor_constant_step: f32,
+    pub(super) motor_constant_limit: f32,
+    /// Share of the way to its final value that the current goes in a tick.
+    pub(super) current_step: f32,
+    /// What the dead time takes of a pulse, PWM counts.
+    pub(super) dead_time_counts: f32,
+    /// Largest duty, PWM counts.
+    pub(super) max_counts: f32,
+    /// Change of the duty that must change a reading, PWM counts.
+    pub(in crate::control) frozen_duty: u16,
+    /// Swing of the feedback that is an oscillation, V.
+    pub(in crate::control) oscillation_swing: f32,
+    /// Anti-windup: largest size of the integral, V.
+    pub(super) integral_limit: f32,
+    pub(super) learnt_weight_limit: [f32; FEATURES],
+}
+
+impl ServoConfig {
+    /// Derives the constants.
+    pub fn new(parameters: &Parameters) -> Self {
+        let power = &parameters.power;
+        let scheduled = parameters.servo.scheduled_inertia_kg_m2;
+        Self {
+            body: Body::new(parameters),
+            pivots: [0, 1, 2].map(|pivot| PivotServoConfig::new(parameters, pivot)),
+            gains_per_inertia: (scheduled > 0.0).then_some((1.0 / scheduled) as f32),
+            counts_per_volt_at_one_count: (f64::from(power.pwm_counts) / SUPPLY_V_PER_COUNT) as f32,
+        }
+    }
+
+    /// The share of a pivot's velocity gain and integral gain for what it moves with its guides so long and at such angles;
+    /// `None` where the gains are the same everywhere.
+    #[inline]
+    pub fn scheduled_share(
+        &self,
+        lengths: &[f32; 3],
+        cosines: &[f32; 3],
+        pivot: usize,
+    ) -> Option<f32> {
+        let per_inertia = self.gains_per_inertia?;
+        let ring = self.pivots.get(pivot)?.inertia;
+        Some(per_inertia * (ring + carried_inertia(&self.body, lengths, cosines, pivot)))
+    }
+
+    /// PWM counts per volt at a measured supply (ADC counts). A supply that reads as nothing gives no drive.
+    #[inline]
+    pub fn counts_per_volt(&self, supply_counts: f32) -> f32 {
+        if supply_counts < 1.0 {
+            0.0
+        } else {
+            self.counts_per_volt_at_one_count / supply_counts
+        }
+    }
+}
+
+impl PivotServoConfig {
+    fn new(parameters: &Parameters, pivot: usize) -> Self {
+        let Parameters {
+            servo,
+            limits,
+            power,
+            supervision,
+            ..
+        } = parameters;
+        let (drive, gains) = (&parameters.drives[pivot], &servo.gains[pivot]);
+        let period_s = 1.0 / limits.rate_hz;
+        let torque_per_ampere = drive.torque_constant_n_m_a * drive.gear_ratio;
+        let volt_per_torque = drive.resistance_ohm / torque_per_ampere;
+        // What makes each signal about 1 is taken into its weight: gains carry it twice, limits once.
+        let scale = [1.0 / limits.pivot_rate_rad_s, 1.0 / TORQUE_SCALE_N_M, 1.0];
+        let share = [1.0, 1.0, servo.friction_learning];
+        // By the volt that the integral has collected.
+        let learning = servo.learning;
+        let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
+        let rad_per_unit = 1.0 / UNITS_PER_RAD;
+        let full = f64::from(power.pwm_counts);
+        // What a change of one count in a tick is worth grows with the gain, and the thresholds with it.
+        let filters = FilterConfig::new(&servo.filters[pivot], limits.rate_hz);
+        let volt_per_count =
+            gains.velocity_v_s_rad * f64::from(filters.noise_gain()) * COUNT_RAD * limits.rate_hz;
+        let frozen_v = supervision.frozen_v.max(FROZEN_COUNTS * volt_per_count);
+        let oscillation_v = supervision
+            .oscillation_v
+            .max(OSCILLATION_COUNTS * volt_per_count);
+        Self {
+            rate_gain: (-limits.rate_hz * rad_per_unit) as f32,
+            position_gain: (-gains.position_1_s * rad_per_unit) as f32,
+            velocity_gain: gains.velocity_v_s_rad as f32,
+            integral_gain: (gains.integral_v_rad * period_s) as f32,
+            filters,
+            ripple: RippleConfig::new(&servo.ripple[pivot].harmonics, drive, servo.latency_s),
+            learning_gains: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
+            inertia: drive.inertia_kg_m2 as f32,
+            model_weights: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
+                .map(|torque| (volt_per_torque * torque) as f32),
+            volt_per_rate: torque_per_ampere as f32,
+            lead_ticks: (torque_lead_s * limits.rate_hz) as f32,
+            latency_s: servo.latency_s as f32,
+            presliding_per_rate: (period_s / drive.presliding_rad) as f32,
+            knee_currents_per_volt: (1.0 / (drive.resistance_ohm * drive.dead_time_knee_a)) as f32,
+            knee_currents_per_count: (CURRENT_A_PER_COUNT / drive.dead_time_knee_a) as f32,
+            motor_constant_step: (period_s / MOTOR_CONSTANT_S
+                * drive.resistance_ohm
+                * drive.dead_time_knee_a) as f32,
+            motor_constant_limit: (0.5 * torque_per_ampere) as f32,
+            current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
+                as f32,
+            dead_time_counts: (drive.dead_time_s * power.pwm_hz * full) as f32,
+            max_counts: (MAX_DUTY * full) as f32,
+            frozen_duty: (frozen_v / power.supply_v * full).min(full) as u16,
+            oscillation_swing: oscillation_v as f32,
+            integral_limit: (power.supply_v * 0.5) as f32,
+            learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
+        }
+    }
+}
