@@ -141,42 +141,17 @@ impl Spread {
 }
 
 fn stage(case: &Case) -> (StageParameters, Parameters) {
-    let mut options = RunOptions {
+    let options = RunOptions {
         mismatch_percent: case.mismatch_percent,
         payload_kg: case.payload_kg,
         ..RunOptions::default()
     };
-    if let Ok(x) = std::env::var("NO") {
-        let on = &mut options.imperfections;
-        if x.contains("dead") {
-            on.dead_time = false;
-        }
-        if x.contains("fric") {
-            on.dry_friction = false;
-        }
-        if x.contains("lash") {
-            on.backlash = false;
-        }
-        if x.contains("pwm") {
-            on.pwm_quantisation = false;
-        }
-        if x.contains("ripple") {
-            on.torque_ripple = false;
-        }
-    }
     let mut stage = stage_parameters(&options);
     stage.plant.backlash_rad = case.backlash_urad * 1e-6;
     for encoder in &mut stage.encoders {
         encoder.noise_rad = case.noise_nrad * 1e-9;
     }
-    let mut parameters = controller_parameters(&options);
-    if let Ok(x) = std::env::var("STIFF") {
-        parameters.servo.rest.stiffness = x.parse().unwrap();
-    }
-    if let Ok(x) = std::env::var("WAKE") {
-        parameters.servo.rest.wake_counts = x.parse().unwrap();
-    }
-    (stage, parameters)
+    (stage, controller_parameters(&options))
 }
 
 fn watch(case: &Case, seconds: u64) -> Quiet {

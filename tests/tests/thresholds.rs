@@ -12,6 +12,7 @@ const LARGEST_RATE: u32 = 0x5450_0106;
 const OVERSPEED: u32 = 0x5450_0505;
 const FROZEN: u32 = 0x5450_0506;
 const FROZEN_V: u32 = 0x5450_0507;
+const OSCILLATION: u32 = 0x5450_0511;
 const AT_END: u32 = 0x5450_0508;
 const MOTOR_CURRENT: u32 = 0x5450_0509;
 const MOTOR_HEATING: u32 = 0x5450_050A;
@@ -191,7 +192,9 @@ fn a_servo_that_is_switched_on_starts_anew() {
 
 #[test]
 fn a_new_reading_ends_the_time_that_an_encoder_is_driven() {
-    let mut bench = Bench::turning(&[(FROZEN, 1.0), (FROZEN_V, 0.1)], 1.5);
+    // What comes of it is an oscillation, too.
+    let limits = [(FROZEN, 1.0), (FROZEN_V, 0.5), (OSCILLATION, 120.0)];
+    let mut bench = Bench::turning(&limits, 1.5);
     for _ in 0..20 {
         freeze(&mut bench, true);
         bench.run(15);

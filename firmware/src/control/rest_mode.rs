@@ -4,7 +4,8 @@
 //! its transmission with a third of the inertia that the gains are for. A loop that is seven times as slow does neither. Velocity
 //! gain and position gain fall to the share s, and the rate of the integral to between s, with which all rates of the loop have the
 //! proportions that they have at full stiffness, and sqrt(s). The faster one keeps up with the creep of the friction, which shows as an
-//! error that stays; but in a gap of 2 urad it hunts, which shows as none. So it is the faster one as long as an error stays.
+//! error that stays; but in a gap of 2 urad it hunts, which shows as none. So it is the faster one as long as an error stays; and where
+//! none does, the gains fall a little further, for a motor that no torque holds to one side of its gap.
 //! Everything changes over many ticks: no step in duty.
 
 use crate::parameters::Parameters;
@@ -13,8 +14,10 @@ use crate::parameters::Parameters;
 const SOFTENING_S: f64 = 0.2;
 const SLACKENING_S: f64 = 1.0;
 const QUICKENING_S: f64 = 0.2;
+/// What is left of the gains at rest where no error lasts.
+const SLACK: f64 = 0.6;
 /// Error that lasts for about this time, encoder counts.
-const LASTING_COUNTS: f64 = 0.75;
+const LASTING_COUNTS: f64 = 0.3;
 const LASTING_S: f64 = 0.2;
 /// Time in which it is the full one again.
 const STIFFENING_S: f64 = 5e-4;
@@ -39,6 +42,7 @@ pub struct RestModeConfig {
     smoothing: f32,
     /// Shares at rest, and what is left of them after a tick.
     stiffness: f32,
+    slack_stiffness: f32,
     softening: f32,
     integral_softening: f32,
     /// Share of the integral's rate where an error lasts, how the rate gets there and away from there in a tick, and what an error
@@ -65,6 +69,11 @@ impl RestModeConfig {
             quiet_sum: (wake_sum * QUIET_SHARE) as f32,
             smoothing: (1.0 / (SMOOTHING_S * rate_hz)) as f32,
             stiffness: rest.stiffness as f32,
+            slack_stiffness: if rest.stiffness < 1.0 {
+                (SLACK * rest.stiffness) as f32
+            } else {
+                1.0
+            },
             softening: decay(SOFTENING_S),
             integral_softening: decay(2.0 * SOFTENING_S),
             fast_integral_rate: libm::sqrt(rest.stiffness) as f32,
@@ -148,7 +157,13 @@ impl RestMode {
             gains,
             integral_rate,
         } = &mut self.stiffness;
-        *gains = (*gains * config.softening).max(config.stiffness);
+        *gains = if *gains > config.stiffness {
+            (*gains * config.softening).max(config.stiffness)
+        } else if lasts {
+            (*gains * config.quickening).min(config.stiffness)
+        } else {
+            (*gains * config.slackening).max(config.slack_stiffness)
+        };
         *integral_rate = if *integral_rate > config.fast_integral_rate {
             *integral_rate * config.integral_softening
         } else if lasts {
