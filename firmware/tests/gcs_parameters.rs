@@ -148,6 +148,7 @@ fn level_and_state_that_setting_needs() {
         assert_eq!(bench.say("MOV W 20\n"), "");
         assert_eq!(bench.error_after(&line), "53", "{line}");
         assert_eq!(bench.error_after("SVO X 0"), "0");
+        bench.run_to_rest();
         assert_eq!(bench.error_after(&line), "0", "{line}");
         assert_eq!(bench.error_after("CCL 0"), "0");
         assert_eq!(bench.error_after(&line), at_level_0, "{line}");

@@ -10,9 +10,11 @@ pub const FAULT_RECORD_ROWS: usize = 256;
 pub const ROWS_AFTER_FAULT: u32 = 64;
 /// Events that are kept.
 pub const RETAINED_EVENTS: usize = 64;
+/// Faults that are kept besides, however much else happens after them.
+pub const RETAINED_FAULTS: usize = 8;
 
 /// Another one for each layout of the memory.
-pub(super) const LAYOUT_MAGIC: u32 = 0x5458_0001;
+pub(super) const LAYOUT_MAGIC: u32 = 0x5458_0002;
 
 /// The memory. All zero at first, and any content at all is a valid one.
 pub struct RetainedMemory {
@@ -22,6 +24,7 @@ pub struct RetainedMemory {
     /// The fault record is complete and not overwritten before the servo is on.
     pub(super) frozen: AtomicU32,
     pub(crate) events: CheckedEntries<RETAINED_EVENTS, { EVENT_WORDS }>,
+    pub(crate) faults: CheckedEntries<RETAINED_FAULTS, { EVENT_WORDS }>,
     pub(super) rows: CheckedEntries<FAULT_RECORD_ROWS, { row::WORDS }>,
 }
 
@@ -34,6 +37,7 @@ impl RetainedMemory {
             start: AtomicU32::new(0),
             frozen: AtomicU32::new(0),
             events: CheckedEntries::new(),
+            faults: CheckedEntries::new(),
             rows: CheckedEntries::new(),
         }
     }

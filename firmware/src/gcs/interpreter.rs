@@ -1,9 +1,12 @@
 //! What all connections share.
 
+use super::connections::Connections;
 use super::error::ErrorCode;
 use super::events::EventLog;
 use super::heartbeat::Heartbeat;
+use super::jog::Jogs;
 use super::macros::Macros;
+use super::ownership::Ownership;
 use super::persistence::Persistence;
 use super::recorder::RecorderState;
 use super::statistics::Statistics;
@@ -38,6 +41,9 @@ pub struct Interpreter {
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
     pub(super) heartbeat: Heartbeat,
+    pub(super) connections: Connections,
+    pub(super) jogs: Jogs,
+    pub(super) ownership: Ownership,
     pub(super) wants_restart: bool,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
@@ -60,6 +66,9 @@ impl Interpreter {
             events: EventLog::new(),
             statistics: Statistics::default(),
             heartbeat: Heartbeat::default(),
+            connections: Connections::default(),
+            jogs: Jogs::default(),
+            ownership: Ownership::default(),
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),

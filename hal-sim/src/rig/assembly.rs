@@ -132,6 +132,11 @@ impl<'a, F: Front> Rig<'a, F> {
             .service(session, &mut self.command_queues, replies)
     }
 
+    /// A connection has ended; what was its own ends with it.
+    pub fn disconnect(&mut self, session: &mut Session) {
+        self.interpreter.disconnect(session);
+    }
+
     /// What the command side does with no connection there: a macro goes on.
     pub fn advance(&mut self) {
         self.interpreter.advance(&mut self.command_queues);
