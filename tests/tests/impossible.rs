@@ -10,6 +10,7 @@ use hal_sim::machine::devices::StageParameters;
 use tests::Bench;
 
 const HALF_TURN_COUNTS: u32 = 1 << 25;
+const COUNTS_PER_TURN: u32 = 1 << 26;
 
 /// A stage whose first encoder is mounted the wrong way round: to the controller, pivot 1 stands on the far side.
 #[test]
@@ -27,7 +28,16 @@ fn pivots_that_are_no_pose_cannot_be_referenced() {
 #[test]
 fn a_pose_out_of_reach_is_no_reference_and_is_told() {
     let mut stage = StageParameters::REFERENCE;
-    stage.encoders.swap(0, 1);
+    // The pivots stand a third of a turn apart.
+    for (encoder, is_ahead) in stage.encoders.iter_mut().zip([true, false]) {
+        let third = COUNTS_PER_TURN / 3;
+        let counts = if is_ahead != encoder.reversed {
+            third
+        } else {
+            COUNTS_PER_TURN - third
+        };
+        encoder.zero_counts = (encoder.zero_counts + counts) % COUNTS_PER_TURN;
+    }
     let mut bench = Bench::new(&stage);
     assert_eq!(bench.error_after("FRF"), "4003");
     let events = bench.say("EVT?\n");
