@@ -158,7 +158,7 @@ fn statistics_add_up_and_start_again() {
     assert_eq!(
         rest,
         format!(
-            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0\n"
+            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \nLOOSENED=0\n"
         )
     );
     // The peak since it was told; the rest since `LST`.

@@ -33,6 +33,8 @@ pub struct Interpreter {
     /// Limits of motion that the stage was set up for, and those that level 1 has set over them.
     pub(super) rated_limits: Limits,
     pub(super) commander: Commander,
+    /// Thresholds of supervision that are looser than the reference, as was told last.
+    pub(super) loosened: u16,
     /// Why the controller started, if that is worth telling.
     pub(super) start_cause: Option<&'static str>,
     /// Times everything was stopped.
@@ -61,6 +63,7 @@ impl Interpreter {
             previous_parameters: parameters.clone(),
             rated_limits: parameters.limits,
             commander: Commander::new(parameters),
+            loosened: 0,
             stops: 0,
             recorder_state: RecorderState::new(),
             events: EventLog::new(),

@@ -2,7 +2,7 @@
 
 use super::interpreter::Interpreter;
 use super::output::{Output, WriteFailed};
-use super::parameter::parameter_help;
+use super::parameter::{loosened, parameter_help};
 use super::reply_writer::{ReplyWriter, one_line};
 use super::request::{Property, Query};
 use super::session::Session;
@@ -148,6 +148,7 @@ impl Interpreter {
             if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
+            self.reply_looseness(&mut reply)?;
             return reply.end();
         }
         let mut reply = ReplyWriter::new(out);
@@ -162,7 +163,17 @@ impl Interpreter {
                 reply.line(format_args!("{}, pivot {pivot}", kind.text()))?;
             }
         }
+        self.reply_looseness(&mut reply)?;
         reply.end()
+    }
+
+    /// A line for each threshold of supervision that is looser than the reference.
+    fn reply_looseness(&self, reply: &mut ReplyWriter<'_>) -> Result<(), WriteFailed> {
+        for parameter in loosened(&self.parameters) {
+            let (id, text) = (parameter.id, parameter.text);
+            reply.line(format_args!("looser than the reference: 0x{id:X}, {text}"))?;
+        }
+        Ok(())
     }
 }
 

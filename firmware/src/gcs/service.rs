@@ -53,6 +53,9 @@ impl Interpreter {
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
+            if let Some(retained_memory) = queues.retained_memory {
+                retained_memory.keep_motor_heat(&snapshot.motor_heat);
+            }
             self.commander.update(snapshot);
         }
         if let Some(retained_memory) = queues.retained_memory {

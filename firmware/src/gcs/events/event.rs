@@ -41,6 +41,8 @@ pub(in crate::gcs) enum Event {
     Recalled,
     /// `SVO 1` came before the reference, which is what switches the servo on.
     ServoBeforeReference,
+    /// So many thresholds of supervision are looser than the reference.
+    SupervisionLoosened(u16),
     /// `FRF` found a pose that the stage can not take: mm, mm, deg.
     PoseOutside([f32; 3]),
     /// So many parameters are stored that this firmware does not know.
@@ -70,6 +72,13 @@ impl fmt::Display for Event {
                 write!(f, "settings could not be kept, error {number}")
             }
             Self::Recalled => f.write_str("parameters as they are kept"),
+            Self::SupervisionLoosened(0) => f.write_str("supervision as in the reference again"),
+            Self::SupervisionLoosened(count) => {
+                write!(
+                    f,
+                    "supervision looser than the reference: {count} thresholds"
+                )
+            }
             Self::PoseOutside([x, y, w]) => {
                 write!(
                     f,

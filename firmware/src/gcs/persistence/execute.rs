@@ -98,6 +98,7 @@ impl Interpreter {
         self.parameters.clone_from(&parameters);
         self.previous_parameters.clone_from(&parameters);
         self.persistence.stored = parameters;
+        self.note_looseness();
         if unknown > 0 {
             self.events.add(0, Event::UnknownParameters(unknown));
         }
