@@ -52,7 +52,7 @@ const TAIL: &str = "
 | what | what happens |
 |---|---|
 | an encoder's warning bit | an event (`EVT?`) when it begins and when it ends; the position is good |
-| no host heard for longer than `HBT` or parameter 0x54500510 allow: none of the connections that have sent `HBT`, or, where none has, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
+| no host heard for longer than `HBT` or parameter 0x54500510 allow: one of the connections that have sent `HBT`, or, for the parameter, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
 | the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
 | a restart by the watchdog, a panic or a dip of the supply | found at the next start: `FLT?` and `EVT?` tell it; the motors are off and the reference is gone |
 ";

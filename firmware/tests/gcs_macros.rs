@@ -410,6 +410,7 @@ fn a_fault_ends_it_and_an_old_one_does_not() {
     finish(&mut bench);
     assert_eq!(bench.say("MAC ERR?\n"), "m 2=1024 <WAC ONT? X = 1>\n");
     assert_eq!(bench.say("ERR?\nERR?\n"), "1024\n0\n");
+    bench.run_to_rest();
     assert_eq!(bench.error_after("MAC START again"), "0");
     finish(&mut bench);
     assert_eq!(bench.say("MAC ERR?\nMOV? X\n"), "\nX=1\n");

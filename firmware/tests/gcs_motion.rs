@@ -191,10 +191,10 @@ fn a_stop_overrides_a_halt_that_is_on_its_way() {
 }
 
 #[test]
-fn stops_at_rest_only_say_so() {
+fn stops_at_rest_do_nothing_and_say_nothing() {
     let mut bench = Bench::ready();
     for stop in ["HLT", "STP", "\x18"] {
-        assert_eq!(bench.error_after(stop), "10");
+        assert_eq!(bench.error_after(stop), "0");
     }
     assert!(bench.tick.log.is_empty());
     assert_eq!(bench.error_after("MOV X 1"), "0");
@@ -235,15 +235,28 @@ fn a_stop_too_late_for_its_splice_is_planned_again() {
 }
 
 #[test]
-fn servo_off_drops_the_motion() {
+fn servo_off_stops_the_motion_on_its_path_before_it_lets_go() {
     let mut bench = Bench::ready();
+    let other = bench.connect();
     bench.say("MOV X 60\n");
     bench.run(1_000);
-    bench.say("MOV X -60\nSVO X 0\n");
+    bench.say("MOV X -60\n");
+    assert_eq!(bench.say_to(other, "SVO X 0\nERR?\n"), "0\n");
+    // Still on, still on its path, and it takes nothing else.
+    assert_eq!(bench.say("SVO? X\n"), "X=1\n");
+    assert_ne!(bench.say("\x05"), "0\n");
+    // The mover is told, once.
+    assert_eq!(bench.say("ERR?\nERR?\n"), "10\n0\n");
+    assert_eq!(bench.error_after("MOV X 1"), "5");
+    bench.run_to_rest();
+    bench.run(3);
     assert_eq!(
         bench.say("SVO?\n\x05"),
         "X=0 \nY=0 \nZ=0 \nU=0 \nV=0 \nW=0\n0\n"
     );
+    assert_eq!(bench.tick.log.last(), Some(&"off"));
+    // What the hardest stop makes of a tick, and no more: 14,400 deg/s^2.
+    assert!(bench.tick.worst_jump < 0.0127, "{}", bench.tick.worst_jump);
     assert_eq!(bench.error_after("MOV X 1"), "5");
     bench.say("SVO X 1 Y 1 W 1\n");
     let at = bench.value("POS? X");
@@ -275,22 +288,87 @@ fn a_fault_drops_what_was_pending() {
     bench.say("MOV X -60\n");
     bench.tick.fail(FaultKind::BridgeFault, Some(0));
     bench.run(1);
-    assert_eq!(bench.say("\x05ERR?\n"), "0\n1024\n");
+    assert_eq!(bench.say("\x05ERR?\n"), "1\n1024\n");
+    // What the motors have let go of goes on, and is shown as motion until it rests.
+    bench.run_to_rest();
+    let at = bench.value("POS? X");
+    bench.run(100);
+    assert!((bench.value("POS? X") - at).abs() < 1e-6);
     bench.say("FLC\nSVO X 1\n");
     bench.run(5_000);
     assert_eq!(bench.say("\x05ERR?\n"), "0\n0\n");
-    assert!(bench.value("POS? X") > 0.0);
+    assert!((bench.value("POS? X") - at).abs() < 1e-6);
+}
+
+#[test]
+fn a_fault_is_shown_as_motion_for_long_enough_to_be_asked_for() {
+    let mut bench = Bench::ready();
+    bench.run(1_000);
+    bench.say("MOV X 1\n");
+    while bench.tick.now.mode != Mode::Holding {
+        bench.run(1);
+    }
+    bench.tick.fail(FaultKind::BridgeFault, Some(0));
+    // 100 ms, though the stage rests at once: clients ask for errors only while something moves.
+    bench.run(1_990);
+    assert_eq!(bench.say("\x05ERR?\n"), "1\n1024\n");
+    bench.run(20);
+    assert_eq!(bench.say("\x05"), "0\n");
+    // A fault at rest ends no motion.
+    bench.say("FLC\nSVO X 1\n");
+    bench.run(1_000);
+    bench.tick.fail(FaultKind::BridgeFault, Some(0));
+    bench.run(1);
+    assert_eq!(bench.say("\x05"), "0\n");
 }
 
 #[test]
 fn velocity_scales_all_of_a_move() {
     let mut bench = Bench::ready();
     assert_eq!(bench.say("VLS?\nVLS 20\nVLS?\nERR?\n"), "200\n20\n0\n");
-    bench.say("MOV W 90\n");
+    bench.say("MOV X 40 W 720\n");
     bench.run(20_000);
     // A tenth of 360 deg/s.
     let w = bench.value("POS? W");
     assert!((w - 36.0).abs() < 0.276, "{w}");
+}
+
+/// How fast a move is at its fastest, deg/s.
+fn peak_deg_s(bench: &mut Bench, line: &str) -> f64 {
+    bench.say(line);
+    let mut peak = 0.0_f64;
+    while bench.say("\x05") != "0\n" {
+        let before = bench.tick.now.setpoint[2];
+        bench.run(20);
+        let turns = (bench.tick.now.setpoint[2] - before) as f64 / 4_294_967_296.0;
+        peak = peak.max(turns.abs() * 360.0 / 1e-3);
+    }
+    peak
+}
+
+#[test]
+fn velocity_of_a_move_that_only_turns_is_in_degrees() {
+    let mut bench = Bench::ready();
+    // As the parameters have it until somebody says otherwise.
+    let peak = peak_deg_s(&mut bench, "MOV W 360\n");
+    assert!((peak - 360.0).abs() < 0.4, "{peak}");
+    for (velocity, expected) in [(90.0, 90.0), (200.0, 200.0), (20.0, 20.0)] {
+        bench.say(&format!("VLS {velocity}\n"));
+        let target = 360.0 + velocity;
+        let peak = peak_deg_s(&mut bench, &format!("MOV W {target}\n"));
+        assert!((peak - expected).abs() < 0.4, "{velocity}: {peak}");
+        // A new target in the middle keeps to it too.
+        bench.say("MOV W 0\n");
+        bench.run(4_000);
+        let peak = peak_deg_s(&mut bench, &format!("MOV W {}\n", -velocity));
+        assert!((peak - expected).abs() < 0.4, "{velocity}: {peak}");
+        assert_eq!(bench.say("VLS?\n"), format!("{velocity}\n"));
+    }
+    // Under its own limit all the same.
+    assert_eq!(bench.error_after("VEL W 10\nMOV W 0"), "0");
+    bench.run_to_rest();
+    let peak = peak_deg_s(&mut bench, "MOV W 20\n");
+    assert!((peak - 10.0).abs() < 0.4, "{peak}");
 }
 
 #[test]

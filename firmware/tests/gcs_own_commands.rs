@@ -63,15 +63,36 @@ fn events_are_told_in_order_with_their_ticks() {
 #[test]
 fn the_oldest_event_goes_and_the_numbers_tell_it() {
     let mut bench = Bench::new();
-    for _ in 0..100 {
-        bench.say("STP\n");
+    for _ in 0..50 {
+        bench.say("STP\nHLT\n");
     }
     let events = events(&mut bench);
     assert_eq!(events.len(), 64);
     assert_eq!(
         (&*events[0], &*events[63]),
-        ("38 stopped by command", "101 stopped by command")
+        ("38 stopped by command", "101 halted by command")
     );
+}
+
+#[test]
+fn stops_do_not_wash_a_fault_out_of_the_events() {
+    let mut bench = Bench::ready();
+    bench.tick.fail(FaultKind::FollowingError, Some(1));
+    bench.run(1);
+    let fault = "4 fault: following error too large, pivot 2: 3e-3 rad, limit 2e-3 rad, at tick";
+    // Of repeats at rest one is kept.
+    bench.say(&"\x18".repeat(300));
+    let told = events(&mut bench);
+    assert_eq!(told.len(), 5, "{told:?}");
+    assert!(told[3].starts_with(fault), "{told:?}");
+    // Whatever else happens: faults have places of their own.
+    for _ in 0..100 {
+        bench.say("STP\nHLT\n");
+    }
+    let told = events(&mut bench);
+    assert_eq!(told.len(), 65, "{told:?}");
+    assert!(told[0].starts_with(fault), "{told:?}");
+    assert_eq!(told[64], "204 halted by command");
 }
 
 #[test]
@@ -137,7 +158,7 @@ fn statistics_add_up_and_start_again() {
     assert_eq!(
         rest,
         format!(
-            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0\n"
+            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \nLOOSENED=0\n"
         )
     );
     // The peak since it was told; the rest since `LST`.
@@ -240,15 +261,46 @@ fn who_has_promised_to_be_heard_has_to_be() {
     bench.say_to(other, "HBT 20\n");
     assert!(goes_on(&mut bench, other));
     assert!(!goes_on(&mut bench, third), "it has promised nothing");
-    // Two that have promised stand for each other.
+    // Nobody stands for another one.
     bench.say_to(third, "HBT 20\n");
-    assert!(goes_on(&mut bench, third));
-    assert!(goes_on(&mut bench, other));
-    // Switched off, and on by somebody else: the promises are void.
+    assert!(!goes_on(&mut bench, third));
+    assert!(!goes_on(&mut bench, other));
     bench.say_to(other, "HBT 0\n");
-    bench.say_to(third, "HBT 20\n");
     assert!(!goes_on(&mut bench, other));
     assert!(goes_on(&mut bench, third));
+}
+
+#[test]
+fn nobody_ends_the_heartbeat_of_another_connection() {
+    for line in ["HBT 0\n", "HBT 86400000\n", "SPA 1 0x54500510 0\n", "RPA\n"] {
+        let mut bench = Bench::ready();
+        let other = bench.connect();
+        bench.say("HBT 20\n");
+        bench.say_to(other, line);
+        bench.say("MOV X 50\n");
+        for _ in 0..60 {
+            bench.say_to(other, "POS?\n");
+            bench.run(197);
+        }
+        assert!(bench.value("MOV? X") < 50.0, "{line}");
+    }
+}
+
+#[test]
+fn a_connection_that_has_promised_to_be_heard_and_ended_is_missed_once() {
+    let mut bench = Bench::ready();
+    let other = bench.connect();
+    bench.say_to(other, "HBT 20\n");
+    bench.say("MOV X 50\n");
+    bench.disconnect(other);
+    bench.run_to_rest();
+    assert!(bench.value("MOV? X") < 50.0);
+    bench.say("ERR?\n");
+    for target in [50, 0] {
+        bench.say(&format!("MOV X {target}\n"));
+        bench.run_to_rest();
+        assert_eq!(bench.value("MOV? X"), f64::from(target));
+    }
 }
 
 /// It has stopped the stage once, and whoever comes then is not stopped for the sake of the one who has gone.
@@ -323,10 +375,15 @@ fn axes_that_have_moved_since_their_position_was_asked_for() {
 #[test]
 fn the_heartbeat_is_a_parameter_too() {
     let mut bench = Bench::ready();
-    bench.say("HBT 250\n");
-    assert_eq!(bench.say("SPA? 1 0x54500510\n"), "1 0x54500510=250\n");
     bench.say("SPA 1 0x54500510 40\n");
     assert_eq!(bench.say("HBT?\n"), "40\n");
+    // What a connection promises is its own.
+    bench.say("HBT 250\n");
+    assert_eq!(
+        bench.say("HBT?\nSPA? 1 0x54500510\n"),
+        "250\n1 0x54500510=40\n"
+    );
+    bench.say("HBT 0\n");
     assert_eq!(
         bench.say("SPA 1 0x54500510 5\nERR?\n"),
         "17\n",

@@ -148,6 +148,7 @@ fn level_and_state_that_setting_needs() {
         assert_eq!(bench.say("MOV W 20\n"), "");
         assert_eq!(bench.error_after(&line), "53", "{line}");
         assert_eq!(bench.error_after("SVO X 0"), "0");
+        bench.run_to_rest();
         assert_eq!(bench.error_after(&line), "0", "{line}");
         assert_eq!(bench.error_after("CCL 0"), "0");
         assert_eq!(bench.error_after(&line), at_level_0, "{line}");
@@ -221,6 +222,47 @@ fn a_full_queue_refuses_the_line() {
     bench.offer(0, b"SPA 1 0x54500300 250\nERR?\n");
     assert_eq!(bench.answers_of(0), b"1005\n");
     assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=400\n");
+}
+
+#[test]
+fn looser_supervision_is_told_wherever_somebody_asks() {
+    let mut bench = Bench::ready();
+    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500500 0.1 1 0x54500501 30 1 0x54500508 0.05\nERR?\n";
+    assert_eq!(bench.say(lines), "0\n");
+    let told = "0 no fault \nlooser than the reference: 0x54500500, largest following error \nlooser than the reference: 0x54500501, lowest supply\n";
+    assert_eq!(bench.say("FLT?\n"), told);
+    assert!(bench.say("LST?\n").ends_with("LOOSENED=2\n"));
+    assert!(
+        bench
+            .say("EVT?\n")
+            .contains("supervision looser than the reference: 2 thresholds")
+    );
+    assert_eq!(
+        bench.error_after("SPA 1 0x54500500 0.001 1 0x54500501 40"),
+        "0"
+    );
+    assert_eq!(bench.say("FLT?\n"), "0 no fault\n");
+    assert!(bench.say("LST?\n").ends_with("LOOSENED=0\n"));
+    assert!(
+        bench
+            .say("EVT?\n")
+            .contains("supervision as in the reference again")
+    );
+    // No level switches protection off.
+    for setting in [
+        "0x54500501 6",
+        "0x54500509 7.3",
+        "0x5450050A 1000",
+        "0x5450050B 1000",
+        "0x54500508 10",
+        "0x5450050C 100",
+    ] {
+        assert_eq!(
+            bench.error_after(&format!("SPA 1 {setting}")),
+            "17",
+            "{setting}"
+        );
+    }
 }
 
 #[test]

@@ -3,12 +3,13 @@
 import argparse
 import unittest
 
+from foreign import Foreign
 from live import Live
 from report import Report
 from settings import ARGUMENTS
 from view import OnChip, OnTerminal
 
-__all__ = ["Live", "OnChip", "OnTerminal", "Report"]
+__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Report"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -78,7 +78,7 @@ fn assert_safe_until_acknowledged(mut bench: Bench, kind: FaultKind, awake: bool
             assert_eq!((bridge.state().pulse, bridge.state().awake), (0.0, awake));
         }
     }
-    assert_eq!(bench.error_after("STP"), "10", "stopping always works");
+    assert_eq!(bench.error_after("STP"), "0", "stopping always works");
     assert_eq!(bench.say("SVO? X\n"), "X=0\n");
     assert_eq!(bench.fault_kind(), Some(kind), "still latched");
 

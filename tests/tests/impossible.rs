@@ -23,6 +23,19 @@ fn pivots_that_are_no_pose_cannot_be_referenced() {
     // The twin is every other test: mounted as the parameters say.
 }
 
+/// The zero of encoder 1 off by a quarter turn: every angle is a good one, and together they are a pose 9 mm out of the disk.
+#[test]
+fn a_pose_out_of_reach_is_no_reference_and_is_told() {
+    let mut stage = StageParameters::REFERENCE;
+    stage.encoders[0].zero_counts += HALF_TURN_COUNTS / 2;
+    let mut bench = Bench::new(&stage);
+    assert_eq!(bench.error_after("FRF"), "4003");
+    let events = bench.say("EVT?\n");
+    assert!(events.contains("Y 89.3 W 26.6, out of reach"), "{events}");
+    assert_eq!((bench.mode(), bench.outputs.awake), (Mode::Off, false));
+    assert_eq!(bench.error_after("SVO X 1\nMOV X 1"), "5");
+}
+
 /// A referenced host that does not mind how far a pivot is from its setpoint, nor how far out that is.
 fn lenient() -> Parameters {
     Parameters {

@@ -142,11 +142,11 @@ fn stops_end_at_rest_on_the_line_and_motion_goes_on_after_them() {
 }
 
 #[test]
-fn a_stop_at_rest_does_nothing_but_report() {
+fn a_stop_at_rest_does_nothing() {
     let mut bench = Bench::ready();
     let setpoint = bench.sample().setpoint.position;
     for stop in ["HLT", "STP", "\u{18}"] {
-        assert_eq!(bench.error_after(stop), "10");
+        assert_eq!(bench.error_after(stop), "0");
     }
     bench.run(100);
     assert_eq!(

@@ -1,5 +1,6 @@
 //! The retained memory on the simulated machine: what has happened, and the ticks around a fault, after a reset too.
 
+use firmware::fault::FaultKind;
 use firmware::fault_record::{FAULT_RECORD_ROWS, ROWS_AFTER_FAULT};
 use firmware::gcs::START_CAUSES;
 use firmware::mode::Mode;
@@ -151,4 +152,32 @@ fn more_events_than_there_is_room_for_keep_their_numbers_over_resets() {
         number(after.lines().next()),
         number(before.lines().next()) + 1
     );
+}
+
+#[test]
+fn a_hot_motor_is_hot_after_a_restart_and_a_reset() {
+    let mut bench = Bench::ready();
+    assert_eq!(
+        bench.error_after("CCL 1 ADVANCED\nSPA 1 0x54500509 0.1\nWPA 100"),
+        "0"
+    );
+    bench.send("MOV X 60 W 3600\n");
+    bench.run_until("a hot motor", |bench| bench.fault_kind().is_some());
+    assert_eq!(bench.fault_kind(), Some(FaultKind::MotorHot));
+    bench.run(20_000);
+    for restart in ["RBT", "reset"] {
+        bench.say("FLC\n");
+        if restart == "RBT" {
+            bench.send("RBT\n");
+            bench.run(10);
+            assert!(bench.rig.restart_if_wanted());
+        } else {
+            bench.reset(START_CAUSES[0]);
+        }
+        bench.run(100);
+        assert_eq!(bench.fault_kind(), None, "{restart}");
+        bench.send("FRF\n");
+        bench.run(60);
+        assert_eq!(bench.fault_kind(), Some(FaultKind::MotorHot), "{restart}");
+    }
 }

@@ -157,7 +157,10 @@ fn a_fault_leaves_nothing_behind_for_the_next_one() {
 fn a_fault_that_is_there_at_the_start_lets_go() {
     for kind in [FaultKind::SettingsDamaged, FaultKind::SettingsNewer] {
         let mut bench = Bench::default();
-        bench.rig.front.restart(&Parameters::REFERENCE, Some(kind));
+        bench
+            .rig
+            .front
+            .restart(&Parameters::REFERENCE, Some(kind), [0.0; 3]);
         bench.run(10);
         assert_eq!(
             (bench.mode(), bench.fault_kind()),

@@ -20,6 +20,7 @@ impl Commander {
         if self.current_snapshot().is_none() {
             return;
         }
+        self.switch_off_at_rest(queues);
         self.advance_streaming(queues);
         let result = match (self.mode(), &self.pending) {
             (
@@ -174,7 +175,7 @@ impl Commander {
 
     fn goal_constraints(&self, goal: &Goal) -> Constraints {
         match goal {
-            Goal::Position(_) => self.curve_constraints(),
+            Goal::Position(to) => self.curve_constraints(to),
             _ => self.constraints(),
         }
     }

@@ -3,6 +3,7 @@
 use super::coordinates::travel;
 use super::error::CommandError;
 use super::in_flight::InFlight;
+use super::referencing::ReachMargins;
 use super::state::Commander;
 use crate::control::config::Config;
 use crate::mode::Mode;
@@ -46,6 +47,7 @@ impl Commander {
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
         self.targets = parameters.targets;
+        self.reach_margins = ReachMargins::new(&parameters.supervision);
         self.set_limits(parameters.limits);
     }
 
@@ -69,6 +71,6 @@ impl Commander {
         self.full_limits = limits;
         self.base_constraints.limits = limits;
         // Not refused: it is inside the new limits, which are far over the slowest.
-        let _ = self.set_velocity(mm_s);
+        let _ = self.limit_velocity(mm_s);
     }
 }

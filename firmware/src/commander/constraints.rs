@@ -37,12 +37,30 @@ impl Commander {
         let length = libm::hypot(x, y);
         let way = self.active_frames.work.inverse().turned([x, y]);
         // An axis that does not move slows nothing down.
-        self.constraints_with_shares(way.map(|way| way.abs() / length))
+        let mut constraints = self.constraints_with_shares(way.map(|way| way.abs() / length));
+        if length == 0.0 {
+            self.limit_turn(&mut constraints);
+        }
+        constraints
     }
 
-    /// What a way of any shape keeps to: it may turn into any direction.
-    pub(super) fn curve_constraints(&self) -> Constraints {
-        self.constraints_with_shares([1.0; 2])
+    /// What a way of any shape to a target keeps to: it may turn into any direction.
+    pub(super) fn curve_constraints(&self, to: &Position) -> Constraints {
+        let mut constraints = self.constraints_with_shares([1.0; 2]);
+        let is_there = |place: &Position| place[..2] == to[..2];
+        let only_turns = self
+            .active_plan()
+            .is_some_and(|(under_way, _)| is_there(&under_way.plan.end));
+        if only_turns && is_there(&self.setpoint()) {
+            self.limit_turn(&mut constraints);
+        }
+        constraints
+    }
+
+    /// For a way that only turns.
+    fn limit_turn(&self, constraints: &mut Constraints) {
+        let velocity = self.velocities[Axis::W.index()].unwrap_or(f64::INFINITY);
+        constraints.limits.turn_speed_deg_s = self.turn_velocity_deg_s().min(velocity);
     }
 
     fn constraints_with_shares(&self, shares: [f64; 2]) -> Constraints {

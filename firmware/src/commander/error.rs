@@ -25,6 +25,8 @@ pub enum CommandError {
     StreamNotAtRest,
     /// An encoder does not answer, or the pivots are no pose.
     ReferencingFailed,
+    /// The measured pose (mm, mm, deg) is none that the stage can take.
+    ReferenceOutside([f64; 3]),
     /// The axis can not move: its coordinate is 0 and stays 0.
     FrozenAxis(Axis),
     /// No position: not finite, or an angle beyond the travel.
@@ -95,6 +97,12 @@ impl fmt::Display for CommandError {
             Self::GeneratorsRunning => f.write_str("wave generators run"),
             Self::StreamNotAtRest => f.write_str("a stream begins at rest"),
             Self::ReferencingFailed => f.write_str("referencing has failed"),
+            Self::ReferenceOutside([x, y, w]) => {
+                write!(
+                    f,
+                    "the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
+                )
+            }
             Self::OutsideTravel => f.write_str("outside the travel"),
             Self::OutsideSoftLimits => f.write_str("outside the soft limits"),
             Self::VelocityOutOfRange { axis: None } => f.write_str("the velocity is out of range"),

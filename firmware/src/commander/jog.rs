@@ -31,8 +31,9 @@ impl Commander {
                 return Err(CommandError::VelocityOutOfRange { axis: Some(axis) });
             }
         }
-        // A velocity of zero for what does not jog leaves a move alone.
-        if wanted == self.jog_velocities && wanted == [0.0; 6] {
+        // A velocity of zero for what does not jog leaves a move alone, and one that is kept already is nothing new.
+        let is_kept = wanted == [0.0; 6] || self.is_motion_commanded();
+        if wanted == self.jog_velocities && is_kept {
             return Ok(());
         }
         let [x, y] = [Axis::X, Axis::Y].map(|axis| wanted[axis.index()]);

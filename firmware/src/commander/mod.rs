@@ -30,7 +30,9 @@
 //! | `advance` | from what is pending to the next plan |
 //! | `in_flight` | the command that the tick has not counted yet |
 //! | `sent_plan` | a plan that was sent, with what it takes to leave it |
-//! | `moves` | moves, stops, the servo, faults, soft limits |
+//! | `moves` | moves, stops, faults, soft limits |
+//! | `servo_switch` | the servo on and off |
+//! | `rest` | whether the stage rests, by what the encoders measure |
 //! | `jog` | constant velocities |
 //! | `streaming`, `stream_source` | streamed targets and running waveforms |
 //! | `referencing` | referencing |
@@ -65,7 +67,9 @@ mod pending;
 mod quantity;
 mod queries;
 mod referencing;
+mod rest;
 mod sent_plan;
+mod servo_switch;
 mod soft_limits;
 mod state;
 mod stream_source;

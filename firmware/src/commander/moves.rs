@@ -107,6 +107,9 @@ impl Commander {
         if self.running_generators() != [false; 6] {
             return Err(CommandError::GeneratorsRunning);
         }
+        if self.off_at_rest {
+            return Err(CommandError::NotReady);
+        }
         let held = matches!(self.mode(), Mode::Holding | Mode::Moving);
         let ready = |snapshot: &Snapshot| snapshot.referenced && held;
         if self.current_snapshot().is_some_and(ready) {
@@ -125,28 +128,6 @@ impl Commander {
         self.target_is_rest = true;
         self.pending.request_stop(stop);
         self.advance_pending(queues);
-    }
-
-    /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and
-    /// comes about with referencing.
-    pub fn set_servo(
-        &mut self,
-        on: bool,
-        queues: &mut CommandQueues<'_>,
-    ) -> Result<(), CommandError> {
-        let Some(snapshot) = self.current_snapshot() else {
-            return Err(CommandError::Busy);
-        };
-        match (on, snapshot.mode) {
-            (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
-            (true, Mode::Off) if snapshot.referenced => {
-                self.send(Command::Servo(true), InFlight::Other, queues)
-            }
-            (false, Mode::Holding | Mode::Moving) => {
-                self.send(Command::Servo(false), InFlight::Other, queues)
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Acknowledges the latched fault; without one nothing is done.

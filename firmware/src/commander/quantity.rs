@@ -31,4 +31,6 @@ pub enum Quantity {
     LimitSwitch,
     /// 0: there are no reference switches; the encoders are absolute.
     ReferenceSwitch,
+    /// 0: there is no hand control.
+    HandControl,
 }

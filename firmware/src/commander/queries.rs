@@ -38,7 +38,7 @@ impl Commander {
             Quantity::SoftHighest => self.soft_limit_range(axis)[1],
             Quantity::SoftActive => flag(self.soft_limits.active[index]),
             Quantity::Velocity => self.axis_velocity(axis),
-            Quantity::LimitSwitch | Quantity::ReferenceSwitch => 0.0,
+            Quantity::LimitSwitch | Quantity::ReferenceSwitch | Quantity::HandControl => 0.0,
         }
     }
 
@@ -208,7 +208,7 @@ impl Commander {
         self.is_referencing()
             || self.is_motion_pending()
             || match self.mode() {
-                Mode::Off | Mode::Fault => false,
+                Mode::Off | Mode::Fault => self.slides_since.is_some(),
                 Mode::Holding => !settled,
                 Mode::Moving | Mode::Stopping => true,
             }

@@ -6,6 +6,8 @@ use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
 use super::in_flight::InFlight;
 use super::pending::Pending;
+use super::referencing::ReachMargins;
+use super::rest::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
@@ -56,10 +58,19 @@ pub struct Commander {
     /// The target is where the stage comes to rest, not where it was sent.
     pub(super) target_is_rest: bool,
     pub(super) moving_axes: AxisSet,
+    pub(super) reach_margins: ReachMargins,
     /// Tick at which referencing is given up; over when it is past.
     pub(super) referencing_deadline: u64,
     /// The tick has refused the parameters that were set last.
     pub(super) configuration_refused: bool,
+    /// `VLS` has been given since the start.
+    pub(super) velocity_is_set: bool,
+    /// Whether the measured pivots rest.
+    pub(super) rest: RestWatch,
+    /// The motors have let go of a stage in motion, or brake it, since this tick, and it has not come to rest yet.
+    pub(super) slides_since: Option<u64>,
+    /// The servo goes off as soon as the motion has come to its end.
+    pub(super) off_at_rest: bool,
     /// What became, later, of a request that had been accepted; not asked for yet.
     pub(super) late_error: Option<CommandError>,
 }
@@ -90,8 +101,13 @@ impl Commander {
             target: Coordinates::default(),
             target_is_rest: true,
             moving_axes: AxisSet::EMPTY,
+            reach_margins: ReachMargins::new(&parameters.supervision),
             referencing_deadline: 0,
             configuration_refused: false,
+            velocity_is_set: false,
+            rest: RestWatch::default(),
+            slides_since: None,
+            off_at_rest: false,
             late_error: None,
         }
     }
@@ -144,6 +160,7 @@ impl Commander {
         if acknowledged {
             self.update_from_mode(&snapshot);
         }
+        self.watch_rest(&snapshot);
         self.snapshot = Some(snapshot);
         if !self.is_moving() {
             self.moving_axes = AxisSet::EMPTY;

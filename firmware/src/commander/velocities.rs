@@ -10,8 +10,31 @@ const MIN_SPEED_MM_S: f64 = 1e-3;
 
 impl Commander {
     /// Speed of the platform's centre, mm/s; rotation goes down with it in proportion, so that a slow move is slow in W
-    /// too.
+    /// too. A move that only turns keeps to the same number of deg/s.
     pub fn set_velocity(&mut self, mm_s: f64) -> Result<(), CommandError> {
+        self.limit_velocity(mm_s)?;
+        self.velocity_is_set = true;
+        Ok(())
+    }
+
+    /// The speed that the parameters allow, as at the start.
+    pub fn reset_velocity(&mut self) {
+        // Not refused: it is their own.
+        let _ = self.limit_velocity(self.full_limits.speed_mm_s);
+        self.velocity_is_set = false;
+    }
+
+    /// What a move that only turns keeps to, deg/s.
+    pub(super) fn turn_velocity_deg_s(&self) -> f64 {
+        let limits = &self.base_constraints.limits;
+        if self.velocity_is_set {
+            limits.speed_mm_s.min(self.full_limits.turn_speed_deg_s)
+        } else {
+            limits.turn_speed_deg_s
+        }
+    }
+
+    pub(super) fn limit_velocity(&mut self, mm_s: f64) -> Result<(), CommandError> {
         if !(MIN_SPEED_MM_S..=self.full_limits.speed_mm_s).contains(&mm_s) {
             return Err(CommandError::VelocityOutOfRange { axis: None });
         }

@@ -48,6 +48,7 @@ impl State {
             pivots: *pivots,
             // A difference that does not fit is a fault, and then the target is what is measured.
             pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
+            motor_heat: (self.pivot_watches.each_ref()).map(|watch| watch.mean_square_current),
             duty,
             setpoint: *setpoint,
             centre: self.motion.centre(),

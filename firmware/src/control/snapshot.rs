@@ -31,6 +31,8 @@ pub struct Snapshot {
     pub pivots: [Angle; 3],
     /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.
     pub pivot_errors: [i32; 3],
+    /// What the motors' windings have borne: square of the current, ADC counts, smoothed over their heating time.
+    pub motor_heat: [f32; 3],
     /// Duties.
     pub duty: [Duty; 3],
     /// Setpoint of the point that is moved.

@@ -100,6 +100,15 @@ impl State {
         }
     }
 
+    /// The same with motors that are warm from before the start: see [`Snapshot::motor_heat`](super::snapshot::Snapshot).
+    #[must_use]
+    pub fn with_motor_heat(mut self, motor_heat: [f32; 3]) -> Self {
+        for (watch, heat) in self.pivot_watches.iter_mut().zip(motor_heat) {
+            watch.mean_square_current = heat;
+        }
+        self
+    }
+
     /// The latched fault.
     pub fn fault(&self) -> Option<Fault> {
         self.fault

@@ -10,9 +10,14 @@ pub const FAULT_RECORD_ROWS: usize = 256;
 pub const ROWS_AFTER_FAULT: u32 = 64;
 /// Events that are kept.
 pub const RETAINED_EVENTS: usize = 64;
+/// Faults that are kept besides, however much else happens after them.
+pub const RETAINED_FAULTS: usize = 8;
+
+/// Motors whose heat is kept.
+const MOTORS: usize = 3;
 
 /// Another one for each layout of the memory.
-pub(super) const LAYOUT_MAGIC: u32 = 0x5458_0001;
+pub(super) const LAYOUT_MAGIC: u32 = 0x5458_0002;
 
 /// The memory. All zero at first, and any content at all is a valid one.
 pub struct RetainedMemory {
@@ -22,6 +27,9 @@ pub struct RetainedMemory {
     /// The fault record is complete and not overwritten before the servo is on.
     pub(super) frozen: AtomicU32,
     pub(crate) events: CheckedEntries<RETAINED_EVENTS, { EVENT_WORDS }>,
+    pub(crate) faults: CheckedEntries<RETAINED_FAULTS, { EVENT_WORDS }>,
+    /// What the motors have borne: they do not cool with a restart.
+    pub(super) motor_heat: CheckedEntries<1, { MOTORS + 1 }>,
     pub(super) rows: CheckedEntries<FAULT_RECORD_ROWS, { row::WORDS }>,
 }
 
@@ -34,7 +42,22 @@ impl RetainedMemory {
             start: AtomicU32::new(0),
             frozen: AtomicU32::new(0),
             events: CheckedEntries::new(),
+            faults: CheckedEntries::new(),
+            motor_heat: CheckedEntries::new(),
             rows: CheckedEntries::new(),
         }
+    }
+
+    /// Keeps the motors' heat: square of the current, ADC counts, smoothed.
+    pub(crate) fn keep_motor_heat(&self, heat: &[f32; MOTORS]) {
+        let [one, two, three] = heat.map(f32::to_bits);
+        self.motor_heat.write(0, &[one, two, three, 0]);
+    }
+
+    /// The motors' heat as it was kept last: cold where nothing was.
+    pub fn motor_heat(&self) -> [f32; MOTORS] {
+        let [one, two, three, _] = self.motor_heat.read(0).unwrap_or_default();
+        let is_heat = |heat: &f32| heat.is_finite() && *heat >= 0.0;
+        [one, two, three].map(|bits| Some(f32::from_bits(bits)).filter(is_heat).unwrap_or(0.0))
     }
 }

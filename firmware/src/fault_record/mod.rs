@@ -24,7 +24,9 @@ mod reader;
 mod row;
 mod writer;
 
-pub use memory::{FAULT_RECORD_ROWS, RETAINED_EVENTS, ROWS_AFTER_FAULT, RetainedMemory};
+pub use memory::{
+    FAULT_RECORD_ROWS, RETAINED_EVENTS, RETAINED_FAULTS, ROWS_AFTER_FAULT, RetainedMemory,
+};
 pub use reader::FaultRecord;
 pub use row::FaultRecordRow;
 pub use writer::FaultRecordWriter;

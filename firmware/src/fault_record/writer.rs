@@ -68,6 +68,8 @@ impl RetainedMemory {
     pub fn begin(&self) -> FaultRecordWriter<'_> {
         if self.layout.load(Ordering::Relaxed) != LAYOUT_MAGIC {
             self.events.clear();
+            self.faults.clear();
+            self.motor_heat.clear();
             self.rows.clear();
             self.start.store(0, Ordering::Relaxed);
             self.layout.store(LAYOUT_MAGIC, Ordering::Relaxed);

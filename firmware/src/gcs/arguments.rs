@@ -108,6 +108,19 @@ pub(super) fn axis_identifiers(scanner: &mut Scanner<'_>) -> Result<Request, Par
     Err(word.error(ErrorCode::ParameterCount, "ALL or the end of the line"))
 }
 
+/// Numbers of joysticks that may be asked for.
+const JOYSTICKS: f64 = 8.0;
+
+/// `JON?`: joysticks by their numbers; none stands for the first.
+pub(super) fn joysticks(scanner: &mut Scanner<'_>) -> Result<Request, ParseError> {
+    let mut named = 0_u8;
+    while !scanner.is_at_end() {
+        let number = whole(scanner.next(), 1.0, JOYSTICKS)?;
+        named |= 1 << (number as u8 - 1);
+    }
+    Ok(Request::Query(Query::Joysticks(named.max(1))))
+}
+
 /// A value, if one follows.
 pub(super) fn optional_text(scanner: &mut Scanner<'_>) -> Result<Option<Text>, ParseError> {
     let word = scanner.word();

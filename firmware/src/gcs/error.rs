@@ -106,6 +106,11 @@ pub enum ErrorCode {
     MotionError = 1024,
     /// The flash does not take the settings that are to be stored.
     FlashFailed = 4001,
+    /// Another connection owns the stage (`OWN?` tells which): everybody may look and stop, nobody else may command.
+    OwnedByAnother = 4002,
+    /// The pose that the encoders show is outside the disk, a guide or the separation of pivots: wiring or zeros are wrong, or the
+    /// stage was left there.
+    ReferenceOutside = 4003,
 }
 
 impl ErrorCode {
@@ -115,6 +120,11 @@ impl ErrorCode {
             FaultKind::FollowingError => Self::FollowingError,
             _ => Self::MotionError,
         }
+    }
+
+    /// Whether it says that a fault is latched.
+    pub(super) const fn is_of_fault(self) -> bool {
+        matches!(self, Self::FollowingError | Self::MotionError)
     }
 
     /// The number that `ERR?` answers.
@@ -134,6 +144,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,
             CommandError::GeneratorsRunning => Self::GeneratorActive,
             CommandError::ReferencingFailed => Self::ReferencingFailed,
+            CommandError::ReferenceOutside(_) => Self::ReferenceOutside,
             CommandError::FrozenAxis(_)
             | CommandError::OutsideTravel
             | CommandError::OutsideSoftLimits

@@ -6,14 +6,14 @@ use super::interpreter::Interpreter;
 use super::request::Action;
 use super::request::MAX_DELAY_MS;
 use super::session::{Awaited, Session, Wait};
-use crate::commander::SoftLimitChange;
 use crate::commander::axis::{Axis, AxisValues};
+use crate::commander::{Quantity, SoftLimitChange};
 use crate::motion::Stop;
 use crate::queues::CommandQueues;
 
 impl Interpreter {
-    /// Carries out `action`; an error means that nothing of it was done, but for stops, which always report
-    /// [`ErrorCode::Stopped`].
+    /// Carries out `action`; an error means that nothing of it was done, but for stops, which report
+    /// [`ErrorCode::Stopped`] when they have stopped something.
     pub(super) fn perform(
         &mut self,
         action: Action,
@@ -22,7 +22,7 @@ impl Interpreter {
     ) -> Result<(), ErrorCode> {
         match action {
             Action::Servo(values) => match servo(&values)? {
-                Some(on) => Ok(self.commander.set_servo(on, queues)?),
+                Some(on) => self.set_servo(on, session, queues),
                 None => Ok(()),
             },
             // Whichever axes are named: the encoders give all of them at once.
@@ -41,7 +41,9 @@ impl Interpreter {
             }
             Action::MoveInTool(values) => Ok(self.commander.move_in_tool(&values, queues)?),
             Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
-            Action::Jog(values) => Ok(self.commander.jog(&values, queues)?),
+            Action::Jog(values) => self.jog(&values, session, queues),
+            Action::JogTime(ms) => Self::set_jog_time(ms, session),
+            Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
             Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
@@ -64,17 +66,9 @@ impl Interpreter {
             Action::Recall(addresses) => self.recall(&addresses, queues),
             Action::Level(level, password) => Self::set_level(session, level, password),
             Action::Velocity(mm_s) => Ok(self.commander.set_velocity(mm_s)?),
-            Action::Stop => {
-                self.events.add(self.commander.tick(), Event::Stop);
-                self.stop_all(Stop::Urgent, queues);
-                Err(ErrorCode::Stopped)
-            }
+            Action::Stop => self.stop_by_command(Event::Stop, session, queues),
             // Whichever axes are named: the axes of a line cannot stop apart.
-            Action::Halt(_) => {
-                self.events.add(self.commander.tick(), Event::Halt);
-                self.commander.stop(Stop::Smooth, queues);
-                Err(ErrorCode::Stopped)
-            }
+            Action::Halt(_) => self.stop_by_command(Event::Halt, session, queues),
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
             Action::RestartStatistics => {
                 self.restart_statistics();
@@ -96,6 +90,52 @@ impl Interpreter {
             }
             Action::Jump(by, condition) => self.jump_if(Some(by), &condition, session),
             Action::Leave(condition) => self.jump_if(None, &condition, session),
+        }
+    }
+
+    /// `SVO`: whose motion it ends is told.
+    fn set_servo(
+        &mut self,
+        on: bool,
+        session: &Session,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        let moves = self.commander.is_motion_commanded();
+        self.commander.set_servo(on, queues)?;
+        if on && self.commander.value(Quantity::Referenced, Axis::X) == 0.0 {
+            (self.events).add_once(self.commander.tick(), Event::ServoBeforeReference);
+        }
+        if !on && moves {
+            self.tell_mover(session);
+        }
+        Ok(())
+    }
+
+    /// `STP`, `#24` and `HLT`. Error 10 says that something was stopped: nothing is told of a stop that found nothing to stop.
+    fn stop_by_command(
+        &mut self,
+        event: Event,
+        session: &mut Session,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        let moves = self.commander.is_motion_commanded();
+        let waited = core::mem::take(&mut session.has_stopped_wait);
+        let is_urgent = event == Event::Stop;
+        let has_stopped = moves || is_urgent && (waited || self.macros.is_running());
+        self.events
+            .add_stop(self.commander.tick(), event, has_stopped);
+        if moves {
+            self.tell_mover(session);
+        }
+        if is_urgent {
+            self.stop_all(Stop::Urgent, queues);
+        } else {
+            self.commander.stop(Stop::Smooth, queues);
+        }
+        if has_stopped {
+            Err(ErrorCode::Stopped)
+        } else {
+            Ok(())
         }
     }
 

@@ -1,9 +1,12 @@
 //! What all connections share.
 
+use super::connections::Connections;
 use super::error::ErrorCode;
 use super::events::EventLog;
 use super::heartbeat::Heartbeat;
+use super::jog::Jogs;
 use super::macros::Macros;
+use super::ownership::Ownership;
 use super::persistence::Persistence;
 use super::recorder::RecorderState;
 use super::statistics::Statistics;
@@ -30,6 +33,8 @@ pub struct Interpreter {
     /// Limits of motion that the stage was set up for, and those that level 1 has set over them.
     pub(super) rated_limits: Limits,
     pub(super) commander: Commander,
+    /// Thresholds of supervision that are looser than the reference, as was told last.
+    pub(super) loosened: u16,
     /// Why the controller started, if that is worth telling.
     pub(super) start_cause: Option<&'static str>,
     /// Times everything was stopped.
@@ -38,6 +43,9 @@ pub struct Interpreter {
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
     pub(super) heartbeat: Heartbeat,
+    pub(super) connections: Connections,
+    pub(super) jogs: Jogs,
+    pub(super) ownership: Ownership,
     pub(super) wants_restart: bool,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
@@ -55,11 +63,15 @@ impl Interpreter {
             previous_parameters: parameters.clone(),
             rated_limits: parameters.limits,
             commander: Commander::new(parameters),
+            loosened: 0,
             stops: 0,
             recorder_state: RecorderState::new(),
             events: EventLog::new(),
             statistics: Statistics::default(),
             heartbeat: Heartbeat::default(),
+            connections: Connections::default(),
+            jogs: Jogs::default(),
+            ownership: Ownership::default(),
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),

@@ -14,6 +14,7 @@
 //! | `interpreter` | what all connections share |
 //! | `session` | input, line, error and wait of a connection |
 //! | `service` | what a connection has sent: taken, understood, carried out, answered |
+//! | `connections` | numbers of connections, who commanded last, what ends with one |
 //! | `waits` | what holds up the lines of a connection |
 //! | `table` | what commands there are; parsing, `HLP?` and dispatch read it |
 //! | `syntax` | what an entry of the table is |
@@ -35,24 +36,28 @@
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
+//! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
 //!
 //! Each folder has, as far as there is something to say: `state`, `request`, `parse`, `execute`, `replies`.
 //!
 //! Lines are handled in order. While a command is on its way to the tick (one tick) lines that depend on it stay where
 //! they are; while `DEL`, `WAC` or `FRF` waits all lines do, and single bytes act ahead of them. A stop (`STP`, `#24`)
-//! from any connection ends those waits on all of them, with error 10, and throws away the lines behind them: a script
-//! does not go on after a stop.
+//! from any connection ends those waits on all of them, with error 10, and throws away the lines behind them but for
+//! questions, which are answered: a script does not go on after a stop, and a client gets its answers.
 
 mod arguments;
+mod connections;
 mod error;
 mod events;
 mod execute;
 mod frames;
 mod heartbeat;
 mod interpreter;
+mod jog;
 mod macros;
 mod monitor;
 mod output;
+mod ownership;
 mod parameter;
 mod parse;
 mod persistence;

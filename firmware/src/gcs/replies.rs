@@ -2,7 +2,7 @@
 
 use super::interpreter::Interpreter;
 use super::output::{Output, WriteFailed};
-use super::parameter::parameter_help;
+use super::parameter::{loosened, parameter_help};
 use super::reply_writer::{ReplyWriter, one_line};
 use super::request::{Property, Query};
 use super::session::Session;
@@ -46,9 +46,14 @@ impl Interpreter {
             Query::ParameterHelp => parameter_help(out),
             Query::Level => one_line(out, format_args!("{}", session.level)),
             Query::Heartbeat => {
-                let ms = self.parameters.supervision.host_silence_ms;
+                let own = self.heartbeat.promised_ms(session.number);
+                let ms = own.unwrap_or(self.parameters.supervision.host_silence_ms);
                 one_line(out, format_args!("{ms}"))
             }
+            Query::JogTime => one_line(out, format_args!("{}", session.jog_time_ms.unwrap_or(0.0))),
+            Query::Ownership => self.reply_ownership(session, out),
+            Query::PiezoChannels => one_line(out, format_args!("0")),
+            Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),
             Query::Statistics => self.reply_statistics(out),
             Query::Fault => self.reply_fault(out),
@@ -143,6 +148,7 @@ impl Interpreter {
             if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
+            self.reply_looseness(&mut reply)?;
             return reply.end();
         }
         let mut reply = ReplyWriter::new(out);
@@ -157,7 +163,17 @@ impl Interpreter {
                 reply.line(format_args!("{}, pivot {pivot}", kind.text()))?;
             }
         }
+        self.reply_looseness(&mut reply)?;
         reply.end()
+    }
+
+    /// A line for each threshold of supervision that is looser than the reference.
+    fn reply_looseness(&self, reply: &mut ReplyWriter<'_>) -> Result<(), WriteFailed> {
+        for parameter in loosened(&self.parameters) {
+            let (id, text) = (parameter.id, parameter.text);
+            reply.line(format_args!("looser than the reference: 0x{id:X}, {text}"))?;
+        }
+        Ok(())
     }
 }
 
@@ -190,6 +206,15 @@ fn axes(out: &mut Output<'_>) -> Result<(), WriteFailed> {
     let mut reply = ReplyWriter::new(out);
     for axis in Axis::ALL {
         reply.line(format_args!("{}", axis.letter()))?;
+    }
+    reply.end()
+}
+
+/// None of them is there, so none is on.
+fn joysticks(named: u8, out: &mut Output<'_>) -> Result<(), WriteFailed> {
+    let mut reply = ReplyWriter::new(out);
+    for number in (0..u8::BITS).filter(|bit| named >> bit & 1 != 0) {
+        reply.line(format_args!("{}=0", number + 1))?;
     }
     reply.end()
 }

@@ -77,6 +77,14 @@ pub enum Query {
     Monitor,
     /// `HBT?`
     Heartbeat,
+    /// `JTM?`
+    JogTime,
+    /// `OWN?`
+    Ownership,
+    /// `TPC?`: piezo channels, of which there are none.
+    PiezoChannels,
+    /// `JON?`: these joysticks, a bit each.
+    Joysticks(u8),
     /// `EVT?`
     Events,
     /// `LST?`
@@ -151,6 +159,10 @@ pub enum Action {
     Acknowledge,
     /// `HBT`, ms.
     Heartbeat(f64),
+    /// `JTM`, ms.
+    JogTime(f64),
+    /// `OWN`: 0 or 1, and a name for the connection.
+    Own(f64, Option<Name>),
     /// `LST`
     RestartStatistics,
     /// `RBT`
@@ -245,6 +257,23 @@ impl Action {
 }
 
 impl Request {
+    /// Whether it asks for an answer and changes nothing.
+    pub(super) const fn is_question(&self) -> bool {
+        match self {
+            Self::Nothing | Self::Act(_) => false,
+            Self::Macro(request) => matches!(
+                request,
+                MacroRequest::Error
+                    | MacroRequest::Free
+                    | MacroRequest::List(_)
+                    | MacroRequest::Running
+                    | MacroRequest::IsRunning
+            ),
+            Self::Variables(request) => matches!(request, VariableRequest::Query(_)),
+            _ => true,
+        }
+    }
+
     /// Whether carrying it out needs to know what became of the command that the tick has not taken yet. Stopping never
     /// does, and what is constant does not either.
     pub(super) const fn needs_current_snapshot(&self) -> bool {

@@ -28,6 +28,7 @@ impl Interpreter {
         queues: &mut CommandQueues<'_>,
         out: &mut W,
     ) -> Result<(), W::Error> {
+        self.register(session);
         self.note_activity(session);
         self.advance(queues);
         if let Some(snapshot) = self.commander.snapshot() {
@@ -52,6 +53,9 @@ impl Interpreter {
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
+            if let Some(retained_memory) = queues.retained_memory {
+                retained_memory.keep_motor_heat(&snapshot.motor_heat);
+            }
             self.commander.update(snapshot);
         }
         if let Some(retained_memory) = queues.retained_memory {
@@ -60,6 +64,7 @@ impl Interpreter {
         self.revert_if_refused();
         self.commander.advance_pending(queues);
         self.watch_heartbeat(queues);
+        self.end_jogs(queues);
         self.run_macro(queues);
     }
 
@@ -88,14 +93,21 @@ impl Interpreter {
         {
             session.error = code;
         }
+        self.report_stopped_motion(session);
         let fault = self
             .commander
             .snapshot()
             .and_then(|snapshot| snapshot.fault);
-        if let Some(fault) = fault
-            && session.fault_tick.replace(fault.tick) != Some(fault.tick)
-        {
-            session.error = ErrorCode::of(fault.kind);
+        match fault {
+            Some(fault) if session.fault_tick.replace(fault.tick) != Some(fault.tick) => {
+                session.error = ErrorCode::of(fault.kind);
+            }
+            Some(_) => {}
+            // Acknowledged, on whichever connection: nobody needs to be told any more.
+            None if session.fault_tick.take().is_some() && session.error.is_of_fault() => {
+                session.error = ErrorCode::None;
+            }
+            None => {}
         }
     }
 
@@ -119,6 +131,9 @@ impl Interpreter {
                 None => return Ok(()),
                 Some(InputItem::Byte(byte)) => self.execute_byte(byte, session, queues, out)?,
                 Some(InputItem::Discarded(error)) => session.error = error,
+                Some(InputItem::Line) if session.is_line_late() && !is_question(session.line()) => {
+                    session.finish_line();
+                }
                 Some(InputItem::Line) => match self.parse_line(session) {
                     Ok(request)
                         if request.needs_current_snapshot()
@@ -178,6 +193,10 @@ impl Interpreter {
         queues: &mut CommandQueues<'_>,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
+        if let Err(code) = self.check_ownership(&request, session) {
+            session.error = code;
+            return Ok(());
+        }
         match request {
             Request::Nothing => {}
             Request::Query(query) => self.reply_query(query, session, out)?,
@@ -231,6 +250,9 @@ impl Interpreter {
         let announced =
             (self.recorder_state).announce(step, sent.wrapping_add(1), parameters, recorder)?;
         let result = self.perform(action, session, queues);
+        if result.is_ok() {
+            self.note_mover(session);
+        }
         let recorder = &mut queues.recorder;
         match result {
             // Already there: nothing had to be sent.
@@ -245,4 +267,9 @@ impl Interpreter {
         }
         result
     }
+}
+
+/// Whether a line asks for nothing but an answer.
+fn is_question(line: &[u8]) -> bool {
+    parse(line).is_ok_and(|request| request.is_question())
 }

@@ -1,10 +1,12 @@
 //! One connection: the bytes it has received, its error, and what it waits for.
 
+use super::connections::ConnectionNumber;
 use super::error::ErrorCode;
 use super::monitor::Monitor;
 use super::recorder::{FaultRecordReadout, RecordReadout};
 use super::request::Condition;
-use super::text::LINE_BYTES;
+use super::text::{LINE_BYTES, TEXT_BYTES, Text};
+use core::fmt::Write;
 use heapless::{Deque, Vec};
 use kinematics::Angle;
 
@@ -31,8 +33,18 @@ pub struct Session {
     pub(super) room: Option<usize>,
     /// Bytes have come since it was last looked at.
     pub(super) received_bytes: bool,
-    /// It has promised to be heard (`HBT`), and when: see `heartbeat`.
-    pub(super) promised_generation: Option<u32>,
+    /// Its number, once the controller has heard of it.
+    pub(super) number: Option<ConnectionNumber>,
+    /// Who it is, if somebody has said so.
+    pub(super) name: Text,
+    /// How long its constant velocities last without another `JOG` (`JTM`); `None`: as long as it lasts itself.
+    pub(super) jog_time_ms: Option<f64>,
+    /// So many of the next bytes came before a stop that ended what they waited for, and whether the line under way begins with
+    /// such a byte: questions are answered, anything else is thrown away.
+    late_bytes: usize,
+    line_is_late: bool,
+    /// Its own stop has ended its own wait.
+    pub(super) has_stopped_wait: bool,
     /// The pivots when its position was last asked for.
     pub(super) reported_pivots: Option<[Angle; 3]>,
     /// Command level, `CCL`.
@@ -111,20 +123,39 @@ impl Session {
         self.room = Some(bytes);
     }
 
+    /// Says who is at the other end (an address, a device), for those who ask who commands; what is too long is cut off.
+    pub fn set_name(&mut self, name: &str) {
+        let end = name.len().min(TEXT_BYTES);
+        self.name = Text::new(name.as_bytes().get(..end).unwrap_or_default()).unwrap_or(self.name);
+    }
+
+    /// Who is at the other end; the number of the connection where nobody has said that.
+    pub(super) fn shown_name(&self) -> Text {
+        let mut name = self.name;
+        if name.as_bytes().is_empty() {
+            // No number is too long.
+            let _ = write!(name, "connection {}", self.number.unwrap_or(0));
+        }
+        name
+    }
+
     /// The controller starts again: as a new connection, but what has been received is still to be carried out.
     pub fn start_again(&mut self) {
         *self = Self {
             input: core::mem::take(&mut self.input),
             line: core::mem::take(&mut self.line),
             state: self.state,
+            name: self.name,
             ..Self::default()
         };
     }
 
     /// The connection of a macro.
-    pub(super) fn for_macro(level: u8) -> Self {
+    pub(super) fn for_macro(starter: &Self) -> Self {
         Self {
-            level,
+            level: starter.level,
+            number: starter.number,
+            name: starter.name,
             is_macro: true,
             ..Self::default()
         }
@@ -174,6 +205,8 @@ impl Session {
             return Some(InputItem::Line);
         }
         while let Some(byte) = self.input.pop_front() {
+            let is_late = self.late_bytes > 0;
+            self.late_bytes = self.late_bytes.saturating_sub(1);
             if is_single(byte) {
                 return Some(InputItem::Byte(byte));
             }
@@ -184,6 +217,9 @@ impl Session {
                     return Some(event);
                 }
             } else if byte != b'\r' && self.state == LineState::Gathering {
+                if self.line.is_empty() {
+                    self.line_is_late = is_late;
+                }
                 self.gather(byte);
             }
         }
@@ -195,9 +231,15 @@ impl Session {
         &self.line
     }
 
+    /// Whether the complete line came before a stop that ended what it waited for.
+    pub(super) const fn is_line_late(&self) -> bool {
+        self.line_is_late
+    }
+
     /// The complete line has been handled.
     pub(super) fn finish_line(&mut self) {
         self.line.clear();
+        self.line_is_late = false;
         self.state = LineState::Gathering;
     }
 
@@ -226,16 +268,17 @@ impl Session {
         }
     }
 
-    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop throws them away and
-    /// ends the wait.
+    /// Takes the first single byte out of the input, over the lines before it, which stay. A stop ends the wait, and of the lines
+    /// before it only questions are left.
     pub(super) fn take_single(&mut self) -> Option<u8> {
         let before = self.input.iter().position(|&byte| is_single(byte))?;
         self.rotate(before);
         let single = self.input.pop_front()?;
         self.rotate(self.input.len() - before);
+        self.late_bytes = self.late_bytes.min(before);
         if single == STOP {
-            self.wait = None;
-            self.discard(before);
+            self.has_stopped_wait = self.wait.take().is_some();
+            self.leave_questions(before);
         }
         Some(single)
     }
@@ -250,21 +293,15 @@ impl Session {
         }
     }
 
-    /// Ends the wait and throws away what has been received behind it.
+    /// Ends the wait; of what has been received behind it only questions are left.
     pub(super) fn abandon(&mut self) {
         self.wait = None;
-        self.discard(self.input.len());
+        self.leave_questions(self.input.len());
     }
 
-    /// Throws away the next `count` bytes and, when they end inside a line, the rest of it too: what is left of a line
-    /// must never be taken for a command.
-    fn discard(&mut self, count: usize) {
-        let mut last = b'\n';
-        for _ in 0..count {
-            last = self.input.pop_front().unwrap_or(last);
-        }
-        if last != b'\n' {
-            self.state = LineState::Skipping(ErrorCode::None);
-        }
+    /// Of the next `count` bytes, and of a line that they begin, only questions are left.
+    fn leave_questions(&mut self, count: usize) {
+        self.late_bytes = count;
+        self.line_is_late = !self.line.is_empty();
     }
 }

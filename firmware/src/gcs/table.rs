@@ -1,8 +1,9 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
-use super::arguments::axis_identifiers;
+use super::arguments::{axis_identifiers, joysticks};
 use super::frames::parse as frames;
 use super::macros::{MacroRequest, parse as macros};
+use super::ownership::parse as ownership;
 use super::parameter::parse as parameter;
 use super::recorder::parse as recorder;
 use super::request::{Action, Property, Query, Request};
@@ -127,9 +128,14 @@ pub(super) static COMMANDS: &[Entry] = &[
     entry(
         "HBT",
         Syntax::Number(Action::Heartbeat),
-        "<milliseconds> stop when no connection that has sent this is heard for longer; 0: never",
+        "<milliseconds> stop when this connection is not heard for longer; 0: never",
     ),
     ask("HBT?", Query::Heartbeat, "get longest silence of the host"),
+    read(
+        "HIN?",
+        Quantity::HandControl,
+        "[{<axis>}] get whether a hand control drives an axis",
+    ),
     entry(
         "HLT",
         Syntax::Axes(Action::Halt),
@@ -147,6 +153,11 @@ pub(super) static COMMANDS: &[Entry] = &[
         Quantity::Jog,
         "[{<axis>}] get constant velocity of axes",
     ),
+    own(
+        "JON?",
+        joysticks,
+        "[{<joystick>}] get whether a joystick is on",
+    ),
     entry(
         "JRC",
         Syntax::Condition {
@@ -154,6 +165,16 @@ pub(super) static COMMANDS: &[Entry] = &[
             action: Action::Jump,
         },
         "<lines> <query> <operator> <value> jump in the macro on condition",
+    ),
+    entry(
+        "JTM",
+        Syntax::Number(Action::JogTime),
+        "<milliseconds> end a JOG of this connection so long after its last one; 0: with the connection",
+    ),
+    ask(
+        "JTM?",
+        Query::JogTime,
+        "get how long a JOG of this connection lasts",
     ),
     own("KEN", frames::enable, "<name> enable frame"),
     own(
@@ -292,6 +313,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         "[{<axis>}] get lowest position of the soft limits",
     ),
     read("ONT?", Quantity::OnTarget, "[{<axis>}] get on-target state"),
+    own(
+        "OWN",
+        ownership::own,
+        "<0|1> [<name>] be the only connection that may command the stage",
+    ),
+    ask(
+        "OWN?",
+        Query::Ownership,
+        "get who owns the stage, and who commanded last",
+    ),
     entry(
         "PLM",
         Syntax::Values(Action::SoftHighest),
@@ -386,6 +417,7 @@ pub(super) static COMMANDS: &[Entry] = &[
     read("TMN?", Quantity::Lowest, "[{<axis>}] get lowest position"),
     read("TMX?", Quantity::Highest, "[{<axis>}] get highest position"),
     own("TNR?", recorder::count, "get number of record tables"),
+    ask("TPC?", Query::PiezoChannels, "get number of piezo channels"),
     entry(
         "TRA?",
         Syntax::QueryValues(Request::FurthestTarget),

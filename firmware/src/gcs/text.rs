@@ -75,6 +75,12 @@ pub(super) const fn is_name_byte(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
+impl<const N: usize> Default for FixedText<N> {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
 /// In either case, as everything of the language.
 impl<const N: usize> PartialEq for FixedText<N> {
     fn eq(&self, other: &Self) -> bool {

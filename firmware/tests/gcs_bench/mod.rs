@@ -103,6 +103,12 @@ impl<'q> BenchBetween<'q> {
         self.sessions.len() - 1
     }
 
+    /// A connection ends, and nothing of it is serviced any more.
+    pub fn disconnect(&mut self, number: usize) {
+        let (mut session, _) = self.sessions.remove(number);
+        self.panel.disconnect(&mut session);
+    }
+
     pub fn service(&mut self, number: usize) {
         let (session, out) = &mut self.sessions[number];
         match self.panel.service(session, &mut self.queues, out) {

@@ -66,6 +66,8 @@ error_words! {
     MacroRunning: "a macro is running",
     MotionError: "a fault is latched: acknowledge it first",
     FlashFailed: "the settings cannot be kept: the flash does not take them",
+    OwnedByAnother: "another connection owns the stage: OWN? tells which; only stopping is possible",
+    ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros; EVT? has the pose",
 }
 
 /// The table as a script of the page.

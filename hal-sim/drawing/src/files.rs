@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::png;
+use crate::whole_file::write_whole;
 
 /// Why a report was not written.
 #[derive(Debug, thiserror::Error)]
@@ -72,7 +73,7 @@ pub fn claim_folder(folder: &Path, files: &[&str]) -> Result<(), ReportError> {
 /// # Errors
 /// [`ReportError::Unwritable`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
-    fs::write(path, bytes).map_err(unwritable(path))
+    write_whole(path, bytes).map_err(unwritable(path))
 }
 
 /// Renders an SVG document of ours and writes it as a PNG file.

@@ -8,6 +8,7 @@
 //! | [`mechanism`] | sizes of the drawn mechanism |
 //! | [`assets`] | scripts and styles that the live page and a run's document share |
 //! | [`files`] | files and folders written |
+//! | [`whole_file`] | files written whole or not at all |
 //! | [`progress`] | the progress bar |
 
 pub mod assets;
@@ -20,6 +21,8 @@ pub mod png;
 pub mod progress;
 pub mod scale;
 pub mod svg;
+pub mod whole_file;
 
 pub use files::{ReportError, claim_folder, make_folder, unwritable, write_file, write_png};
 pub use progress::Progress;
+pub use whole_file::{WholeFile, read_text, write_whole};

@@ -38,7 +38,7 @@ pub use effect::Effect;
 pub use expected::{Cause, Expected};
 pub use injection::{Injection, NAMES};
 pub use outcome::{End, Outcome};
-pub use rows::write;
+pub use rows::csv;
 pub use run::run;
 pub use scenario::Scenario;
 pub use table::table;
@@ -62,10 +62,10 @@ pub struct Campaign {
 }
 
 impl Campaign {
-    /// Runs it; `tell` is called with how many runs are done, from any thread. The outcomes are in the order of the runs, each
-    /// with its control behind it, whatever the threads do.
+    /// Runs it, as long as `goes_on` says so when it is told how many runs have been begun, from any thread. The outcomes are in
+    /// the order of the runs, each with its control behind it, whatever the threads do.
     #[must_use]
-    pub fn run(&self, tell: impl Fn(u64) + Sync) -> Vec<Outcome> {
+    pub fn run(&self, goes_on: impl Fn(u64) -> bool + Sync) -> Vec<Outcome> {
         let mut seeds = Random::new(self.seed);
         // 48 bits: short enough to be typed.
         let seeds: Vec<u64> = (0..self.runs).map(|_| seeds.bits() >> 16).collect();
@@ -77,8 +77,10 @@ impl Campaign {
                 let Some(&seed) = seeds.get(index as usize) else {
                     return done;
                 };
+                if !goes_on(index) {
+                    return done;
+                }
                 done.push((index, replay(seed)));
-                tell(index + 1);
             }
         };
         let mut outcomes: Vec<(u64, [Outcome; 2])> = thread::scope(|scope| {

@@ -1,7 +1,6 @@
-//! All runs as a CSV file.
+//! All runs as a CSV table.
 
 use std::io;
-use std::path::Path;
 
 use ::csv::Writer;
 
@@ -27,17 +26,17 @@ const COLUMNS: [&str; 16] = [
     "problem",
 ];
 
-/// Writes a row for each run, with a line of headings.
+/// A row for each run, with a line of headings.
 ///
 /// # Errors
-/// Those of the file.
-pub fn write(path: &Path, outcomes: &[Outcome]) -> io::Result<()> {
-    let mut writer = Writer::from_path(path)?;
+/// None that is known: it is made in memory.
+pub fn csv(outcomes: &[Outcome]) -> io::Result<Vec<u8>> {
+    let mut writer = Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     for outcome in outcomes {
         writer.write_record(row(outcome))?;
     }
-    writer.flush()
+    writer.into_inner().map_err(|error| error.into_error())
 }
 
 fn row(outcome: &Outcome) -> [String; 16] {

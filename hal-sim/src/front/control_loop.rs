@@ -64,8 +64,9 @@ impl Front for ControlLoop {
         )
     }
 
-    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>, motor_heat: [f32; 3]) {
         self.config = Config::new(parameters);
-        self.state = fault.map_or_else(State::new, State::with_fault);
+        let state = fault.map_or_else(State::new, State::with_fault);
+        self.state = state.with_motor_heat(motor_heat);
     }
 }

@@ -121,9 +121,14 @@ impl Host {
         [0, 1, 2].map(|axis| self.wiring[axis].pass(self.bridges[axis].state()))
     }
 
-    /// Starts the controller again, with these parameters and perhaps a fault; the stage stays as it is.
-    pub fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
-        self.control.restart(parameters, fault);
+    /// Starts the controller again, with these parameters, perhaps a fault, and motors this warm; the stage stays as it is.
+    pub fn restart(
+        &mut self,
+        parameters: &Parameters,
+        fault: Option<FaultKind>,
+        motor_heat: [f32; 3],
+    ) {
+        self.control.restart(parameters, fault, motor_heat);
     }
 
     /// The latched fault.
@@ -166,7 +171,7 @@ impl Front for Host {
         self.tick(link, recorder)
     }
 
-    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>) {
-        self.restart(parameters, fault);
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>, motor_heat: [f32; 3]) {
+        self.restart(parameters, fault, motor_heat);
     }
 }

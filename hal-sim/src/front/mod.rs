@@ -22,6 +22,7 @@ pub trait Front {
     /// One tick of the controller, and what it stands before up to the next.
     fn tick(&mut self, link: &mut TickQueues<'_>, recorder: &mut impl TickObserver) -> Outputs;
 
-    /// Starts the controller again, with these parameters and perhaps a fault; what it stands before stays as it is.
-    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>);
+    /// Starts the controller again, with these parameters, perhaps a fault, and motors as warm as the retained memory says; what it
+    /// stands before stays as it is.
+    fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>, motor_heat: [f32; 3]);
 }

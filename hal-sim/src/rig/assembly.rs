@@ -103,7 +103,7 @@ impl<'a, F: Front> Rig<'a, F> {
         let mut settings_store = SettingsStore::new(flash);
         let (interpreter, fault) = started(parameters, &mut settings_store);
         let mut front = front(interpreter.parameters());
-        front.restart(interpreter.parameters(), fault);
+        front.restart(interpreter.parameters(), fault, motor_heat(&command_queues));
         Self {
             front,
             interpreter,
@@ -130,6 +130,11 @@ impl<'a, F: Front> Rig<'a, F> {
     ) -> Result<(), W::Error> {
         self.interpreter
             .service(session, &mut self.command_queues, replies)
+    }
+
+    /// A connection has ended; what was its own ends with it.
+    pub fn disconnect(&mut self, session: &mut Session) {
+        self.interpreter.disconnect(session);
     }
 
     /// What the command side does with no connection there: a macro goes on.
@@ -161,10 +166,16 @@ impl<'a, F: Front> Rig<'a, F> {
     fn start(&mut self) {
         let (interpreter, fault) = started(&self.parameters, &mut self.settings_store);
         self.interpreter = interpreter;
-        self.front.restart(self.interpreter.parameters(), fault);
+        let motor_heat = motor_heat(&self.command_queues);
+        (self.front).restart(self.interpreter.parameters(), fault, motor_heat);
         self.tick_queues.clear();
         self.command_queues.clear();
     }
+}
+
+/// How warm the motors are from before the start.
+fn motor_heat(queues: &CommandQueues<'_>) -> [f32; 3] {
+    (queues.retained_memory).map_or([0.0; 3], RetainedMemory::motor_heat)
 }
 
 /// The command side of a controller that starts with what is kept, and the fault that it starts with.

@@ -3,7 +3,11 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use drawing::read_text;
 use firmware::gcs::{ErrorCode, ParseError, parse};
+
+/// Longest script.
+const LONGEST_BYTES: u64 = 16 << 20;
 
 /// A line to be sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,7 +92,7 @@ impl Script {
     /// # Errors
     /// The file can not be read, or the first line that is no command.
     pub fn read(path: &Path) -> Result<Self, ScriptError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ScriptError::Unreadable {
+        let text = read_text(path, LONGEST_BYTES).map_err(|source| ScriptError::Unreadable {
             path: path.to_owned(),
             source,
         })?;

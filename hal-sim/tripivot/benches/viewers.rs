@@ -21,7 +21,7 @@ mod table {
     use std::time::{Duration, Instant};
 
     use desk::serve::{Pacing, ServeOptions, Server};
-    use desk::web::{Endpoint, Page};
+    use desk::web::{Endpoint, Page, PageOptions};
     use hal_sim::machine::devices::SettingsFlash;
     use hal_sim::rig::ControllerMemory;
     use hal_sim::rig::run::RunOptions;
@@ -74,7 +74,7 @@ mod table {
             });
             let page = (viewers > 0).then(|| {
                 let endpoint = Endpoint::Tcp(address.to_string());
-                Page::start("127.0.0.1:0", endpoint).expect("a free port")
+                Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).expect("a free port")
             });
             let looking: Vec<_> = (0..viewers)
                 .filter_map(|_| Some(page.as_ref()?.address()))

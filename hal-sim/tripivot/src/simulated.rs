@@ -51,6 +51,10 @@ impl Controller for Simulated<'_> {
         self.rig.service(session, replies)
     }
 
+    fn disconnect(&mut self, session: &mut Session) {
+        self.rig.disconnect(session);
+    }
+
     fn keep(&mut self) {
         self.rig.keep();
     }

@@ -9,7 +9,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use desk::serve::{ServeOptions, Server};
-use desk::web::{Endpoint, Page};
+use desk::web::{Endpoint, Page, PageOptions};
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
@@ -55,7 +55,11 @@ impl Stage {
     }
 
     fn page(&self) -> Page {
-        Page::start("127.0.0.1:0", Endpoint::Tcp(self.address.to_string())).unwrap()
+        Page::start(
+            &PageOptions::local("127.0.0.1:0"),
+            Endpoint::Tcp(self.address.to_string()),
+        )
+        .unwrap()
     }
 }
 
@@ -247,10 +251,6 @@ fn what_is_not_a_request_gets_its_reason_and_changes_nothing() {
             json!({"id": 1, "token": viewer.token, "line": "MOV X 10\nMOV Y 10"}).to_string(),
             "a character",
         ),
-        (
-            json!({"id": 1, "token": viewer.token, "line": "WAC ONT? X = 1"}).to_string(),
-            "WAC holds up",
-        ),
     ] {
         viewer.send(&message);
         let answer = viewer.wait(|answer| answer["kind"] == "refused");
@@ -386,7 +386,7 @@ fn a_serial_line_serves_as_well() {
         device,
         baud: 115_200,
     };
-    let page = Page::start("127.0.0.1:0", endpoint).unwrap();
+    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
     let mut viewer = Viewer::ready(&page);
     viewer.reply("FRF");
     viewer.reply("MOV X 1");
@@ -416,4 +416,224 @@ fn more_requests_than_fit_are_refused_and_none_is_lost() {
     }
     assert!(answered > 0);
     viewer.reply("CSV?");
+}
+
+/// What `OWN?` says under a name.
+fn owned(viewer: &mut Viewer, name: &str) -> String {
+    let reply = viewer.reply("OWN?").unwrap();
+    let value = reply
+        .lines()
+        .find_map(|line| line.strip_prefix(name)?.strip_prefix('='));
+    value.unwrap().to_owned()
+}
+
+#[test]
+fn each_page_is_a_connection_of_its_own() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    one.reply("FRF");
+    one.reply("CCL 1 ADVANCED");
+    assert_eq!(other.reply("CCL?").as_deref(), Some("0"));
+    assert_eq!(other.ask("SPA 1 0x54500301 41")["error"], 60);
+    // What one records, or waits for, is nothing to the other.
+    one.reply("VAR Q MAC");
+    one.reply("$Q BEG TRAP");
+    other.reply("MOV X 1");
+    other.until("POS? X", 1.0);
+    one.reply("MAC END");
+    assert_eq!(one.reply("MAC? TRAP").as_deref(), Some(""));
+    one.send(&json!({"id": 9999, "token": one.token, "line": "WAC POS? X = 99"}).to_string());
+    other.reply("MOV X 2");
+    other.until("POS? X", 2.0);
+    // A page that is gone leaves nothing behind that waits.
+    drop(one);
+    other.reply("STP");
+    other.reply("MOV X 3");
+}
+
+#[test]
+fn a_page_may_own_the_stage_as_long_as_it_is_there() {
+    let stage = Stage::start("127.0.0.1:0");
+    for endpoint in [
+        Endpoint::Tcp(stage.address.to_string()),
+        Endpoint::Serial {
+            device: stage.terminal.clone().unwrap(),
+            baud: 115_200,
+        },
+    ] {
+        let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+        let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+        one.reply("FRF");
+        one.reply("OWN 1");
+        assert_eq!(
+            (owned(&mut one, "MINE"), owned(&mut other, "MINE")),
+            ("1".into(), "0".into())
+        );
+        assert_eq!(owned(&mut one, "OWNER"), owned(&mut other, "OWNER"));
+        for line in ["MOV X 5", "OWN 1", "VLS 10"] {
+            assert_eq!(other.ask(line)["error"], 4002, "{line}");
+        }
+        assert_eq!(other.reply("POS? Z").as_deref(), Some("Z=0.000000000"));
+        one.reply("VLS 1");
+        one.reply("MOV X 60");
+        other.reply("STP");
+        one.until("JOG? X", 0.0);
+        assert!(one.value("MOV? X") < 50.0);
+        one.reply("VLS 200");
+        one.reply("MOV X 0");
+        drop(one);
+        let end = Instant::now() + PATIENCE;
+        while owned(&mut other, "OWNER") != "(nobody)" {
+            assert!(Instant::now() < end, "still owned");
+        }
+        other.reply("MOV X 0");
+    }
+}
+
+#[test]
+fn a_jog_of_a_page_ends_without_it() {
+    let stage = Stage::start("127.0.0.1:0");
+    for endpoint in [
+        Endpoint::Tcp(stage.address.to_string()),
+        Endpoint::Serial {
+            device: stage.terminal.clone().unwrap(),
+            baud: 115_200,
+        },
+    ] {
+        let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+        let mut looker = Viewer::ready(&page);
+        looker.reply("FRF");
+        // Killed: its connection ends.
+        let mut killed = Viewer::ready(&page);
+        killed.reply("JOG W 20");
+        drop(killed);
+        looker.until("JOG? W", 0.0);
+        // Asleep, or out of reach: it is there and says nothing.
+        let mut asleep = Viewer::ready(&page);
+        asleep.reply("JOG W 20");
+        let start = Instant::now();
+        looker.until("JOG? W", 0.0);
+        assert!(
+            start.elapsed() > Duration::from_millis(200),
+            "{:?}",
+            start.elapsed()
+        );
+        // Renewed, it goes on.
+        for _ in 0..20 {
+            asleep.reply("JOG W 20");
+            thread::sleep(Duration::from_millis(50));
+            assert_eq!(looker.value("JOG? W"), 20.0);
+        }
+        looker.until("JOG? W", 0.0);
+    }
+}
+
+#[test]
+fn over_a_line_that_pages_share_none_changes_what_another_says() {
+    let stage = Stage::start("127.0.0.1:0");
+    let device = stage.terminal.clone().unwrap();
+    let endpoint = Endpoint::Serial {
+        device,
+        baud: 115_200,
+    };
+    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    for line in [
+        "VAR Q MAC",
+        "$Q BEG TRAP",
+        "MAC BEG TRAP",
+        "WAC POS? X = 99",
+        "DEL 1000",
+    ] {
+        let refused = one.ask(line);
+        assert_eq!(refused["kind"], "refused", "{line}: {refused}");
+        assert!(
+            refused["reason"]
+                .as_str()
+                .unwrap()
+                .contains("share this serial line"),
+            "{refused}"
+        );
+    }
+    one.reply("CCL 1 ADVANCED");
+    assert_eq!(other.reply("CCL?").as_deref(), Some("0"));
+    assert_eq!(other.ask("SPA 1 0x54500301 41")["error"], 60);
+    assert_eq!(one.reply("CCL?").as_deref(), Some("1"));
+}
+
+/// The cookie that a password brings, or what the page says in place of one.
+fn enter(page: SocketAddr, origin: &str, password: &str) -> Result<String, String> {
+    let mut stream = TcpStream::connect(page).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let form = format!("password={password}");
+    write!(
+        stream,
+        "POST /login HTTP/1.1\r\nHost: {page}\r\nOrigin: {origin}\r\nConnection: close\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: {}\r\n\r\n{form}",
+        form.len()
+    )
+    .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    let cookie = answer
+        .lines()
+        .find_map(|line| line.strip_prefix("set-cookie: "));
+    cookie
+        .and_then(|cookie| cookie.split(';').next())
+        .map(str::to_owned)
+        .ok_or(answer)
+}
+
+#[test]
+fn a_page_that_others_reach_wants_its_password() {
+    let stage = Stage::start("127.0.0.1:0");
+    let options = PageOptions {
+        password: Some("correct horse".to_owned()),
+        public_url: Some("https://stage.example.org".to_owned()),
+        ..PageOptions::local("127.0.0.1:0")
+    };
+    let page = Page::start(&options, Endpoint::Tcp(stage.address.to_string())).unwrap();
+    let (address, place) = (page.address(), page.address().to_string());
+    for (path, status) in [
+        ("/", "303"),
+        ("/token", "401"),
+        ("/live", "401"),
+        ("/js/main.js", "401"),
+        ("/login", "200"),
+    ] {
+        let answer = get(address, path, &place);
+        assert!(
+            answer.starts_with(&format!("HTTP/1.1 {status}")),
+            "{path}: {answer}"
+        );
+    }
+    assert_eq!(
+        connect(&page, Some(&format!("http://{place}"))).err(),
+        Some(401)
+    );
+    let own = format!("http://{place}");
+    // Nobody else's page tries for its user.
+    assert!(
+        enter(address, "http://evil.example", "correct+horse")
+            .unwrap_err()
+            .starts_with("HTTP/1.1 403")
+    );
+    let wrong = enter(address, &own, "wrong").unwrap_err();
+    assert!(wrong.contains("not the password"), "{wrong}");
+    let soon = enter(address, &own, "correct+horse").unwrap_err();
+    assert!(soon.contains("too soon"), "{soon}");
+    thread::sleep(Duration::from_millis(1_100));
+    // Through the proxy as well.
+    let cookie = enter(address, "https://stage.example.org", "correct+horse").unwrap();
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let host = "stage.example.org";
+    write!(
+        stream,
+        "GET /token HTTP/1.1\r\nHost: {host}\r\nCookie: {cookie}\r\nConnection: close\r\n\r\n"
+    )
+    .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
 }

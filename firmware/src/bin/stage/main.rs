@@ -142,7 +142,8 @@ mod app {
         let state = match settings_store.restore(interpreter) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
-        };
+        }
+        .with_motor_heat(RETAINED_MEMORY.motor_heat());
         let local = Local {
             config: Config::new(interpreter.parameters()),
             state: context.local.state_place.write(state),

@@ -48,6 +48,9 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::StoreFailed(number) => (14, [0; 2], [u32::from(*number), 0, 0]),
         Event::Recalled => bare(15),
         Event::UnknownParameters(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
+        Event::ServoBeforeReference => bare(17),
+        Event::SupervisionLoosened(count) => (19, [0; 2], [u32::from(*count), 0, 0]),
+        Event::PoseOutside(pose) => (18, [0; 2], pose.map(f32::to_bits)),
     }
 }
 
@@ -81,6 +84,9 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         14 => Event::StoreFailed(a as u16),
         15 => Event::Recalled,
         16 => Event::UnknownParameters(a as u16),
+        17 => Event::ServoBeforeReference,
+        19 => Event::SupervisionLoosened(a as u16),
+        18 => Event::PoseOutside([a, b, c].map(f32::from_bits)),
         _ => return None,
     };
     Some((tick, event))

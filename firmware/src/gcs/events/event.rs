@@ -39,6 +39,12 @@ pub(in crate::gcs) enum Event {
     StoreFailed(u16),
     /// `RPA`
     Recalled,
+    /// `SVO 1` came before the reference, which is what switches the servo on.
+    ServoBeforeReference,
+    /// So many thresholds of supervision are looser than the reference.
+    SupervisionLoosened(u16),
+    /// `FRF` found a pose that the stage can not take: mm, mm, deg.
+    PoseOutside([f32; 3]),
     /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
@@ -66,6 +72,22 @@ impl fmt::Display for Event {
                 write!(f, "settings could not be kept, error {number}")
             }
             Self::Recalled => f.write_str("parameters as they are kept"),
+            Self::SupervisionLoosened(0) => f.write_str("supervision as in the reference again"),
+            Self::SupervisionLoosened(count) => {
+                write!(
+                    f,
+                    "supervision looser than the reference: {count} thresholds"
+                )
+            }
+            Self::PoseOutside([x, y, w]) => {
+                write!(
+                    f,
+                    "not referenced: the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
+                )
+            }
+            Self::ServoBeforeReference => {
+                f.write_str("servo asked for before the reference: it stays off until FRF")
+            }
             Self::UnknownParameters(count) => {
                 write!(f, "{count} kept parameters are unknown here and ignored")
             }

@@ -3,7 +3,7 @@
 use super::encoding::{event, words};
 use super::event::Event;
 use crate::fault::Fault;
-use crate::fault_record::{RETAINED_EVENTS, RetainedMemory};
+use crate::fault_record::{RETAINED_EVENTS, RETAINED_FAULTS, RetainedMemory};
 use crate::mode::Mode;
 use crate::queues::Snapshot;
 use heapless::Deque;
@@ -11,6 +11,10 @@ use heapless::Deque;
 /// What has happened: the latest events, and how many there were.
 pub(in crate::gcs) struct EventLog {
     pub(super) entries: Deque<(u64, Event), RETAINED_EVENTS>,
+    /// The latest faults, with their numbers: nothing else takes their places.
+    pub(super) faults: Deque<(u32, u64, Event), RETAINED_FAULTS>,
+    /// They are not in the retained memory yet.
+    faults_changed: bool,
     /// How many there were.
     pub(super) count: u32,
     /// How many of them the retained memory has; `None` before it was looked at.
@@ -34,6 +38,8 @@ impl EventLog {
     pub fn new() -> Self {
         let mut events = Self {
             entries: Deque::new(),
+            faults: Deque::new(),
+            faults_changed: false,
             count: 0,
             retained: None,
             last: Observed::default(),
@@ -49,13 +55,54 @@ impl EventLog {
         }
     }
 
+    /// A stop; one that found nothing to stop is left out where the event before is the same.
+    pub fn add_stop(&mut self, tick: u64, stop: Event, has_stopped: bool) {
+        if has_stopped {
+            self.add(tick, stop);
+        } else {
+            self.add_once(tick, stop);
+        }
+    }
+
+    /// Adds it unless the event before is the same.
+    pub fn add_once(&mut self, tick: u64, event: Event) {
+        if self.entries.back().map(|(_, last)| last) != Some(&event) {
+            self.add(tick, event);
+        }
+    }
+
     pub fn add(&mut self, tick: u64, event: Event) {
+        if matches!(event, Event::Fault(_)) {
+            self.add_fault(tick, event);
+        }
         if self.entries.is_full() {
             self.entries.pop_front();
         }
         // There is room now.
         let _ = self.entries.push_back((tick, event));
         self.count = self.count.wrapping_add(1);
+    }
+
+    fn add_fault(&mut self, tick: u64, event: Event) {
+        let number = self.count.wrapping_add(1);
+        // Recalled from before the start, where the events come again one by one.
+        if self.faults.iter().any(|(known, ..)| *known == number) {
+            return;
+        }
+        if self.faults.is_full() {
+            self.faults.pop_front();
+        }
+        // There is room now.
+        let _ = self.faults.push_back((number, tick, event));
+        self.faults_changed = true;
+    }
+
+    /// Faults that are older than all other events that are known, with their numbers.
+    pub fn older_faults(&self) -> impl Iterator<Item = &(u32, u64, Event)> {
+        let first = self.count - self.entries.len() as u32 + 1;
+        self.faults
+            .iter()
+            .filter(move |(number, ..)| *number < first)
     }
 
     /// Writes what is new into the retained memory; the first time, takes what is in it from before.
@@ -72,11 +119,18 @@ impl EventLog {
                 .write(number, &words(number, *tick, event));
         }
         self.retained = Some(self.count);
+        if core::mem::take(&mut self.faults_changed) {
+            for (place, (number, tick, event)) in (0..).zip(&self.faults) {
+                let words = words(*number, *tick, event);
+                retained_memory.faults.write(place, &words);
+            }
+        }
     }
 
     /// Puts events from before the start in front of those since; the number of the last of them.
     fn recall(&mut self, retained_memory: &RetainedMemory) -> u32 {
         let since = core::mem::take(&mut self.entries);
+        self.recall_faults(retained_memory);
         let read = |number: u32| {
             let words = retained_memory.events.read(number)?;
             Some((words[0], event(&words)?))
@@ -102,6 +156,19 @@ impl EventLog {
             self.add(*tick, *event);
         }
         last
+    }
+
+    /// Takes the faults from before the start, the latest of which are among the events too and come again with them.
+    fn recall_faults(&mut self, retained_memory: &RetainedMemory) {
+        self.faults.clear();
+        for place in 0..RETAINED_FAULTS as u32 {
+            let words = retained_memory.faults.read(place);
+            let fault = words.and_then(|words| Some((words[0], event(&words)?)));
+            if let Some((number, (tick, event))) = fault {
+                // There are as many places as faults.
+                let _ = self.faults.push_back((number, tick, event));
+            }
+        }
     }
 
     /// Finds out what has happened up to a snapshot.

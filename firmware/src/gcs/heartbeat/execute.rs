@@ -1,6 +1,6 @@
 //! `HBT`, and what follows a silence of the host.
 
-use super::state::Heartbeat;
+use super::state::{Promise, Silence};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -11,66 +11,70 @@ use crate::parameters::MIN_HOST_SILENCE_MS;
 use crate::queues::CommandQueues;
 
 impl Interpreter {
-    /// `HBT`: longest silence, or 0 for none. With it a connection promises to be heard; a macro can not.
+    /// `HBT`: with it a connection promises to be heard, or, with 0, ends its promise and no other. A macro can not promise: it
+    /// sets the parameter.
     pub(in crate::gcs) fn set_heartbeat(
         &mut self,
         ms: f64,
-        session: &mut Session,
+        session: &Session,
     ) -> Result<(), ErrorCode> {
         if ms != 0.0 && !(MIN_HOST_SILENCE_MS..=MAX_DELAY_MS).contains(&ms) {
             return Err(ErrorCode::OutOfRange);
         }
-        for parameters in [&mut self.parameters, &mut self.previous_parameters] {
-            parameters.supervision.host_silence_ms = ms;
-        }
-        let Heartbeat {
-            mut is_promised,
-            mut generation,
-            ..
-        } = self.heartbeat;
-        if ms == 0.0 {
-            is_promised = false;
-            generation = generation.wrapping_add(1);
-        } else if !session.is_macro {
-            is_promised = true;
-            session.promised_generation = Some(generation);
-        }
-        self.heartbeat = Heartbeat {
-            last_heard_tick: self.commander.tick(),
-            is_silent: false,
-            is_promised,
-            generation,
+        let mut silence = Silence::default();
+        silence.end(self.commander.tick());
+        let Some(connection) = session.number.filter(|_| !session.is_macro) else {
+            for parameters in [&mut self.parameters, &mut self.previous_parameters] {
+                parameters.supervision.host_silence_ms = ms;
+            }
+            self.heartbeat.any = silence;
+            return Ok(());
         };
-        Ok(())
+        let promises = &mut self.heartbeat.promises;
+        promises.retain(|promise| promise.connection != connection);
+        if ms == 0.0 {
+            return Ok(());
+        }
+        let promise = Promise {
+            connection,
+            ms,
+            silence,
+            has_ended: false,
+        };
+        promises.push(promise).map_err(|_| ErrorCode::Busy)
     }
 
     /// Notes whether a connection has been heard.
     pub(in crate::gcs) fn note_activity(&mut self, session: &mut Session) {
-        let Heartbeat {
-            is_promised,
-            generation,
-            ..
-        } = self.heartbeat;
-        let counts = !is_promised || session.promised_generation == Some(generation);
-        if core::mem::take(&mut session.received_bytes) && counts {
-            self.heartbeat.last_heard_tick = self.commander.tick();
-            self.heartbeat.is_silent = false;
+        if !core::mem::take(&mut session.received_bytes) {
+            return;
+        }
+        let tick = self.commander.tick();
+        self.heartbeat.any.end(tick);
+        for promise in &mut self.heartbeat.promises {
+            if Some(promise.connection) == session.number {
+                promise.silence.end(tick);
+            }
         }
     }
 
-    /// Stops when the host has been silent for too long.
+    /// Stops when one that has promised to be heard has not been, or, for the parameter, nobody at all.
     pub(in crate::gcs) fn watch_heartbeat(&mut self, queues: &mut CommandQueues<'_>) {
-        let Heartbeat {
-            last_heard_tick,
-            is_silent,
-            ..
-        } = self.heartbeat;
-        let ms = self.parameters.supervision.host_silence_ms;
         let tick = self.commander.tick();
-        if ms == 0.0 || is_silent || tick <= last_heard_tick + self.commander.ticks(ms) {
-            return;
+        let ms = self.parameters.supervision.host_silence_ms;
+        let ticks = self.commander.ticks(ms);
+        let mut missed =
+            (ms != 0.0 && self.heartbeat.any.becomes_too_long(tick, ticks)).then_some(ms);
+        for promise in &mut self.heartbeat.promises {
+            let ticks = self.commander.ticks(promise.ms);
+            if promise.silence.becomes_too_long(tick, ticks) {
+                missed = Some(promise.ms);
+            }
         }
-        self.heartbeat.is_silent = true;
+        let Some(ms) = missed else {
+            return;
+        };
+        self.heartbeat.forget_missed();
         self.events.add(tick, Event::HostSilent(ms));
         self.stop_all(Stop::Urgent, queues);
         self.report_to_all(ErrorCode::Stopped);

@@ -55,7 +55,7 @@ impl Interpreter {
         self.macros.calls.enter(place, times, arguments)?;
         if !session.is_macro {
             self.macros.failure = None;
-            self.macros.session = Session::for_macro(session.level);
+            self.macros.session = Session::for_macro(session);
             // What was reported before does not end it.
             let mut session = core::mem::take(&mut self.macros.session);
             self.report_errors(&mut session);

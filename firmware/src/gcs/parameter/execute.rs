@@ -6,6 +6,7 @@
 
 use super::address::Settings;
 use super::descriptor::{Parameter, When};
+use super::looseness::loosened;
 use super::table::PARAMETERS;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
@@ -59,7 +60,16 @@ impl Interpreter {
         }
         self.rated_limits = highest(&self.rated_limits, &wanted.limits);
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
+        self.note_looseness();
         Ok(())
+    }
+
+    /// An event when supervision becomes looser than the reference, or does not stay so.
+    pub(in crate::gcs) fn note_looseness(&mut self) {
+        let count = loosened(&self.parameters).count() as u16;
+        if core::mem::replace(&mut self.loosened, count) != count {
+            (self.events).add(self.commander.tick(), Event::SupervisionLoosened(count));
+        }
     }
 
     /// Whether this may become of the parameters now: what was stored may be in force again at any command level.

@@ -10,12 +10,14 @@
 //! | `address` | which of them a line names |
 //! | `passwords` | what has to be given with some lines |
 //! | `parse` | what lines mean |
+//! | `looseness` | supervision that is looser than the reference |
 //! | `execute` | when one may be set, and how it reaches the tick |
 //! | `replies` | what queries answer |
 
 mod address;
 mod descriptor;
 mod execute;
+mod looseness;
 pub(super) mod parse;
 mod passwords;
 mod replies;
@@ -23,5 +25,6 @@ mod table;
 
 pub use address::{Address, Addresses, Item, MAX_ADDRESSES, Settings};
 pub use descriptor::{Kind, Parameter, When};
+pub(super) use looseness::loosened;
 pub(super) use replies::parameter_help;
 pub use table::PARAMETERS;

@@ -94,11 +94,11 @@ impl Interpreter {
         recorder.before = recorder.before.min(recorder.points - 1);
         self.rated_limits = parameters.limits;
         self.commander.use_parameters(&parameters);
-        // Not refused: it is their own.
-        let _ = self.commander.set_velocity(parameters.limits.speed_mm_s);
+        self.commander.reset_velocity();
         self.parameters.clone_from(&parameters);
         self.previous_parameters.clone_from(&parameters);
         self.persistence.stored = parameters;
+        self.note_looseness();
         if unknown > 0 {
             self.events.add(0, Event::UnknownParameters(unknown));
         }

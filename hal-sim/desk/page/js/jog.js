@@ -4,6 +4,9 @@ import { byId, report } from "./dom.js";
 import { number } from "./drive.js";
 import { plain } from "./gcs.js";
 
+// A velocity ends 300 ms after it was asked for last: a page that dies does not let its button go.
+const RENEWAL_MS = 100;
+
 export function steps(stage) {
   const said = byId("said");
   const size = (axis) => (axis === "W" ? number("step-deg", "step in degrees") : number("step-mm", "step in mm"));
@@ -14,11 +17,16 @@ export function steps(stage) {
     const [axis, sign] = button.dataset.step;
     const amount = () => plain(size(axis) * (sign === "+" ? 1 : -1));
     const step = () => report(said, () => stage.link.ask(`MVR ${axis} ${amount()}`), "on its way");
+    let renewal = 0;
     const hold = () => {
       button.classList.add("held");
-      report(said, () => stage.link.ask(`JOG ${axis} ${amount()}`), "jogging");
+      const line = `JOG ${axis} ${amount()}`;
+      report(said, () => stage.link.ask(line), "jogging");
+      clearInterval(renewal);
+      renewal = setInterval(() => stage.link.ask(line).catch(() => clearInterval(renewal)), RENEWAL_MS);
     };
     const release = () => {
+      clearInterval(renewal);
       if (!button.classList.contains("held")) return;
       button.classList.remove("held");
       report(said, () => stage.link.ask(`JOG ${axis} 0`), "released");

@@ -8,7 +8,7 @@ use rustix::event::PollFlags;
 use rustix::fd::{AsFd, BorrowedFd};
 
 use super::output::{Output, Overflow};
-use super::{Controller, Notice};
+use super::{Controller, Notice, ProtocolCheck};
 
 /// Bytes read at a time.
 const READ_BYTES: usize = 4096;
@@ -18,6 +18,12 @@ const WAITING_BYTES: usize = 64 << 10;
 const PATIENCE: Duration = Duration::from_secs(5);
 /// How much of a line is kept for notices.
 const LINE_BYTES: usize = 80;
+/// Lines of a client that are carried out in a turn: more would take the stage's time.
+const LINES_PER_TURN: usize = 16;
+/// `#24`
+const STOP: u8 = 24;
+/// How long a connection that may only stop the stage has for saying so.
+const STOP_PATIENCE: Duration = Duration::from_millis(500);
 
 /// What a client is at: a socket, or the pseudo-terminal.
 pub(super) trait Port: Read + Write + AsFd {}
@@ -28,8 +34,11 @@ impl<P: Read + Write + AsFd> Port for P {}
 pub(super) struct Connection {
     name: String,
     port: Box<dyn Port>,
-    /// A terminal stays when its client is gone.
-    permanent: bool,
+    kind: ConnectionKind,
+    opened: Instant,
+    check: ProtocolCheck,
+    /// Lines that may still be carried out in this turn.
+    lines_left: usize,
     session: Session,
     /// Read, and not taken by the session yet.
     input: Vec<u8>,
@@ -45,6 +54,17 @@ pub(super) struct Connection {
     state: ClientState,
 }
 
+/// What a connection is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ConnectionKind {
+    /// A client over TCP.
+    Client,
+    /// The pseudo-terminal, which stays when its client is gone.
+    Terminal,
+    /// There is no place left for a client; a stop is taken all the same.
+    StopOnly,
+}
+
 /// What has become of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ClientState {
@@ -52,16 +72,23 @@ enum ClientState {
     Gone,
     /// It does not read.
     Unread,
+    /// It speaks another protocol.
+    NoClient,
 }
 
 impl Connection {
     /// A client at a port that does not block.
-    pub fn new(name: String, port: Box<dyn Port>, permanent: bool, now: Instant) -> Self {
+    pub fn new(name: String, port: Box<dyn Port>, kind: ConnectionKind, now: Instant) -> Self {
+        let mut session = Session::new();
+        session.set_name(&name);
         Self {
             name,
             port,
-            permanent,
-            session: Session::new(),
+            kind,
+            opened: now,
+            check: ProtocolCheck::default(),
+            lines_left: LINES_PER_TURN,
+            session,
             input: Vec::new(),
             output: Output::default(),
             last_read: now,
@@ -96,21 +123,62 @@ impl Connection {
         flags
     }
 
+    /// Whether its end has been seen.
+    pub const fn has_ended(&self) -> bool {
+        self.ended.is_some()
+    }
+
+    /// Its client has sent all that it will; what came before is still carried out.
+    pub const fn end(&mut self, now: Instant) {
+        self.ended = Some(now);
+    }
+
+    /// Its client is gone and reads nothing any more.
+    pub const fn break_off(&mut self) {
+        self.state = ClientState::Gone;
+    }
+
     /// Reads what has come; to be called when [`interest`](Self::interest) has been met.
     pub fn read(&mut self, now: Instant) {
         let mut bytes = [0; READ_BYTES];
         match self.port.read(&mut bytes) {
-            Ok(0) => self.ended = Some(now),
-            Ok(count) => self.input.extend_from_slice(&bytes[..count]),
+            Ok(0) => self.end(now),
+            Ok(count) => self.take(&bytes[..count]),
             Err(error) if is_passing(&error) => {}
-            Err(_) => self.state = ClientState::Gone,
+            Err(_) => self.break_off(),
         }
+    }
+
+    fn take(&mut self, bytes: &[u8]) {
+        if self.kind != ConnectionKind::Terminal && !self.check.accepts(bytes) {
+            self.state = ClientState::NoClient;
+            self.input.clear();
+            return;
+        }
+        self.input.extend_from_slice(bytes);
+    }
+
+    /// A turn begins.
+    pub const fn begin_turn(&mut self) {
+        self.lines_left = LINES_PER_TURN;
+    }
+
+    /// Whether lines of it wait for the next turn.
+    pub const fn has_lines_left(&self) -> bool {
+        self.lines_left == 0 && !self.input.is_empty()
     }
 
     /// Has the controller carry out what has come, line by line, so that a refusal can be told with its line.
     pub fn service(&mut self, controller: &mut impl Controller, say: &mut dyn FnMut(Notice)) {
+        if self.state != ClientState::Here {
+            return;
+        }
+        if self.kind == ConnectionKind::StopOnly {
+            self.take_stop();
+        }
         loop {
-            let taken = self.feed();
+            let taken = self.kind != ConnectionKind::StopOnly && self.lines_left > 0 && self.feed();
+            self.lines_left -= usize::from(taken);
             let waiting = self.output.len();
             (self.session).set_room(WAITING_BYTES.saturating_sub(waiting));
             if let Err(Overflow) = controller.service(&mut self.session, &mut self.output) {
@@ -121,6 +189,31 @@ impl Connection {
             if !taken {
                 return;
             }
+        }
+    }
+
+    /// Gives the session a stop, if one has come, and nothing else.
+    fn take_stop(&mut self) {
+        let is_stop = |line: &&[u8]| {
+            let word = line.trim_ascii().get(..3).unwrap_or_default();
+            line.ends_with(b"\n")
+                && [b"STP", b"HLT"]
+                    .iter()
+                    .any(|stop| word.eq_ignore_ascii_case(*stop))
+        };
+        let line = self
+            .input
+            .split_inclusive(|&byte| byte == b'\n')
+            .find(is_stop);
+        let stop = if self.input.contains(&STOP) {
+            Some([STOP].as_slice())
+        } else {
+            line
+        };
+        if let Some(stop) = stop {
+            self.session.receive(stop);
+            self.input.clear();
+            self.ended = Some(self.opened);
         }
     }
 
@@ -170,28 +263,41 @@ impl Connection {
     }
 
     /// Whether it is still there; tells when not.
-    pub fn stays(&mut self, now: Instant, say: &mut dyn FnMut(Notice)) -> bool {
+    pub fn stays(
+        &mut self,
+        now: Instant,
+        controller: &mut impl Controller,
+        say: &mut dyn FnMut(Notice),
+    ) -> bool {
         let finished = self.ended.is_some_and(|ended| {
             let done = self.input.is_empty() && self.session.is_idle() && self.output.len() == 0;
             done || now.duration_since(ended) > PATIENCE
         });
-        if finished {
+        let has_no_place = self.kind == ConnectionKind::StopOnly
+            && now.duration_since(self.opened) > STOP_PATIENCE;
+        if (finished || has_no_place) && self.state == ClientState::Here {
             self.state = ClientState::Gone;
         }
         match self.state {
             ClientState::Here => return true,
+            // It has been told that it was turned away.
+            ClientState::Gone if self.kind == ConnectionKind::StopOnly => {}
             ClientState::Gone => say(Notice::Left(self.name.clone())),
             ClientState::Unread => say(Notice::Unread(self.name.clone())),
+            ClientState::NoClient => say(Notice::NoClient(self.name.clone())),
         }
-        if self.permanent {
+        controller.disconnect(&mut self.session);
+        let stays = self.kind == ConnectionKind::Terminal;
+        if stays {
             self.start_again(now);
         }
-        self.permanent
+        stays
     }
 
     /// Nobody is known to be there: as after a restart of the line.
     fn start_again(&mut self, now: Instant) {
         self.session = Session::new();
+        self.session.set_name(&self.name);
         self.input.clear();
         self.output = Output::default();
         self.ended = None;

@@ -22,6 +22,9 @@ pub trait Controller {
     fn service<W: Write>(&mut self, session: &mut Session, replies: &mut W)
     -> Result<(), W::Error>;
 
+    /// A connection has ended; what was its own ends with it.
+    fn disconnect(&mut self, session: &mut Session);
+
     /// Goes on keeping settings.
     fn keep(&mut self);
 

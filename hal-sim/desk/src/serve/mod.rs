@@ -2,7 +2,8 @@
 //!
 //! One thread does everything, in turns: the ticks that the wall clock says are due, in small batches, and what has come in
 //! meanwhile. It waits for nothing but the clock and the connections together, so no client holds up the stage or another
-//! client: sockets never block, every buffer is bounded, and who does not read is disconnected.
+//! client: sockets never block, every buffer is bounded, a turn carries out so many lines of a client, and who does not read
+//! is disconnected. Who speaks another protocol, a browser above all, is cut off before anything of it is carried out.
 //!
 //! ```text
 //! clock -> Pace -> due ticks -> Controller::tick
@@ -16,6 +17,9 @@
 //! | `server` | the turns |
 //! | `pace` | ticks from the wall clock |
 //! | `connection` | a client: its session, and bytes in and out |
+//! | `protocol_check` | whether what comes in is the command language |
+//! | `keepalive` | ends of clients that were never told |
+//! | `remote` | addresses that other machines can reach |
 //! | `output` | replies that wait to be read, bounded |
 //! | `terminal` | the pseudo-terminal, on Unix |
 //! | `no_terminal` | in its place elsewhere |
@@ -24,10 +28,13 @@
 
 mod connection;
 mod controller;
+mod keepalive;
 mod notice;
 mod output;
 mod pace;
 mod printer;
+mod protocol_check;
+mod remote;
 mod server;
 #[cfg(unix)]
 mod terminal;
@@ -41,6 +48,8 @@ pub use controller::Controller;
 pub use notice::Notice;
 pub use pace::Pacing;
 pub use printer::Printer;
+pub use protocol_check::ProtocolCheck;
+pub use remote::{REMOTE_MEANS, check_address, is_remote};
 pub use server::Server;
 
 /// What to serve, and where.
@@ -65,6 +74,9 @@ pub enum ServeError {
         /// What the system says.
         error: io::Error,
     },
+    /// Other machines can reach the address, and nobody has allowed that.
+    #[error("{0}: {REMOTE_MEANS}; if that is meant, say --allow-remote")]
+    Remote(String),
     /// There is no pseudo-terminal to be had.
     #[error("cannot open a pseudo-terminal: {0}")]
     Terminal(io::Error),

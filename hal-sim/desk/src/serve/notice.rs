@@ -11,8 +11,10 @@ pub enum Notice {
     Connected(String),
     /// A client left.
     Left(String),
-    /// As many clients as can be are connected already.
+    /// As many clients as can be are connected already; a stop is all that is taken from this one.
     TurnedAway(String),
+    /// What came is no line of a client but a browser's request, or another protocol: nothing of it was carried out.
+    NoClient(String),
     /// What a client sent was refused, or its error was set by a stop or a fault.
     Refused {
         /// The client.
@@ -34,12 +36,25 @@ pub enum Notice {
     Behind(f64),
 }
 
+impl Notice {
+    /// Whether clients can cause it as often as they like.
+    pub(super) const fn is_of_clients(&self) -> bool {
+        !matches!(self, Self::Fault(_) | Self::Restarted | Self::Behind(_))
+    }
+}
+
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Connected(name) => write!(f, "{name}: connected"),
             Self::Left(name) => write!(f, "{name}: left"),
-            Self::TurnedAway(name) => write!(f, "{name}: turned away, too many clients"),
+            Self::TurnedAway(name) => {
+                write!(f, "{name}: turned away but for a stop, too many clients")
+            }
+            Self::NoClient(name) => write!(
+                f,
+                "{name}: sent HTTP or another protocol, cut off; nothing of it was carried out"
+            ),
             Self::Refused { name, error, line } if line.is_empty() => {
                 write!(f, "{name}: error {error}")
             }

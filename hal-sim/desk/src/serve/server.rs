@@ -10,19 +10,29 @@ use std::time::{Duration, Instant};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-use super::connection::{Connection, Port};
+use super::connection::{Connection, ConnectionKind, Port};
+use super::keepalive::keep_alive;
 use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
 use super::{Controller, Notice, ServeError, ServeOptions};
 
 /// Clients at once.
 const CLIENTS: usize = 64;
+/// Connections besides, from which nothing but a stop is taken.
+const STOP_PLACES: usize = 4;
 /// How long no connection is accepted after one could not be.
 const ACCEPT_PAUSE: Duration = Duration::from_secs(1);
 /// How often being late is told.
 const BEHIND_EVERY: Duration = Duration::from_secs(5);
 /// How long nothing else may keep it from seeing that it is to stop.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+/// A client has sent all that it will.
+#[cfg(target_os = "linux")]
+const ENDED: PollFlags = PollFlags::RDHUP;
+/// Other systems tell by reading.
+#[cfg(not(target_os = "linux"))]
+const ENDED: PollFlags = PollFlags::empty();
 
 /// Where a controller can be reached that does not run yet.
 pub struct Server {
@@ -79,9 +89,10 @@ impl Server {
     ) -> Result<Pacing, ServeError> {
         let now = Instant::now();
         let rate_hz = controller.rate_hz() * self.options.speed;
-        let terminal = self
-            .terminal
-            .map(|terminal| Connection::new("terminal".into(), terminal.into_port(), true, now));
+        let terminal = self.terminal.map(|terminal| {
+            let kind = ConnectionKind::Terminal;
+            Connection::new("terminal".into(), terminal.into_port(), kind, now)
+        });
         let mut service = Service {
             controller,
             pace: Pace::new(now, rate_hz),
@@ -122,6 +133,9 @@ struct Service<'a, C> {
 
 impl<C: Controller> Service<'_, C> {
     fn turn(&mut self) -> io::Result<()> {
+        for connection in &mut self.connections {
+            connection.begin_turn();
+        }
         for _ in 0..self.pace.take(Instant::now()) {
             self.controller.tick();
             self.service();
@@ -131,9 +145,17 @@ impl<C: Controller> Service<'_, C> {
         }
         self.tell_fault();
         self.tell_lost(Instant::now());
-        let ready = self.wait(self.pace.wait(Instant::now()).min(LOOK_EVERY))?;
+        let ready = self.wait(self.idle_time())?;
         self.transfer(ready, Instant::now());
         Ok(())
+    }
+
+    /// How long nothing is due.
+    fn idle_time(&self) -> Duration {
+        if self.connections.iter().any(Connection::has_lines_left) {
+            return Duration::ZERO;
+        }
+        self.pace.wait(Instant::now()).min(LOOK_EVERY)
     }
 
     /// The controller has started again; its clients stay connected.
@@ -174,14 +196,18 @@ impl<C: Controller> Service<'_, C> {
         }
     }
 
-    /// Waits until something has come or the time is over; which connections it has come from.
-    fn wait(&self, time: Duration) -> io::Result<Vec<usize>> {
-        // A connection with nothing to wait for is left out: its end would be reported over and over.
-        let (numbers, mut ports): (Vec<_>, Vec<_>) = (self.connections.iter().enumerate())
-            .filter(|(_, connection)| !connection.interest().is_empty())
-            .map(|(number, c)| (number, PollFd::from_borrowed_fd(c.port(), c.interest())))
-            .unzip();
-        if Instant::now() >= self.accept_from {
+    /// Waits until something has come or the time is over; what has come, by the number of the connection.
+    fn wait(&self, time: Duration) -> io::Result<Vec<(usize, PollFlags)>> {
+        let mut ports: Vec<_> = (self.connections.iter())
+            .map(|connection| {
+                let mut flags = connection.interest();
+                if !connection.has_ended() {
+                    flags |= ENDED;
+                }
+                PollFd::from_borrowed_fd(connection.port(), flags)
+            })
+            .collect();
+        if Instant::now() >= self.accept_from && self.has_place() {
             ports.push(PollFd::new(&self.listener, PollFlags::IN));
         }
         if ports.is_empty() {
@@ -195,26 +221,37 @@ impl<C: Controller> Service<'_, C> {
             Ok(_) | Err(Errno::INTR) => {}
             Err(error) => return Err(error.into()),
         }
-        // An error or the other's end is found by reading.
-        let come = PollFlags::IN | PollFlags::HUP | PollFlags::ERR;
-        Ok((numbers.into_iter().zip(ports))
-            .filter(|(_, port)| port.revents().intersects(come))
-            .map(|(number, _)| number)
+        Ok((ports.iter().map(PollFd::revents).enumerate())
+            .take(self.connections.len())
+            .filter(|(_, come)| !come.is_empty())
             .collect())
     }
 
+    /// Whether one more can be accepted.
+    fn has_place(&self) -> bool {
+        self.connections.len() < CLIENTS + STOP_PLACES
+    }
+
     /// Reads, carries out and writes what can be.
-    fn transfer(&mut self, ready: Vec<usize>, now: Instant) {
-        for number in ready {
-            self.connections[number].read(now);
+    fn transfer(&mut self, ready: Vec<(usize, PollFlags)>, now: Instant) {
+        for (number, come) in ready {
+            let connection = &mut self.connections[number];
+            if come.contains(PollFlags::IN) {
+                connection.read(now);
+            } else if come.intersects(PollFlags::HUP | PollFlags::ERR) {
+                // With no room for what it sends, reading would not find this out.
+                connection.break_off();
+            } else if come.intersects(ENDED) {
+                connection.end(now);
+            }
         }
         self.service();
         for connection in &mut self.connections {
             connection.write(now);
         }
-        let say = &mut *self.say;
-        (self.connections).retain_mut(|connection| connection.stays(now, say));
-        if now >= self.accept_from {
+        let (say, controller) = (&mut *self.say, &mut *self.controller);
+        (self.connections).retain_mut(|connection| connection.stays(now, controller, say));
+        if now >= self.accept_from && self.has_place() {
             self.accept(now);
         }
     }
@@ -223,12 +260,16 @@ impl<C: Controller> Service<'_, C> {
         let accepted =
             (self.listener.accept()).and_then(|(stream, from)| Ok((port(stream)?, from)));
         match accepted {
-            Ok((_, from)) if self.connections.len() >= CLIENTS => {
-                (self.say)(Notice::TurnedAway(from.to_string()));
-            }
             Ok((port, from)) => {
-                (self.say)(Notice::Connected(from.to_string()));
-                (self.connections).push(Connection::new(from.to_string(), port, false, now));
+                let name = from.to_string();
+                let kind = if self.connections.len() < CLIENTS {
+                    (self.say)(Notice::Connected(name.clone()));
+                    ConnectionKind::Client
+                } else {
+                    (self.say)(Notice::TurnedAway(name.clone()));
+                    ConnectionKind::StopOnly
+                };
+                (self.connections).push(Connection::new(name, port, kind, now));
             }
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
             Err(error) => {
@@ -243,5 +284,6 @@ impl<C: Controller> Service<'_, C> {
 fn port(stream: TcpStream) -> io::Result<Box<dyn Port>> {
     stream.set_nonblocking(true)?;
     stream.set_nodelay(true)?;
+    keep_alive(&stream)?;
     Ok(Box::new(stream))
 }

@@ -11,11 +11,16 @@
 //! ```
 
 use std::fmt;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use drawing::{read_text, write_whole};
+use firmware::gcs::LINE_BYTES;
+
 use crate::record::RecordError;
+
+/// Longest file: many times what a controller keeps.
+const LONGEST_BYTES: u64 = 1 << 20;
 
 /// Settings of a controller.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -54,6 +59,11 @@ pub enum SettingsError {
     /// The controller is not there, or refuses.
     #[error(transparent)]
     Controller(#[from] RecordError),
+    /// The controller is not there any more, or refuses, and not all of what it was given could be taken back.
+    #[error(
+        "{0}; what had been set before that could not be taken back: RPA brings back what is kept"
+    )]
+    NotTakenBack(RecordError),
     /// The file cannot be read or written.
     #[error("{}: {error}", path.display())]
     File {
@@ -79,19 +89,19 @@ impl SettingsError {
     #[must_use]
     pub const fn is_failure(&self) -> bool {
         match self {
-            Self::Controller(error) => error.is_failure(),
+            Self::Controller(error) | Self::NotTakenBack(error) => error.is_failure(),
             _ => false,
         }
     }
 }
 
 impl Settings {
-    /// Writes them into a file.
+    /// Writes them into a file, whole or not at all.
     ///
     /// # Errors
     /// [`SettingsError::File`]
     pub fn write(&self, path: &Path) -> Result<(), SettingsError> {
-        fs::write(path, self.to_string()).map_err(|error| SettingsError::File {
+        write_whole(path, self.to_string().as_bytes()).map_err(|error| SettingsError::File {
             path: path.to_owned(),
             error,
         })
@@ -102,7 +112,7 @@ impl Settings {
     /// # Errors
     /// [`SettingsError::File`] and [`SettingsError::Line`].
     pub fn read(path: &Path) -> Result<Self, SettingsError> {
-        let text = fs::read_to_string(path).map_err(|error| SettingsError::File {
+        let text = read_text(path, LONGEST_BYTES).map_err(|error| SettingsError::File {
             path: path.to_owned(),
             error,
         })?;
@@ -119,6 +129,18 @@ impl Settings {
         let mut recording: Option<Macro> = None;
         for (number, line) in (1..).zip(text.lines()) {
             let line = line.trim();
+            let is_comment = recording.is_none() && line.starts_with('#');
+            let said = if recording.is_some() {
+                line
+            } else {
+                line.split('#').next().unwrap_or("")
+            };
+            if !is_comment && !said.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
+                return Err((number, "a character that is not printable ASCII"));
+            }
+            if recording.is_some() && line.len() > LINE_BYTES {
+                return Err((number, "the line is too long for a controller"));
+            }
             if let Some(mut under_way) = recording.take() {
                 if line == "end" {
                     settings.macros.push(under_way);

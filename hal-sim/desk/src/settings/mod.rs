@@ -70,48 +70,97 @@ fn macros(desk: &mut Desk) -> Result<Vec<Macro>, RecordError> {
         .collect()
 }
 
-/// Gives a controller settings, as far as it has others, and has them kept. Parameters that have to go together with others
-/// are tried again after those.
+/// Gives a controller settings, as far as it has others, and has them kept: all of them, or none.
 ///
 /// # Errors
-/// [`SettingsError::Controller`]; nothing has been kept then, and `RPA` brings back what was before.
+/// [`SettingsError::Controller`]: everything is as it was, or [`SettingsError::NotTakenBack`].
 pub fn import(settings: &Settings, endpoint: &Endpoint) -> Result<Changed, SettingsError> {
     let mut desk = Desk::open(endpoint)?;
     desk.carry_out("CCL 1 ADVANCED")?;
-    let there = desk.ask("SPA?")?.unwrap_or_default();
-    let mut left: Vec<&Parameter> = (settings.parameters.iter())
-        .filter(|parameter| value(&there, &parameter.id) != Some(&*parameter.value))
+    let values = desk.ask("SPA?")?.unwrap_or_default();
+    let macros_there = macros(&mut desk)?;
+    let parameters: Vec<(&str, &str)> = (settings.parameters.iter())
+        .map(|parameter| (&*parameter.id, &*parameter.value))
+        .filter(|(id, wanted)| value(&values, id) != Some(wanted))
         .collect();
-    let mut changed = Changed {
-        parameters: left.len(),
-        macros: 0,
-    };
+    let macros: Vec<&Macro> = (settings.macros.iter())
+        .filter(|wanted| !macros_there.contains(wanted))
+        .collect();
+    let given = give(&mut desk, &parameters, &macros).and_then(|()| desk.carry_out("WPA 100"));
+    if let Err(error) = given {
+        let before: Vec<_> = (parameters.iter())
+            .filter_map(|(id, _)| Some((*id, value(&values, id)?)))
+            .collect();
+        let taken_back = take_back(&mut desk, &before, &macros, &macros_there);
+        return Err(match taken_back {
+            Ok(()) => error.into(),
+            Err(_) => SettingsError::NotTakenBack(error),
+        });
+    }
+    Ok(Changed {
+        parameters: parameters.len(),
+        macros: macros.len(),
+    })
+}
+
+fn give(
+    desk: &mut Desk,
+    parameters: &[(&str, &str)],
+    macros: &[&Macro],
+) -> Result<(), RecordError> {
+    set(desk, parameters)?;
+    macros
+        .iter()
+        .try_for_each(|wanted| give_macro(desk, wanted))
+}
+
+/// Sets parameters. Those that have to go together with others are tried again after those.
+fn set(desk: &mut Desk, parameters: &[(&str, &str)]) -> Result<(), RecordError> {
+    let mut left = parameters.to_vec();
     while !left.is_empty() {
         let before = left.len();
         let mut refusal = None;
-        left.retain(|parameter| {
-            let line = format!("SPA 1 {} {}", parameter.id, parameter.value);
-            match desk.carry_out(&line) {
+        left.retain(
+            |(id, wanted)| match desk.carry_out(&format!("SPA 1 {id} {wanted}")) {
                 Ok(()) => false,
                 Err(error) => {
                     refusal.get_or_insert(error);
                     true
                 }
-            }
-        });
+            },
+        );
         if let Some(refusal) = refusal.filter(|_| left.len() == before) {
-            return Err(refusal.into());
+            return Err(refusal);
         }
     }
-    desk.carry_out("WPA 100")?;
-    let there = macros(&mut desk)?;
-    for wanted in settings.macros.iter().filter(|m| !there.contains(m)) {
-        desk.carry_out(&format!("MAC BEG {}", wanted.name))?;
-        let recorded = (wanted.lines.iter()).try_for_each(|line| desk.carry_out(line));
-        // In any case, so that the recording does not stay open.
-        let ended = desk.carry_out("MAC END");
-        recorded.and(ended)?;
-        changed.macros += 1;
+    Ok(())
+}
+
+fn give_macro(desk: &mut Desk, wanted: &Macro) -> Result<(), RecordError> {
+    desk.carry_out(&format!("MAC BEG {}", wanted.name))?;
+    let recorded = (wanted.lines.iter()).try_for_each(|line| desk.carry_out(line));
+    // In any case, so that the recording does not stay open.
+    let ended = desk.carry_out("MAC END");
+    recorded.and(ended)
+}
+
+/// Gives back the values and macros that were there.
+fn take_back(
+    desk: &mut Desk,
+    before: &[(&str, &str)],
+    changed: &[&Macro],
+    macros_there: &[Macro],
+) -> Result<(), RecordError> {
+    set(desk, before)?;
+    let now = macros(desk)?;
+    for changed in changed
+        .iter()
+        .filter(|changed| now.iter().any(|there| there.name == changed.name))
+    {
+        match macros_there.iter().find(|there| there.name == changed.name) {
+            Some(there) => give_macro(desk, there)?,
+            None => desk.carry_out(&format!("MAC DEL {}", changed.name))?,
+        }
     }
-    Ok(changed)
+    Ok(())
 }

@@ -1,7 +1,10 @@
-//! The thread that owns the line to the controller: the status for all viewers, and their requests in between.
+//! The thread that owns the line to the controller: the status for all viewers, and in between the requests of those that share
+//! the line.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -10,9 +13,11 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tokio::sync::{broadcast, oneshot, watch};
 
+use super::arbiter::{Arbiter, Verdict, ViewerNumber};
 use super::line::{Answer, Line};
+use super::own_line::{JOG_TIME_MS, OwnLine};
 use super::port::{Endpoint, Port};
-use super::request::{Refusal, Wanted};
+use super::request::Refusal;
 use super::watch::{FAST, SLOW_EVERY, slow};
 
 /// Between two status messages: a screen's refresh.
@@ -36,12 +41,28 @@ pub(super) struct Bridge {
     status: broadcast::Sender<Arc<str>>,
     hello: watch::Receiver<Arc<str>>,
     bypass: Arc<Mutex<Option<Port>>>,
+    endpoint: Endpoint,
+    viewers: Arc<AtomicU64>,
 }
 
-/// A line that waits for its turn.
-struct Pending {
-    line: String,
-    answer: oneshot::Sender<Result<Answer, Refusal>>,
+/// How a viewer's lines get to the controller.
+pub(super) enum Way {
+    /// Over a connection of its own.
+    Own(OwnLine),
+    /// Over the line that all share.
+    Shared(Bridge, ViewerNumber),
+}
+
+/// What waits for the line.
+enum Pending {
+    /// A line of a viewer, for its turn.
+    Line {
+        viewer: ViewerNumber,
+        line: String,
+        answer: oneshot::Sender<Result<Answer, Refusal>>,
+    },
+    /// A viewer is gone.
+    Gone(ViewerNumber),
 }
 
 /// Who is at the other end of the line, if anybody.
@@ -73,11 +94,12 @@ impl Bridge {
         let (hello_sender, hello) = watch::channel(Arc::from(""));
         let bypass = Arc::default();
         let worker = Worker {
-            endpoint,
+            endpoint: endpoint.clone(),
             incoming,
             status: status.clone(),
             hello: hello_sender,
             bypass: Arc::clone(&bypass),
+            arbiter: RefCell::default(),
         };
         worker.say_offline("not connected yet".to_owned());
         thread::Builder::new()
@@ -88,6 +110,8 @@ impl Bridge {
             status,
             hello,
             bypass,
+            endpoint,
+            viewers: Arc::default(),
         })
     }
 
@@ -101,21 +125,36 @@ impl Bridge {
         self.hello.clone()
     }
 
-    /// Has it carried out. A stop goes out before this returns; a line waits for its turn.
-    pub async fn ask(&self, wanted: Wanted) -> Result<Answer, Refusal> {
-        let line = match wanted {
-            Wanted::Stop => return self.stop(),
-            Wanted::Line(line) => line,
+    /// The way of one more viewer.
+    pub fn way(&self) -> io::Result<HeldWay> {
+        let number = self.viewers.fetch_add(1, Ordering::Relaxed) + 1;
+        let way = if self.endpoint.is_tcp() {
+            Way::Own(OwnLine::start(
+                self.endpoint.clone(),
+                format!("page_{number}"),
+            )?)
+        } else {
+            Way::Shared(self.clone(), number)
         };
+        Ok(HeldWay(Arc::new(way)))
+    }
+
+    async fn ask(&self, viewer: ViewerNumber, line: String) -> Result<Answer, Refusal> {
         let (answer, answered) = oneshot::channel();
-        (self.requests.try_send(Pending { line, answer })).map_err(|error| match error {
+        let pending = Pending::Line {
+            viewer,
+            line,
+            answer,
+        };
+        (self.requests.try_send(pending)).map_err(|error| match error {
             TrySendError::Full(_) => Refusal::TooMany,
             TrySendError::Disconnected(_) => Refusal::Offline,
         })?;
         answered.await.unwrap_or(Err(Refusal::Broken))
     }
 
-    fn stop(&self) -> Result<Answer, Refusal> {
+    /// Stops the stage, ahead of everything: has been sent when this returns.
+    pub fn stop(&self) -> Result<Answer, Refusal> {
         let mut bypass = self.bypass.lock().unwrap_or_else(PoisonError::into_inner);
         let port = bypass.as_mut().ok_or(Refusal::Offline)?;
         port.write_all(&[STOP]).map_err(|_| Refusal::Broken)?;
@@ -126,6 +165,36 @@ impl Bridge {
     }
 }
 
+impl Way {
+    /// Whether other viewers use it too.
+    pub const fn is_shared(&self) -> bool {
+        matches!(self, Self::Shared(..))
+    }
+
+    /// Has a line carried out in its turn.
+    pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
+        match self {
+            Self::Own(own) => own.ask(line).await,
+            Self::Shared(bridge, viewer) => bridge.ask(*viewer, line).await,
+        }
+    }
+}
+
+/// A viewer's way, which ends with it, whatever is under way there.
+pub(super) struct HeldWay(pub Arc<Way>);
+
+impl Drop for HeldWay {
+    fn drop(&mut self) {
+        match &*self.0 {
+            Way::Own(own) => own.close(),
+            Way::Shared(bridge, viewer) => {
+                // With no room for that, or nobody there, its ownership ends with the line.
+                let _ = bridge.requests.try_send(Pending::Gone(*viewer));
+            }
+        }
+    }
+}
+
 /// The thread's side.
 struct Worker {
     endpoint: Endpoint,
@@ -133,6 +202,7 @@ struct Worker {
     status: broadcast::Sender<Arc<str>>,
     hello: watch::Sender<Arc<str>>,
     bypass: Arc<Mutex<Option<Port>>>,
+    arbiter: RefCell<Arbiter>,
 }
 
 /// All viewers and the server are gone.
@@ -165,13 +235,18 @@ impl Worker {
             help: &help,
             reason: String::new(),
         });
+        self.arbiter.borrow_mut().forget();
+        if !self.endpoint.is_tcp() {
+            // A controller that does not know it says so, and does without.
+            line.ask(&format!("JTM {JOG_TIME_MS}"))?;
+        }
         let all = [FAST, &slow(&help)].concat();
         let mut next = Instant::now();
         for number in 0_u32.. {
             loop {
                 let left = next.saturating_duration_since(Instant::now());
                 match self.incoming.recv_timeout(left) {
-                    Ok(pending) => Self::carry_out(&mut line, pending)?,
+                    Ok(pending) => self.take(&mut line, pending)?,
                     Err(RecvTimeoutError::Timeout) => break,
                     Err(RecvTimeoutError::Disconnected) => return Ok(Done),
                 }
@@ -192,16 +267,50 @@ impl Worker {
         Ok(Done)
     }
 
-    fn carry_out(line: &mut Line, pending: Pending) -> io::Result<()> {
-        // A viewer that is gone needs no answer.
-        match line.ask(&pending.line) {
-            Ok(answer) => drop(pending.answer.send(Ok(answer))),
-            Err(error) => {
-                let _ = pending.answer.send(Err(Refusal::Broken));
-                return Err(error);
+    fn take(&self, line: &mut Line, pending: Pending) -> io::Result<()> {
+        match pending {
+            Pending::Line {
+                viewer,
+                line: text,
+                answer,
+            } => {
+                let result = self.carry_out(line, viewer, &text);
+                // A viewer that is gone needs no answer.
+                let _ = answer.send(
+                    result
+                        .as_ref()
+                        .map(Answer::clone)
+                        .map_err(|_| Refusal::Broken),
+                );
+                result.map(drop)
             }
+            Pending::Gone(viewer) if self.arbiter.borrow_mut().leave(viewer) => {
+                line.ask("OWN 0").map(drop)
+            }
+            Pending::Gone(_) => Ok(()),
         }
-        Ok(())
+    }
+
+    fn carry_out(&self, line: &mut Line, viewer: ViewerNumber, text: &str) -> io::Result<Answer> {
+        let mut arbiter = self.arbiter.borrow_mut();
+        let lines = match arbiter.judge(viewer, text) {
+            Verdict::Refuse(code) => {
+                return Ok(Answer {
+                    reply: None,
+                    error: code.number(),
+                });
+            }
+            Verdict::Send(lines) => lines,
+        };
+        let mut answer = Answer {
+            reply: None,
+            error: 0,
+        };
+        for line_out in &lines {
+            answer = line.ask(line_out)?;
+        }
+        arbiter.note(viewer, text, &mut answer);
+        Ok(answer)
     }
 
     fn poll(&self, line: &mut Line, questions: &[&'static str]) -> io::Result<()> {
@@ -218,7 +327,8 @@ impl Worker {
         loop {
             let left = end.saturating_duration_since(Instant::now());
             match self.incoming.recv_timeout(left) {
-                Ok(pending) => drop(pending.answer.send(Err(Refusal::Offline))),
+                Ok(Pending::Line { answer, .. }) => drop(answer.send(Err(Refusal::Offline))),
+                Ok(Pending::Gone(viewer)) => drop(self.arbiter.borrow_mut().leave(viewer)),
                 Err(RecvTimeoutError::Timeout) => return Ok(()),
                 Err(RecvTimeoutError::Disconnected) => return Err(Done),
             }

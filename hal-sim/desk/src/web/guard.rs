@@ -2,11 +2,14 @@
 //!
 //! A page of somebody else's in the same browser can send requests here, but it cannot forge their `Host` and `Origin`. Its
 //! own name made to point at this machine shows in `Host`, which therefore has to be an address, `localhost`, or the name
-//! that the page was told to listen at; its script's connection shows in `Origin`, which has to be the page's own. Driving
-//! takes the token besides, which only the page's own scripts can read.
+//! that the page was told to listen at; its script's connection shows in `Origin`, which has to be the page's own. Where a proxy
+//! stands in front of the page, the host and origin that browsers know are told by an option. Driving takes the token besides,
+//! which only the page's own scripts can read.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
+
+use super::password::{is_same, random_text};
 
 use axum::http::HeaderMap;
 use axum::http::header::{HOST, ORIGIN};
@@ -19,18 +22,25 @@ const TOKEN_BYTES: usize = 16;
 pub(super) struct Guard {
     /// The name that it was told to listen at.
     name: String,
+    /// Scheme, host and port by which browsers know it besides.
+    public_origin: Option<String>,
     token: String,
 }
 
 impl Guard {
-    /// For a page at `address`, which was asked for as host and port; with a token of its own.
-    pub fn new(address: &str) -> io::Result<Self> {
-        let mut bytes = [0; TOKEN_BYTES];
-        getrandom::fill(&mut bytes).map_err(io::Error::other)?;
+    /// For a page at `address`, which was asked for as host and port, and known to browsers at `public_url` besides; with a token
+    /// of its own.
+    pub fn new(address: &str, public_url: Option<&str>) -> io::Result<Self> {
         Ok(Self {
             name: host_name(address).to_ascii_lowercase(),
-            token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
+            public_origin: public_url.map(|url| url.trim_end_matches('/').to_ascii_lowercase()),
+            token: random_text(TOKEN_BYTES)?,
         })
+    }
+
+    /// Whether browsers know it over TLS.
+    pub fn is_secure(&self) -> bool {
+        (self.public_origin.as_deref()).is_some_and(|origin| origin.starts_with("https://"))
     }
 
     /// What requests have to bring along.
@@ -38,12 +48,9 @@ impl Guard {
         &self.token
     }
 
-    /// Whether it is the token. Takes as long for a wrong one as for the right one.
+    /// Whether it is the token.
     pub fn knows(&self, token: &str) -> bool {
-        let (own, other) = (self.token.as_bytes(), token.as_bytes());
-        let pairs = own.iter().zip(other);
-        let same = pairs.fold(0, |difference, (a, b)| difference | (a ^ b)) == 0;
-        same && own.len() == other.len()
+        is_same(&self.token, token)
     }
 
     /// Whether the request names a host that is this one.
@@ -51,14 +58,22 @@ impl Guard {
         host(headers).is_some_and(|host| {
             let name = host_name(host).to_ascii_lowercase();
             let address = name.trim_start_matches('[').trim_end_matches(']');
-            name == "localhost" || name == self.name || address.parse::<IpAddr>().is_ok()
+            let public =
+                (self.public_origin.as_deref()).and_then(|origin| origin.split_once("://"));
+            name == "localhost"
+                || name == self.name
+                || address.parse::<IpAddr>().is_ok()
+                || public.is_some_and(|(_, place)| place == host.to_ascii_lowercase())
         })
     }
 
     /// Whether the request comes from a page of this server.
     pub fn allows_origin(&self, headers: &HeaderMap) -> bool {
         let origin = headers.get(ORIGIN).and_then(|origin| origin.to_str().ok());
+        let is_public =
+            |origin: &str| (self.public_origin.as_deref()) == Some(&origin.to_ascii_lowercase());
         match (origin, host(headers)) {
+            (Some(origin), _) if is_public(origin) => true,
             (Some(origin), Some(host)) => origin
                 .strip_prefix("http://")
                 .is_some_and(|place| place.eq_ignore_ascii_case(host)),
@@ -94,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_name_of_somebody_else_that_points_here_is_not_this_host() {
-        let guard = Guard::new("bench.lab:8080").unwrap();
+        let guard = Guard::new("bench.lab:8080", None).unwrap();
         for host in [
             "127.0.0.1:8080",
             "127.0.0.1",
@@ -117,7 +132,7 @@ mod tests {
 
     #[test]
     fn only_the_own_page_may_connect() {
-        let guard = Guard::new("127.0.0.1:8080").unwrap();
+        let guard = Guard::new("127.0.0.1:8080", None).unwrap();
         let own = "127.0.0.1:8080";
         assert!(guard.allows_origin(&headers(own, Some("http://127.0.0.1:8080"))));
         for origin in [
@@ -133,8 +148,28 @@ mod tests {
     }
 
     #[test]
+    fn behind_a_proxy_the_page_is_known_by_its_public_name_too() {
+        let guard = Guard::new("127.0.0.1:8080", Some("https://Stage.lab/")).unwrap();
+        assert!(guard.is_secure());
+        assert!(guard.allows_host(&headers("stage.lab", None)));
+        assert!(guard.allows_origin(&headers("stage.lab", Some("https://stage.lab"))));
+        assert!(guard.allows_origin(&headers("127.0.0.1:8080", Some("https://stage.lab"))));
+        for origin in [
+            "http://stage.lab",
+            "https://stage.lab.evil",
+            "https://evil.lab",
+        ] {
+            assert!(
+                !guard.allows_origin(&headers("127.0.0.1:8080", Some(origin))),
+                "{origin}"
+            );
+        }
+        assert!(!guard.allows_host(&headers("evil.lab", None)));
+    }
+
+    #[test]
     fn the_token_is_known_whole_and_new_each_time() {
-        let guard = Guard::new("127.0.0.1:8080").unwrap();
+        let guard = Guard::new("127.0.0.1:8080", None).unwrap();
         let token = guard.token().to_owned();
         assert_eq!(token.len(), 2 * TOKEN_BYTES);
         assert!(guard.knows(&token));
@@ -142,6 +177,6 @@ mod tests {
         assert!(!guard.knows(&token[1..]));
         assert!(!guard.knows(&format!("{token}0")));
         assert!(!guard.knows(&token.replace(|c: char| c.is_ascii_digit(), "x")));
-        assert_ne!(token, Guard::new("127.0.0.1:8080").unwrap().token());
+        assert_ne!(token, Guard::new("127.0.0.1:8080", None).unwrap().token());
     }
 }

@@ -5,20 +5,23 @@
 //! Another `ERR?` goes before the line, so that the error of a stop or a fault is not taken for the line's own.
 
 use std::io::{self, Write};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::port::{Endpoint, Port};
 
-/// How long the controller may be silent in the middle of an answer.
+/// How long the controller may be silent in the middle of an answer, at first.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// How long the line has to be silent before it is taken for empty.
 const SILENCE: Duration = Duration::from_millis(50);
+/// How long it may go on talking unasked.
+const TALK: Duration = Duration::from_secs(3);
 /// Longest answer: more than the recorder of any controller holds.
 const ANSWER_BYTES: usize = 16 << 20;
 
 /// An open connection.
 pub(crate) struct Line {
     port: Port,
+    patience: Duration,
     received: Vec<u8>,
     /// How far it was searched for the end of an answer.
     searched: usize,
@@ -39,17 +42,31 @@ impl Line {
     pub fn open(endpoint: &Endpoint) -> io::Result<Self> {
         let mut line = Self {
             port: endpoint.open()?,
+            patience: PATIENCE,
             received: Vec::new(),
             searched: 0,
             identity: String::new(),
         };
         // Ends a line that somebody left unfinished.
         line.port.write_all(b"\n")?;
-        while line.receive(SILENCE)? {}
-        line.forget();
+        line.wait_for_silence()?;
         line.identity = line.ask_known(&["*IDN?"])?.remove(0);
         line.ask_known(&["ERR?"])?;
         Ok(line)
+    }
+
+    fn wait_for_silence(&mut self) -> io::Result<()> {
+        let end = Instant::now() + TALK;
+        while self.receive(SILENCE)? {
+            self.forget();
+            if Instant::now() > end {
+                return Err(io::Error::other(
+                    "it never stops sending: this is no controller that waits for commands, or the line has another rate",
+                ));
+            }
+        }
+        self.forget();
+        Ok(())
     }
 
     /// Who answers.
@@ -60,6 +77,11 @@ impl Line {
     /// The same connection, to be written to past what is under way: single bytes may stand anywhere.
     pub(super) fn bypass(&self) -> io::Result<Port> {
         self.port.try_clone()
+    }
+
+    /// How long the controller may be silent in the middle of an answer from now on.
+    pub(super) const fn set_patience(&mut self, patience: Duration) {
+        self.patience = patience;
     }
 
     /// Sends questions that are always answered, and gives their answers.
@@ -105,7 +127,7 @@ impl Line {
             if self.received.len() > ANSWER_BYTES {
                 return Err(io::Error::other("the controller's answer has no end"));
             }
-            if !self.receive(PATIENCE)? {
+            if !self.receive(self.patience)? {
                 let message = "the controller does not answer";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, message));
             }

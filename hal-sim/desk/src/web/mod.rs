@@ -1,10 +1,11 @@
 //! The page: the stage drawn live in a browser, and driven from there. One more client of the command interface: whatever
-//! the page asks for goes over one GCS connection, to the simulated stage or to a controller on a serial line, as a line
-//! that any other client could have sent.
+//! a page asks for goes over a GCS connection, to the simulated stage or to a controller on a serial line, as a line that any
+//! other client could have sent. Over TCP each page has a connection of its own, and one more tells all of them the status; over
+//! a serial line they share one.
 //!
 //! ```text
 //! browser -- HTTP: page, scripts, token
-//!         \- WebSocket: {"line": "MOV X 1"} -> Viewer -> queue -> Bridge -> Line -> controller
+//!         \- WebSocket: {"line": "MOV X 1"} -> Viewer -> OwnLine, or queue -> Bridge -> Line -> controller
 //!                       status, answers     <- Viewer <-------- Bridge <- Line <----/
 //! ```
 //!
@@ -13,20 +14,30 @@
 //! | `port` | TCP or a serial line, opened |
 //! | `line` | questions and answers over it |
 //! | `watch` | which questions are asked over and over |
-//! | `bridge` | the thread that owns the line: the status as often as a screen shows it, requests in between |
+//! | `bridge` | the thread that owns the line: the status as often as a screen shows it, requests of viewers that share it in between |
+//! | `own_line` | over TCP: a viewer's own connection |
+//! | `arbiter` | over a serial line: what viewers that share it have for themselves |
 //! | `request` | what viewers may send |
 //! | `guard` | who may look and who may drive |
+//! | `password` | the password, where others than this machine may reach the page |
+//! | `login` | asking for it |
+//! | `http` | connections of browsers, bounded in number and patience |
 //! | `viewer` | one browser: status and answers out, requests in |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
-//! | `server` | HTTP |
+//! | `server` | the page's files, the token, the WebSocket |
 //!
 //! Nobody is waited for: a viewer that does not read loses status messages and is told how many; a stop from any viewer
 //! goes out at once, ahead of everything else.
 
+mod arbiter;
 mod bridge;
 mod guard;
+mod http;
 mod lesson;
 mod line;
+mod login;
+mod own_line;
+mod password;
 mod port;
 mod request;
 mod server;
@@ -36,8 +47,9 @@ mod watch;
 use std::io;
 
 pub(crate) use line::Line;
+pub use password::new_password;
 pub use port::Endpoint;
-pub use server::Page;
+pub use server::{Page, PageOptions};
 pub use watch::questions;
 
 /// Why there is no page.

@@ -37,6 +37,11 @@ impl fmt::Display for Endpoint {
 }
 
 impl Endpoint {
+    /// Whether everybody there has a connection of his own.
+    pub(super) const fn is_tcp(&self) -> bool {
+        matches!(self, Self::Tcp(_))
+    }
+
     /// Opens it.
     pub(super) fn open(&self) -> io::Result<Port> {
         match self {

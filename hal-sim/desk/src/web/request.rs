@@ -41,7 +41,7 @@ pub(super) enum Refusal {
     #[error("a character that is not printable ASCII")]
     Character,
     #[error(
-        "{0} holds up its connection, which all viewers of this page share: use a connection of your own"
+        "{0} would change what other pages say, which share this serial line: use a connection of your own"
     )]
     Shared(String),
     #[error("too many requests at once")]
@@ -54,16 +54,16 @@ pub(super) enum Refusal {
     Broken,
 }
 
-/// Words that hold up the lines behind them, or make them part of a macro.
-const OWN_CONNECTION: [&str; 2] = ["WAC", "DEL"];
+/// Words that hold up the lines behind them, make them part of a macro, change what they mean, or promise to be heard.
+const OWN_CONNECTION: [&str; 6] = ["WAC", "DEL", "VAR", "ADD", "HBT", "JTM"];
 
 /// The request in a message.
 pub(super) fn read(message: &str) -> Result<Request, Refusal> {
     serde_json::from_str(message).map_err(|error| Refusal::Malformed(error.to_string()))
 }
 
-/// What a line asks for, if it may be asked for here.
-pub(super) fn check(line: &str) -> Result<Wanted, Refusal> {
+/// What a line asks for, if it may be asked for here: over a line that viewers share, nothing that changes what others say.
+pub(super) fn check(line: &str, is_shared: bool) -> Result<Wanted, Refusal> {
     let line = line.trim();
     if line.is_empty() {
         return Err(Refusal::Empty);
@@ -80,7 +80,11 @@ pub(super) fn check(line: &str) -> Result<Wanted, Refusal> {
     if word == "STP" || word == "#24" {
         return Ok(Wanted::Stop);
     }
-    if OWN_CONNECTION.contains(&word) || (word == "MAC" && matches!(next, Some("BEG" | "END"))) {
+    if is_shared && line.contains('$') {
+        return Err(Refusal::Shared("$".to_owned()));
+    }
+    let records = word == "MAC" && matches!(next, Some("BEG" | "END"));
+    if is_shared && (OWN_CONNECTION.contains(&word) || records) {
         return Err(Refusal::Shared(word.to_owned()));
     }
     Ok(Wanted::Line(line.to_owned()))
@@ -94,27 +98,46 @@ mod tests {
     #[test]
     fn a_stop_is_a_stop_however_it_is_written() {
         for line in ["STP", " stp ", "#24"] {
-            assert_eq!(check(line), Ok(Wanted::Stop), "{line}");
+            assert_eq!(check(line, true), Ok(Wanted::Stop), "{line}");
+            assert_eq!(check(line, false), Ok(Wanted::Stop), "{line}");
         }
-        assert_eq!(check("STPX"), Ok(Wanted::Line("STPX".into())));
+        assert_eq!(check("STPX", true), Ok(Wanted::Line("STPX".into())));
     }
 
     #[test]
     fn what_would_hold_up_the_others_is_refused() {
-        for line in ["WAC ONT? X = 1", "del 100", "MAC BEG TOUR", "mac end"] {
-            assert!(matches!(check(line), Err(Refusal::Shared(_))), "{line}");
+        for line in [
+            "WAC ONT? X = 1",
+            "del 100",
+            "MAC BEG TOUR",
+            "mac end",
+            "VAR Q MAC",
+            "$Q BEG TRAP",
+            "MOV X $1",
+            "add A 1 2",
+            "HBT 0",
+            "JTM 0",
+        ] {
+            assert!(
+                matches!(check(line, true), Err(Refusal::Shared(_))),
+                "{line}"
+            );
+            assert!(check(line, false).is_ok(), "{line}");
         }
-        assert!(check("MAC START TOUR").is_ok());
+        assert!(check("MAC START TOUR", true).is_ok());
     }
 
     #[test]
     fn lines_are_single_and_not_too_long() {
-        assert_eq!(check("  "), Err(Refusal::Empty));
-        assert_eq!(check("MOV X 1\nMOV Y 1"), Err(Refusal::Character));
-        assert_eq!(check("MOV X 1\u{18}"), Err(Refusal::Character));
-        assert_eq!(check("MOV X \u{b5}"), Err(Refusal::Character));
-        assert!(check(&"X".repeat(LINE_BYTES)).is_ok());
-        assert_eq!(check(&"X".repeat(LINE_BYTES + 1)), Err(Refusal::Long));
+        assert_eq!(check("  ", false), Err(Refusal::Empty));
+        assert_eq!(check("MOV X 1\nMOV Y 1", false), Err(Refusal::Character));
+        assert_eq!(check("MOV X 1\u{18}", false), Err(Refusal::Character));
+        assert_eq!(check("MOV X \u{b5}", false), Err(Refusal::Character));
+        assert!(check(&"X".repeat(LINE_BYTES), false).is_ok());
+        assert_eq!(
+            check(&"X".repeat(LINE_BYTES + 1), false),
+            Err(Refusal::Long)
+        );
     }
 
     #[test]
@@ -139,7 +162,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_smuggles_a_second_line_or_a_byte_command(line in any::<String>()) {
-            if let Ok(Wanted::Line(line)) = check(&line) {
+            if let Ok(Wanted::Line(line)) = check(&line, true) {
                 prop_assert!(line.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
                 prop_assert!((1..=LINE_BYTES).contains(&line.len()));
             }

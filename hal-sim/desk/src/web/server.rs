@@ -1,4 +1,4 @@
-//! HTTP: the page's files, the token, and the WebSocket.
+//! What is served: the page's files, the token, and the WebSocket.
 
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -17,9 +17,10 @@ use tokio::sync::oneshot;
 
 use super::bridge::Bridge;
 use super::guard::Guard;
+use super::password::Password;
 use super::port::Endpoint;
 use super::request::MESSAGE_BYTES;
-use super::{PageError, lesson, viewer};
+use super::{PageError, http, lesson, login, viewer};
 use crate::assets;
 use drawing::assets::Asset;
 
@@ -34,31 +35,56 @@ pub struct Page {
     thread: Option<JoinHandle<()>>,
 }
 
+/// Where a page is, and who may see it.
+#[derive(Clone, Debug)]
+pub struct PageOptions {
+    /// Address and port to listen at, as text; port 0 takes a free one.
+    pub address: String,
+    /// What a browser is asked for before it sees anything.
+    pub password: Option<String>,
+    /// Where browsers find it, if a proxy stands in front of it: scheme, host and port.
+    pub public_url: Option<String>,
+}
+
+impl PageOptions {
+    /// For this machine alone.
+    #[must_use]
+    pub fn local(address: &str) -> Self {
+        Self {
+            address: address.to_owned(),
+            password: None,
+            public_url: None,
+        }
+    }
+}
+
 /// What handlers share.
 #[derive(Clone)]
-struct Shared {
+pub(super) struct Shared {
     bridge: Bridge,
-    guard: Arc<Guard>,
+    pub guard: Arc<Guard>,
+    pub password: Option<Arc<Password>>,
 }
 
 impl Page {
-    /// Serves the page at `address` for the controller at `endpoint`, which need not be there yet.
+    /// Serves the page for the controller at `endpoint`, which need not be there yet.
     ///
     /// # Errors
     /// [`PageError`].
-    pub fn start(address: &str, endpoint: Endpoint) -> Result<Self, PageError> {
-        let listener = TcpListener::bind(address).map_err(|error| PageError::Listen {
-            address: address.to_owned(),
+    pub fn start(options: &PageOptions, endpoint: Endpoint) -> Result<Self, PageError> {
+        let listener = TcpListener::bind(&options.address).map_err(|error| PageError::Listen {
+            address: options.address.clone(),
             error,
         })?;
-        Self::serve(listener, address, endpoint).map_err(PageError::Start)
+        Self::serve(listener, options, endpoint).map_err(PageError::Start)
     }
 
-    fn serve(listener: TcpListener, address: &str, endpoint: Endpoint) -> io::Result<Self> {
+    fn serve(listener: TcpListener, options: &PageOptions, endpoint: Endpoint) -> io::Result<Self> {
         let place = listener.local_addr()?;
         listener.set_nonblocking(true)?;
         let shared = Shared {
-            guard: Arc::new(Guard::new(address)?),
+            guard: Arc::new(Guard::new(&options.address, options.public_url.as_deref())?),
+            password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
             bridge: Bridge::start(endpoint)?,
         };
         let runtime = runtime::Builder::new_current_thread()
@@ -70,9 +96,8 @@ impl Page {
                 let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                     return;
                 };
-                let server = axum::serve(listener, router(shared)).into_future();
                 tokio::select! {
-                    _ = server => {}
+                    () = http::serve(listener, router(shared)) => {}
                     _ = stopped => {}
                 }
             });
@@ -105,12 +130,14 @@ fn router(shared: Shared) -> Router {
     let mut router = Router::new()
         .route("/token", get(token))
         .route("/live", get(live))
+        .route(login::PATH, get(login::form).post(login::enter))
         .route("/lesson.json", get(lesson_frames));
     for asset in assets::all() {
         router = router.route(asset.path, get(async || file(asset)));
     }
     router
         .fallback(async || (StatusCode::NOT_FOUND, "there is no such page\n"))
+        .layer(middleware::from_fn_with_state(shared.clone(), login::check))
         .layer(middleware::from_fn_with_state(shared.clone(), check))
         .with_state(shared)
 }
@@ -130,7 +157,9 @@ async fn check(State(shared): State<Shared>, request: Request, next: Next) -> Re
         (header::CACHE_CONTROL, "no-store"),
     ] {
         let headers = response.headers_mut();
-        headers.insert(name, HeaderValue::from_static(value));
+        headers
+            .entry(name)
+            .or_insert(HeaderValue::from_static(value));
     }
     response
 }

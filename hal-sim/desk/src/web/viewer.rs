@@ -9,10 +9,10 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{Semaphore, mpsc};
 use tokio::time::timeout;
 
-use super::bridge::{Bridge, json};
+use super::bridge::{Bridge, Way, json};
 use super::guard::Guard;
 use super::line::Answer;
-use super::request::{self, Refusal, Request};
+use super::request::{self, Refusal, Request, Wanted};
 
 /// Requests of a viewer that may be under way at once.
 const AT_ONCE: usize = 16;
@@ -38,6 +38,10 @@ enum Reply {
 
 /// Serves a viewer until it is gone.
 pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guard>) {
+    // Without a thread there is no way to the controller.
+    let Ok(way) = bridge.way() else {
+        return;
+    };
     let mut status = bridge.status();
     let mut hello = bridge.hello();
     hello.mark_changed();
@@ -49,7 +53,7 @@ pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guar
             biased;
             message = socket.recv() => {
                 let Some(Ok(message)) = message else { return };
-                match take(message, &bridge, &guard, &slots, &answers) {
+                match take(message, &bridge, &way.0, &guard, &slots, &answers) {
                     Some(reply) => json(&reply),
                     None => continue,
                 }
@@ -73,6 +77,7 @@ pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guar
 fn take(
     message: Message,
     bridge: &Bridge,
+    way: &Arc<Way>,
     guard: &Guard,
     slots: &Arc<Semaphore>,
     answers: &mpsc::Sender<Arc<str>>,
@@ -91,24 +96,32 @@ fn take(
     if !guard.knows(&token) {
         return Some(refused(Some(id), &Refusal::Token));
     }
-    let wanted = match request::check(&line) {
+    let wanted = match request::check(&line, way.is_shared()) {
         Ok(wanted) => wanted,
         Err(refusal) => return Some(refused(Some(id), &refusal)),
     };
     let Ok(slot) = Arc::clone(slots).try_acquire_owned() else {
         return Some(refused(Some(id), &Refusal::TooMany));
     };
-    let (bridge, answers) = (bridge.clone(), answers.clone());
+    let line = match wanted {
+        Wanted::Stop => return Some(reply(id, bridge.stop())),
+        Wanted::Line(line) => line,
+    };
+    let (way, answers) = (Arc::clone(way), answers.clone());
     tokio::spawn(async move {
-        let reply = match bridge.ask(wanted).await {
-            Ok(Answer { reply, error }) => Reply::Answer { id, reply, error },
-            Err(refusal) => refused(Some(id), &refusal),
-        };
+        let reply = reply(id, way.ask(line).await);
         // A viewer that is gone needs no answer.
         let _ = answers.send(json(&reply)).await;
         drop(slot);
     });
     None
+}
+
+fn reply(id: u64, result: Result<Answer, Refusal>) -> Reply {
+    match result {
+        Ok(Answer { reply, error }) => Reply::Answer { id, reply, error },
+        Err(refusal) => refused(Some(id), &refusal),
+    }
 }
 
 fn refused(id: Option<u64>, refusal: &Refusal) -> Reply {

@@ -20,6 +20,7 @@ const SLOW: &[&str] = &[
     "JOG? X Y W",
     "SPI?",
     "KEN?",
+    "OWN?",
     "ERR?",
 ];
 

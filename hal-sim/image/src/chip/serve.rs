@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Bench, ChipError, Period, elf_file};
+use desk::serve::ProtocolCheck;
 use hal_sim::machine::devices::Stage;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 
@@ -31,6 +32,8 @@ pub enum LineNotice {
     Connected(SocketAddr),
     /// It is gone.
     Left(SocketAddr),
+    /// It is no client but a browser, or speaks another protocol: the chip has got nothing of that.
+    NoClient(SocketAddr),
 }
 
 impl fmt::Display for LineNotice {
@@ -38,6 +41,9 @@ impl fmt::Display for LineNotice {
         match self {
             Self::Connected(address) => write!(f, "{address}: connected"),
             Self::Left(address) => write!(f, "{address}: left"),
+            Self::NoClient(address) => {
+                write!(f, "{address}: sent HTTP or another protocol, cut off")
+            }
         }
     }
 }
@@ -77,6 +83,7 @@ impl LineServer {
         let mut line = Line {
             listener: self.listener,
             client: None,
+            check: ProtocolCheck::default(),
             replies: Vec::new(),
         };
         let outcome = Bench::load(&path, stage)
@@ -95,6 +102,7 @@ impl LineServer {
 struct Line {
     listener: TcpListener,
     client: Option<(TcpStream, SocketAddr)>,
+    check: ProtocolCheck,
     /// Received from the chip, not written to the client yet.
     replies: Vec<u8>,
 }
@@ -120,15 +128,18 @@ impl Line {
             return Continue(());
         };
         let mut bytes = [0; READ_BYTES];
-        let here = match pass(client, &mut self.replies, &mut bytes) {
-            Ok(count) => {
+        let gone = match pass(client, &mut self.replies, &mut bytes) {
+            Ok(count) if self.check.accepts(&bytes[..count]) => {
                 period.send(&bytes[..count]);
-                true
+                None
             }
-            Err(_) => false,
+            Ok(_) => Some(LineNotice::NoClient(*address)),
+            Err(_) => Some(LineNotice::Left(*address)),
         };
-        if !here {
-            say(&LineNotice::Left(*address));
+        if let Some(notice) = gone {
+            // The rest of a line that it has begun is nobody's.
+            period.send(b"\n");
+            say(&notice);
             self.client = None;
         }
         Continue(())
@@ -145,6 +156,7 @@ impl Line {
         if stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok() {
             say(&LineNotice::Connected(address));
             self.client = Some((stream, address));
+            self.check = ProtocolCheck::default();
         }
     }
 }

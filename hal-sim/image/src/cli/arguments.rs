@@ -55,6 +55,9 @@ pub(super) struct ChipServe {
     /// Address and port to listen at; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50001")]
     pub(super) listen: String,
+    /// Listen at an address that other machines reach: anybody there can drive the stage.
+    #[arg(long)]
+    pub(super) allow_remote: bool,
     #[command(flatten)]
     pub(super) stage: SimulatedStage,
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use super::arguments::ChipServe;
 use super::error::CliError;
 use crate::chip::LineServer;
-use desk::serve::ServeError;
+use desk::serve::{REMOTE_MEANS, ServeError, check_address};
 use tripivot::cli::signal::until_signal;
 use tripivot::cli::stage::stage_options;
 
@@ -15,6 +15,9 @@ pub(super) fn run(arguments: &ChipServe) -> Result<ExitCode, CliError> {
         listen: arguments.listen.clone(),
         error,
     };
+    if check_address(&arguments.listen, arguments.allow_remote)? {
+        eprintln!("{}: {REMOTE_MEANS}", arguments.listen);
+    }
     let server = LineServer::bind(&arguments.listen).map_err(listen)?;
     let stop = until_signal()?;
     let text = format!(

@@ -1,9 +1,10 @@
 //! The flash that the simulated controller keeps its settings in: as on the chip, in memory or in a file.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use drawing::write_whole;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
@@ -32,6 +33,9 @@ pub enum SettingsFileError {
         /// What the system says.
         error: io::Error,
     },
+    /// It is a device, a pipe or a folder.
+    #[error("{} is no file that keeps anything", .0.display())]
+    NoFile(PathBuf),
     /// Another controller has it.
     #[error("{} is in use by another controller", .0.display())]
     InUse(PathBuf),
@@ -80,19 +84,23 @@ impl SettingsFlash {
             path: path.to_owned(),
             error,
         };
-        let mut options = OpenOptions::new();
-        options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(failed)?;
+        let mut bytes = vec![ERASED; BYTES];
+        match fs::metadata(path) {
+            Ok(there) if !there.is_file() => {
+                return Err(SettingsFileError::NoFile(path.to_owned()));
+            }
+            Ok(there) if there.len() > 0 => {}
+            // Whole or not at all: a half-made one would stop every later start.
+            _ => write_whole(path, &bytes).map_err(failed)?,
+        }
+        let mut file = (OpenOptions::new().read(true).write(true).open(path)).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(SettingsFileError::InUse(path.to_owned())),
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
         let length = file.metadata().map_err(failed)?.len();
-        let mut bytes = vec![ERASED; BYTES];
-        if length == 0 {
-            file.write_all(&bytes).map_err(failed)?;
-        } else if length == BYTES as u64 {
+        if length == BYTES as u64 {
             file.read_exact(&mut bytes).map_err(failed)?;
         } else {
             let path = path.to_owned();
@@ -107,12 +115,30 @@ impl SettingsFlash {
     /// Brings the file up to date.
     fn store(&mut self, at: usize, length: usize) -> Result<(), FlashError> {
         if let Some(file) = &mut self.file {
+            check_linked(file).map_err(FlashError::File)?;
             (file.seek(SeekFrom::Start(at as u64)))
                 .and_then(|_| file.write_all(&self.bytes[at..at + length]))
                 .map_err(FlashError::File)?;
         }
         Ok(())
     }
+}
+
+/// A file that was deleted meanwhile keeps nothing, though it can be written.
+#[cfg(unix)]
+fn check_linked(file: &File) -> io::Result<()> {
+    use std::os::unix::fs::MetadataExt;
+
+    match file.metadata()?.nlink() {
+        0 => Err(io::ErrorKind::NotFound.into()),
+        _ => Ok(()),
+    }
+}
+
+/// Elsewhere a file that is open cannot be deleted.
+#[cfg(not(unix))]
+const fn check_linked(_: &File) -> io::Result<()> {
+    Ok(())
 }
 
 /// Why the flash cannot be read or written.

@@ -4,7 +4,7 @@ use super::number::{whole, within};
 use super::stage::{SimulatedStage, Simulation};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use controller::{Controller, RecordRun, SettingsCommand, View};
+pub(super) use controller::{Access, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
@@ -110,6 +110,8 @@ pub(super) struct Serve {
     /// free port if that is taken].
     #[arg(long, value_name = "ADDRESS")]
     pub(super) web: Option<String>,
+    #[command(flatten)]
+    pub(super) access: Access,
     /// File that the controller keeps its settings in [default: nothing is kept].
     #[arg(long, value_name = "FILE")]
     pub(super) settings: Option<PathBuf>,

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 use std::num::NonZero;
+use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::available_parallelism;
 use std::time::Instant;
 
@@ -11,8 +13,9 @@ use serde::Serialize;
 use super::arguments::Faults;
 use super::error::CliError;
 use super::json;
-use drawing::Progress;
-use hal_sim::campaign::{Campaign, NAMES, Outcome, Total, replay, table, totals, write};
+use super::signal::until_signal;
+use drawing::{Progress, WholeFile};
+use hal_sim::campaign::{Campaign, NAMES, Outcome, Total, csv, replay, table, totals};
 
 /// Runs that are told one by one; the rest is counted.
 const TOLD: usize = 30;
@@ -54,19 +57,24 @@ struct Told<'a> {
 }
 
 pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
+    let unwritable = |error: io::Error| {
+        let path = arguments.out.as_deref().unwrap_or(Path::new("")).display();
+        CliError::Value(format!("{path}: cannot be written: {error}"))
+    };
+    // What cannot be written is found out before the runs, not after them.
+    let file = (arguments.out.as_deref().map(WholeFile::create).transpose()).map_err(unwritable)?;
     let runs = match arguments.only {
         Some(seed) => alone(seed),
-        None => campaign(arguments),
+        None => campaign(arguments, &*until_signal()?),
     };
-    if let Some(path) = &arguments.out {
-        write(path, &runs.outcomes).map_err(|error| {
-            CliError::Value(format!("{}: cannot be written: {error}", path.display()))
-        })?;
-    }
     if arguments.json {
         json::print(&runs.document())?;
     } else {
         (io::stdout().write_all(runs.text().as_bytes())).map_err(CliError::output)?;
+    }
+    if let Some(file) = file {
+        let table = csv(&runs.outcomes).map_err(CliError::output)?;
+        file.finish(&table).map_err(unwritable)?;
     }
     match runs.wrong(false) + runs.wrong(true) {
         0 => Ok(ExitCode::SUCCESS),
@@ -85,7 +93,8 @@ fn alone(seed: u64) -> Runs {
     }
 }
 
-fn campaign(arguments: &Faults) -> Runs {
+/// Ctrl-C ends it; what has been run until then is told.
+fn campaign(arguments: &Faults, stop: &AtomicBool) -> Runs {
     let jobs = arguments
         .jobs
         .unwrap_or_else(|| available_parallelism().map_or(1, NonZero::get));
@@ -95,9 +104,13 @@ fn campaign(arguments: &Faults) -> Runs {
         jobs,
     };
     let progress = Progress::new(campaign.runs, arguments.quiet);
-    let outcomes = campaign.run(|runs| progress.tell(runs, "runs"));
+    let outcomes = campaign.run(|runs| {
+        progress.tell(runs, "runs");
+        !stop.load(Ordering::Relaxed)
+    });
     Runs {
-        campaign: Some((campaign.runs, campaign.seed)),
+        // Each has its control.
+        campaign: Some((outcomes.len() as u64 / 2, campaign.seed)),
         outcomes,
         wall_s: progress.finish(),
     }

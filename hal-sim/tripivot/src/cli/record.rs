@@ -1,5 +1,6 @@
 //! `tripivot record`: a record of a controller that runs already, as a table and a picture.
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -38,8 +39,14 @@ struct Signal<'a> {
 
 pub(super) fn run(arguments: &RecordRun) -> Result<ExitCode, CliError> {
     let order = order(arguments)?;
+    let is_new = !arguments.out.exists();
     claim_folder(&arguments.out, &FILES)?;
-    let record = record(&order)?;
+    let record = record(&order).inspect_err(|_| {
+        if is_new {
+            // It is empty: what it was made for has not come.
+            let _ = fs::remove_dir(&arguments.out);
+        }
+    })?;
     let heading = match &order.send {
         Some(line) => format!("{}: {line}", order.endpoint),
         None => order.endpoint.to_string(),

@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::signal::until_signal;
 use super::stage::stage_options;
 use super::view::page;
-use desk::serve::{Printer, ServeOptions, Server};
+use desk::serve::{Printer, REMOTE_MEANS, ServeOptions, Server, check_address};
 use desk::web::{Endpoint, Page};
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
@@ -20,6 +20,7 @@ use crate::simulated::Simulated;
 const OFF: &str = "off";
 
 pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
+    let is_remote = check_address(&arguments.listen, arguments.access.allow_remote)?;
     let flash = (arguments.settings.as_deref())
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
     let mut memory = ControllerMemory::new();
@@ -33,9 +34,12 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     let own = server.address().map_err(CliError::output)?;
     let page = match arguments.web.as_deref() {
         Some(OFF) => None,
-        web => Some(page(web, Endpoint::Tcp(reached_at(own).to_string()))?),
+        web => {
+            let endpoint = Endpoint::Tcp(reached_at(own).to_string());
+            Some(page(web, &arguments.access, endpoint)?)
+        }
     };
-    announce(&server, page.as_ref()).map_err(CliError::output)?;
+    announce(&server, page.as_ref(), is_remote).map_err(CliError::output)?;
     let mut printer = Printer::start();
     let result = server.run(&mut stage, &stop, &mut |notice| printer.print(&notice));
     printer.finish();
@@ -53,9 +57,12 @@ fn reached_at(address: SocketAddr) -> SocketAddr {
     SocketAddr::new(ip, address.port())
 }
 
-fn announce(server: &Server, page: Option<&Page>) -> io::Result<()> {
+fn announce(server: &Server, page: Option<&Page>, is_remote: bool) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "listening at {}", server.address()?)?;
+    if is_remote {
+        writeln!(out, "{REMOTE_MEANS}")?;
+    }
     if let Some(page) = page {
         writeln!(out, "page at http://{}/", page.address())?;
     }

@@ -1,20 +1,25 @@
 //! `tripivot view`: the page for a controller that runs already, until Ctrl-C.
 
+use std::fs;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
-use super::arguments::{Controller, View};
+use super::arguments::{Access, Controller, View};
 use super::error::CliError;
 use super::signal::until_signal;
-use desk::web::{Endpoint, Page, PageError};
+use desk::serve::check_address;
+use desk::web::{Endpoint, Page, PageError, PageOptions, new_password};
 
 /// Where the page is unless it is told otherwise.
 const ADDRESS: &str = "127.0.0.1:8080";
 /// Where it is when that is taken.
 const FREE_ADDRESS: &str = "127.0.0.1:0";
+/// Characters of a password that is given.
+const SHORTEST_PASSWORD: usize = 8;
 /// How often Ctrl-C is looked for.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
@@ -22,7 +27,7 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
     let endpoint = endpoint(&arguments.controller)?;
     let stop = until_signal()?;
     let place = endpoint.to_string();
-    let page = page(arguments.web.as_deref(), endpoint)?;
+    let page = page(arguments.web.as_deref(), &arguments.access, endpoint)?;
     let text = format!(
         "page at http://{}/ for the controller at {place}\nCtrl-C ends it\n",
         page.address()
@@ -52,15 +57,52 @@ pub(super) fn endpoint(controller: &Controller) -> Result<Endpoint, CliError> {
     })
 }
 
-/// The page where it was asked for, or at its usual place or a free port.
-pub(super) fn page(address: Option<&str>, endpoint: Endpoint) -> Result<Page, PageError> {
-    match address {
-        Some(address) => Page::start(address, endpoint),
-        None => match Page::start(ADDRESS, endpoint.clone()) {
+/// The page where it was asked for, or at its usual place or a free port; with a password where others than this machine may
+/// reach it.
+pub(super) fn page(
+    address: Option<&str>,
+    access: &Access,
+    endpoint: Endpoint,
+) -> Result<Page, CliError> {
+    let is_remote = check_address(address.unwrap_or(ADDRESS), access.allow_remote)?;
+    let password = password(access, is_remote)?;
+    let options = |address: &str| PageOptions {
+        address: address.to_owned(),
+        password: password.clone(),
+        public_url: access.public_url.clone(),
+    };
+    let page = match address {
+        Some(address) => Page::start(&options(address), endpoint),
+        None => match Page::start(&options(ADDRESS), endpoint.clone()) {
             Err(PageError::Listen { error, .. }) if error.kind() == io::ErrorKind::AddrInUse => {
-                Page::start(FREE_ADDRESS, endpoint)
+                Page::start(&options(FREE_ADDRESS), endpoint)
             }
             result => result,
         },
+    }?;
+    Ok(page)
+}
+
+/// The password that the page asks for, if it does; one that was made is printed.
+fn password(access: &Access, is_remote: bool) -> Result<Option<String>, CliError> {
+    if let Some(file) = &access.password_file {
+        return read_password(file).map(Some);
     }
+    if !is_remote && access.public_url.is_none() {
+        return Ok(None);
+    }
+    let password = new_password().map_err(PageError::Start)?;
+    writeln!(io::stdout(), "password of the page: {password}").map_err(CliError::output)?;
+    Ok(Some(password))
+}
+
+fn read_password(file: &Path) -> Result<String, CliError> {
+    let text = fs::read_to_string(file)
+        .map_err(|error| CliError::Value(format!("{}: {error}", file.display())))?;
+    let password = text.lines().next().unwrap_or_default().trim_end();
+    if password.len() < SHORTEST_PASSWORD {
+        let reason = format!("the password has less than {SHORTEST_PASSWORD} characters");
+        return Err(CliError::Value(format!("{}: {reason}", file.display())));
+    }
+    Ok(password.to_owned())
 }

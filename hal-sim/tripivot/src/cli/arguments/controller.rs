@@ -32,6 +32,23 @@ pub(in super::super) struct View {
     /// Address and port of the page [default: 127.0.0.1:8080, or a free port if that is taken].
     #[arg(long, value_name = "ADDRESS")]
     pub(in super::super) web: Option<String>,
+    #[command(flatten)]
+    pub(in super::super) access: Access,
+}
+
+/// Who reaches what is served.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct Access {
+    /// Listen at addresses that other machines reach. The command language knows no password; the page asks for one.
+    #[arg(long)]
+    pub(in super::super) allow_remote: bool,
+    /// File whose first line is the page's password [default: one is made and printed where the page is not for this machine
+    /// alone].
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) password_file: Option<PathBuf>,
+    /// Where browsers find the page, such as https://stage.example.org, if a proxy stands in front of it.
+    #[arg(long, value_name = "URL")]
+    pub(in super::super) public_url: Option<String>,
 }
 
 /// A record of a controller that runs already.

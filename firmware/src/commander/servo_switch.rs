@@ -1,0 +1,65 @@
+//! The servo on and off. A stage in motion is stopped on its path before it is let go, and taken over only at rest.
+
+use super::error::CommandError;
+use super::in_flight::InFlight;
+use super::state::Commander;
+use crate::mode::Mode;
+use crate::motion::Stop;
+use crate::queues::{Command, CommandQueues};
+
+impl Commander {
+    /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and
+    /// comes about with referencing.
+    ///
+    /// # Errors
+    /// [`CommandError::Faulted`], and [`CommandError::InMotion`] for a stage that has been let go and has not come to rest: the
+    /// servo would try to stop it within a tick.
+    pub fn set_servo(
+        &mut self,
+        on: bool,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        let Some(snapshot) = self.current_snapshot() else {
+            return Err(CommandError::Busy);
+        };
+        match (on, snapshot.mode) {
+            (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
+            (true, Mode::Off) if snapshot.referenced && self.rest.is_fast => {
+                Err(CommandError::InMotion)
+            }
+            (true, Mode::Off) if snapshot.referenced => {
+                self.send(Command::Servo(true), InFlight::Other, queues)
+            }
+            (true, _) => {
+                self.off_at_rest = false;
+                Ok(())
+            }
+            (false, Mode::Holding) if !self.is_motion_pending() => {
+                self.send(Command::Servo(false), InFlight::Other, queues)
+            }
+            (false, Mode::Holding | Mode::Moving) => {
+                self.off_at_rest = true;
+                self.stop(Stop::Urgent, queues);
+                Ok(())
+            }
+            (false, _) => Ok(()),
+        }
+    }
+
+    /// Switches the servo off that is to go off, once the motion has come to its end.
+    pub(super) fn switch_off_at_rest(&mut self, queues: &mut CommandQueues<'_>) {
+        if !self.off_at_rest {
+            return;
+        }
+        match self.mode() {
+            Mode::Moving => {}
+            Mode::Holding if self.is_motion_pending() || self.current_snapshot().is_none() => {}
+            Mode::Holding => {
+                // A full queue: again at the next snapshot.
+                let sent = self.send(Command::Servo(false), InFlight::Other, queues);
+                self.off_at_rest = sent.is_err();
+            }
+            Mode::Off | Mode::Stopping | Mode::Fault => self.off_at_rest = false,
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Viewers that share one line: to the controller they are one connection, so that what a connection has for itself is kept apart
+//! here. Errors are, because each line is asked for its own; command level and ownership are by this.
+
+use std::collections::HashMap;
+
+use firmware::gcs::{ErrorCode, parse};
+
+use super::line::Answer;
+
+/// Number of a viewer.
+pub(super) type ViewerNumber = u64;
+
+/// Command level at first.
+const LOWEST_LEVEL: &str = "CCL 0";
+
+/// Who has which command level, and who owns.
+#[derive(Default)]
+pub(super) struct Arbiter {
+    owner: Option<ViewerNumber>,
+    /// The line that gave a viewer its command level.
+    levels: HashMap<ViewerNumber, String>,
+    /// The one that the controller had last.
+    level: Option<String>,
+}
+
+/// What is to be done for a viewer.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// This error, and nothing goes out.
+    Refuse(ErrorCode),
+    /// These lines go out, the last of them for the viewer.
+    Send(Vec<String>),
+}
+
+impl Arbiter {
+    /// What a line of a viewer comes to.
+    pub fn judge(&self, viewer: ViewerNumber, line: &str) -> Verdict {
+        let is_others = self.owner.is_some_and(|owner| owner != viewer);
+        let line = match words(line)[..] {
+            ["OWN", "1", ..] if is_others => return Verdict::Refuse(ErrorCode::OwnedByAnother),
+            // The line's ownership is that of the viewer who has it.
+            ["OWN", "0", ..] if is_others => return Verdict::Send(vec!["OWN?".to_owned()]),
+            ["OWN", "1"] => format!("OWN 1 page_{viewer}"),
+            _ => line.to_owned(),
+        };
+        if is_others && parse(line.as_bytes()).is_ok_and(|request| request.changes_stage()) {
+            return Verdict::Refuse(ErrorCode::OwnedByAnother);
+        }
+        let level = self.level_of(viewer);
+        let is_same = self.level.as_deref().unwrap_or(LOWEST_LEVEL) == level;
+        let before = (!is_same).then(|| level.to_owned());
+        Verdict::Send(before.into_iter().chain([line]).collect())
+    }
+
+    /// Takes what became of a viewer's line, and says it as for a connection of its own.
+    pub fn note(&mut self, viewer: ViewerNumber, line: &str, answer: &mut Answer) {
+        self.level = Some(self.level_of(viewer).to_owned());
+        let done = answer.error == 0;
+        match words(line)[..] {
+            ["OWN", "1", ..] if done => self.owner = Some(viewer),
+            ["OWN", "0", ..] => {
+                answer.reply = None;
+                self.owner = self.owner.filter(|owner| *owner != viewer);
+            }
+            ["OWN?"] => {
+                let mine = format!("MINE={}", u8::from(self.owner == Some(viewer)));
+                let rows = answer.reply.iter().flat_map(|reply| reply.lines());
+                let rows = rows.map(|row| if row.starts_with("MINE=") { &mine } else { row });
+                answer.reply = Some(rows.collect::<Vec<_>>().join("\n"));
+            }
+            ["CCL", ..] if done => {
+                self.levels.insert(viewer, line.to_owned());
+                self.level = Some(line.to_owned());
+            }
+            _ => {}
+        }
+    }
+
+    /// A viewer is gone; whether the line is to give the stage back.
+    pub fn leave(&mut self, viewer: ViewerNumber) -> bool {
+        self.levels.remove(&viewer);
+        let owned = self.owner == Some(viewer);
+        self.owner = self.owner.filter(|owner| *owner != viewer);
+        owned
+    }
+
+    /// Another connection to the controller, which knows nothing of all that.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    fn level_of(&self, viewer: ViewerNumber) -> &str {
+        self.levels
+            .get(&viewer)
+            .map_or(LOWEST_LEVEL, String::as_str)
+    }
+}
+
+fn words(line: &str) -> Vec<&str> {
+    // Words of the language that are told apart here are written as the controller's help has them, or in small letters.
+    line.split_whitespace().map(known_word).collect()
+}
+
+fn known_word(word: &str) -> &str {
+    let known = ["OWN", "OWN?", "CCL"];
+    known
+        .into_iter()
+        .find(|known| known.eq_ignore_ascii_case(word))
+        .unwrap_or(word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn done(
+        arbiter: &mut Arbiter,
+        viewer: ViewerNumber,
+        line: &str,
+        reply: Option<&str>,
+    ) -> Answer {
+        let mut answer = Answer {
+            reply: reply.map(str::to_owned),
+            error: 0,
+        };
+        arbiter.note(viewer, line, &mut answer);
+        answer
+    }
+
+    fn sends(arbiter: &Arbiter, viewer: ViewerNumber, line: &str) -> Vec<String> {
+        match arbiter.judge(viewer, line) {
+            Verdict::Send(lines) => lines,
+            Verdict::Refuse(code) => panic!("{line}: {code:?}"),
+        }
+    }
+
+    #[test]
+    fn the_level_of_a_viewer_is_its_own() {
+        let mut arbiter = Arbiter::default();
+        assert_eq!(sends(&arbiter, 1, "CCL 1 ADVANCED"), ["CCL 1 ADVANCED"]);
+        done(&mut arbiter, 1, "CCL 1 ADVANCED", None);
+        assert_eq!(sends(&arbiter, 1, "MOV X 1"), ["MOV X 1"]);
+        assert_eq!(sends(&arbiter, 2, "MOV X 1"), ["CCL 0", "MOV X 1"]);
+        done(&mut arbiter, 2, "MOV X 1", None);
+        assert_eq!(sends(&arbiter, 1, "CCL?"), ["CCL 1 ADVANCED", "CCL?"]);
+    }
+
+    #[test]
+    fn one_viewer_owns_and_the_others_look_and_stop() {
+        let mut arbiter = Arbiter::default();
+        assert_eq!(sends(&arbiter, 3, "own 1"), ["OWN 1 page_3"]);
+        done(&mut arbiter, 3, "own 1", None);
+        for line in ["MOV X 1", "svo x 0", "OWN 1", "VLS 10"] {
+            assert_eq!(
+                arbiter.judge(4, line),
+                Verdict::Refuse(ErrorCode::OwnedByAnother),
+                "{line}"
+            );
+            assert_ne!(
+                arbiter.judge(3, line),
+                Verdict::Refuse(ErrorCode::OwnedByAnother),
+                "{line}"
+            );
+        }
+        for line in ["POS?", "HLT", "HLP?"] {
+            assert_eq!(sends(&arbiter, 4, line), [line]);
+        }
+        let told = "OWNER=page_3\nMINE=1\nLAST=page_3";
+        assert_eq!(
+            done(&mut arbiter, 3, "OWN?", Some(told)).reply.as_deref(),
+            Some(told)
+        );
+        let others = done(&mut arbiter, 4, "OWN?", Some(told)).reply;
+        assert_eq!(others.as_deref(), Some("OWNER=page_3\nMINE=0\nLAST=page_3"));
+        // Who does not own gives nothing back.
+        assert_eq!(sends(&arbiter, 4, "OWN 0"), ["OWN?"]);
+        assert_eq!(done(&mut arbiter, 4, "OWN 0", Some(told)).reply, None);
+        assert!(!arbiter.leave(4));
+        assert!(arbiter.leave(3));
+        assert_eq!(sends(&arbiter, 4, "OWN 1"), ["OWN 1 page_4"]);
+    }
+}

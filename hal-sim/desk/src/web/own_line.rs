@@ -1,0 +1,128 @@
+//! A viewer's own connection to the controller: its errors, its command level, its waits and its constant velocities are nobody
+//! else's, and end with it.
+
+use std::io;
+use std::net::Shutdown;
+use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use tokio::sync::oneshot;
+
+use super::line::{Answer, Line};
+use super::port::{Endpoint, Port};
+use super::request::Refusal;
+
+/// Requests that may wait for the line.
+const WAITING: usize = 16;
+/// How long a line may take: `WAC` and `DEL` are as long as they say. The viewer's end cuts it short.
+const PATIENCE: Duration = Duration::from_secs(86_400);
+/// How long a constant velocity of a page lasts without being renewed, ms: a page that is gone does not let a button go.
+pub(super) const JOG_TIME_MS: u32 = 300;
+
+/// A line that waits for its turn.
+struct Pending {
+    line: String,
+    answer: oneshot::Sender<Result<Answer, Refusal>>,
+}
+
+/// A viewer's own connection, opened with its first line.
+pub(super) struct OwnLine {
+    requests: SyncSender<Pending>,
+    port: Arc<Mutex<OpenPort>>,
+}
+
+/// What there is to be closed.
+#[derive(Default)]
+struct OpenPort {
+    port: Option<Port>,
+    is_over: bool,
+}
+
+impl OwnLine {
+    /// The thread of a connection that is opened when it is needed; `name` is shown to those who ask who commands.
+    pub fn start(endpoint: Endpoint, name: String) -> io::Result<Self> {
+        let (requests, incoming) = mpsc::sync_channel(WAITING);
+        let port = Arc::<Mutex<OpenPort>>::default();
+        let worker = Worker {
+            endpoint,
+            name,
+            port: Arc::clone(&port),
+        };
+        thread::Builder::new()
+            .name("viewer".into())
+            .spawn(move || worker.run(&incoming))?;
+        Ok(Self { requests, port })
+    }
+
+    /// Has a line carried out.
+    pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
+        let (answer, answered) = oneshot::channel();
+        (self.requests.try_send(Pending { line, answer })).map_err(|error| match error {
+            TrySendError::Full(_) => Refusal::TooMany,
+            TrySendError::Disconnected(_) => Refusal::Offline,
+        })?;
+        answered.await.unwrap_or(Err(Refusal::Broken))
+    }
+}
+
+impl OwnLine {
+    /// Closes it, whatever is under way.
+    pub fn close(&self) {
+        let mut open = self.port.lock().unwrap_or_else(PoisonError::into_inner);
+        open.is_over = true;
+        if let Some(Port::Tcp(stream)) = open.port.take() {
+            // It may be gone already.
+            let _ = stream.shutdown(Shutdown::Both);
+        }
+    }
+}
+
+/// The thread's side.
+struct Worker {
+    endpoint: Endpoint,
+    name: String,
+    port: Arc<Mutex<OpenPort>>,
+}
+
+impl Worker {
+    /// Until the viewer is gone.
+    fn run(self, incoming: &Receiver<Pending>) {
+        let mut line = None;
+        for Pending { line: text, answer } in incoming {
+            let result = match &mut line {
+                Some(line) => carry_out(line, &text),
+                closed => match self.open() {
+                    Ok(opened) => carry_out(closed.insert(opened), &text),
+                    Err(_) => Err(Refusal::Offline),
+                },
+            };
+            if result.is_err() {
+                line = None;
+            }
+            // A viewer that is gone needs no answer.
+            let _ = answer.send(result);
+        }
+    }
+
+    fn open(&self) -> io::Result<Line> {
+        let mut line = Line::open(&self.endpoint)?;
+        {
+            let mut open = self.port.lock().unwrap_or_else(PoisonError::into_inner);
+            if open.is_over {
+                return Err(io::ErrorKind::NotConnected.into());
+            }
+            open.port = Some(line.bypass()?);
+        }
+        // A controller that does not know them says so, and does without.
+        line.ask(&format!("OWN 0 {}", self.name))?;
+        line.ask(&format!("JTM {JOG_TIME_MS}"))?;
+        line.set_patience(PATIENCE);
+        Ok(line)
+    }
+}
+
+fn carry_out(line: &mut Line, text: &str) -> Result<Answer, Refusal> {
+    line.ask(text).map_err(|_| Refusal::Broken)
+}

@@ -1,0 +1,267 @@
+//! Dead, flooding and half-open clients: none takes another's place, the stage's time or the disk.
+#![cfg(unix)]
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use desk::serve::{Controller, Notice, ServeOptions, Server};
+use desk::web::{Endpoint, Page, PageOptions};
+use firmware::fault::Fault;
+use firmware::gcs::Session;
+use hal_sim::machine::devices::SettingsFlash;
+use hal_sim::rig::ControllerMemory;
+use hal_sim::rig::run::RunOptions;
+use served::{PATIENCE, Served, connect};
+use tripivot::simulated::Simulated;
+
+#[allow(dead_code)]
+mod served;
+
+/// A script that waits for what never comes, with so many lines behind it that nothing more is read, and then dies.
+fn die_behind_a_wait(served: &Served) {
+    let mut client = served.connect();
+    client.send("CSV?\nWAC POS? X = 99\n");
+    client.port.set_nonblocking(true).unwrap();
+    let lines = "MOV X 1\n".repeat(1024);
+    let mut refused = 0;
+    while refused < 5 {
+        if client.port.write(lines.as_bytes()).is_err() {
+            refused += 1;
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+    // The answer has not been read: the connection is reset.
+}
+
+#[test]
+fn a_client_that_died_behind_a_wait_frees_its_place() {
+    let served = Served::start(1.0, false);
+    for _ in 0..3 {
+        die_behind_a_wait(&served);
+        served.notice(|notice| matches!(notice, Notice::Left(_)));
+    }
+}
+
+#[test]
+fn a_stop_finds_a_place_when_there_is_none() {
+    let served = Served::start(1.0, false);
+    let mut mover = served.ready();
+    mover.send("VLS 1\nMOV X 60\nMOV? X\n");
+    assert_eq!(mover.reply(), "X=60\n");
+    let mut clients: Vec<_> = (0..63).map(|_| served.connect()).collect();
+    assert_eq!(clients[62].ask("CSV?\n"), "2.0\n");
+    for stop in ["\x18", "STP\n", "MOV X 3\nhlt X\n"] {
+        assert_eq!(mover.ask("MOV X 60\nDEL 100\n\x05"), "1\n");
+        let mut late = served.connect();
+        served.notice(|notice| matches!(notice, Notice::TurnedAway(_)));
+        late.send(stop);
+        assert_eq!(mover.ask("WAC ONT? X = 1\nERR?\n"), "10\n");
+        assert!(mover.value("MOV? X\n") < 50.0, "{stop:?}");
+        // Nothing else is taken from it, and it does not stay.
+        let mut rest = Vec::new();
+        let _ = late.port.read_to_end(&mut rest);
+        assert_eq!(rest, b"");
+    }
+}
+
+/// A stage whose lines take a millisecond each.
+struct Slow<'a> {
+    stage: Simulated<'a>,
+    last_tick: Option<Instant>,
+    longest: Duration,
+}
+
+impl Controller for Slow<'_> {
+    fn rate_hz(&self) -> f64 {
+        self.stage.rate_hz()
+    }
+
+    fn tick(&mut self) {
+        let now = Instant::now();
+        let since = self
+            .last_tick
+            .replace(now)
+            .map_or(Duration::ZERO, |last| now - last);
+        self.longest = self.longest.max(since);
+        self.stage.tick();
+    }
+
+    fn advance(&mut self) {
+        self.stage.advance();
+    }
+
+    fn service<W: embedded_io::Write>(
+        &mut self,
+        session: &mut Session,
+        replies: &mut W,
+    ) -> Result<(), W::Error> {
+        if !session.is_idle() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.stage.service(session, replies)
+    }
+
+    fn disconnect(&mut self, session: &mut Session) {
+        self.stage.disconnect(session);
+    }
+
+    fn keep(&mut self) {
+        self.stage.keep();
+    }
+
+    fn restart_if_wanted(&mut self) -> bool {
+        self.stage.restart_if_wanted()
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        self.stage.fault()
+    }
+}
+
+#[test]
+fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
+    let options = ServeOptions {
+        listen: "127.0.0.1:0".into(),
+        speed: 1.0,
+        terminal: false,
+    };
+    let server = Server::bind(options).unwrap();
+    let address = server.address().unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopped = Arc::clone(&stop);
+    let serving = thread::spawn(move || {
+        let mut memory = ControllerMemory::new();
+        let stage = Simulated::new(
+            &mut memory,
+            &RunOptions::default(),
+            SettingsFlash::in_memory(),
+        );
+        let mut slow = Slow {
+            stage,
+            last_tick: None,
+            longest: Duration::ZERO,
+        };
+        server.run(&mut slow, &stopped, &mut drop).unwrap();
+        slow.longest
+    });
+    let mut flood = connect(address);
+    flood.send(&"x\n".repeat(4_000));
+    // Answered when all of it has been carried out.
+    assert_eq!(flood.ask("CSV?\n"), "2.0\n");
+    stop.store(true, Ordering::Relaxed);
+    let longest = serving.join().unwrap();
+    // 16 lines of a millisecond, however long the machine makes of that; 2,000 are read at a time.
+    assert!(longest < Duration::from_secs(1), "{longest:?}");
+}
+
+#[test]
+fn a_request_that_never_comes_does_not_keep_its_place() {
+    let served = Served::start(1.0, false);
+    let endpoint = Endpoint::Tcp(served.address.to_string());
+    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let half_open: Vec<_> = (0..80)
+        .map(|_| {
+            let mut stream = TcpStream::connect(page.address()).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\n").unwrap();
+            stream
+        })
+        .collect();
+    // More than are served at once: an honest one is answered when the first of them have been given up.
+    let mut honest = TcpStream::connect(page.address()).unwrap();
+    honest.set_read_timeout(Some(PATIENCE)).unwrap();
+    let request = format!(
+        "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+        page.address()
+    );
+    honest.write_all(request.as_bytes()).unwrap();
+    let mut answer = String::new();
+    honest.read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    for mut stream in half_open {
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let mut rest = Vec::new();
+        assert!(stream.read_to_end(&mut rest).is_ok(), "still held");
+    }
+}
+
+#[test]
+fn a_log_has_a_bound() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args(["serve", "--listen", "127.0.0.1:0", "--web", "off"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut out = child.stdout.take().unwrap();
+    let mut first = Vec::new();
+    while first.last() != Some(&b'\n') {
+        let mut byte = [0];
+        out.read_exact(&mut byte).unwrap();
+        first.push(byte[0]);
+    }
+    let address = String::from_utf8(first).unwrap();
+    let address = address
+        .trim()
+        .strip_prefix("listening at ")
+        .unwrap()
+        .parse()
+        .unwrap();
+    let mut client = connect(address);
+    for _ in 0..20 {
+        client.send(&"x\nERR?\n".repeat(100));
+        (0..100).for_each(|_| assert_eq!(client.reply(), "2\n"));
+    }
+    let interrupted = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(interrupted.unwrap().success());
+    child.wait().unwrap();
+    let mut log = String::new();
+    out.read_to_string(&mut log).unwrap();
+    let told = log
+        .lines()
+        .filter(|line| line.ends_with("error 2 after x"))
+        .count();
+    let counted = |line: &str| {
+        line.strip_prefix('(')?
+            .strip_suffix(" notices left out)")?
+            .parse::<usize>()
+            .ok()
+    };
+    let left_out: usize = log.lines().filter_map(counted).sum();
+    // Two that come between two looks at the error are told as one.
+    assert!((1_000..=2_000).contains(&(told + left_out)), "{log}");
+    assert!(told < 1_000, "{told}");
+}
+
+#[test]
+fn a_line_that_never_stops_talking_is_no_controller() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    thread::spawn(move || {
+        for stream in listener.incoming() {
+            let mut stream = stream.unwrap();
+            while stream.write_all(b"temperature 21.5\r\n").is_ok() {}
+        }
+    });
+    let folder = std::env::temp_dir().join(format!("tripivot-talk-{}", std::process::id()));
+    let file = folder.join("settings");
+    for arguments in [
+        ["settings", "export", file.to_str().unwrap()],
+        ["record", "--out", folder.to_str().unwrap()],
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+            .args(arguments)
+            .args(["--connect", &address])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("never stops sending"), "{said}");
+        assert!(!folder.exists(), "a folder was left");
+    }
+}
