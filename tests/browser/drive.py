@@ -4,11 +4,13 @@ import argparse
 import unittest
 
 from live import Live
+from real import Real
 from report import Report
 from settings import ARGUMENTS
+from silent import Silent
 from view import OnChip, OnTerminal
 
-__all__ = ["Live", "OnChip", "OnTerminal", "Report"]
+__all__ = ["Live", "OnChip", "OnTerminal", "Real", "Report", "Silent"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -6,7 +6,7 @@ import unittest
 from settings import ARGUMENTS
 from webdriver import Browser, Driver
 
-SIZES = {"desk": (1280, 900), "phone": (360, 740), "large": (2200, 1300)}
+SIZES = {"desk": (1280, 900), "phone": (390, 844), "large": (1600, 1000), "wide": (2200, 1300)}
 README = (1360, 1480)
 PLACE = 2e-3
 """How near a settled stage is to its target, mm or deg, in the decimals that the page shows."""
@@ -50,7 +50,9 @@ class OnPage(WithDriver):
         return browser
 
     def reference(self, browser):
-        browser.click("#reference")
+        browser.wait(lambda: browser.run("return document.body.checkVisibility() && !document.body.classList.contains('stale')"), "a status")
+        visible = "return document.getElementById('reference').checkVisibility() ? '#reference' : '#reference-again'"
+        browser.click(browser.run(visible))
         for lamp in ("referenced", "servo", "settled"):
             self.light(browser, lamp)
 
@@ -93,7 +95,7 @@ class OnPage(WithDriver):
         """So slow that nothing arrives while the test looks, mm/s."""
         browser.type("#vls", str(speed))
         browser.click("#speed button")
-        browser.wait_text("#vls-now", f"{speed} mm/s")
+        browser.wait(lambda: browser.run("return document.getElementById('vls').placeholder") == str(speed), f"the speed {speed} mm/s")
 
     def pixel(self, browser, x, y):
         """Where a place, mm, is on the canvas, from its middle."""

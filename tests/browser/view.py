@@ -23,7 +23,7 @@ class View:
 
     def test_loads_moves_arrives_and_stops(self):
         browser = self.page()
-        self.assertIn(f"at {self.place}", browser.text("#place"))
+        self.assertEqual(browser.text("#machine-line"), self.place)
         self.reference(browser)
         self.enter(browser, x="20", y="-10", w="30")
         self.arrive(browser, x=20, y=-10, w=30)

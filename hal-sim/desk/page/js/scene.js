@@ -69,7 +69,6 @@ export class Scene {
     drawTrail(context, plane, this.trail);
     const pose = this.#pose(performance.now() - DELAY_MS);
     if (pose && stage.referenced) this.#mechanism(context, plane, pose);
-    else this.#notYet(context, width, height);
     if (aim) this.#aim(context, plane, aim);
   }
 
@@ -123,11 +122,6 @@ export class Scene {
   /** A place of the frame in force in the plane. */
   inPlane(place) {
     return toBase(this.frames.ground, place);
-  }
-
-  #notYet(context, width, height) {
-    const text = this.stage.connected ? "Not referenced yet: press Reference" : "Not connected";
-    write(context, text, width / 2, height / 2, colour("ink"), "600 16px system-ui, sans-serif");
   }
 
   #aim(context, plane, { place, good }) {
