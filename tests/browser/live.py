@@ -1,5 +1,7 @@
 """The live page in front of a simulated stage of its own, used as a person would."""
 
+import time
+
 from page import SIZES, OnPage
 from served import Served
 from settings import ARGUMENTS
@@ -82,6 +84,16 @@ class Live(OnPage):
         browser.wait(lambda: browser.run(speed) == "50", "a quarter of the speed")
         self.slow_down(browser, 100)
         browser.wait_text("#override-share", "50 %")
+        # In motion it acts at once: with the speed that it began with, the way takes a minute.
+        self.slow_down(browser, 1)
+        self.enter(browser, x="60")
+        browser.wait_text("#mode", "moving")
+        begun = time.monotonic()
+        browser.run("""
+            const slider = document.getElementById('override');
+            slider.value = '50'; slider.dispatchEvent(new Event('change'))""")
+        self.arrive(browser, x=60)
+        self.assertLess(time.monotonic() - begun, 30)
 
     def test_moves_by_click_once_it_is_known_to_be_reachable(self):
         browser = self.ready()
@@ -297,6 +309,12 @@ class Live(OnPage):
                         const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
                         return at && at.closest('#stop') ? box.width * box.height : 0""")
                     self.assertGreater(top, 4000, (size, place))
+                # It covers nothing: what is scrolled ends where it begins, and the window itself does not scroll.
+                apart = browser.run("""
+                    const [a, b] = ['#stop', 'main'].map((s) => document.querySelector(s).getBoundingClientRect());
+                    const high = document.documentElement.scrollHeight - innerHeight;
+                    return high <= 0 && (a.bottom <= b.top || a.top >= b.bottom)""")
+                self.assertTrue(apart, size)
                 wide = browser.run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
                 self.assertEqual(wide, 0, size)
                 browser.close()

@@ -50,9 +50,8 @@ class OnPage(WithDriver):
         return browser
 
     def reference(self, browser):
-        browser.wait(lambda: browser.run("return document.body.checkVisibility() && !document.body.classList.contains('stale')"), "a status")
-        visible = "return document.getElementById('reference').checkVisibility() ? '#reference' : '#reference-again'"
-        browser.click(browser.run(visible))
+        visible = "return ['#reference', '#reference-again'].find((id) => document.querySelector(id).checkVisibility())"
+        browser.click(browser.wait(lambda: browser.run(visible), "a way to reference"))
         for lamp in ("referenced", "servo", "settled"):
             self.light(browser, lamp)
 

@@ -32,7 +32,15 @@ class Real(OnPage):
         self.enter(browser, x="30")
         self.asked(browser)
         self.picture(browser, "first-move")
+        # STOP can be pressed meanwhile, and is an answer.
+        browser.click("#stop")
+        browser.wait_text("#stop-said", "stopped, as the controller says")
+        browser.wait_text("#said", "not moved: not confirmed")
+        self.assertFalse(browser.run(DIALOG))
+        browser.click("#target button[type=submit]")
+        self.asked(browser)
         browser.click("#first-move button[value=no]")
+        browser.wait(lambda: not browser.run(DIALOG), "an answer")
         browser.wait_text("#said", "not moved: not confirmed")
         self.assertAlmostEqual(self.shown(browser, "x", "target"), 0, delta=0.1)
         # What was typed is still there.

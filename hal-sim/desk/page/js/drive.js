@@ -1,7 +1,7 @@
 // Reference, servo, target, home, speed and halt.
 
 import { byId, report, setText } from "./dom.js";
-import { plain, shown, typed } from "./gcs.js";
+import { fields, plain, shown, typed } from "./gcs.js";
 
 const AXES = { x: "X", y: "Y", w: "W" };
 const NAMES = { x: "x", y: "y", w: "θ" };
@@ -67,7 +67,7 @@ function moveForm(stage, say) {
 function wayHome({ target: [x, y, deg], turning }) {
   const distance = Math.hypot(x, y);
   const turn = turnTo(0, deg, turning);
-  const way = distance < 1e-3 ? "" : `${shown(distance, 1)} mm`;
+  const way = distance < 1e-3 ? "" : `${shown(distance, distance < 1 ? 3 : 1)} mm`;
   const turns = Math.abs(turn) >= 360 ? ` (${shown(Math.abs(turn) / 360, 2)} turns)` : "";
   const rotation = Math.abs(turn) < 1e-3 ? "" : `${shown(Math.abs(turn), 1)}° ${turn > 0 ? "counterclockwise" : "clockwise"}${turns}`;
   return [way, rotation].filter(Boolean).join(", and ") || "it is there";
@@ -83,13 +83,30 @@ function turnTo(to, from, turning) {
   return literal;
 }
 
-/** The speed as a number, and as a share of the fastest. */
+/** Commands that move to a target. */
+const TO_TARGET = /^(MOV|MVR|MRT|MRW)\b/;
+/** Commands that move otherwise, or stop: a target sent after them would be another motion. */
+const OTHERWISE = /^(JOG|WGO|MAC|STP|HLT|STE|SVO|FRF|RBT)\b/;
+
+/** The speed as a number, and as a share of the fastest. A move to a target that was begun here goes on with it at once. */
 function speed(stage, say) {
+  const { link } = stage;
   const [field, override, share] = ["vls", "override", "override-share"].map(byId);
-  const set = (mmS) => say(() => stage.link.ask(`VLS ${plain(mmS)}`), `speed set: ${shown(mmS, 1)} mm/s`);
+  let own = false;
+  link.addEventListener("asked", ({ detail: line }) => {
+    if (TO_TARGET.test(line)) own = true;
+    else if (OTHERWISE.test(line)) own = false;
+  });
+  link.addEventListener("stopping", () => { own = false; });
+  const set = (mmS) => say(async () => {
+    await link.ask(`VLS ${plain(mmS)}`);
+    if (!own || stage.mode !== "moving") return;
+    const { X, Y, W } = fields(await link.ask("MOV? X Y W"));
+    if (own) await link.ask(`MOV X ${X} Y ${Y} W ${W}`);
+  }, `speed set: ${shown(mmS, 1)} mm/s`);
   byId("speed").addEventListener("submit", (event) => {
     event.preventDefault();
-    say(() => stage.link.ask(`VLS ${plain(number("vls", "speed"))}`), "speed set").then((good) => { if (good) field.value = ""; });
+    say(() => link.ask(`VLS ${plain(number("vls", "speed"))}`), "speed set").then((good) => { if (good) field.value = ""; });
   });
   const showShare = () => setText(share, `${override.value} %`);
   override.addEventListener("input", showShare);

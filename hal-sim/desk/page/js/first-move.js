@@ -11,6 +11,8 @@ export class FirstMove {
   constructor(stage) {
     this.stage = stage;
     this.dialog = byId("first-move");
+    // A stop is an answer too.
+    stage.link.addEventListener("stopping", () => this.dialog.close("no"));
     stage.link.gate = async (line) => { if (MOVES.test(line)) await this.agree(/^\s*JOG/i.test(line)); };
   }
 
@@ -22,8 +24,12 @@ export class FirstMove {
     setText(byId("first-move-machine"), machine);
     if (this.dialog.open) throw new Error("not moved: the question is still open");
     this.dialog.returnValue = "";
-    this.dialog.showModal();
+    // Not as a modal dialog: STOP has to work meanwhile.
+    const main = document.querySelector("main");
+    main.inert = true;
+    this.dialog.show();
     await new Promise((resolve) => { this.dialog.addEventListener("close", resolve, { once: true }); });
+    main.inert = false;
     if (this.dialog.returnValue !== "move") throw new Error("not moved: not confirmed");
     this.#agreed = machine;
     if (isHeld) throw new Error("confirmed: press again to jog");

@@ -11,6 +11,7 @@ export class Freshness extends EventTarget {
   #tick = "";
   #since = performance.now();
   #looked = performance.now();
+  #beginning = -Infinity;
 
   constructor() {
     super();
@@ -29,6 +30,21 @@ export class Freshness extends EventTarget {
     this.#tick = tick;
     this.#since = performance.now();
     this.#tell(false);
+  }
+
+  /** A connection begins: its first status is waited for. */
+  begins() {
+    this.#beginning = performance.now();
+  }
+
+  /** Until there is a status, or no longer than one may take on a new connection. */
+  async begun() {
+    const left = LONGEST_MS - (performance.now() - this.#beginning);
+    if (!this.stale || left < 0) return;
+    await new Promise((resolve) => {
+      this.addEventListener("change", resolve, { once: true });
+      setTimeout(resolve, left);
+    });
   }
 
   /** There is nobody at the other end. */

@@ -40,10 +40,11 @@ export class Link extends EventTarget {
    * or was not answered in time. Nothing is sent while the status is stale: it would act on a stage that nobody sees.
    */
   async ask(line) {
+    await this.freshness.begun();
     const { stale, age } = this.freshness;
     if (this.open && stale) throw new Error(`not sent: no status for ${age.toFixed(1)} s`);
     await this.gate(line);
-    if (!line.includes("?")) this.dispatchEvent(new Event("asked"));
+    if (!line.includes("?")) this.dispatchEvent(new CustomEvent("asked", { detail: line }));
     return this.urge(line);
   }
 
@@ -57,7 +58,7 @@ export class Link extends EventTarget {
       const id = this.#next++;
       const late = () => this.#settle(id)?.reject(new Error(`no answer within ${PATIENCE_MS / 1000} s: ${UNKNOWN}`));
       this.#waiting.set(id, { line, resolve, reject, timer: setTimeout(late, PATIENCE_MS) });
-      this.#socket.send(JSON.stringify({ id, token: this.#token, line }));
+      this.#socket.send(JSON.stringify({ id, token: this.#token, line, who: this.who }));
     });
   }
 
@@ -73,6 +74,7 @@ export class Link extends EventTarget {
     }
     const socket = new WebSocket(`ws://${location.host}/live`);
     this.#socket = socket;
+    this.freshness.begins();
     socket.onmessage = (event) => this.#take(JSON.parse(event.data));
     socket.onclose = () => this.#lost();
   }

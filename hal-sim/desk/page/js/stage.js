@@ -23,6 +23,8 @@ export class Stage extends EventTarget {
   simulated = false;
   /** Whether there has ever been a status. */
   seen = false;
+  /** What `HLP?` says of each command. */
+  help = [];
   /** Commands that the controller knows. */
   known = new Set();
   /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
@@ -65,6 +67,7 @@ export class Stage extends EventTarget {
   async #hello(hello) {
     Object.assign(this, { connected: hello.connected, reason: hello.reason, place: hello.place, identity: hello.identity });
     this.simulated = hello.identity.split(",")[2]?.trim() === SIMULATED;
+    this.help = hello.help.split("\n").slice(1, -1);
     this.known = commands(hello.help);
     this.now = null;
     this.resting = false;

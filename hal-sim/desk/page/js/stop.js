@@ -25,6 +25,7 @@ export function stopping(stage) {
 
   const stop = async () => {
     const own = ++attempt;
+    link.dispatchEvent(new Event("stopping"));
     const begun = performance.now();
     const isLatest = () => own === attempt;
     const seconds = () => ((performance.now() - begun) / 1000).toFixed(2);

@@ -17,6 +17,7 @@
 //! | `request` | what viewers may send |
 //! | `guard` | who may look and who may drive |
 //! | `viewer` | one browser: status and answers out, requests in |
+//! | `operator` | sequences that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
 //! | `server` | HTTP |
 //!
@@ -27,6 +28,7 @@ mod bridge;
 mod guard;
 mod lesson;
 mod line;
+mod operator;
 mod port;
 mod request;
 mod server;

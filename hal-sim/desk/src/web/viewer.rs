@@ -12,7 +12,9 @@ use tokio::time::timeout;
 use super::bridge::{Bridge, json};
 use super::guard::Guard;
 use super::line::Answer;
-use super::request::{self, Refusal, Request};
+use super::operator::{Operator, Order};
+use super::request::{self, Refusal, Request, Wanted};
+use crate::error_words::refused_with;
 
 /// Requests of a viewer that may be under way at once.
 const AT_ONCE: usize = 16;
@@ -36,8 +38,25 @@ enum Reply {
     Lost { messages: u64 },
 }
 
+impl Reply {
+    /// For the log.
+    fn in_words(&self) -> String {
+        match self {
+            Self::Answer { error: 0, .. } => "taken".to_owned(),
+            Self::Answer { error, .. } => refused_with(*error),
+            Self::Refused { reason, .. } => reason.clone(),
+            Self::Lost { messages } => format!("{messages} messages lost"),
+        }
+    }
+}
+
 /// Serves a viewer until it is gone.
-pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guard>) {
+pub(super) async fn serve(
+    mut socket: WebSocket,
+    bridge: Bridge,
+    guard: Arc<Guard>,
+    operator: Operator,
+) {
     let mut status = bridge.status();
     let mut hello = bridge.hello();
     hello.mark_changed();
@@ -49,7 +68,7 @@ pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guar
             biased;
             message = socket.recv() => {
                 let Some(Ok(message)) = message else { return };
-                match take(message, &bridge, &guard, &slots, &answers) {
+                match take(message, &bridge, &guard, &operator, &slots, &answers) {
                     Some(reply) => json(&reply),
                     None => continue,
                 }
@@ -74,6 +93,7 @@ fn take(
     message: Message,
     bridge: &Bridge,
     guard: &Guard,
+    operator: &Operator,
     slots: &Arc<Semaphore>,
     answers: &mpsc::Sender<Arc<str>>,
 ) -> Option<Reply> {
@@ -84,7 +104,12 @@ fn take(
             return Some(refused(None, &Refusal::Malformed("binary".to_owned())));
         }
     };
-    let Request { id, token, line } = match request::read(&text) {
+    let Request {
+        id,
+        token,
+        line,
+        who,
+    } = match request::read(&text) {
         Ok(request) => request,
         Err(refusal) => return Some(refused(None, &refusal)),
     };
@@ -98,12 +123,18 @@ fn take(
     let Ok(slot) = Arc::clone(slots).try_acquire_owned() else {
         return Some(refused(Some(id), &Refusal::TooMany));
     };
+    // Before the stop is sent: no line of a sequence may follow it.
+    if wanted == Wanted::Stop {
+        operator.sequence.order(Order::Stopped { who: who.clone() });
+    }
     let (bridge, answers) = (bridge.clone(), answers.clone());
+    let journal = operator.journal.clone();
     tokio::spawn(async move {
         let reply = match bridge.ask(wanted).await {
             Ok(Answer { reply, error }) => Reply::Answer { id, reply, error },
             Err(refusal) => refused(Some(id), &refusal),
         };
+        journal.note(&who, &line, &reply.in_words());
         // A viewer that is gone needs no answer.
         let _ = answers.send(json(&reply)).await;
         drop(slot);
