@@ -185,6 +185,9 @@ class Panels(OnPage):
         self.assertEqual(browser.run(theme), "dark")
         self.assertEqual(browser.run("return document.getElementById('step-mm').value"), "2.5")
         self.near(browser, "x", 40, 0.1)
+        # What is kept now was kept by the second page.
+        browser.open(self.url)
+        browser.wait_text("#place", "XYT-1")
         self.assertGreater(len(browser.run("return JSON.parse(localStorage.getItem('tripivot.trail'))")), 5)
         browser.click("#clear-trail")
         browser.open(self.url)
@@ -222,14 +225,23 @@ class Panels(OnPage):
               new MutationObserver(() => window.told.push(live.id + ': ' + live.textContent))
                 .observe(live, { childList: true, characterData: true, subtree: true });
             }""")
-        for _ in range(6):
-            browser.click("[data-step='X+']")
+        # A step every half a second, each of which comes to rest: none of these states lasts.
+        browser.run("""
+            return new Promise((done) => {
+              let left = 6;
+              const step = () => {
+                document.querySelector("[data-step='X+']").click();
+                left -= 1;
+                if (left) setTimeout(step, 500); else done();
+              };
+              step();
+            })""")
         self.near(browser, "x", 30, 0.1)
         browser.wait_text("#announcement", "on target: x 30.00")
         for x in range(-40, 41, 4):
             browser.point("#scene", x, 10)
         told = browser.run("return window.told")
-        self.assertLessEqual(len(told), 8, told)
+        self.assertLessEqual(len(told), 4, told)
         # By key, each place is told.
         browser.run("document.getElementById('scene').focus()")
         browser.press(RIGHT)
@@ -268,7 +280,8 @@ class Panels(OnPage):
                 control.scrollIntoView({ block });
                 const box = control.getBoundingClientRect();
                 const at = document.elementFromPoint(box.x + box.width / 2, Math.min(box.bottom - 2, innerHeight - 1));
-                if (at?.closest('.stopping, .bar')) found.push(control.id || control.textContent);
+                const stop = document.getElementById('stop').getBoundingClientRect();
+                if (stop.top < 0 || stop.bottom > innerHeight || at?.closest('.stopping, .bar')) found.push(control.id || control.textContent);
               }
             }
             return found""")

@@ -15,6 +15,7 @@ class Relay:
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.place = f"127.0.0.1:{self.listener.getsockname()[1]}"
         self.silent = threading.Event()
+        self.swallowed = b""
         self.ended = threading.Event()
         self.lines = []
         threading.Thread(target=self.serve, daemon=True).start()
@@ -47,7 +48,7 @@ class Relay:
                     if end is controller:
                         page.sendall(self.told(data))
                     else:
-                        controller.sendall(data)
+                        controller.sendall(data.translate(None, self.swallowed))
             except (OSError, ValueError):
                 page.close()
                 controller.close()
@@ -61,6 +62,10 @@ class Relay:
     def silence(self):
         """Bytes go in at both ends, and none come out: a plug has been pulled."""
         self.silent.set()
+
+    def swallow(self, lost):
+        """These bytes get lost on their way to the controller."""
+        self.swallowed = lost
 
     def cut(self):
         """Closes what is open; who connects again gets through."""

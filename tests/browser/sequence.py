@@ -51,7 +51,7 @@ class Sequence(OnPage):
         # Who did it is told, queries are not.
         browser.run("document.getElementById('log').open = true")
         browser.wait_text("#log-list", "MOV X 20")
-        self.assertIn("sequence", browser.text("#log-list"))
+        self.assertIn("sequence untitled", browser.text("#log-list"))
         self.assertNotIn("POS?", browser.text("#log-list"))
         self.assertEqual(browser.errors(), [])
 
@@ -59,7 +59,7 @@ class Sequence(OnPage):
         browser = self.page()
         self.load(browser, "FRF\nMOV X 1o\n")
         browser.click("#sequence-run")
-        browser.wait_text("#sequence-said", "sequence:2:8: expected ")
+        browser.wait_text("#sequence-said", "untitled:2:8: expected ")
         browser.wait_text("#sequence-said", "nothing was sent")
         self.assertFalse(self.lit(browser, "referenced"))
 

@@ -3,6 +3,7 @@
 import { byId, make, report, save, setText } from "./dom.js";
 import { remember, remembered } from "./remembered.js";
 
+const UNTITLED = "untitled";
 const BUSY = ["running", "pausing", "paused"];
 const WORDS = { idle: "", running: "running", pausing: "pauses after this line", paused: "paused", ended: "" };
 
@@ -14,7 +15,7 @@ export class SequencePanel {
     Object.assign(this, { operator, firstMove });
     for (const name of ["name", "text", "lines", "run", "step", "pause", "end", "said", "report", "state"]) this[name] = byId(`sequence-${name}`);
     this.text.value = remembered("sequence", "");
-    this.name.value = remembered("sequence-name", "sequence");
+    this.name.value = remembered("sequence-name", UNTITLED);
     this.text.addEventListener("change", () => remember("sequence", this.text.value));
     this.name.addEventListener("change", () => remember("sequence-name", this.name.value));
     this.run.addEventListener("click", () => this.#give(() => (this.#paused ? "continue" : { run: this.#script() })));
@@ -31,7 +32,7 @@ export class SequencePanel {
 
   #script() {
     if (!this.text.value.trim()) throw new Error("nothing to run: the script is empty");
-    return { name: this.name.value.trim() || "sequence", text: this.text.value };
+    return { name: this.name.value.trim() || UNTITLED, text: this.text.value };
   }
 
   #give(order) {
@@ -51,7 +52,7 @@ export class SequencePanel {
       file.value = "";
     });
     byId("sequence-save").addEventListener("click", () => {
-      const name = this.name.value.trim() || "sequence";
+      const name = this.name.value.trim() || UNTITLED;
       save(name.endsWith(".gcs") ? name : `${name}.gcs`, this.text.value, "text/plain");
     });
     const examples = byId("sequence-example");
@@ -86,7 +87,7 @@ export class SequencePanel {
     setText(this.run, state === "paused" ? "Continue" : "Run");
     setText(this.state, busy ? `${name}: ${WORDS[state]}, line ${line}; ${done} of ${total} lines done` : "");
     if (busy) this.#list(status);
-    else if (!this.text.value) this.#load(name, status.text);
+    else if (!this.text.value && status.text) this.#load(name, status.text);
     if (said || before.state !== state) {
       this.said.className = `said ${good ? "good" : "bad"}`;
       setText(this.said, said);

@@ -40,8 +40,9 @@ enum Reply {
 
 impl Reply {
     /// For the log.
-    fn in_words(&self) -> String {
+    fn in_words(&self, is_stop: bool) -> String {
         match self {
+            Self::Answer { error: 0, .. } if is_stop => "sent".to_owned(),
             Self::Answer { error: 0, .. } => "taken".to_owned(),
             Self::Answer { error, .. } => refused_with(*error),
             Self::Refused { reason, .. } => reason.clone(),
@@ -124,7 +125,8 @@ fn take(
         return Some(refused(Some(id), &Refusal::TooMany));
     };
     // Before the stop is sent: no line of a sequence may follow it.
-    if wanted == Wanted::Stop {
+    let is_stop = wanted == Wanted::Stop;
+    if is_stop {
         operator.sequence.order(Order::Stopped { who: who.clone() });
     }
     let (bridge, answers) = (bridge.clone(), answers.clone());
@@ -134,7 +136,7 @@ fn take(
             Ok(Answer { reply, error }) => Reply::Answer { id, reply, error },
             Err(refusal) => refused(Some(id), &refusal),
         };
-        journal.note(&who, &line, &reply.in_words());
+        journal.note(&who, &line, &reply.in_words(is_stop));
         // A viewer that is gone needs no answer.
         let _ = answers.send(json(&reply)).await;
         drop(slot);

@@ -1,4 +1,4 @@
-//! Who did what: the lines of pages and sequences that are no queries, and what came of them. Other clients of the controller
+//! Who did what: the lines of pages and sequences that do something, and what came of them. Other clients of the controller
 //! are not seen from here.
 
 use std::collections::VecDeque;
@@ -40,11 +40,14 @@ impl Journal {
         }
     }
 
-    /// Notes a line, unless it only asks.
+    /// Notes a line, unless it only asks or waits.
     pub fn note(&self, who: &str, line: &str, outcome: &str) {
         let word = line.split_whitespace().next().unwrap_or_default();
-        let is_question = word.ends_with('?') || (word.starts_with('#') && word != "#24");
-        if is_question {
+        let asks = word.ends_with('?') || (word.starts_with('#') && word != "#24");
+        let waits = ["WAC", "DEL"]
+            .iter()
+            .any(|one| word.eq_ignore_ascii_case(one));
+        if asks || waits {
             return;
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -81,9 +84,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_only_asks_is_not_noted_and_the_oldest_goes_first() {
+    fn what_only_asks_or_waits_is_not_noted_and_the_oldest_goes_first() {
         let journal = Journal::new();
-        for line in ["POS?", "#5", " ERR?", "MAC? A"] {
+        for line in ["POS?", "#5", " ERR?", "MAC? A", "wac ONT? X = 1", "DEL 5"] {
             journal.note("Ada", line, "done");
         }
         assert!(journal.read().0.is_empty());
