@@ -5,15 +5,19 @@ import unittest
 
 from foreign import Foreign
 from live import Live
+from panels import Panels
+from real import Real
 from report import Report
+from sequence import Sequence
 from settings import ARGUMENTS
+from silent import Silent
 from view import OnChip, OnTerminal
 
-__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Report"]
+__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Panels", "Real", "Report", "Sequence", "Silent"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    for name in ("program", "report", "pictures", "image"):
+    for name in ("program", "report", "pictures", "image", "axe"):
         parser.add_argument(f"--{name}", required=True)
     rest = parser.parse_known_args(namespace=ARGUMENTS)[1]
     unittest.main(argv=["drive.py", *rest])

@@ -1,5 +1,7 @@
 """The live page in front of a simulated stage of its own, used as a person would."""
 
+import time
+
 from page import SIZES, OnPage
 from served import Served
 from settings import ARGUMENTS
@@ -20,7 +22,8 @@ class Live(OnPage):
     def test_loads_and_complains_of_nothing(self):
         browser = self.page()
         browser.wait_text("#mode", "servo off")
-        self.assertIn("127.0.0.1", browser.text("#place"))
+        self.assertEqual(browser.text("#machine-kind"), "SIMULATED")
+        self.assertEqual(browser.text("#machine-line"), self.served.gcs)
         self.assertEqual(browser.errors(), [])
 
     def test_moves_by_entry_and_is_seen_to_arrive(self):
@@ -29,6 +32,68 @@ class Live(OnPage):
         self.arrive(browser, x=30, y=-20.5, w=90)
         self.picture(browser, "entry")
         self.assertEqual(browser.errors(), [])
+
+    def test_sends_only_what_is_filled_in(self):
+        browser = self.ready()
+        self.assertEqual(browser.run("return document.getElementById('x').value"), "")
+        self.enter(browser)
+        browser.wait_text("#said", "no field is filled in")
+        self.enter(browser, x="30", w="450")
+        self.arrive(browser, x=30, w=450)
+        self.enter(browser, y="-20")
+        self.arrive(browser, x=30, y=-20, w=450)
+        # The fields show the target, and are empty.
+        for field, target in (("x", "30.0000"), ("y", "−20.0000"), ("w", "450.0000")):
+            placeholder = f"return document.getElementById('{field}').placeholder"
+            browser.wait(lambda: browser.run(placeholder) == target, f"{field} at {target}")
+            self.assertEqual(browser.run(f"return document.getElementById('{field}').value"), "")
+        # What does not go stays, to be mended.
+        self.enter(browser, x="200")
+        browser.wait_text("#said", "out of the stage’s reach")
+        self.assertEqual(browser.run("return document.getElementById('x').value"), "200")
+        # The way to 0, 0, 0 is told before it is gone.
+        browser.wait_text("#home-way", "36.1 mm, and 450.0° clockwise (1.25 turns)")
+        browser.click("#home")
+        self.arrive(browser, x=0, y=0, w=0)
+        browser.wait_text("#home-way", "it is there")
+
+    def test_the_reference_and_the_servo_say_what_they_do(self):
+        browser = self.page()
+        browser.wait(lambda: browser.run("return document.getElementById('first-step').checkVisibility()"), "the first step")
+        self.assertIn("Nothing moves", browser.text("#first-step"))
+        self.assertTrue(browser.run("return document.getElementById('servo').disabled"))
+        self.picture(browser, "first-step")
+        self.reference(browser)
+        self.assertFalse(browser.run("return document.getElementById('first-step').checkVisibility()"))
+        checked = "return document.getElementById('servo').getAttribute('aria-checked')"
+        self.assertEqual(browser.run(checked), "true")
+        self.assertIn("the motors let go", browser.text("#servo-does"))
+        browser.click("#servo")
+        browser.wait_text("#mode", "servo off")
+        browser.wait(lambda: browser.run(checked) == "false", "a switch that is off")
+        self.assertIn("hold the stage where it is", browser.text("#servo-does"))
+        browser.click("#servo")
+        browser.wait_text("#mode", "holding")
+
+    def test_the_speed_is_overridden(self):
+        browser = self.ready()
+        browser.run("""
+            const slider = document.getElementById('override');
+            slider.value = '25'; slider.dispatchEvent(new Event('input')); slider.dispatchEvent(new Event('change'))""")
+        speed = "return document.getElementById('vls').placeholder"
+        browser.wait(lambda: browser.run(speed) == "50", "a quarter of the speed")
+        self.slow_down(browser, 100)
+        browser.wait_text("#override-share", "50 %")
+        # In motion it acts at once: with the speed that it began with, the way takes a minute.
+        self.slow_down(browser, 1)
+        self.enter(browser, x="60")
+        browser.wait_text("#mode", "moving")
+        begun = time.monotonic()
+        browser.run("""
+            const slider = document.getElementById('override');
+            slider.value = '50'; slider.dispatchEvent(new Event('change'))""")
+        self.arrive(browser, x=60)
+        self.assertLess(time.monotonic() - begun, 30)
 
     def test_moves_by_click_once_it_is_known_to_be_reachable(self):
         browser = self.ready()
@@ -61,7 +126,7 @@ class Live(OnPage):
             browser.wait_text("#said", "on its way")
             stop()
             browser.wait_text("#mode", "holding")
-            browser.wait_text("#said", "stopped")
+            browser.wait_text("#stop-said", "stopped, as the controller says")
             self.assertLess(abs(self.shown(browser, "x")), 50)
         # What comes after a stop is no error of its own.
         self.slow_down(browser, 200)
@@ -88,7 +153,7 @@ class Live(OnPage):
         browser = self.ready()
         self.served.close()
         browser.wait_text("#mode", "not connected")
-        browser.wait_text("#alarm-text", "Trying again")
+        browser.wait_text("#stale-text", "Trying again")
         self.picture(browser, "offline")
         self.served = Served(ARGUMENTS.program, self.served.gcs, self.served.page)
         browser.wait_text("#mode", "servo off")
@@ -159,7 +224,7 @@ class Live(OnPage):
             self.say(browser, line)
         # The frame's x axis is the stage's y axis.
         self.near(browser, "x", -10, 0.1)
-        browser.run("document.getElementById('console').open = false; scrollTo(0, 0)")
+        browser.run("document.getElementById('console').open = false; document.querySelector('main').scrollTo(0, 0)")
         self.aim(browser, 20, 40, "mm: reachable")
         browser.point("#scene", *self.pixel(browser, 20, 40), click=True)
         # 30 mm along the frame's x axis.
@@ -237,13 +302,19 @@ class Live(OnPage):
             for dark in (False, True):
                 browser = self.ready(size, dark=dark, touch=size == "phone")
                 browser.run("for (const d of document.querySelectorAll('details')) d.open = true")
-                for place in ("0", "document.body.scrollHeight"):
-                    browser.run(f"scrollTo(0, {place})")
+                for place in ("0", "1e6"):
+                    browser.run(f"document.querySelector('main').scrollTo(0, {place})")
                     top = browser.run("""
                         const box = document.getElementById('stop').getBoundingClientRect();
                         const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
                         return at && at.closest('#stop') ? box.width * box.height : 0""")
                     self.assertGreater(top, 4000, (size, place))
+                # It covers nothing: what is scrolled ends where it begins, and the window itself does not scroll.
+                apart = browser.run("""
+                    const [a, b] = ['#stop', 'main'].map((s) => document.querySelector(s).getBoundingClientRect());
+                    const high = document.documentElement.scrollHeight - innerHeight;
+                    return high <= 0 && (a.bottom <= b.top || a.top >= b.bottom)""")
+                self.assertTrue(apart, size)
                 wide = browser.run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
                 self.assertEqual(wide, 0, size)
                 browser.close()
@@ -266,7 +337,7 @@ class Live(OnPage):
                 self.say(browser, "MOV X 45 Y 25 W 75")
                 self.arrive(browser, x=45, y=25, w=75)
                 self.say(browser, "MOV X -35 Y 40 W -30")
-                browser.run("document.getElementById('console').open = false; scrollTo(0, 0)")
+                browser.run("document.getElementById('console').open = false; document.querySelector('main').scrollTo(0, 0)")
                 browser.wait(lambda: self.shown(browser, "x") < 0, "half of the way")
                 name = f"{size}-{'dark' if dark else 'light'}"
                 self.picture(browser, name)
@@ -286,6 +357,6 @@ class Live(OnPage):
         for x, y, w in ((45, 25, 75), (-35, 40, -30), (20, -15, 35)):
             self.say(browser, f"MOV X {x} Y {y} W {w}")
             self.arrive(browser, x=x, y=y, w=w)
-        browser.run("document.getElementById('console').open = false; scrollTo(0, 0)")
+        browser.run("document.getElementById('console').open = false; document.querySelector('main').scrollTo(0, 0)")
         self.aim(browser, 5, 64, "mm: reachable")
         self.picture(browser, "live-view")

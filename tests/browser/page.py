@@ -6,7 +6,7 @@ import unittest
 from settings import ARGUMENTS
 from webdriver import Browser, Driver
 
-SIZES = {"desk": (1280, 900), "phone": (360, 740), "large": (2200, 1300)}
+SIZES = {"desk": (1280, 900), "phone": (390, 844), "large": (1600, 1000), "wide": (2200, 1300)}
 README = (1360, 1480)
 PLACE = 2e-3
 """How near a settled stage is to its target, mm or deg, in the decimals that the page shows."""
@@ -50,7 +50,8 @@ class OnPage(WithDriver):
         return browser
 
     def reference(self, browser):
-        browser.click("#reference")
+        visible = "return ['#reference', '#reference-again'].find((id) => document.querySelector(id).checkVisibility())"
+        browser.click(browser.wait(lambda: browser.run(visible), "a way to reference"))
         for lamp in ("referenced", "servo", "settled"):
             self.light(browser, lamp)
 
@@ -93,7 +94,7 @@ class OnPage(WithDriver):
         """So slow that nothing arrives while the test looks, mm/s."""
         browser.type("#vls", str(speed))
         browser.click("#speed button")
-        browser.wait_text("#vls-now", f"{speed} mm/s")
+        browser.wait(lambda: browser.run("return document.getElementById('vls').placeholder") == str(speed), f"the speed {speed} mm/s")
 
     def pixel(self, browser, x, y):
         """Where a place, mm, is on the canvas, from its middle."""

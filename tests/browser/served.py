@@ -24,10 +24,18 @@ class Process:
             raise RuntimeError(f"{' '.join(self.process.args)} says “{line.strip()}”")
         return found[1]
 
+    def freeze(self):
+        """It does nothing any more, and nobody is told."""
+        self.process.send_signal(signal.SIGSTOP)
+
+    def thaw(self):
+        self.process.send_signal(signal.SIGCONT)
+
     def close(self):
         """Ends it; once more does nothing."""
         if self.process.stdout.closed:
             return
+        self.thaw()
         self.process.send_signal(signal.SIGINT)
         # What it prints meanwhile must not hold it up.
         self.process.stdout.read()
@@ -42,6 +50,8 @@ class Served(Process):
     def __init__(self, program, gcs="127.0.0.1:0", page="127.0.0.1:0"):
         super().__init__(program, "serve", "--listen", gcs, "--web", page)
         self.gcs = self.said(r"listening at (\S+)")
+        if page == "off":
+            return
         self.page = self.said(r"page at http://(\S+)/")
         self.url = f"http://{self.page}/"
 

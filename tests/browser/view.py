@@ -23,9 +23,12 @@ class View:
 
     def test_loads_moves_arrives_and_stops(self):
         browser = self.page()
-        self.assertIn(f"at {self.place}", browser.text("#place"))
+        self.assertEqual(browser.text("#machine-line"), self.place)
         self.reference(browser)
         self.enter(browser, x="20", y="-10", w="30")
+        if browser.text("#machine-kind") == "REAL STAGE":
+            browser.wait(lambda: browser.run("return document.getElementById('first-move').open"), "the question")
+            browser.click("#first-move button[value=move]")
         self.arrive(browser, x=20, y=-10, w=30)
         self.aim(browser, 70, 60, "outside the usable disk")
         self.aim(browser, -10, 5, "mm: reachable")
@@ -38,6 +41,16 @@ class View:
         browser.press(ESCAPE)
         browser.wait_text("#mode", "holding")
         self.assertLess(self.shown(browser, "x"), 50)
+        browser.wait_text("#stop-said", "stopped, as the controller says")
+        # Waiting in a sequence holds nobody up, though all share the line.
+        self.slow_down(browser, 100)
+        browser.run("""
+            document.getElementById('sequence').open = true;
+            const text = document.getElementById('sequence-text');
+            text.value = 'MOV X 5 Y 0 W 0\\nWAC ONT? X = 1\\nDEL 50\\nPOS? X'; text.dispatchEvent(new Event('change'))""")
+        browser.click("#sequence-run")
+        browser.wait_text("#sequence-said", "done: 4 lines")
+        self.arrive(browser, x=5, y=0, w=0)
         self.assertEqual(browser.errors(), [])
 
 

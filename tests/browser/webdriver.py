@@ -150,7 +150,12 @@ class Browser:
 
     def picture(self, path, whole=False):
         """A screenshot: the window, or the whole page."""
+        heights = "document.body.style.height = arguments[0]; document.querySelector('main').style.overflow = arguments[1]"
+        if whole:
+            self.run(heights, "auto", "visible")
         shot = self.devtools("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        if whole:
+            self.run(heights, "", "")
         with open(path, "wb") as file:
             file.write(base64.b64decode(shot["data"]))
 

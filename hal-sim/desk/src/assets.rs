@@ -4,8 +4,9 @@ use std::sync::LazyLock;
 
 use drawing::assets::{Asset, SCRIPT, STYLE};
 
-use crate::error_words;
+use crate::{error_words, reference};
 
+const TEXT: &str = "text/plain; charset=utf-8";
 const HTML: &str = "text/html; charset=utf-8";
 
 macro_rules! asset {
@@ -26,6 +27,27 @@ const ASSETS: &[Asset] = &[
     asset!("/js/main.js", SCRIPT, "js/main.js"),
     asset!("/js/errors.js", SCRIPT, "js/errors.js"),
     asset!("/js/link.js", SCRIPT, "js/link.js"),
+    asset!("/js/operator.js", SCRIPT, "js/operator.js"),
+    asset!("/js/sequence.js", SCRIPT, "js/sequence.js"),
+    asset!("/js/log.js", SCRIPT, "js/log.js"),
+    asset!(
+        "/examples/demonstration.gcs",
+        TEXT,
+        "../../scripts/demonstration.gcs"
+    ),
+    asset!("/examples/motion.gcs", TEXT, "../../scripts/motion.gcs"),
+    asset!("/js/macros.js", SCRIPT, "js/macros.js"),
+    asset!("/js/places.js", SCRIPT, "js/places.js"),
+    asset!("/js/events.js", SCRIPT, "js/events.js"),
+    asset!("/js/dial.js", SCRIPT, "js/dial.js"),
+    asset!("/js/soft-limits.js", SCRIPT, "js/soft-limits.js"),
+    asset!("/js/announce.js", SCRIPT, "js/announce.js"),
+    asset!("/js/commands.js", SCRIPT, "js/commands.js"),
+    asset!("/js/freshness.js", SCRIPT, "js/freshness.js"),
+    asset!("/js/stale.js", SCRIPT, "js/stale.js"),
+    asset!("/js/stop.js", SCRIPT, "js/stop.js"),
+    asset!("/js/first-move.js", SCRIPT, "js/first-move.js"),
+    asset!("/js/remembered.js", SCRIPT, "js/remembered.js"),
     asset!("/js/stage.js", SCRIPT, "js/stage.js"),
     asset!("/js/scene.js", SCRIPT, "js/scene.js"),
     asset!("/js/aim.js", SCRIPT, "js/aim.js"),
@@ -46,12 +68,19 @@ const ASSETS: &[Asset] = &[
 
 /// All files of the page: its own, what is made from the program's tables, and those that it shares with the document of a run.
 pub(crate) fn all() -> impl Iterator<Item = &'static Asset> {
-    static MADE: LazyLock<[Asset; 1]> = LazyLock::new(|| {
-        [Asset {
-            path: "/js/error-words.js",
-            kind: SCRIPT,
-            text: error_words::script().leak(),
-        }]
+    static MADE: LazyLock<[Asset; 2]> = LazyLock::new(|| {
+        [
+            Asset {
+                path: "/js/error-words.js",
+                kind: SCRIPT,
+                text: error_words::script().leak(),
+            },
+            Asset {
+                path: "/js/reference.js",
+                kind: SCRIPT,
+                text: reference::script().leak(),
+            },
+        ]
     });
     (ASSETS.iter().chain(&*MADE)).chain(drawing::assets::all())
 }

@@ -70,6 +70,16 @@ error_words! {
     ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros; EVT? has the pose",
 }
 
+/// What an error number means, with the number; one that no controller of ours sets, by its number alone.
+#[must_use]
+pub fn refused_with(number: u16) -> String {
+    let known = ERROR_WORDS.iter().find(|(code, _)| code.number() == number);
+    known.map_or_else(
+        || format!("refused with error {number}"),
+        |(code, _)| format!("{} (error {number})", words(*code)),
+    )
+}
+
 /// The table as a script of the page.
 #[must_use]
 pub fn script() -> String {
@@ -84,6 +94,15 @@ pub fn script() -> String {
 mod tests {
     use super::*;
     use std::collections::BTreeMap;
+
+    #[test]
+    fn refusals_are_told_in_words() {
+        assert_eq!(
+            refused_with(7),
+            "out of the stage’s reach or of the soft limits (error 7)"
+        );
+        assert_eq!(refused_with(9999), "refused with error 9999");
+    }
 
     #[test]
     fn the_page_gets_the_words_of_every_error_and_of_nothing_else() {

@@ -7,11 +7,13 @@
 //! | `record` | a record of a controller's data recorder |
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
+//! | `reference` | the parameters of the reference stage |
 //! | `assets` | the files of the page, embedded in the program |
 
 mod assets;
 pub mod error_words;
 pub mod record;
+mod reference;
 pub mod serve;
 pub mod settings;
 pub mod web;

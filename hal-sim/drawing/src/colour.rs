@@ -38,8 +38,10 @@ colours! {
     TINT: "tint", "#eaf1f8", "#1d2a36";
     /// The track and other steel.
     STEEL: "steel", "#b3bfca", "#53616e";
-    /// Edges of cards and buttons.
+    /// Edges of cards, and lines between rows.
     LINE: "line", "#d3dae1", "#323d48";
+    /// Edges of what can be pressed or filled in.
+    EDGE: "edge", "#76838f", "#7b8997";
     /// Pivot 1, its guide, motor and duty.
     PIVOT_1: "pivot-1", "#0067a8", "#56a8e8";
     /// Pivot 2.
@@ -86,6 +88,24 @@ pub fn style_sheet() -> String {
     format!(":root {{\n{rules}}}\n")
 }
 
+/// How much lighter the lighter of two colours `#rrggbb` is than the other, 1 to 21 (WCAG 2.2, contrast ratio).
+#[cfg(test)]
+fn contrast(one: &str, other: &str) -> f64 {
+    let luminance = |colour: &str| {
+        let channel = |at: usize| {
+            let share = u8::from_str_radix(&colour[at..at + 2], 16).map_or(0.0, f64::from) / 255.0;
+            if share <= 0.04045 {
+                share / 12.92
+            } else {
+                ((share + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5)
+    };
+    let (a, b) = (luminance(one), luminance(other));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
 /// Dark to light in equal steps of lightness (samples of Matplotlib's "viridis", public domain).
 const VIRIDIS: [[u8; 3]; 9] = [
     [68, 1, 84],
@@ -109,4 +129,39 @@ pub fn viridis(share: f64) -> String {
         (f64::from(low) + part * (f64::from(high) - f64::from(low))).round() as u8
     };
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(name: &str) -> &'static Colour {
+        (COLOURS.iter().find(|colour| colour.name == name)).expect("a colour of the table")
+    }
+
+    fn least(name: &str, behind: &str) -> f64 {
+        let (colour, behind) = (named(name), named(behind));
+        contrast(colour.light, behind.light).min(contrast(colour.dark, behind.dark))
+    }
+
+    #[test]
+    fn black_on_white_is_the_most() {
+        assert!((contrast("#000000", "#ffffff") - 21.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_can_be_pressed_is_seen_and_text_can_be_read() {
+        for behind in ["panel", "paper", "tint"] {
+            for edge in ["edge", "act", "good", "warn", "bad"] {
+                assert!(least(edge, behind) >= 3.0, "{edge} on {behind}");
+            }
+            for text in ["ink", "faint", "act", "good", "warn", "bad"] {
+                assert!(least(text, behind) >= 4.5, "{text} on {behind}");
+            }
+        }
+        for behind in ["act", "theta", "warn"] {
+            assert!(least("on-act", behind) >= 4.5, "on {behind}");
+        }
+        assert!(least("bad", "bad-tint") >= 4.5);
+    }
 }

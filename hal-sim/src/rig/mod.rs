@@ -5,18 +5,16 @@
 //! | `assembly` | [`Rig`]: both, put together in one place |
 //! | [`run`] | a script, from its first line to the report |
 //! | `conditions` | what a run is made under |
-//! | [`script`] | files of GCS lines |
+//! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
-//! | [`client`] | sends lines one after the other, as any client would |
 //! | [`observer`] | looks at every tick for the report |
 
 mod assembly;
-pub mod client;
 mod conditions;
 pub mod exercise;
 pub mod observer;
 pub mod run;
-pub mod script;
 
+pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig};
 pub use conditions::run_conditions;

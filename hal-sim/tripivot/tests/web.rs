@@ -99,9 +99,13 @@ struct Viewer {
 }
 
 fn connect(page: &Page, origin: Option<&str>) -> Result<WebSocket<TcpStream>, u16> {
+    connect_to(page, "live", origin)
+}
+
+fn connect_to(page: &Page, path: &str, origin: Option<&str>) -> Result<WebSocket<TcpStream>, u16> {
     let stream = TcpStream::connect(page.address()).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
-    let mut request = format!("ws://{}/live", page.address())
+    let mut request = format!("ws://{}/{path}", page.address())
         .into_client_request()
         .unwrap();
     if let Some(origin) = origin {
@@ -225,8 +229,10 @@ fn a_page_of_somebody_else_cannot_connect() {
         Some(format!("http://{other}")),
     ];
     for origin in strangers {
-        let result = connect(&page, origin.as_deref());
-        assert_eq!(result.err(), Some(403), "{origin:?}");
+        for path in ["live", "operator"] {
+            let result = connect_to(&page, path, origin.as_deref());
+            assert_eq!(result.err(), Some(403), "{path}: {origin:?}");
+        }
     }
 }
 
@@ -391,6 +397,53 @@ fn a_serial_line_serves_as_well() {
     viewer.reply("FRF");
     viewer.reply("MOV X 1");
     viewer.until("POS? X", 1.0);
+}
+
+#[test]
+fn a_sequence_needs_the_token_runs_without_pages_and_is_told_to_those_that_come() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let mut viewer = Viewer::ready(&page);
+    let origin = format!("http://{}", page.address());
+    let open = || Viewer {
+        socket: connect_to(&page, "operator", Some(&origin)).unwrap(),
+        token: token(&page),
+        next: 1,
+    };
+    let text = "FRF\nWAC ONT? W = 1\nMOV X 5\nWAC ONT? X = 1\nDEL 20\nPOS? X\n";
+    let order = |token: &str| {
+        json!({"token": token, "order": {"run": {"name": "tour", "text": text}}}).to_string()
+    };
+    let mut stranger = open();
+    stranger.send(&order("0123"));
+    stranger.wait(|message| message["kind"] == "sequence");
+    let mut operator = open();
+    let token = operator.token.clone();
+    operator.send(&order(&token));
+    let end = operator.wait(|message| message["kind"] == "sequence" && message["state"] == "ended");
+    assert_eq!(
+        (&end["good"], &end["done"], &end["name"]),
+        (&json!(true), &json!(6), &json!("tour")),
+        "{end}"
+    );
+    assert!(
+        end["answers"][0]["reply"]
+            .as_str()
+            .unwrap()
+            .starts_with("X="),
+        "{end}"
+    );
+    viewer.until("POS? X", 5.0);
+    // Who comes later is told what was done, by whom, and nothing of the stranger's.
+    viewer.reply("MOV X 0");
+    let mut late = open();
+    let mut lines = Vec::new();
+    late.socket.send(Message::Ping(Default::default())).unwrap();
+    while lines.last().is_none_or(|line| line != "MOV X 0") {
+        let entry = late.wait(|message| message["kind"] == "log");
+        lines.push(entry["line"].as_str().unwrap().to_owned());
+    }
+    assert_eq!(lines, ["FRF", "MOV X 5", "MOV X 0"]);
 }
 
 #[test]

@@ -6,7 +6,9 @@ use super::table::PARAMETERS;
 use crate::parameters::Parameters;
 
 /// The thresholds of supervision.
-const THRESHOLDS: core::ops::RangeInclusive<u32> = 0x5450_0500..=0x5450_050F;
+const THRESHOLDS: core::ops::RangeInclusive<u32> = 0x5450_0500..=0x5450_0511;
+/// Between them, what is no threshold: the longest silence, which 0 switches off and a client asks for.
+const SILENCE: u32 = 0x5450_0510;
 /// Of them, the one that a lower value makes looser: the lowest supply.
 const LOWEST_SUPPLY: u32 = 0x5450_0501;
 
@@ -21,6 +23,7 @@ pub(in crate::gcs) fn loosened(
         );
         match parameter.id {
             LOWEST_SUPPLY => now < reference,
+            SILENCE => false,
             id => THRESHOLDS.contains(&id) && now > reference,
         }
     };

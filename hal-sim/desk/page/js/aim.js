@@ -14,7 +14,7 @@ export class Aim {
   constructor(stage, scene) {
     Object.assign(this, { stage, scene, reach: new Reach(stage, scene.frames), output: byId("aim"), go: byId("aim-go") });
     const { canvas } = scene;
-    canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch") this.#aim(this.#placeOf(event)); });
+    canvas.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch") this.#point(this.#placeOf(event)); });
     canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") this.#leave(); });
     canvas.addEventListener("click", (event) => {
       const place = this.#placeOf(event);
@@ -24,6 +24,12 @@ export class Aim {
     canvas.addEventListener("keydown", (event) => this.#key(event));
     this.go.addEventListener("click", () => this.#move(this.at.place));
     stage.addEventListener("link", () => this.#leave());
+  }
+
+  /** A pointer passes over many places: nobody is to hear of each. */
+  #point(place) {
+    this.output.setAttribute("aria-live", "off");
+    this.#aim(place);
   }
 
   #placeOf(event) {
@@ -69,6 +75,7 @@ export class Aim {
     if (key === "Enter" && this.at) this.#goTo(this.at.place);
     if (!KEYS[key]) return;
     event.preventDefault();
+    this.output.setAttribute("aria-live", "polite");
     const from = this.at?.place ?? this.stage.measured?.slice(0, 2) ?? [0, 0];
     this.#aim(from.map((mm, i) => Math.round(mm + KEYS[key][i] * (shiftKey ? 10 : 1))));
   }

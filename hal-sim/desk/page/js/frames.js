@@ -28,6 +28,8 @@ export class Frames {
   plain = true;
   /** Whether another point than the platform's centre is moved, and turned about. */
   moved = false;
+  /** Whether that point is the origin of a tool frame. */
+  tool = false;
   #known = "";
 
   constructor(stage) {
@@ -50,6 +52,7 @@ export class Frames {
       const tool = Object.values(kinds).includes("KST");
       const [x, y] = toBase(ground, tool ? [0, 0] : [Number(R), Number(S)]);
       this.ground = { x, y, deg: ground.deg };
+      this.tool = tool;
       this.moved = tool || Number(R) !== 0 || Number(S) !== 0;
       this.plain = ground === HOME && !this.moved;
       this.stage.dispatchEvent(new Event("frames"));

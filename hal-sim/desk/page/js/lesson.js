@@ -2,19 +2,25 @@
 
 import { byId, make, setText } from "./dom.js";
 import { drawMechanism, drawTrack } from "./mechanism.js";
+import { onColours } from "./theme.js";
 import { fit, inSight, Plane } from "./view.js";
 
 const SECONDS = 5;
+/** Rounds after which it rests, until it is chosen anew. */
+const ROUNDS = 3;
 const GEOMETRY = { radius: 100, start: 20, end: 180, disk: 80 };
 
 export class Lesson {
   #movements = [];
   #chosen = 0;
   #begun = 0;
+  #drawn = "";
 
   constructor() {
     this.canvas = byId("lesson-scene");
     this.still = matchMedia("(prefers-reduced-motion: reduce)");
+    onColours(() => { this.#drawn = ""; });
+    byId("lesson").addEventListener("toggle", () => { this.#begun = performance.now(); });
     this.#load();
   }
 
@@ -41,12 +47,16 @@ export class Lesson {
   draw() {
     const movement = this.#movements[this.#chosen];
     if (!movement || !inSight(this.canvas)) return;
+    const share = this.still.matches ? 0.25 : Math.min((performance.now() - this.#begun) / 1000 / SECONDS, ROUNDS) % 1;
+    const frame = Math.floor(share * movement.frames.length);
+    const key = `${this.#chosen} ${frame} ${this.canvas.clientWidth} ${devicePixelRatio}`;
+    if (key === this.#drawn) return;
+    this.#drawn = key;
     const { context, width, height } = fit(this.canvas);
     const plane = new Plane(width, height, 1.75 * GEOMETRY.radius);
     context.clearRect(0, 0, width, height);
     drawTrack(context, plane, GEOMETRY);
-    const share = this.still.matches ? 0.25 : ((performance.now() - this.#begun) / 1000 / SECONDS) % 1;
-    const { pose: [x, y, deg], pivots } = movement.frames[Math.floor(share * movement.frames.length)];
+    const { pose: [x, y, deg], pivots } = movement.frames[frame];
     drawMechanism(context, plane, GEOMETRY, { centre: [x, y], deg, pivots });
   }
 }

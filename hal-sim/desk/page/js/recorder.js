@@ -22,7 +22,7 @@ const CROSSINGS = ["100", "101"];
 /** Ticks from point to point that are offered first: a second or so in all. */
 const EVERY = 10;
 /** Points asked for at a time, so that a slow line shows the status in between. */
-const POINTS = 512;
+const POINTS = 128;
 /** Item and parameter that say how many points make a record. */
 const POINTS_OF_A_RECORD = "1 0x16000201";
 /** How often the progress is asked for, ms. */

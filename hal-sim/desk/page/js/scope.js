@@ -3,14 +3,26 @@
 import { byId } from "./dom.js";
 import { Envelope } from "./envelope.js";
 import { Plot } from "./plot.js";
+import { remember, remembered } from "./remembered.js";
+import { onColours } from "./theme.js";
 import { inSight } from "./view.js";
 import { control, TimeView } from "./zoom.js";
 
 const KEPT_S = 120;
+/** So long after the stage has come to rest the plots stand still, s. */
+const REST_S = 2;
 
 export class Scope {
+  #restedSince = null;
+  #rested = false;
+  #drawn = "";
+
   constructor(stage) {
     this.stage = stage;
+    const span = byId("span");
+    span.value = remembered("span", span.value);
+    span.addEventListener("change", () => remember("span", span.value));
+    onColours(() => { this.#drawn = ""; });
     this.data = new Envelope(6, KEPT_S);
     this.view = new TimeView(0, 1);
     const pivots = (first) => [1, 2, 3].map((number) => ({ name: `pivot ${number}`, short: String(number), paint: `pivot-${number}`, channel: first + number - 1 }));
@@ -36,10 +48,21 @@ export class Scope {
   }
 
   #take({ time, errors, duties }) {
-    if (this.view.frozen) return;
+    if (this.view.frozen || this.#rests(time)) return;
     const percent = duties.map((range) => range.map((value) => 100 * value));
     const all = [...errors, ...percent];
     this.data.add(time, all.map(([low]) => low), all.map(([, high]) => high));
+  }
+
+  /** Whether the stage has been at rest for a while: there is nothing to see then. */
+  #rests(time) {
+    const { resting, mode } = this.stage;
+    if (!resting || mode === "moving") this.#restedSince = null;
+    else this.#restedSince ??= time;
+    const rests = this.#restedSince !== null && time - this.#restedSince > REST_S;
+    if (rests && !this.#rested) this.data.gap();
+    this.#rested = rests;
+    return rests;
   }
 
   draw() {
@@ -49,6 +72,10 @@ export class Scope {
       this.view.whole = [Math.max(last - KEPT_S, this.data.times[0] ?? 0), last];
       this.view.range = [last - span, last];
     }
+    const key = [this.data.times.length, this.data.times.at(-1), ...this.view.range, this.view.cursor, this.view.selection, devicePixelRatio,
+      ...this.plots.map(({ canvas }) => `${canvas.clientWidth} ${canvas.clientHeight} ${inSight(canvas)}`)].join();
+    if (key === this.#drawn) return;
+    this.#drawn = key;
     for (const plot of this.plots) if (inSight(plot.canvas)) plot.draw(this.view);
   }
 }

@@ -6,12 +6,25 @@ const PERIOD = "0xE000200";
 const RADIUS = "0x54500200";
 const GUIDE_START = "0x54500201";
 const GUIDE_LENGTH = "0x54500202";
+const SPEED = "0x54500100";
+const TURN_DIRECTION = "0x54500110";
+/** Field of `*IDN?` that a simulated controller has in place of a serial number. */
+const SIMULATED = "SIM";
+/** Over so long, in the controller's time, a stage is looked at to see whether it rests, s; and how little it may move. */
+const REST_S = 0.05;
+const REST_DEG_S = 0.2;
 
 export class Stage extends EventTarget {
   connected = false;
   reason = "";
   place = "";
   identity = "";
+  /** Whether the controller says that it is a simulated one. */
+  simulated = false;
+  /** Whether there has ever been a status. */
+  seen = false;
+  /** What `HLP?` says of each command. */
+  help = [];
   /** Commands that the controller knows. */
   known = new Set();
   /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
@@ -24,11 +37,18 @@ export class Stage extends EventTarget {
   measured = null;
   target = null;
   velocity = NaN;
+  /** Largest velocity that can be set, mm/s. */
+  fastest = NaN;
+  /** Way of theta to a target: 0 literal, 1 shortest, 2 always positive, 3 always negative. */
+  turning = 0;
   /** Seconds in a tick. */
   period = 5e-5;
   geometry = { radius: 100, start: 20, end: 180, disk: 80 };
   /** The last of `MON?`: base frame. */
   now = null;
+  /** Whether the pivots stand still, as measured. */
+  resting = false;
+  #before = null;
   /** Answers to questions that not every controller knows, by question. */
   replies = {};
 
@@ -46,8 +66,12 @@ export class Stage extends EventTarget {
 
   async #hello(hello) {
     Object.assign(this, { connected: hello.connected, reason: hello.reason, place: hello.place, identity: hello.identity });
+    this.simulated = hello.identity.split(",")[2]?.trim() === SIMULATED;
+    this.help = hello.help.split("\n").slice(1, -1);
     this.known = commands(hello.help);
     this.now = null;
+    this.resting = false;
+    this.#before = null;
     if (!hello.connected) {
       this.#tell("link");
       return;
@@ -61,11 +85,13 @@ export class Stage extends EventTarget {
   }
 
   async #askGeometry() {
-    const ids = [PERIOD, RADIUS, GUIDE_START, GUIDE_LENGTH];
-    const reply = fields(await this.link.ask(`SPA? ${ids.map((id) => `1 ${id}`).join(" ")}`));
+    const ids = [PERIOD, RADIUS, GUIDE_START, GUIDE_LENGTH, SPEED, TURN_DIRECTION];
+    const reply = fields(await this.link.urge(`SPA? ${ids.map((id) => `1 ${id}`).join(" ")}`));
     const value = (id) => Number(reply[`1 ${id}`]);
-    const disk = Number(fields(await this.link.ask("TMX? X")).X);
+    const disk = Number(fields(await this.link.urge("TMX? X")).X);
     this.period = value(PERIOD);
+    this.fastest = value(SPEED);
+    this.turning = value(TURN_DIRECTION);
     const radius = value(RADIUS);
     const start = value(GUIDE_START) * radius;
     this.geometry = { radius, start, end: start + value(GUIDE_LENGTH) * radius, disk };
@@ -90,7 +116,18 @@ export class Stage extends EventTarget {
       errors: all("ERROR"),
       duties: all("DUTY"),
     };
+    this.seen = true;
+    this.#watchRest();
     this.#tell("tick");
+  }
+
+  #watchRest() {
+    const { time, pivots } = this.now;
+    this.#before ??= this.now;
+    const passed = time - this.#before.time;
+    if (passed < REST_S && passed >= 0) return;
+    this.resting = passed > 0 && pivots.every((deg, i) => Math.abs(deg - this.#before.pivots[i]) < REST_DEG_S * passed);
+    this.#before = this.now;
   }
 
   #slow(replies) {

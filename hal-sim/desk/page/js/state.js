@@ -1,4 +1,4 @@
-// State in words, faults, pose and lamps.
+// State in words, the machine and the line to it, faults, pose and lamps.
 
 import { byId, report, setText } from "./dom.js";
 import { shown } from "./gcs.js";
@@ -7,32 +7,45 @@ const WORDS = { off: "servo off", holding: "holding", moving: "moving", stopping
 const DECIMALS = 4;
 
 export function showState(stage) {
+  const { freshness } = stage.link;
   const mode = byId("mode");
   const showMode = () => {
-    const name = stage.connected ? stage.mode : "offline";
-    mode.dataset.mode = name;
-    setText(mode, WORDS[name] ?? "not connected");
-    showAlarm(stage);
+    const name = stage.connected && !freshness.stale ? stage.mode : "offline";
+    if (mode.dataset.mode !== name) mode.dataset.mode = name;
+    setText(mode, WORDS[name] ?? (stage.connected ? "no status" : "not connected"));
+    showFault(stage);
   };
   stage.addEventListener("link", () => {
-    setText(byId("place"), stage.connected ? `${stage.identity} at ${stage.place}` : "");
+    showMachine(stage);
     showMode();
   });
   stage.addEventListener("tick", showMode);
+  freshness.addEventListener("change", showMode);
   stage.addEventListener("slow", () => {
     showPose(stage);
     lamp("lamp-referenced", stage.referenced);
     lamp("lamp-servo", stage.servo);
     lamp("lamp-settled", stage.settled);
+    byId("first-step").hidden = stage.referenced;
+    byId("reference-again").hidden = !stage.referenced;
   });
   byId("acknowledge").addEventListener("click", () => report(byId("said"), () => stage.link.ask("FLC"), "fault acknowledged"));
 }
 
-function showAlarm(stage) {
-  const text = stage.connected ? stage.fault && `Fault: ${stage.fault}` : stage.reason;
+/** Whether it is a real machine is the first thing to know. */
+function showMachine({ connected, simulated, identity, place }) {
+  const machine = byId("machine");
+  machine.dataset.kind = connected ? (simulated ? "simulated" : "real") : "none";
+  setText(byId("machine-kind"), connected ? (simulated ? "SIMULATED" : "REAL STAGE") : "NO STAGE");
+  setText(byId("machine-line"), connected ? place : "");
+  setText(byId("place"), connected ? identity : "");
+}
+
+function showFault(stage) {
+  const text = stage.connected && stage.fault ? `Fault: ${stage.fault}` : "";
   byId("alarm").hidden = !text;
   if (text) setText(byId("alarm-text"), text);
-  byId("acknowledge").hidden = !(stage.connected && stage.mode === "fault");
+  byId("acknowledge").hidden = stage.mode !== "fault";
 }
 
 function showPose({ measured, target, referenced }) {

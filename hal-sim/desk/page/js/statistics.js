@@ -25,8 +25,7 @@ export function statistics(stage) {
   const said = make("p", { className: "said", role: "status" });
   const again = make("button", { type: "button", className: "quiet", textContent: "Start again" });
   again.addEventListener("click", () => report(said, () => stage.link.ask("LST"), "started again"));
-  const events = make("pre", { className: "console" });
-  body.append(numbers, again, said, make("h3", { textContent: "Events" }), events);
+  body.append(numbers, again, said);
   stage.addEventListener("link", () => { box.hidden = !stage.knows("LST?"); });
   stage.addEventListener("slow", () => {
     const reply = stage.replies["LST?"];
@@ -36,8 +35,5 @@ export function statistics(stage) {
       return [text, show(value)];
     });
     numbers.replaceChildren(facts(rows));
-  });
-  box.addEventListener("toggle", async () => {
-    if (box.open && stage.knows("EVT?")) events.textContent = await stage.link.ask("EVT?").catch((error) => error.message);
   });
 }

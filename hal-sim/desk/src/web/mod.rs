@@ -23,6 +23,7 @@
 //! | `login` | asking for it |
 //! | `http` | connections of browsers, bounded in number and patience |
 //! | `viewer` | one browser: status and answers out, requests in |
+//! | `operator` | sequences that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
 //! | `server` | the page's files, the token, the WebSocket |
 //!
@@ -36,6 +37,7 @@ mod http;
 mod lesson;
 mod line;
 mod login;
+mod operator;
 mod own_line;
 mod password;
 mod port;

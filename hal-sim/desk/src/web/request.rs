@@ -16,6 +16,9 @@ pub(super) struct Request {
     pub token: String,
     /// For the controller.
     pub line: String,
+    /// Whoever uses the page, for the log.
+    #[serde(default)]
+    pub who: String,
 }
 
 /// A request that goes to the controller.

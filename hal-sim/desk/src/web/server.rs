@@ -17,6 +17,7 @@ use tokio::sync::oneshot;
 
 use super::bridge::Bridge;
 use super::guard::Guard;
+use super::operator::{self, Operator};
 use super::password::Password;
 use super::port::Endpoint;
 use super::request::MESSAGE_BYTES;
@@ -26,6 +27,9 @@ use drawing::assets::Asset;
 
 /// What browsers are to enforce: nothing from elsewhere, and no page of somebody else's around this one.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// To pages of others.
+const ONLY_OWN: &str = "only the page of this server may connect\n";
 
 /// A page that is served until it is dropped.
 pub struct Page {
@@ -64,6 +68,7 @@ pub(super) struct Shared {
     bridge: Bridge,
     pub guard: Arc<Guard>,
     pub password: Option<Arc<Password>>,
+    operator: Operator,
 }
 
 impl Page {
@@ -82,14 +87,19 @@ impl Page {
     fn serve(listener: TcpListener, options: &PageOptions, endpoint: Endpoint) -> io::Result<Self> {
         let place = listener.local_addr()?;
         listener.set_nonblocking(true)?;
-        let shared = Shared {
-            guard: Arc::new(Guard::new(&options.address, options.public_url.as_deref())?),
-            password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
-            bridge: Bridge::start(endpoint)?,
-        };
         let runtime = runtime::Builder::new_current_thread()
             .enable_all()
             .build()?;
+        let bridge = Bridge::start(endpoint)?;
+        let shared = Shared {
+            guard: Arc::new(Guard::new(&options.address, options.public_url.as_deref())?),
+            password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
+            operator: {
+                let _within = runtime.enter();
+                Operator::start(bridge.clone())
+            },
+            bridge,
+        };
         let (stop, stopped) = oneshot::channel::<()>();
         let thread = thread::Builder::new().name("http".into()).spawn(move || {
             runtime.block_on(async move {
@@ -131,6 +141,7 @@ fn router(shared: Shared) -> Router {
         .route("/token", get(token))
         .route("/live", get(live))
         .route(login::PATH, get(login::form).post(login::enter))
+        .route("/operator", get(operate))
         .route("/lesson.json", get(lesson_frames));
     for asset in assets::all() {
         router = router.route(asset.path, get(async || file(asset)));
@@ -183,13 +194,31 @@ async fn live(
     upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
 ) -> Response {
     if !shared.guard.allows_origin(&headers) {
-        let reason = "only the page of this server may connect\n";
-        return (StatusCode::FORBIDDEN, reason).into_response();
+        return (StatusCode::FORBIDDEN, ONLY_OWN).into_response();
     }
     match upgrade {
         Ok(upgrade) => upgrade
             .max_message_size(MESSAGE_BYTES)
-            .on_upgrade(|socket| viewer::serve(socket, shared.bridge, shared.guard)),
+            .on_upgrade(|socket| {
+                viewer::serve(socket, shared.bridge, shared.guard, shared.operator)
+            }),
+        Err(rejection) => rejection.into_response(),
+    }
+}
+
+/// Sequences and the log.
+async fn operate(
+    State(shared): State<Shared>,
+    headers: HeaderMap,
+    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
+) -> Response {
+    if !shared.guard.allows_origin(&headers) {
+        return (StatusCode::FORBIDDEN, ONLY_OWN).into_response();
+    }
+    match upgrade {
+        Ok(upgrade) => upgrade
+            .max_message_size(operator::MESSAGE_BYTES)
+            .on_upgrade(|socket| operator::serve(socket, shared.operator, shared.guard)),
         Err(rejection) => rejection.into_response(),
     }
 }

@@ -12,7 +12,9 @@ use tokio::time::timeout;
 use super::bridge::{Bridge, Way, json};
 use super::guard::Guard;
 use super::line::Answer;
+use super::operator::{Operator, Order};
 use super::request::{self, Refusal, Request, Wanted};
+use crate::error_words::refused_with;
 
 /// Requests of a viewer that may be under way at once.
 const AT_ONCE: usize = 16;
@@ -36,8 +38,26 @@ enum Reply {
     Lost { messages: u64 },
 }
 
+impl Reply {
+    /// For the log.
+    fn in_words(&self, is_stop: bool) -> String {
+        match self {
+            Self::Answer { error: 0, .. } if is_stop => "sent".to_owned(),
+            Self::Answer { error: 0, .. } => "taken".to_owned(),
+            Self::Answer { error, .. } => refused_with(*error),
+            Self::Refused { reason, .. } => reason.clone(),
+            Self::Lost { messages } => format!("{messages} messages lost"),
+        }
+    }
+}
+
 /// Serves a viewer until it is gone.
-pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guard>) {
+pub(super) async fn serve(
+    mut socket: WebSocket,
+    bridge: Bridge,
+    guard: Arc<Guard>,
+    operator: Operator,
+) {
     // Without a thread there is no way to the controller.
     let Ok(way) = bridge.way() else {
         return;
@@ -53,7 +73,7 @@ pub(super) async fn serve(mut socket: WebSocket, bridge: Bridge, guard: Arc<Guar
             biased;
             message = socket.recv() => {
                 let Some(Ok(message)) = message else { return };
-                match take(message, &bridge, &way.0, &guard, &slots, &answers) {
+                match take(message, &bridge, &way.0, &guard, &operator, &slots, &answers) {
                     Some(reply) => json(&reply),
                     None => continue,
                 }
@@ -79,6 +99,7 @@ fn take(
     bridge: &Bridge,
     way: &Arc<Way>,
     guard: &Guard,
+    operator: &Operator,
     slots: &Arc<Semaphore>,
     answers: &mpsc::Sender<Arc<str>>,
 ) -> Option<Reply> {
@@ -89,7 +110,12 @@ fn take(
             return Some(refused(None, &Refusal::Malformed("binary".to_owned())));
         }
     };
-    let Request { id, token, line } = match request::read(&text) {
+    let Request {
+        id,
+        token,
+        line,
+        who,
+    } = match request::read(&text) {
         Ok(request) => request,
         Err(refusal) => return Some(refused(None, &refusal)),
     };
@@ -103,13 +129,21 @@ fn take(
     let Ok(slot) = Arc::clone(slots).try_acquire_owned() else {
         return Some(refused(Some(id), &Refusal::TooMany));
     };
-    let line = match wanted {
-        Wanted::Stop => return Some(reply(id, bridge.stop())),
+    let line_out = match wanted {
+        Wanted::Stop => {
+            // Before the stop is sent: no line of a sequence may follow it.
+            operator.sequence.order(Order::Stopped { who: who.clone() });
+            let reply = reply(id, bridge.stop());
+            operator.journal.note(&who, &line, &reply.in_words(true));
+            return Some(reply);
+        }
         Wanted::Line(line) => line,
     };
     let (way, answers) = (Arc::clone(way), answers.clone());
+    let journal = operator.journal.clone();
     tokio::spawn(async move {
-        let reply = reply(id, way.ask(line).await);
+        let reply = reply(id, way.ask(line_out).await);
+        journal.note(&who, &line, &reply.in_words(false));
         // A viewer that is gone needs no answer.
         let _ = answers.send(json(&reply)).await;
         drop(slot);

@@ -1,6 +1,6 @@
 //! A client that runs a script over the command interface, as any client would: a line, then `ERR?`, then the next line.
 
-use crate::rig::script::{Line, Script, single_byte};
+use crate::script::{Line, Script};
 
 /// Runs a script. The same on the host, where bytes go straight to the interpreter, and on the emulated chip, where they go
 /// over its USART.
@@ -37,9 +37,6 @@ pub enum Event {
     /// All lines are done.
     Finished,
 }
-
-/// Error numbers that a stopping command leaves on purpose.
-const STOPPED: &str = "10";
 
 impl Client {
     /// For a script.
@@ -80,7 +77,7 @@ impl Client {
             pending.missing -= 1;
         }
         if pending.missing > 0 {
-            let waits = first_word(&pending.line.text).eq_ignore_ascii_case("WAC");
+            let waits = pending.line.word() == "WAC";
             self.idle_polls = if waits && !moving {
                 self.idle_polls + 1
             } else {
@@ -100,7 +97,8 @@ impl Client {
             return (Vec::new(), None);
         };
         let error = answers.pop().unwrap_or_default();
-        let event = if error == "0" || (error == STOPPED && stops(&line.text)) {
+        let is_done = (error.parse()).is_ok_and(|number| line.is_done_with(number));
+        let event = if is_done {
             Event::Done(line, answers.pop())
         } else {
             Event::Refused(line, error)
@@ -113,12 +111,12 @@ impl Client {
             return (Vec::new(), Some(Event::Finished));
         };
         self.next += 1;
-        let mut bytes = match single_byte(&line.text) {
+        let mut bytes = match line.single_byte() {
             Some(byte) => vec![byte],
             None => line.text.clone().into_bytes(),
         };
         bytes.extend(b"\nERR?\n");
-        let missing = 1 + usize::from(asks(&line.text));
+        let missing = 1 + usize::from(line.asks());
         self.pending = Some(Pending {
             line,
             answers: Vec::new(),
@@ -126,20 +124,6 @@ impl Client {
         });
         (bytes, None)
     }
-}
-
-fn first_word(text: &str) -> &str {
-    text.split_whitespace().next().unwrap_or_default()
-}
-
-fn asks(text: &str) -> bool {
-    let word = first_word(text);
-    word.ends_with('?') || ["#5", "#7"].contains(&word)
-}
-
-fn stops(text: &str) -> bool {
-    let word = first_word(text).to_ascii_uppercase();
-    ["STP", "HLT", "#24"].contains(&word.as_str())
 }
 
 /// The next whole answer: lines that end in a space go on.

@@ -130,12 +130,45 @@ impl Script {
     }
 }
 
+/// What `ERR?` says after a command that stops, on purpose.
+const STOPPED: u16 = 10;
+/// Commands that stop.
+const STOPS: [&str; 3] = ["STP", "HLT", "#24"];
+/// Queries that do not end in `?`.
+const ASKING_BYTES: [&str; 2] = ["#5", "#7"];
+
+impl Line {
+    /// The command, in capitals.
+    #[must_use]
+    pub fn word(&self) -> String {
+        let word = self.text.split_whitespace().next().unwrap_or_default();
+        word.to_ascii_uppercase()
+    }
+
+    /// Whether it is answered.
+    #[must_use]
+    pub fn asks(&self) -> bool {
+        let word = self.word();
+        word.ends_with('?') || ASKING_BYTES.contains(&&*word)
+    }
+
+    /// Whether this error number, asked for afterwards, means that it was carried out.
+    #[must_use]
+    pub fn is_done_with(&self, error: u16) -> bool {
+        error == 0 || (error == STOPPED && STOPS.contains(&&*self.word()))
+    }
+
+    /// The byte that a line like `#5` stands for.
+    #[must_use]
+    pub fn single_byte(&self) -> Option<u8> {
+        single_byte(&self.text)
+    }
+}
+
 /// Commands that are a single byte on the wire, in a script `#` and the byte's number.
 const SINGLE_BYTES: [u8; 3] = [5, 7, 24];
 
-/// The byte that a line like `#5` stands for.
-#[must_use]
-pub fn single_byte(text: &str) -> Option<u8> {
+fn single_byte(text: &str) -> Option<u8> {
     let byte = text.strip_prefix('#')?.parse().ok()?;
     SINGLE_BYTES.contains(&byte).then_some(byte)
 }

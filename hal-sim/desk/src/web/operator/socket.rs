@@ -1,0 +1,149 @@
+//! A page's second connection: the sequence and the log out, orders in. It is also how a page is known to live: it has to answer
+//! a ping every second, which a browser does by itself as long as it and its network live.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use axum::extract::ws::{Message, WebSocket};
+use serde::Deserialize;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::time::{Instant, interval, timeout};
+
+use super::Operator;
+use super::sequence::Order;
+use crate::web::guard::Guard;
+
+/// Longest message: a script.
+pub(in crate::web) const MESSAGE_BYTES: usize = 256 << 10;
+/// Between two pings.
+const PING_EVERY: Duration = Duration::from_secs(1);
+/// Without an answer for so long a page is gone.
+const GONE_AFTER: Duration = Duration::from_millis(2500);
+/// How long it may take to read a message.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A message of a page.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Request {
+    token: String,
+    order: Wanted,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Wanted {
+    Run { name: String, text: String },
+    First { name: String, text: String },
+    Step,
+    Pause,
+    Continue,
+    Stop,
+}
+
+/// Serves a page until it is gone.
+pub(in crate::web) async fn serve(mut socket: WebSocket, operator: Operator, guard: Arc<Guard>) {
+    static PAGES: AtomicU64 = AtomicU64::new(1);
+    let page = PAGES.fetch_add(1, Ordering::Relaxed);
+    talk(&mut socket, &operator, &guard, page).await;
+    operator.sequence.order(Order::Gone { page });
+}
+
+async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: u64) {
+    let mut told = operator.sequence.told();
+    told.mark_changed();
+    let (kept, mut news) = operator.journal.read();
+    for entry in kept {
+        if !send(socket, Message::Text(entry.as_ref().into())).await {
+            return;
+        }
+    }
+    let mut pings = interval(PING_EVERY);
+    let mut heard = Instant::now();
+    loop {
+        let message = tokio::select! {
+            message = socket.recv() => {
+                let Some(Ok(message)) = message else { return };
+                heard = Instant::now();
+                if let Message::Text(text) = message
+                    && let Some(order) = order(&text, guard, page)
+                {
+                    operator.sequence.order(order);
+                }
+                continue;
+            }
+            Ok(()) = told.changed() => Message::Text(told.borrow_and_update().as_ref().into()),
+            entry = news.recv() => match entry {
+                Ok(entry) => Message::Text(entry.as_ref().into()),
+                Err(RecvError::Lagged(_)) => continue,
+                Err(RecvError::Closed) => return,
+            },
+            _ = pings.tick() => {
+                if heard.elapsed() > GONE_AFTER {
+                    return;
+                }
+                Message::Ping(axum::body::Bytes::new())
+            }
+        };
+        if !send(socket, message).await {
+            return;
+        }
+    }
+}
+
+async fn send(socket: &mut WebSocket, message: Message) -> bool {
+    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
+}
+
+/// The order in a message of somebody who may give one.
+fn order(text: &str, guard: &Guard, page: u64) -> Option<Order> {
+    let Request { token, order } = serde_json::from_str(text).ok()?;
+    if !guard.knows(&token) {
+        return None;
+    }
+    let run = |name, text, steps| Order::Run {
+        name,
+        text,
+        steps,
+        page,
+    };
+    Some(match order {
+        Wanted::Run { name, text } => run(name, text, false),
+        Wanted::First { name, text } => run(name, text, true),
+        Wanted::Step => Order::Step { page },
+        Wanted::Pause => Order::Pause,
+        Wanted::Continue => Order::Continue { page },
+        Wanted::Stop => Order::Stop,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_need_the_token() {
+        let guard = Guard::new("127.0.0.1:8080", None).unwrap();
+        let token = guard.token();
+        let step = format!(r#"{{"token":"{token}","order":"step"}}"#);
+        assert_eq!(order(&step, &guard, 3), Some(Order::Step { page: 3 }));
+        let run = format!(r#"{{"token":"{token}","order":{{"run":{{"name":"a","text":"FRF"}}}}}}"#);
+        assert!(matches!(
+            order(&run, &guard, 3),
+            Some(Order::Run {
+                steps: false,
+                page: 3,
+                ..
+            })
+        ));
+        for bad in [
+            r#"{"token":"x","order":"step"}"#,
+            r#"{"order":"step"}"#,
+            "step",
+            "",
+        ] {
+            assert_eq!(order(bad, &guard, 3), None, "{bad}");
+        }
+    }
+}
