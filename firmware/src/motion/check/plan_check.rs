@@ -6,9 +6,9 @@ use super::platform::greatest;
 use super::violation::Violation;
 use super::workspace::{StopLimits, Workspace};
 use crate::motion::constraints::Constraints;
+use crate::motion::plan::Piece;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::motion::plan::{Piece, Pieces};
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
 use crate::motion::tolerances::PLAN_SLACK;
@@ -54,7 +54,8 @@ struct Budget<'a> {
     pivots_sampled: bool,
 }
 
-pub(super) const MAX_INTERVALS: usize = 60;
+/// For one plan.
+pub(crate) const MAX_INTERVALS: usize = 60;
 
 /// Intervals of one plan at most: a way of many turns that asks for more is not worth the time. A stop waits meanwhile.
 const MOST_INTERVALS: usize = 1_000;
@@ -103,24 +104,11 @@ impl PlanCheck {
     }
 
     /// Whether a motion by the pieces of a plan from `start` keeps to everything. The plan's nudge does not show in it.
-    pub fn check(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
-        let mut floats: Pieces<f32> = Pieces::new();
-        for piece in pieces {
-            // As many.
-            let _ = floats.push(Piece {
-                ticks: piece.ticks,
-                jerk: CubicSegment::jerk(piece, self.hz),
-            });
-        }
-        self.check_floats(&floats, start, &mut { MAX_INTERVALS })
-    }
-
-    /// The same, of pieces in floats. After so many `intervals`, of which those that are taken are taken off, the next
-    /// failure counts.
+    /// After so many `intervals`, of which those that are taken are taken off, the next failure counts.
     #[inline(never)]
-    pub fn check_floats(
+    pub fn check(
         &self,
-        pieces: &[Piece<f32>],
+        pieces: &[Piece],
         start: &[AxisState; 3],
         intervals: &mut usize,
     ) -> Result<(), Violation> {
@@ -137,7 +125,7 @@ impl PlanCheck {
         self.evaluate(&segment, 0, from);
         for piece in pieces {
             segment.start = from.sample;
-            segment.jerk = piece.jerk;
+            segment.jerk = CubicSegment::jerk(piece, self.hz);
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             self.check_jerk(jerk)?;
@@ -179,7 +167,7 @@ impl PlanCheck {
         broken: Violation,
         ticks: u64,
         budget: &mut Budget<'_>,
-        pieces: &[Piece<f32>],
+        pieces: &[Piece],
         start: &[AxisState; 3],
     ) -> Result<(), Violation> {
         // In shorter intervals the same instant would be met.
@@ -220,15 +208,11 @@ impl PlanCheck {
     }
 
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn sample_pivots(
-        &self,
-        pieces: &[Piece<f32>],
-        start: &[AxisState; 3],
-    ) -> Result<(), Violation> {
+    fn sample_pivots(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
         let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
         for piece in pieces {
-            segment.jerk = piece.jerk;
+            segment.jerk = CubicSegment::jerk(piece, self.hz);
             let seconds = ticks_to_f32(piece.ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(piece.ticks > SHORT)] {
@@ -336,7 +320,6 @@ impl PlanCheck {
         radius: f32,
     ) -> Result<f32, (Violation, f32)> {
         const ALL: f32 = 4.0;
-        const ROUNDS: usize = 3;
         let bound = PivotGain::new(radius);
         let [rate, acceleration] = moving.pivot_bounds(&bound);
         let [rate_limit, acceleration_limit] = self.pivots;
@@ -349,15 +332,11 @@ impl PlanCheck {
             rates = rates.fmax(rate);
             accelerations = accelerations.fmax(acceleration);
         }
-        // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
-        let mut most = [rate, acceleration];
-        for _ in 0..ROUNDS {
-            let rises = moving.pivot_rises(most, &bound, interval.seconds);
-            most = [
-                most[0].fmin(rates + rises[0]),
-                most[1].fmin(accelerations + rises[1]),
-            ];
-        }
+        let rises = moving.pivot_rises(&bound, interval.seconds);
+        let most = [
+            rate.fmin(rates + rises[0]),
+            acceleration.fmin(accelerations + rises[1]),
+        ];
         let once = rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
         let twice = rise_within(
             accelerations,

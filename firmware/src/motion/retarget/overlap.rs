@@ -1,8 +1,7 @@
 //! Whether an ending and a line that overlap keep to the limits of path and rotation, in floats: what the pivots and
 //! the workspace ask for is left to the check.
 
-use super::corner::Corner;
-use super::ending::Leaving;
+use super::ending::{Corner, Leaving};
 use super::line::{Line, LineCorner};
 use super::part::Part;
 use crate::motion::profile::velocity::AccelerationLimits;
@@ -19,7 +18,7 @@ pub(super) struct Overlap {
 }
 
 /// How often a delay is halved in the search.
-const HALVINGS: usize = 5;
+const HALVINGS: usize = 3;
 
 impl Overlap {
     pub fn new(leaving: &Leaving<'_>) -> Self {
