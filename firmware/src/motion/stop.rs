@@ -7,7 +7,7 @@
 
 use super::check::platform::greatest;
 use super::check::violation::Violation;
-use super::check::{MAX_INTERVALS, PlanCheck, is_over};
+use super::check::{Budget, PlanCheck, is_over};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::cubic_segment::{CubicSegment, MotionState};
@@ -124,7 +124,7 @@ fn write_stop(
         if plan.ticks() >= left {
             return None;
         }
-        match plan_check.check(&plan.pieces, state, &mut { MAX_INTERVALS }) {
+        match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Violation::Workspace) if !apart => apart = true,

@@ -37,4 +37,4 @@ pub(super) mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use plan_check::{MAX_INTERVALS, PlanCheck, is_over};
+pub(crate) use plan_check::{Budget, PlanCheck, is_over};

@@ -45,17 +45,26 @@ struct Interval<'a> {
     seconds: f32,
 }
 
-/// What a check has used up, and found.
-struct Budget<'a> {
+/// What a check may take.
+pub(crate) struct Budget {
     /// Intervals that may be looked at, failed ones included, before the next failure counts.
-    intervals: &'a mut usize,
-    /// What was broken in intervals that have been taken in shorter ones since.
-    worst: Option<Violation>,
-    pivots_sampled: bool,
+    pub intervals: usize,
+    /// When the pivots are over a limit, they are sampled all along the plan, which tells by how much.
+    pub samples_pivots: bool,
 }
 
-/// For one plan.
-pub(crate) const MAX_INTERVALS: usize = 60;
+impl Budget {
+    /// For a stop, which is made anew with what was found.
+    pub const FOR_STOP: Self = Self {
+        intervals: 60,
+        samples_pivots: true,
+    };
+    /// For a plan that is taken or not.
+    pub const FOR_ANSWER: Self = Self {
+        intervals: 60,
+        samples_pivots: false,
+    };
+}
 
 /// Intervals of one plan at most: a way of many turns that asks for more is not worth the time. A stop waits meanwhile.
 const MOST_INTERVALS: usize = 1_000;
@@ -104,20 +113,16 @@ impl PlanCheck {
     }
 
     /// Whether a motion by the pieces of a plan from `start` keeps to everything. The plan's nudge does not show in it.
-    /// After so many `intervals`, of which those that are taken are taken off, the next failure counts.
+    /// What is taken is taken off the budget.
     #[inline(never)]
     pub fn check(
         &self,
         pieces: &[Piece],
         start: &[AxisState; 3],
-        intervals: &mut usize,
+        budget: &mut Budget,
     ) -> Result<(), Violation> {
-        let mut budget = Budget {
-            intervals,
-            worst: None,
-            pivots_sampled: false,
-        };
-        let mut looked_at = 0;
+        let (mut looked_at, mut worst) = (0, None);
+        let mut samples_pivots = budget.samples_pivots;
         let bound_distances = self.workspace.bound_distances(start);
         let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
         let [mut first, mut second] = [IntervalEnd::default(); 2];
@@ -132,10 +137,10 @@ impl PlanCheck {
             let (mut done, mut ticks) = (0, piece.ticks);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
-                *budget.intervals = budget.intervals.saturating_sub(1);
+                budget.intervals = budget.intervals.saturating_sub(1);
                 looked_at += 1;
                 if looked_at > MOST_INTERVALS {
-                    return Err(budget.worst.unwrap_or(Violation::Workspace));
+                    return Err(worst.unwrap_or(Violation::Workspace));
                 }
                 self.evaluate(&segment, done + ticks, to);
                 let interval = Interval {
@@ -151,39 +156,21 @@ impl PlanCheck {
                         ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
                     Err((broken, shorter)) => {
-                        self.failed(broken, ticks, &mut budget, pieces, start)?;
+                        // Where a limit is passed indeed, sampling the pivots tells by how much.
+                        if broken.is_of_pivots() && core::mem::take(&mut samples_pivots) {
+                            self.sample_pivots(pieces, start)?;
+                        }
+                        // Intervals close in on where a limit is met; how far it is passed was seen before.
+                        let broken = broken.or_worse(worst);
+                        worst = Some(broken);
+                        if shorter == 0.0 || ticks <= SHORTEST || budget.intervals == 0 {
+                            return Err(broken);
+                        }
                         ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
                     }
                 }
                 ticks = ticks.max(SHORTEST);
             }
-        }
-        Ok(())
-    }
-
-    /// After an interval that has failed: whether it is worth a shorter one.
-    fn failed(
-        &self,
-        broken: Violation,
-        ticks: u64,
-        budget: &mut Budget<'_>,
-        pieces: &[Piece],
-        start: &[AxisState; 3],
-    ) -> Result<(), Violation> {
-        // In shorter intervals the same instant would be met.
-        if broken == Violation::NoRoomToStop {
-            return Err(Violation::Workspace);
-        }
-        if broken.is_of_pivots() && !budget.pivots_sampled {
-            // Where a limit is passed indeed, sampling the pivots tells by how much.
-            self.sample_pivots(pieces, start)?;
-            budget.pivots_sampled = true;
-        }
-        // Intervals close in on where a limit is met; how far it is passed was seen before.
-        let worst = broken.or_worse(budget.worst);
-        budget.worst = Some(worst);
-        if ticks <= SHORTEST || *budget.intervals == 0 {
-            return Err(worst);
         }
         Ok(())
     }
@@ -243,7 +230,7 @@ impl PlanCheck {
     }
 
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
-    /// try.
+    /// try: zero where it is broken at an end.
     fn check_interval(
         &self,
         interval: &Interval<'_>,
@@ -254,7 +241,10 @@ impl PlanCheck {
         let moving = sizes.at_offset(self.workspace.arm);
         let radius = self
             .path(interval, [from, to], [&sizes, &moving])
-            .map_err(|broken| (broken, HALF))?;
+            .map_err(|broken| match broken {
+                Violation::NoRoomToStop => (Violation::Workspace, 0.0),
+                broken => (broken, HALF),
+            })?;
         self.check_pivots(interval, [from, to], &moving, radius)
     }
 
@@ -363,11 +353,13 @@ fn rise_within(
     if rise <= room {
         return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
     }
-    let shorter = PART * sqrt_f32(room.fmax(0.0) / rise);
-    Err((
-        broken((value / limit).fmax(1.0)),
-        shorter.clamp(1.0 / 16.0, 0.7),
-    ))
+    // What is not a number is no room.
+    let shorter = if room > 0.0 {
+        (PART * sqrt_f32(room / rise)).clamp(1.0 / 16.0, 0.7)
+    } else {
+        0.0
+    };
+    Err((broken((value / limit).fmax(1.0)), shorter))
 }
 
 /// The part of its limit that translation or rotation reaches, the greater.

@@ -127,12 +127,14 @@ impl Candidate {
             let [x, y, _] = ended.rest;
             keep(&mut ended.pieces, Part::Translation);
             copy(&ended.pieces, &mut line_plan.pieces);
+            ended.of = None;
             leaving.write(second, ended)?;
             keep(&mut ended.pieces, Part::Rotation);
             write_sum(&line_plan.pieces, &ended.pieces, 0, pieces)?;
             copy(pieces, &mut ended.pieces);
             (ended.rest[0], ended.rest[1]) = (x, y);
         }
+        ended.of = None;
         let rest = ended.rest;
         let (mut from, mut sum) = (&mut ended.pieces, &mut *pieces);
         for way in &self.ways {

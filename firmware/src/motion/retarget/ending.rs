@@ -61,6 +61,8 @@ impl Corner {
 /// An ending: its pieces, its corners, of which the last is rest, and how long it takes.
 #[derive(Default)]
 pub(super) struct Ended {
+    /// What these are of; nothing where the pieces have become another motion's.
+    pub of: Option<Ending>,
     pub pieces: Pieces,
     pub corners: Vec<Corner, { MAX_PIECES + 1 }>,
     pub ticks: u64,
@@ -109,6 +111,10 @@ impl<'a> Leaving<'a> {
     /// Writes an ending; `None` where there is none.
     #[inline(never)]
     pub fn write(&self, ending: Ending, ended: &mut Ended) -> Option<()> {
+        if ended.of == Some(ending) {
+            return Some(());
+        }
+        ended.of = None;
         let Ended {
             pieces, corners, ..
         } = ended;
@@ -150,6 +156,7 @@ impl<'a> Leaving<'a> {
         };
         // In whole numbers: of a long way a float does not hold a small correction.
         ended.left = MotionState::between(&ended.rest.map(AxisState::at_rest), &self.to);
+        ended.of = Some(ending);
         Some(())
     }
 }

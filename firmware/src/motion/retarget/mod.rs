@@ -29,9 +29,9 @@ mod line;
 mod overlap;
 mod part;
 
-use super::check::PlanCheck;
 use super::check::target::check_target;
 use super::check::violation::Violation;
+use super::check::{Budget, PlanCheck};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::{Plan, PlanStart, Position, nudge_to, state_after_pieces};
@@ -137,14 +137,17 @@ pub fn plan_retarget(
         ..Plan::default()
     };
     let plan_check = PlanCheck::new(constraints, &leaving.state);
-    let mut intervals = search.intervals;
+    let mut budget = Budget {
+        intervals: search.intervals,
+        samples_pivots: search.checks > 1,
+    };
     for _ in 0..search.checks {
-        if intervals == 0 {
+        if budget.intervals == 0 {
             break;
         }
         (candidate.write(&leaving, &to, &mut ended, &mut plan.pieces))
             .ok_or(RetargetError::NeedsStop)?;
-        match plan_check.check(&plan.pieces, &leaving.state, &mut intervals) {
+        match plan_check.check(&plan.pieces, &leaving.state, &mut budget) {
             Ok(()) => {
                 close(&mut plan, &leaving).ok_or(RetargetError::NeedsStop)?;
                 return Ok(plan);
