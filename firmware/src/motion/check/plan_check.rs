@@ -134,6 +134,12 @@ impl PlanCheck {
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             self.check_jerk(jerk)?;
+            if piece.ticks < SHORTEST {
+                // Its ends are those of its neighbours.
+                self.evaluate(&segment, piece.ticks, to);
+                core::mem::swap(&mut from, &mut to);
+                continue;
+            }
             let (mut done, mut ticks) = (0, piece.ticks);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);

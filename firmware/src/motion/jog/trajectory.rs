@@ -51,7 +51,12 @@ impl Jog {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),
             ramp: pieces.iter().map(|piece| piece.ticks).sum(),
-            brake: change(&target, &limits).ticks(hz),
+            brake: if now.motion.is_at_rest() {
+                // The way back is the way there.
+                ramp
+            } else {
+                change(&target, &limits).ticks(hz)
+            },
             acceleration_limits: limits,
             radius,
         })

@@ -40,9 +40,12 @@ impl MotionState {
             a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
         }
     }
-}
 
-impl MotionState {
+    /// Whether nothing moves, nor is about to.
+    pub fn is_at_rest(&self) -> bool {
+        self.v == [0.0; 3] && self.a == [0.0; 3]
+    }
+
     /// From where the axes are to a position.
     pub fn between(axes: &[AxisState; 3], to: &Position) -> [f32; 3] {
         [0, 1, 2].map(|i| {

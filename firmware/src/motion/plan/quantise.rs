@@ -16,6 +16,9 @@ pub(crate) fn velocity_pieces(
         jerk: [0; 3],
     });
     for (i, (axis, wanted)) in state.iter().zip(wanted).enumerate() {
+        if axis.velocity == *wanted && axis.acceleration == 0 {
+            continue;
+        }
         let [first, last] = velocity_jerks(axis, *wanted, [n1, n2, n3]);
         let ramps = first
             .wrapping_mul(n1 as i64)
