@@ -96,7 +96,7 @@ fn write_stop(
     let limits = AccelerationLimits::new(constraints);
     let now = MotionState::new(state, hz);
     let urgent_jerk = constraints.limits.urgent_jerk();
-    let (most, asked) = hardest_brake(state, &limits, constraints);
+    let most = hardest_brake(state, &limits, constraints);
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
@@ -134,7 +134,7 @@ fn write_stop(
             }
             Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
                 // What the motion asks of the pivots already, no brake takes from them.
-                if over <= asked {
+                if over <= asked_part(state, constraints) {
                     break;
                 }
                 let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / hz);
@@ -200,33 +200,49 @@ fn write_apart(
 }
 
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
-/// comes of the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
+/// comes of the motion itself is taken off.
 fn hardest_brake(
     state: &[AxisState; 3],
     limits: &AccelerationLimits,
     constraints: &Constraints,
-) -> (f32, f32) {
-    let hz = constraints.limits.rate_hz as f32;
-    let centre = constraints.rotation_centre.map(|value| value as f32);
+) -> f32 {
     let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
-    let segment = CubicSegment::new(state, &Piece::default(), hz);
-    let mut drifting = segment.start;
-    drifting.a = [0.0; 3];
-    let mut braking = drifting;
-    braking.a = VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits);
-    let [_, drift] = segment.platform(&drifting, centre).pivots();
-    let [_, braked] = segment.platform(&braking, centre).pivots();
+    let segment = CubicSegment::new(state, &Piece::default(), constraints.limits.rate_hz as f32);
+    let drifting = MotionState {
+        a: [0.0; 3],
+        ..segment.start
+    };
+    let braking = MotionState {
+        a: VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits),
+        ..segment.start
+    };
+    let [[_, drift], [_, braked]] =
+        [&drifting, &braking].map(|motion| pivots(&segment, motion, constraints));
     let mut hardest = HARDEST;
     for i in 0..3 {
-        let part = braked[i] - drift[i];
+        let part = (braked[i] - drift[i]).abs();
         let left = most - drift[i].abs();
-        if part != 0.0 && left < hardest * part.abs() {
-            hardest = left / part.abs();
+        if part != 0.0 && left < hardest * part {
+            hardest = left / part;
         }
     }
-    let [rates, accelerations] = segment.platform(&segment.start, centre).pivots();
-    let rate = greatest(&rates) / constraints.limits.pivot_rate_rad_s as f32;
-    let acceleration =
-        greatest(&accelerations) / constraints.limits.pivot_acceleration_rad_s2 as f32;
-    (hardest.fmax(GENTLEST), rate.fmax(acceleration))
+    hardest.fmax(GENTLEST)
+}
+
+/// The largest part of a limit of theirs that the pivots reach as it is.
+fn asked_part(state: &[AxisState; 3], constraints: &Constraints) -> f32 {
+    let limits = &constraints.limits;
+    let segment = CubicSegment::new(state, &Piece::default(), limits.rate_hz as f32);
+    let [rates, accelerations] = pivots(&segment, &segment.start, constraints);
+    let rate = greatest(&rates) / limits.pivot_rate_rad_s as f32;
+    rate.fmax(greatest(&accelerations) / limits.pivot_acceleration_rad_s2 as f32)
+}
+
+fn pivots(
+    segment: &CubicSegment,
+    motion: &MotionState,
+    constraints: &Constraints,
+) -> [[f32; 3]; 2] {
+    let centre = constraints.rotation_centre.map(|value| value as f32);
+    segment.platform(motion, centre).pivots()
 }

@@ -4,9 +4,7 @@ use super::request::{InitialState, JogRequest};
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::MotionState;
 use crate::motion::plan::quantise::velocity_pieces;
-use crate::motion::plan::{
-    Piece, Pieces, Plan, pieces_after, push_piece, state_after_pieces, write_sum,
-};
+use crate::motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
 use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile};
 use crate::motion::refusal::RetargetError;
 use crate::motion::speeds::per_second;
@@ -70,26 +68,35 @@ impl Jog {
             _ => self.steady[i],
         });
         let still = AxisState::default();
+        let translating = self.hold_then_stop(&[x, y, still], point);
+        let turning = self.hold_then_stop(&[still, still, theta], turn);
         let mut way: Vec<Piece, { 4 + 5 }> = Vec::new();
         // Four, and five.
         let _ = way.extend_from_slice(&plan.pieces);
-        let _ = way.extend_from_slice(&self.hold_then_stop(&[x, y, still], point));
-        let turning = self.hold_then_stop(&[still, still, theta], turn);
+        let _ = way.extend_from_slice(&translating);
         // Twice five, and four.
         let _ = write_sum(&way, &turning, self.ramp, &mut plan.pieces);
         let ticks = plan.ticks();
-        let rest = self.rest(&plan.pieces);
-        plan.nudge = rest.map(|axis| -axis.velocity);
-        plan.end = rest.map(|axis| axis.rest_position(ticks, -axis.velocity));
+        for (i, pieces) in [&translating, &translating, &turning]
+            .into_iter()
+            .enumerate()
+        {
+            let rest = self.rest(i, pieces, ticks - self.ramp);
+            plan.nudge[i] = -rest.velocity;
+            plan.end[i] = rest.rest_position(ticks, -rest.velocity);
+        }
     }
 
-    /// Where the axes come to rest, but for what rounding leaves of their velocities.
-    fn rest(&self, pieces: &[Piece]) -> [AxisState; 3] {
-        let mut axes = self.steady;
-        for piece in pieces_after(pieces, self.ramp) {
-            piece.advance(&mut axes, piece.ticks, &[0; 3]);
+    /// Where an axis is `ticks` after its velocity is reached: at rest, but for what rounding leaves of the velocity.
+    fn rest(&self, i: usize, pieces: &[Piece], mut ticks: u64) -> AxisState {
+        let mut axis = self.steady[i];
+        if self.wanted[i] != 0 {
+            for piece in pieces {
+                axis = axis.after(piece.ticks, piece.jerk[i], 0);
+                ticks -= piece.ticks;
+            }
         }
-        axes
+        axis.after(ticks, 0, 0)
     }
 
     fn hold_then_stop(&self, axes: &[AxisState; 3], hold: u64) -> HoldThenStop {
