@@ -5,7 +5,6 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use super::check::platform::greatest;
 use super::check::violation::Violation;
 use super::check::{Budget, PlanCheck, is_over};
 use super::constraints::Constraints;
@@ -94,9 +93,10 @@ fn write_stop(
     let plan_check = PlanCheck::for_stop(constraints);
     let hz = constraints.limits.rate_hz as f32;
     let limits = AccelerationLimits::new(constraints);
-    let now = MotionState::new(state, hz);
-    let urgent_jerk = constraints.limits.urgent_jerk();
-    let most = hardest_brake(state, &limits, constraints);
+    let segment = CubicSegment::new(state, &Piece::default(), hz);
+    let now = segment.start;
+    let urgent_jerk = || constraints.limits.urgent_jerk();
+    let most = hardest_brake(&segment, &limits, &plan_check);
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
@@ -104,7 +104,7 @@ fn write_stop(
         },
         Stop::Urgent => Hardness {
             acceleration: most,
-            jerk: urgent_jerk,
+            jerk: urgent_jerk(),
         },
     };
     let mut apart = false;
@@ -130,11 +130,11 @@ fn write_stop(
             Err(Violation::Workspace) if !apart => apart = true,
             Err(Violation::Workspace) => {
                 hardness.acceleration *= 1.3;
-                hardness.jerk = urgent_jerk;
+                hardness.jerk = urgent_jerk();
             }
             Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
                 // What the motion asks of the pivots already, no brake takes from them.
-                if over <= asked_part(state, constraints) {
+                if over <= plan_check.pivot_part(&segment) {
                     break;
                 }
                 let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / hz);
@@ -202,22 +202,19 @@ fn write_apart(
 /// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
 /// comes of the motion itself is taken off.
 fn hardest_brake(
-    state: &[AxisState; 3],
+    segment: &CubicSegment,
     limits: &AccelerationLimits,
-    constraints: &Constraints,
+    plan_check: &PlanCheck,
 ) -> f32 {
-    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
-    let segment = CubicSegment::new(state, &Piece::default(), constraints.limits.rate_hz as f32);
-    let drifting = MotionState {
-        a: [0.0; 3],
-        ..segment.start
+    let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
+    let accelerations = |a: [f32; 3]| {
+        let motion = MotionState { a, ..segment.start };
+        let [_, accelerations] = plan_check.pivots(segment, &motion);
+        accelerations
     };
-    let braking = MotionState {
-        a: VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits),
-        ..segment.start
-    };
-    let [[_, drift], [_, braked]] =
-        [&drifting, &braking].map(|motion| pivots(&segment, motion, constraints));
+    let drift = accelerations([0.0; 3]);
+    let brake = VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits);
+    let braked = accelerations(brake);
     let mut hardest = HARDEST;
     for i in 0..3 {
         let part = (braked[i] - drift[i]).abs();
@@ -227,22 +224,4 @@ fn hardest_brake(
         }
     }
     hardest.fmax(GENTLEST)
-}
-
-/// The largest part of a limit of theirs that the pivots reach as it is.
-fn asked_part(state: &[AxisState; 3], constraints: &Constraints) -> f32 {
-    let limits = &constraints.limits;
-    let segment = CubicSegment::new(state, &Piece::default(), limits.rate_hz as f32);
-    let [rates, accelerations] = pivots(&segment, &segment.start, constraints);
-    let rate = greatest(&rates) / limits.pivot_rate_rad_s as f32;
-    rate.fmax(greatest(&accelerations) / limits.pivot_acceleration_rad_s2 as f32)
-}
-
-fn pivots(
-    segment: &CubicSegment,
-    motion: &MotionState,
-    constraints: &Constraints,
-) -> [[f32; 3]; 2] {
-    let centre = constraints.rotation_centre.map(|value| value as f32);
-    segment.platform(motion, centre).pivots()
 }

@@ -200,6 +200,22 @@ impl PlanCheck {
         };
     }
 
+    /// Rates and accelerations of the pivots at a state of a segment.
+    pub fn pivots(&self, segment: &CubicSegment, sample: &MotionState) -> [[f32; 3]; 2] {
+        segment.platform(sample, self.workspace.centre).pivots()
+    }
+
+    /// The pivots' limit of acceleration.
+    pub fn pivot_acceleration(&self) -> f32 {
+        self.pivots[1]
+    }
+
+    /// The largest part of a limit of theirs that the pivots reach at the start of a segment.
+    pub fn pivot_part(&self, segment: &CubicSegment) -> f32 {
+        let [rates, accelerations] = self.pivots(segment, &segment.start);
+        (greatest(&rates) / self.pivots[0]).fmax(greatest(&accelerations) / self.pivots[1])
+    }
+
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
     fn sample_pivots(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
@@ -209,9 +225,7 @@ impl PlanCheck {
             let seconds = ticks_to_f32(piece.ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(piece.ticks > SHORT)] {
-                let [rates, accelerations] = segment
-                    .platform(&segment.at(t), self.workspace.centre)
-                    .pivots();
+                let [rates, accelerations] = self.pivots(&segment, &segment.at(t));
                 rate = rate.fmax(greatest(&rates));
                 acceleration = acceleration.fmax(greatest(&accelerations));
             }
