@@ -74,10 +74,17 @@ pub fn plan_stop(
 }
 
 /// How hard a stop brakes, in limits of acceleration and of jerk.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Hardness {
     acceleration: f32,
     jerk: f32,
+}
+
+impl Hardness {
+    const PLAIN: Self = Self {
+        acceleration: 1.0,
+        jerk: 1.0,
+    };
 }
 
 /// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
@@ -96,11 +103,13 @@ fn write_stop(
     let segment = CubicSegment::new(state, &Piece::default(), hz);
     let now = segment.start;
     let urgent_jerk = || constraints.limits.urgent_jerk();
-    let most = hardest_brake(&segment, &limits, &plan_check);
+    let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);
+    let plain_s = plain.times_s();
+    let most = hardest_brake(&segment, plain.direction(&limits, plain_s[0]), &plan_check);
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
-            jerk: 1.0,
+            ..Hardness::PLAIN
         },
         Stop::Urgent => Hardness {
             acceleration: most,
@@ -111,7 +120,12 @@ fn write_stop(
     for _ in 0..ATTEMPTS {
         let limits = limits.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
-        let ticks = profile.ticks(hz);
+        let times_s = if hardness == Hardness::PLAIN {
+            plain_s
+        } else {
+            profile.times_s()
+        };
+        let ticks = profile.whole_ticks(times_s, hz);
         // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
         apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
         if apart {
@@ -199,13 +213,9 @@ fn write_apart(
     let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
-/// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
+/// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
 /// comes of the motion itself is taken off.
-fn hardest_brake(
-    segment: &CubicSegment,
-    limits: &AccelerationLimits,
-    plan_check: &PlanCheck,
-) -> f32 {
+fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], plan_check: &PlanCheck) -> f32 {
     let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
     let accelerations = |a: [f32; 3]| {
         let motion = MotionState { a, ..segment.start };
@@ -213,7 +223,6 @@ fn hardest_brake(
         accelerations
     };
     let drift = accelerations([0.0; 3]);
-    let brake = VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits);
     let braked = accelerations(brake);
     let mut hardest = HARDEST;
     for i in 0..3 {

@@ -123,7 +123,10 @@ impl SteadyMotion {
 
     /// The platform's centre after so many seconds.
     #[inline(never)]
-    fn platform(&self, seconds: f32) -> [f32; 2] {
+    pub fn platform(&self, seconds: f32) -> [f32; 2] {
+        if self.centre == [0.0; 2] {
+            return self.point_after(seconds);
+        }
         let turned = truncate(self.turning * seconds * UNITS_PER_RAD);
         let angle = Angle::from_units(self.theta.wrapping_add(turned));
         let (sin, cos) = Fixed::sin_cos(angle);

@@ -183,7 +183,12 @@ impl VelocityProfile {
 
     /// The times in whole ticks, with what is too short by then lengthened; the first and the last are not zero.
     pub fn ticks(&self, hz: f32) -> [u64; 3] {
-        let [n1, n2, n3] = (self.times_s()).map(|seconds| ceil(seconds * hz - WHOLE_TICKS));
+        self.whole_ticks(self.times_s(), hz)
+    }
+
+    /// The same of the three times, as they are before rounding.
+    pub fn whole_ticks(&self, times_s: [f32; 3], hz: f32) -> [u64; 3] {
+        let [n1, n2, n3] = times_s.map(|seconds| ceil(seconds * hz - WHOLE_TICKS));
         let mut n = [n1.fmax(1.0), n2, n3.fmax(1.0)];
         let tick_s = 1.0 / hz;
         for round in 0..LENGTHENINGS {
@@ -231,9 +236,10 @@ impl VelocityProfile {
         [0, 1, 2].map(|i| self.change[i] - self.acceleration[i] * half_s)
     }
 
-    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared.
-    pub fn direction(&self, limits: &AccelerationLimits) -> [f32; 3] {
-        let w = self.left_after(self.rough_times_s()[0] / 2.0);
+    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
+    /// first segment lasts this long.
+    pub fn direction(&self, limits: &AccelerationLimits, first_s: f32) -> [f32; 3] {
+        let w = self.left_after(first_s / 2.0);
         let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
         let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
         [
