@@ -123,6 +123,7 @@ impl<'a> JogRequest<'a> {
     }
 
     /// The steady motion at `velocity` from a position.
+    #[inline(never)]
     pub fn steady(&self, axes: &[AxisState; 3], velocity: &[f32; 3]) -> SteadyMotion {
         let [x, y, turning] = *velocity;
         SteadyMotion {

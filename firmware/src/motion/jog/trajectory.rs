@@ -86,6 +86,7 @@ impl Jog {
     }
 
     /// Where an axis is `ticks` after its velocity is reached: at rest, but for what rounding leaves of the velocity.
+    #[inline(never)]
     fn rest(&self, i: usize, pieces: &[Piece], mut ticks: u64) -> AxisState {
         let mut axis = self.steady[i];
         if self.wanted[i] != 0 {

@@ -92,6 +92,7 @@ impl SteadyMotion {
     }
 
     /// Seconds until something at `from` that moves as the point does is `radius` out.
+    #[inline(never)]
     fn straight(&self, from: [f32; 2], radius: f32) -> f32 {
         let [x, y] = self.velocity;
         crossing(

@@ -32,6 +32,7 @@ const RADIANS: [f32; 3] = [1.0, 1.0, TAU];
 
 impl MotionState {
     /// Of the axes of a plan at `hz` ticks a second, where a displacement is counted from.
+    #[inline(never)]
     pub fn new(axes: &[AxisState; 3], hz: f32) -> Self {
         let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
         Self {
@@ -47,6 +48,7 @@ impl MotionState {
     }
 
     /// From where the axes are to a position.
+    #[inline(never)]
     pub fn between(axes: &[AxisState; 3], to: &Position) -> [f32; 3] {
         [0, 1, 2].map(|i| {
             let way = to[i].wrapping_sub(axes[i].rounded());

@@ -33,6 +33,7 @@ pub(crate) fn write_sum(
 }
 
 /// Adds a piece: nothing where it has no ticks, to the last where that has the same jerk.
+#[inline(never)]
 pub(crate) fn push_piece(pieces: &mut Pieces, piece: Piece) -> Option<()> {
     match pieces.last_mut() {
         _ if piece.ticks == 0 => Some(()),

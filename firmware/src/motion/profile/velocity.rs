@@ -44,6 +44,7 @@ pub(crate) struct AccelerationLimits {
 
 impl AccelerationLimits {
     /// Those of ordinary motion.
+    #[inline(never)]
     pub fn new(constraints: &Constraints) -> Self {
         let limits = &constraints.limits;
         let speeds = |mm_s: f64, deg_s: f64| constraints.speeds(mm_s, deg_s);
@@ -76,6 +77,7 @@ pub(crate) struct VelocityProfile {
 
 impl VelocityProfile {
     /// From a state to a velocity, track radii and rad per second.
+    #[inline(never)]
     pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &AccelerationLimits) -> Self {
         let over = [
             1.0 / limits.acceleration.linear,
