@@ -35,8 +35,7 @@ const HARDEST: f32 = 30.0;
 const GENTLEST: f32 = 0.1;
 
 /// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself
-/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor
-/// at its start, where nothing moves yet.
+/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be.
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
 /// workspace asks for.
@@ -54,12 +53,6 @@ pub fn plan_stop(
         return None;
     }
     let state = of.state_after(axes, at);
-    if state
-        .iter()
-        .all(|axis| axis.velocity == 0 && axis.acceleration == 0)
-    {
-        return None;
-    }
     let mut plan = Plan {
         id,
         start: PlanStart::Splice {

@@ -3,8 +3,7 @@
 
 use super::ending::{Ended, Ending, Leaving};
 use super::line::Line;
-use super::overlap::Overlap;
-use super::part::Part;
+use super::overlap::{Overlap, Part};
 use crate::motion::plan::{Piece, Pieces, Plan, Position, write_sum};
 use crate::number::float::{FloatMinMax, ticks_to_f32};
 use heapless::Vec;

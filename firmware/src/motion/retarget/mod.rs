@@ -17,17 +17,15 @@
 //! | file | idea |
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
-//! | `part` | translation, rotation, or both as one |
 //! | `ending` | how the motion under way comes to rest |
 //! | `line` | the plain line from there |
-//! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats |
+//! | `overlap` | translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
 //! | `candidate` | for each part an ending, a line, and the least delay between them |
 
 mod candidate;
 mod ending;
 mod line;
 mod overlap;
-mod part;
 
 use super::check::target::check_target;
 use super::check::violation::Violation;
@@ -40,8 +38,7 @@ use super::tolerances::SLOWER_FOR_PIVOTS;
 use crate::number::sqrt_f32;
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
-use overlap::Overlap;
-use part::Part;
+use overlap::{Overlap, Part};
 
 /// How the motion under way ends, and the shares of the limits that the line gets.
 const ENDINGS: [(Ending, &[f32]); 5] = [
