@@ -122,7 +122,7 @@ impl PlanCheck {
         budget: &mut Budget,
     ) -> Result<(), Violation> {
         let (mut looked_at, mut worst) = (0, None);
-        let mut samples_pivots = budget.samples_pivots;
+        let (mut samples_pivots, mut passed_one) = (budget.samples_pivots, false);
         let bound_distances = self.workspace.bound_distances(start);
         let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
         let [mut first, mut second] = [IntervalEnd::default(); 2];
@@ -134,7 +134,9 @@ impl PlanCheck {
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             self.check_jerk(jerk)?;
-            if piece.ticks < SHORTEST {
+            let is_passed = piece.ticks < SHORTEST && !passed_one;
+            passed_one = is_passed;
+            if is_passed {
                 // Its ends are those of its neighbours.
                 self.evaluate(&segment, piece.ticks, to);
                 core::mem::swap(&mut from, &mut to);

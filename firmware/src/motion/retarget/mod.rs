@@ -14,6 +14,11 @@
 //! end, in place of a stop: for a target that is corrected, and out of a stop. The soonest wins. PLCopen calls it
 //! superimposed motion.
 //!
+//! A first way has to be there soon: of two endings, with one line for all axes, and the check is asked once. The soonest way
+//! is looked for while that is under way: all endings, and a line and a delay each for translation and rotation; a line
+//! that asks too much of the pivots is slowed down, one that meets an edge delayed. Where there is no first way, the stop
+//! that was sent before goes on, and the soonest way leaves that.
+//!
 //! | file | idea |
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
