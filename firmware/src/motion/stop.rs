@@ -93,7 +93,7 @@ fn write_stop(
     let plan_check = PlanCheck::for_stop(constraints);
     let hz = constraints.limits.rate_hz as f32;
     let limits = AccelerationLimits::new(constraints);
-    let segment = CubicSegment::new(state, &Piece::default(), hz);
+    let segment = CubicSegment::new(state, hz);
     let now = segment.start;
     let urgent_jerk = || constraints.limits.urgent_jerk();
     let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);

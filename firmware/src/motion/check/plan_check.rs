@@ -122,9 +122,9 @@ impl PlanCheck {
         budget: &mut Budget,
     ) -> Result<(), Violation> {
         let (mut looked_at, mut worst) = (0, None);
-        let (mut samples_pivots, mut passed_one) = (budget.samples_pivots, false);
+        let mut samples_pivots = budget.samples_pivots;
         let bound_distances = self.workspace.bound_distances(start);
-        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        let mut segment = CubicSegment::new(start, self.hz);
         let [mut first, mut second] = [IntervalEnd::default(); 2];
         let (mut from, mut to) = (&mut first, &mut second);
         self.evaluate(&segment, 0, from);
@@ -134,10 +134,8 @@ impl PlanCheck {
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             self.check_jerk(jerk)?;
-            let is_passed = piece.ticks < SHORTEST && !passed_one;
-            passed_one = is_passed;
-            if is_passed {
-                // Its ends are those of its neighbours.
+            if piece.ticks == 1 {
+                // What a tick changes does not show, nor what some of them do, one after the other.
                 self.evaluate(&segment, piece.ticks, to);
                 core::mem::swap(&mut from, &mut to);
                 continue;
@@ -221,7 +219,7 @@ impl PlanCheck {
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
     fn sample_pivots(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        let mut segment = CubicSegment::new(start, self.hz);
         for piece in pieces {
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let seconds = ticks_to_f32(piece.ticks) / self.hz;

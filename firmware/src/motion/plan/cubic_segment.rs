@@ -64,13 +64,13 @@ impl CubicSegment {
         [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i]))
     }
 
-    /// A piece of a plan that starts from `axes`, at `hz` ticks a second.
-    pub fn new(axes: &[AxisState; 3], piece: &Piece, hz: f32) -> Self {
+    /// Without a jerk yet, from `axes` on, at `hz` ticks a second.
+    pub fn new(axes: &[AxisState; 3], hz: f32) -> Self {
         Self {
             from: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
             theta: axes[2].rounded() as u32,
             start: MotionState::new(axes, hz),
-            jerk: Self::jerk(piece, hz),
+            jerk: [0.0; 3],
         }
     }
 

@@ -87,7 +87,7 @@ impl Effort {
                 endings: 2,
                 shares: 1,
                 checks: 1,
-                intervals: 8,
+                intervals: 5,
             },
             Self::All => Search {
                 parts: &[Part::Translation, Part::Rotation],
