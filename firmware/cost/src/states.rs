@@ -131,13 +131,12 @@ impl Moving {
         }
     }
 
-    /// To a new target, or to a stop where there is no way to it without one.
-    pub fn retargeted(&self, to: Position, effort: Effort) -> Option<Plan> {
-        match plan_retarget(3, &self.plan, &self.start, self.at, to, ground(), effort) {
-            Ok(plan) => Some(plan),
-            Err(RetargetError::NeedsStop) => self.stopped(Stop::Smooth),
-            Err(RetargetError::Refused(_)) => None,
-        }
+    /// To a new target.
+    ///
+    /// # Errors
+    /// As those of [`plan_retarget`].
+    pub fn retargeted(&self, to: Position, effort: Effort) -> Result<Plan, RetargetError> {
+        plan_retarget(3, &self.plan, &self.start, self.at, to, ground(), effort)
     }
 
     /// To a stop.

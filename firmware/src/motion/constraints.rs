@@ -36,6 +36,7 @@ impl Constraints {
     }
 
     /// Rates of translation (mm) and of rotation (deg) in the units of planning.
+    #[inline(never)]
     pub(crate) fn speeds(&self, mm: f64, deg: f64) -> Speeds {
         Speeds {
             linear: mm as f32 / self.geometry.radius_mm as f32,

@@ -36,8 +36,9 @@
 //! A target in motion is planned in three steps, so that the stage reacts soon: first the stop, then a first way that takes its
 //! place, then, some milliseconds into that, the soonest of all ([`Effort`]).
 //!
-//! Plans that are not lines are held against every limit by one check (`check`), with the tolerances of one table
-//! (`tolerances`); a line from rest is planned inside them, with what the table keeps back.
+//! Retargets, stops and jogs in motion are held against every limit by one check (`check`), with the tolerances of one table
+//! (`tolerances`). A line from rest, a jog from rest and a streamed target are planned inside them by means of their own; the
+//! head of `check` says which.
 //!
 //! # Where what is
 //!

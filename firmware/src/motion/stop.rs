@@ -5,9 +5,8 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use super::check::platform::greatest;
 use super::check::violation::Violation;
-use super::check::{PlanCheck, is_over};
+use super::check::{Budget, PlanCheck, is_over};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
 use super::plan::cubic_segment::{CubicSegment, MotionState};
@@ -36,8 +35,7 @@ const HARDEST: f32 = 30.0;
 const GENTLEST: f32 = 0.1;
 
 /// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself
-/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be; nor
-/// at its start, where nothing moves yet.
+/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be.
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
 /// workspace asks for.
@@ -55,12 +53,6 @@ pub fn plan_stop(
         return None;
     }
     let state = of.state_after(axes, at);
-    if state
-        .iter()
-        .all(|axis| axis.velocity == 0 && axis.acceleration == 0)
-    {
-        return None;
-    }
     let mut plan = Plan {
         id,
         start: PlanStart::Splice {
@@ -75,10 +67,17 @@ pub fn plan_stop(
 }
 
 /// How hard a stop brakes, in limits of acceleration and of jerk.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Hardness {
     acceleration: f32,
     jerk: f32,
+}
+
+impl Hardness {
+    const PLAIN: Self = Self {
+        acceleration: 1.0,
+        jerk: 1.0,
+    };
 }
 
 /// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
@@ -94,24 +93,32 @@ fn write_stop(
     let plan_check = PlanCheck::for_stop(constraints);
     let hz = constraints.limits.rate_hz as f32;
     let limits = AccelerationLimits::new(constraints);
-    let now = MotionState::new(state, hz);
-    let urgent_jerk = constraints.limits.urgent_jerk();
-    let (most, asked) = hardest_brake(state, &limits, constraints);
+    let segment = CubicSegment::new(state, hz);
+    let now = segment.start;
+    let urgent_jerk = || constraints.limits.urgent_jerk();
+    let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);
+    let plain_s = plain.times_s();
+    let most = hardest_brake(&segment, plain.direction(&limits, plain_s[0]), &plan_check);
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
-            jerk: 1.0,
+            ..Hardness::PLAIN
         },
         Stop::Urgent => Hardness {
             acceleration: most,
-            jerk: urgent_jerk,
+            jerk: urgent_jerk(),
         },
     };
     let mut apart = false;
     for _ in 0..ATTEMPTS {
         let limits = limits.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
-        let ticks = profile.ticks(hz);
+        let times_s = if hardness == Hardness::PLAIN {
+            plain_s
+        } else {
+            profile.times_s()
+        };
+        let ticks = profile.whole_ticks(times_s, hz);
         // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
         apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
         if apart {
@@ -124,17 +131,17 @@ fn write_stop(
         if plan.ticks() >= left {
             return None;
         }
-        match plan_check.check(&plan.pieces, state) {
+        match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
             Err(Violation::Workspace) if !apart => apart = true,
             Err(Violation::Workspace) => {
                 hardness.acceleration *= 1.3;
-                hardness.jerk = urgent_jerk;
+                hardness.jerk = urgent_jerk();
             }
             Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
                 // What the motion asks of the pivots already, no brake takes from them.
-                if over <= asked {
+                if over <= plan_check.pivot_part(&segment) {
                     break;
                 }
                 let times_s = ticks.map(|ticks| ticks_to_f32(ticks) / hz);
@@ -199,34 +206,24 @@ fn write_apart(
     let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
-/// How hard the pivots can brake here, in limits of acceleration: what their acceleration leaves when the part that
-/// comes of the motion itself is taken off. And the largest part of a limit of theirs that they reach as it is.
-fn hardest_brake(
-    state: &[AxisState; 3],
-    limits: &AccelerationLimits,
-    constraints: &Constraints,
-) -> (f32, f32) {
-    let hz = constraints.limits.rate_hz as f32;
-    let centre = constraints.rotation_centre.map(|value| value as f32);
-    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
-    let segment = CubicSegment::new(state, &Piece::default(), hz);
-    let mut drifting = segment.start;
-    drifting.a = [0.0; 3];
-    let mut braking = drifting;
-    braking.a = VelocityProfile::new(&segment.start, &[0.0; 3], limits).direction(limits);
-    let [_, drift] = segment.platform(&drifting, centre).pivots();
-    let [_, braked] = segment.platform(&braking, centre).pivots();
+/// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
+/// comes of the motion itself is taken off.
+fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], plan_check: &PlanCheck) -> f32 {
+    let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
+    let accelerations = |a: [f32; 3]| {
+        let motion = MotionState { a, ..segment.start };
+        let [_, accelerations] = plan_check.pivots(segment, &motion);
+        accelerations
+    };
+    let drift = accelerations([0.0; 3]);
+    let braked = accelerations(brake);
     let mut hardest = HARDEST;
     for i in 0..3 {
-        let part = braked[i] - drift[i];
+        let part = (braked[i] - drift[i]).abs();
         let left = most - drift[i].abs();
-        if part != 0.0 && left < hardest * part.abs() {
-            hardest = left / part.abs();
+        if part != 0.0 && left < hardest * part {
+            hardest = left / part;
         }
     }
-    let [rates, accelerations] = segment.platform(&segment.start, centre).pivots();
-    let rate = greatest(&rates) / constraints.limits.pivot_rate_rad_s as f32;
-    let acceleration =
-        greatest(&accelerations) / constraints.limits.pivot_acceleration_rad_s2 as f32;
-    (hardest.fmax(GENTLEST), rate.fmax(acceleration))
+    hardest.fmax(GENTLEST)
 }

@@ -38,6 +38,8 @@ pub(crate) struct IntervalBounds {
     pub v: [f32; 2],
     pub a: [f32; 2],
     pub j: [f32; 2],
+    /// Of translation alone: jerk is constant in an interval, but not that of a point which turns about the moved one.
+    fourth: f32,
 }
 
 impl IntervalBounds {
@@ -50,23 +52,36 @@ impl IntervalBounds {
             v: [hypot(x, y).fmin(ends + j[0] * t * t / 8.0), theta],
             a: [0, 1].map(|i| from.a[i].fmax(to.a[i])),
             j,
+            fourth: 0.0,
         }
     }
 
     /// Of a point as far as `arm` from the moved one.
     pub fn at_offset(&self, arm: f32) -> Self {
+        if arm == 0.0 {
+            return *self;
+        }
         let ([v, turn], [a, angular_acceleration], [j, angular_jerk]) = (self.v, self.a, self.j);
+        let [second, third, fourth] = self.turned();
         Self {
             v: [v + arm * turn, turn],
-            a: [
-                a + arm * (angular_acceleration + turn * turn),
-                angular_acceleration,
-            ],
-            j: [
-                j + arm * (angular_jerk + turn * (3.0 * angular_acceleration + turn * turn)),
-                angular_jerk,
-            ],
+            a: [a + arm * second, angular_acceleration],
+            j: [j + arm * third, angular_jerk],
+            fourth: arm * fourth,
         }
+    }
+
+    /// The second to the fourth derivative of a unit vector that turns with theta, at most.
+    fn turned(&self) -> [f32; 3] {
+        let ([_, turn], [_, acceleration], [_, jerk]) = (self.v, self.a, self.j);
+        let square = turn * turn;
+        [
+            acceleration + square,
+            jerk + turn * (3.0 * acceleration + square),
+            4.0 * turn * jerk
+                + 3.0 * acceleration * (acceleration + 2.0 * square)
+                + square * square,
+        ]
     }
 
     /// Bounds of the pivots' rates and accelerations when these sizes are the platform centre's, at any orientation.
@@ -79,15 +94,27 @@ impl IntervalBounds {
         ]
     }
 
-    /// How far rate and acceleration of a pivot can rise between the ends of an interval, from the bounds of both: a
-    /// pivot's third and fourth derivative are sums of products of the lower ones, times powers of `k`, which bounds
-    /// how fast `1 / c` changes.
-    pub fn pivot_rises(&self, [u, w]: [f32; 2], bound: &PivotGain, t: f32) -> [f32; 2] {
-        let k = bound.k;
-        let jerk = k * (self.j[0] + 2.0 * self.j[1]);
-        let ku = k * u;
-        let third = jerk + 3.0 * ku * w + ku * ku * u;
-        let fourth = ku * (4.0 * jerk + 6.0 * ku * w + ku * ku * u) + 3.0 * k * w * w;
+    /// How far rate and acceleration of a pivot can rise between the ends of an interval of `t` seconds, when these sizes
+    /// are the platform centre's.
+    ///
+    /// Seen from the platform, whose guides stand still, the centre moves with derivatives of at most `d1` to `d4`; a pivot
+    /// is at the angle `theta + asin d` with `|d| <= r`, of which these are the third and the fourth derivative at most.
+    pub fn pivot_rises(&self, bound: &PivotGain, t: f32) -> [f32; 2] {
+        let PivotGain { radius: r, k } = *bound;
+        let ([v, turn], [a, _], [j, angular_jerk]) = (self.v, self.a, self.j);
+        let [second, third, fourth] = self.turned();
+        let d1 = v + turn * r;
+        let d2 = a + 2.0 * turn * v + second * r;
+        let d3 = j + 3.0 * (turn * a + second * v) + third * r;
+        let d4 = self.fourth + 4.0 * (turn * j + third * v) + 6.0 * second * a + fourth * r;
+        let (r2, k2) = (r * r, k * k);
+        // Derivatives of asin, over k.
+        let (f2, f3) = (k2 * r, k2 * k2 * (1.0 + 2.0 * r2));
+        let f4 = k2 * k2 * k2 * r * (9.0 + 6.0 * r2);
+        let bent = d1 * d1;
+        let third = k * (d3 + 3.0 * f2 * d1 * d2 + f3 * bent * d1) + angular_jerk;
+        let fourth = k
+            * (d4 + f2 * (4.0 * d1 * d3 + 3.0 * d2 * d2) + 6.0 * f3 * bent * d2 + f4 * bent * bent);
         let eighth = t * t / 8.0;
         [third * eighth, fourth * eighth]
     }

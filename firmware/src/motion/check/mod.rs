@@ -4,8 +4,12 @@
 //! more than an eighth of the square of the duration times its second derivative: for position that is the
 //! acceleration, for velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are
 //! first bounded for any orientation; where that is not enough they are computed at both ends, and rise by what the
-//! products of velocity, acceleration and jerk can make of them in between. An interval that fails is taken in shorter
-//! ones.
+//! platform's motion can make of their third and fourth derivatives in between. An interval that fails is taken in shorter
+//! ones, unless a limit is broken at one of its ends.
+//!
+//! A plan of retarget, a jog in motion and a stop are held against all of it. A line from rest is planned inside the limits
+//! at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation (`pivot_bounds`),
+//! streamed targets instant by instant (`instant`).
 //!
 //! | checked | for |
 //! |---|---|
@@ -37,4 +41,4 @@ pub(super) mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use plan_check::{PlanCheck, is_over};
+pub(crate) use plan_check::{Budget, PlanCheck, is_over};

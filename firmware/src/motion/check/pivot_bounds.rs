@@ -19,7 +19,7 @@ use crate::number::sqrt_f32;
 /// The bounds of the module's head, for a platform's centre within a radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PivotGain {
-    radius: f32,
+    pub radius: f32,
     /// How much faster than the platform a pivot is at most.
     pub k: f32,
 }

@@ -6,9 +6,9 @@ use super::platform::greatest;
 use super::violation::Violation;
 use super::workspace::{StopLimits, Workspace};
 use crate::motion::constraints::Constraints;
+use crate::motion::plan::Piece;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::motion::plan::{Piece, Pieces};
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
 use crate::motion::tolerances::PLAN_SLACK;
@@ -45,16 +45,26 @@ struct Interval<'a> {
     seconds: f32,
 }
 
-/// What a check has used up, and found.
-struct Budget<'a> {
+/// What a check may take.
+pub(crate) struct Budget {
     /// Intervals that may be looked at, failed ones included, before the next failure counts.
-    intervals: &'a mut usize,
-    /// What was broken in intervals that have been taken in shorter ones since.
-    worst: Option<Violation>,
-    pivots_sampled: bool,
+    pub intervals: usize,
+    /// When the pivots are over a limit, they are sampled all along the plan, which tells by how much.
+    pub samples_pivots: bool,
 }
 
-pub(super) const MAX_INTERVALS: usize = 60;
+impl Budget {
+    /// For a stop, which is made anew with what was found.
+    pub const FOR_STOP: Self = Self {
+        intervals: 60,
+        samples_pivots: true,
+    };
+    /// For a plan that is taken or not.
+    pub const FOR_ANSWER: Self = Self {
+        intervals: 60,
+        samples_pivots: false,
+    };
+}
 
 /// Intervals of one plan at most: a way of many turns that asks for more is not worth the time. A stop waits meanwhile.
 const MOST_INTERVALS: usize = 1_000;
@@ -103,51 +113,40 @@ impl PlanCheck {
     }
 
     /// Whether a motion by the pieces of a plan from `start` keeps to everything. The plan's nudge does not show in it.
-    pub fn check(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
-        let mut floats: Pieces<f32> = Pieces::new();
-        for piece in pieces {
-            // As many.
-            let _ = floats.push(Piece {
-                ticks: piece.ticks,
-                jerk: CubicSegment::jerk(piece, self.hz),
-            });
-        }
-        self.check_floats(&floats, start, &mut { MAX_INTERVALS })
-    }
-
-    /// The same, of pieces in floats. After so many `intervals`, of which those that are taken are taken off, the next
-    /// failure counts.
+    /// What is taken is taken off the budget.
     #[inline(never)]
-    pub fn check_floats(
+    pub fn check(
         &self,
-        pieces: &[Piece<f32>],
+        pieces: &[Piece],
         start: &[AxisState; 3],
-        intervals: &mut usize,
+        budget: &mut Budget,
     ) -> Result<(), Violation> {
-        let mut budget = Budget {
-            intervals,
-            worst: None,
-            pivots_sampled: false,
-        };
-        let mut looked_at = 0;
+        let (mut looked_at, mut worst) = (0, None);
+        let mut samples_pivots = budget.samples_pivots;
         let bound_distances = self.workspace.bound_distances(start);
-        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        let mut segment = CubicSegment::new(start, self.hz);
         let [mut first, mut second] = [IntervalEnd::default(); 2];
         let (mut from, mut to) = (&mut first, &mut second);
         self.evaluate(&segment, 0, from);
         for piece in pieces {
             segment.start = from.sample;
-            segment.jerk = piece.jerk;
+            segment.jerk = CubicSegment::jerk(piece, self.hz);
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             self.check_jerk(jerk)?;
+            if piece.ticks == 1 {
+                // What a tick changes does not show, nor what some of them do, one after the other.
+                self.evaluate(&segment, piece.ticks, to);
+                core::mem::swap(&mut from, &mut to);
+                continue;
+            }
             let (mut done, mut ticks) = (0, piece.ticks);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
-                *budget.intervals = budget.intervals.saturating_sub(1);
+                budget.intervals = budget.intervals.saturating_sub(1);
                 looked_at += 1;
                 if looked_at > MOST_INTERVALS {
-                    return Err(budget.worst.unwrap_or(Violation::Workspace));
+                    return Err(worst.unwrap_or(Violation::Workspace));
                 }
                 self.evaluate(&segment, done + ticks, to);
                 let interval = Interval {
@@ -163,39 +162,21 @@ impl PlanCheck {
                         ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
                     }
                     Err((broken, shorter)) => {
-                        self.failed(broken, ticks, &mut budget, pieces, start)?;
+                        // Where a limit is passed indeed, sampling the pivots tells by how much.
+                        if broken.is_of_pivots() && core::mem::take(&mut samples_pivots) {
+                            self.sample_pivots(pieces, start)?;
+                        }
+                        // Intervals close in on where a limit is met; how far it is passed was seen before.
+                        let broken = broken.or_worse(worst);
+                        worst = Some(broken);
+                        if shorter == 0.0 || ticks <= SHORTEST || budget.intervals == 0 {
+                            return Err(broken);
+                        }
                         ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
                     }
                 }
                 ticks = ticks.max(SHORTEST);
             }
-        }
-        Ok(())
-    }
-
-    /// After an interval that has failed: whether it is worth a shorter one.
-    fn failed(
-        &self,
-        broken: Violation,
-        ticks: u64,
-        budget: &mut Budget<'_>,
-        pieces: &[Piece<f32>],
-        start: &[AxisState; 3],
-    ) -> Result<(), Violation> {
-        // In shorter intervals the same instant would be met.
-        if broken == Violation::NoRoomToStop {
-            return Err(Violation::Workspace);
-        }
-        if broken.is_of_pivots() && !budget.pivots_sampled {
-            // Where a limit is passed indeed, sampling the pivots tells by how much.
-            self.sample_pivots(pieces, start)?;
-            budget.pivots_sampled = true;
-        }
-        // Intervals close in on where a limit is met; how far it is passed was seen before.
-        let worst = broken.or_worse(budget.worst);
-        budget.worst = Some(worst);
-        if ticks <= SHORTEST || *budget.intervals == 0 {
-            return Err(worst);
         }
         Ok(())
     }
@@ -219,22 +200,32 @@ impl PlanCheck {
         };
     }
 
+    /// Rates and accelerations of the pivots at a state of a segment.
+    pub fn pivots(&self, segment: &CubicSegment, sample: &MotionState) -> [[f32; 3]; 2] {
+        segment.platform(sample, self.workspace.centre).pivots()
+    }
+
+    /// The pivots' limit of acceleration.
+    pub fn pivot_acceleration(&self) -> f32 {
+        self.pivots[1]
+    }
+
+    /// The largest part of a limit of theirs that the pivots reach at the start of a segment.
+    pub fn pivot_part(&self, segment: &CubicSegment) -> f32 {
+        let [rates, accelerations] = self.pivots(segment, &segment.start);
+        (greatest(&rates) / self.pivots[0]).fmax(greatest(&accelerations) / self.pivots[1])
+    }
+
     /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn sample_pivots(
-        &self,
-        pieces: &[Piece<f32>],
-        start: &[AxisState; 3],
-    ) -> Result<(), Violation> {
+    fn sample_pivots(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
         let [mut rate, mut acceleration] = [0.0_f32; 2];
-        let mut segment = CubicSegment::new(start, &Piece::default(), self.hz);
+        let mut segment = CubicSegment::new(start, self.hz);
         for piece in pieces {
-            segment.jerk = piece.jerk;
+            segment.jerk = CubicSegment::jerk(piece, self.hz);
             let seconds = ticks_to_f32(piece.ticks) / self.hz;
             let spots = [seconds, seconds / 2.0];
             for &t in &spots[..1 + usize::from(piece.ticks > SHORT)] {
-                let [rates, accelerations] = segment
-                    .platform(&segment.at(t), self.workspace.centre)
-                    .pivots();
+                let [rates, accelerations] = self.pivots(&segment, &segment.at(t));
                 rate = rate.fmax(greatest(&rates));
                 acceleration = acceleration.fmax(greatest(&accelerations));
             }
@@ -259,7 +250,7 @@ impl PlanCheck {
     }
 
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
-    /// try.
+    /// try: zero where it is broken at an end.
     fn check_interval(
         &self,
         interval: &Interval<'_>,
@@ -270,7 +261,10 @@ impl PlanCheck {
         let moving = sizes.at_offset(self.workspace.arm);
         let radius = self
             .path(interval, [from, to], [&sizes, &moving])
-            .map_err(|broken| (broken, HALF))?;
+            .map_err(|broken| match broken {
+                Violation::NoRoomToStop => (Violation::Workspace, 0.0),
+                broken => (broken, HALF),
+            })?;
         self.check_pivots(interval, [from, to], &moving, radius)
     }
 
@@ -336,7 +330,6 @@ impl PlanCheck {
         radius: f32,
     ) -> Result<f32, (Violation, f32)> {
         const ALL: f32 = 4.0;
-        const ROUNDS: usize = 3;
         let bound = PivotGain::new(radius);
         let [rate, acceleration] = moving.pivot_bounds(&bound);
         let [rate_limit, acceleration_limit] = self.pivots;
@@ -349,15 +342,11 @@ impl PlanCheck {
             rates = rates.fmax(rate);
             accelerations = accelerations.fmax(acceleration);
         }
-        // The bounds hold for any orientation; what is sure of this one bounds its own rise in turn.
-        let mut most = [rate, acceleration];
-        for _ in 0..ROUNDS {
-            let rises = moving.pivot_rises(most, &bound, interval.seconds);
-            most = [
-                most[0].fmin(rates + rises[0]),
-                most[1].fmin(accelerations + rises[1]),
-            ];
-        }
+        let rises = moving.pivot_rises(&bound, interval.seconds);
+        let most = [
+            rate.fmin(rates + rises[0]),
+            acceleration.fmin(accelerations + rises[1]),
+        ];
         let once = rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
         let twice = rise_within(
             accelerations,
@@ -384,11 +373,13 @@ fn rise_within(
     if rise <= room {
         return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
     }
-    let shorter = PART * sqrt_f32(room.fmax(0.0) / rise);
-    Err((
-        broken((value / limit).fmax(1.0)),
-        shorter.clamp(1.0 / 16.0, 0.7),
-    ))
+    // What is not a number is no room.
+    let shorter = if room > 0.0 {
+        (PART * sqrt_f32(room / rise)).clamp(1.0 / 16.0, 0.7)
+    } else {
+        0.0
+    };
+    Err((broken((value / limit).fmax(1.0)), shorter))
 }
 
 /// The part of its limit that translation or rotation reaches, the greater.

@@ -1,6 +1,6 @@
 //! One plan of one piece for each thing that can be broken, and its twin that keeps it.
 
-use super::plan_check::MAX_INTERVALS;
+use super::plan_check::Budget;
 use super::violation::Violation;
 use super::*;
 use crate::motion::constraints::Constraints;
@@ -40,7 +40,7 @@ fn plan(ticks: u64, jerk: [f64; 3]) -> Plan {
 }
 
 fn check(plan: &Plan, start: &[AxisState; 3], constraints: &Constraints) -> Result<(), Violation> {
-    PlanCheck::new(constraints, start).check(&plan.pieces, start)
+    PlanCheck::new(constraints, start).check(&plan.pieces, start, &mut { Budget::FOR_STOP })
 }
 
 #[test]
@@ -147,7 +147,9 @@ fn the_disk_is_kept_by_the_way_and_by_a_stop_from_it() {
         Err(Violation::Workspace)
     );
     // A stop needs no room to stop.
-    let stop = |x: f64| PlanCheck::for_stop(&CONSTRAINTS).check(&way.pieces, &out(x));
+    let stop = |x: f64| {
+        PlanCheck::for_stop(&CONSTRAINTS).check(&way.pieces, &out(x), &mut { Budget::FOR_STOP })
+    };
     assert_eq!(stop(0.785), Ok(()));
     assert_eq!(stop(0.795), Err(Violation::Workspace));
 }
@@ -200,12 +202,17 @@ fn without_looks_left_it_fails() {
         let plan_check = PlanCheck::new(&constraints, &now);
         let part = [Piece {
             ticks: 2_000,
-            jerk: [0.0; 3],
+            jerk: [0; 3],
         }];
-        let with =
-            |mut intervals: usize| plan_check.check_floats(&part, &now, &mut intervals).is_ok();
-        assert!(with(MAX_INTERVALS) || !with(1));
-        undecided += usize::from(with(MAX_INTERVALS) && !with(1));
+        let with = |intervals: usize| {
+            let mut budget = Budget {
+                intervals,
+                ..Budget::FOR_ANSWER
+            };
+            plan_check.check(&part, &now, &mut budget).is_ok()
+        };
+        assert!(with(60) || !with(1));
+        undecided += usize::from(with(60) && !with(1));
     }
     assert!(undecided > 2, "{undecided}");
 }

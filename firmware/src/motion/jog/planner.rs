@@ -2,7 +2,7 @@
 
 use super::request::{InitialState, JogRequest};
 use super::trajectory::Jog;
-use crate::motion::check::{PlanCheck, is_over};
+use crate::motion::check::{Budget, PlanCheck, is_over};
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::{Plan, PlanStart};
@@ -63,7 +63,7 @@ fn write(
                 // held.
                 if !from_rest {
                     PlanCheck::new(constraints, state)
-                        .check(&plan.pieces, state)
+                        .check(&plan.pieces, state, &mut { Budget::FOR_ANSWER })
                         .map_err(|_| RetargetError::NeedsStop)?;
                 }
                 jog.finish(plan, hold);

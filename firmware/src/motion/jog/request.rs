@@ -11,9 +11,7 @@ use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::refusal::{Refusal, RetargetError};
 use crate::motion::speeds::Speeds;
 use crate::motion::tolerances::JOG_RADII;
-use crate::number::Fixed;
 use crate::number::float::{FloatMinMax, hypot, i64_to_f32_fast};
-use kinematics::{Angle, Scalar};
 
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
@@ -54,8 +52,9 @@ impl<'a> JogRequest<'a> {
             return Err(Refusal::Velocity);
         }
         let mm = constraints.geometry.radius_mm;
-        let units = f64::from(AXIS_UNITS) / limits.rate_hz;
-        let (per_mm, per_deg) = (units / mm, units * (1.0 / 360.0));
+        // One division of an f64 costs as much as many products.
+        let per_mm = f64::from(AXIS_UNITS) / (limits.rate_hz * mm);
+        let per_deg = per_mm * (mm * (1.0 / 360.0));
         Ok(Self {
             constraints,
             hz: limits.rate_hz as f32,
@@ -124,6 +123,7 @@ impl<'a> JogRequest<'a> {
     }
 
     /// The steady motion at `velocity` from a position.
+    #[inline(never)]
     pub fn steady(&self, axes: &[AxisState; 3], velocity: &[f32; 3]) -> SteadyMotion {
         let [x, y, turning] = *velocity;
         SteadyMotion {
@@ -142,15 +142,8 @@ impl<'a> JogRequest<'a> {
 
 impl InitialState {
     pub fn new(axes: &[AxisState; 3], request: &JogRequest) -> Self {
-        let point = [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT);
-        let (sin, cos) = Fixed::sin_cos(Angle::from_units(axes[2].rounded()));
-        let (sin, cos) = (sin.to_f32(), cos.to_f32());
-        let [a, b] = request.centre();
         Self {
-            platform: [
-                point[0] - (a * cos - b * sin),
-                point[1] - (a * sin + b * cos),
-            ],
+            platform: request.steady(axes, &[0.0; 3]).platform(0.0),
             motion: MotionState::new(axes, request.hz),
         }
     }

@@ -4,9 +4,7 @@ use super::request::{InitialState, JogRequest};
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::MotionState;
 use crate::motion::plan::quantise::velocity_pieces;
-use crate::motion::plan::{
-    Piece, Pieces, Plan, pieces_after, push_piece, state_after_pieces, write_sum,
-};
+use crate::motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
 use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile};
 use crate::motion::refusal::RetargetError;
 use crate::motion::speeds::per_second;
@@ -22,6 +20,7 @@ pub(super) struct Jog {
     pub(super) ramp: u64,
     /// Ticks that bring the velocity back to zero.
     pub(super) brake: [u64; 3],
+    from_rest: bool,
     pub(super) acceleration_limits: AccelerationLimits,
     pub(super) radius: f32,
 }
@@ -42,6 +41,7 @@ impl Jog {
         let target = per_second(&wanted, hz);
         let (radius, limits) = request.limits_towards(now, &target)?;
         let ramp = VelocityProfile::new(&now.motion, &target, &limits).ticks(hz);
+        let from_rest = now.motion.is_at_rest();
         pieces.clear();
         for piece in velocity_pieces(state, &wanted, ramp) {
             // Four of many.
@@ -51,7 +51,12 @@ impl Jog {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),
             ramp: pieces.iter().map(|piece| piece.ticks).sum(),
-            brake: change(&target, &limits).ticks(hz),
+            brake: if from_rest {
+                ramp
+            } else {
+                change(&target, &limits).ticks(hz)
+            },
+            from_rest,
             acceleration_limits: limits,
             radius,
         })
@@ -59,37 +64,44 @@ impl Jog {
 
     /// Adds pieces for the velocities held for `hold` ticks and given up, the point's and theta's for themselves.
     pub(super) fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
-        let [x, y, theta] = [0, 1, 2].map(|i| match self.wanted[i] {
-            // What rounding leaves of a velocity is not given up: the nudge takes it.
-            0 => AxisState::default(),
-            _ => self.steady[i],
-        });
-        let still = AxisState::default();
+        // What rounding leaves of a velocity is not given up: the nudge takes it.
+        let moves = self.wanted.map(|velocity| velocity != 0);
+        let translating = self.hold_then_stop(&plan.pieces, [moves[0], moves[1], false], point);
+        let turning = self.hold_then_stop(&plan.pieces, [false, false, moves[2]], turn);
         let mut way: Vec<Piece, { 4 + 5 }> = Vec::new();
         // Four, and five.
         let _ = way.extend_from_slice(&plan.pieces);
-        let _ = way.extend_from_slice(&self.hold_then_stop(&[x, y, still], point));
-        let turning = self.hold_then_stop(&[still, still, theta], turn);
+        let _ = way.extend_from_slice(&translating);
         // Twice five, and four.
         let _ = write_sum(&way, &turning, self.ramp, &mut plan.pieces);
         let ticks = plan.ticks();
-        let rest = self.rest(&plan.pieces);
-        plan.nudge = rest.map(|axis| -axis.velocity);
-        plan.end = rest.map(|axis| axis.rest_position(ticks, -axis.velocity));
-    }
-
-    /// Where the axes come to rest, but for what rounding leaves of their velocities.
-    fn rest(&self, pieces: &[Piece]) -> [AxisState; 3] {
-        let mut axes = self.steady;
-        for piece in pieces_after(pieces, self.ramp) {
-            piece.advance(&mut axes, piece.ticks, &[0; 3]);
+        for (i, pieces) in [&translating, &translating, &turning]
+            .into_iter()
+            .enumerate()
+        {
+            let rest = self.rest(i, pieces, ticks - self.ramp);
+            plan.nudge[i] = -rest.velocity;
+            plan.end[i] = rest.rest_position(ticks, -rest.velocity);
         }
-        axes
     }
 
-    fn hold_then_stop(&self, axes: &[AxisState; 3], hold: u64) -> HoldThenStop {
+    /// Where an axis is `ticks` after its velocity is reached: at rest, but for what rounding leaves of the velocity.
+    #[inline(never)]
+    fn rest(&self, i: usize, pieces: &[Piece], mut ticks: u64) -> AxisState {
+        let mut axis = self.steady[i];
+        if self.wanted[i] != 0 {
+            for piece in pieces {
+                axis = axis.after(piece.ticks, piece.jerk[i], 0);
+                ticks -= piece.ticks;
+            }
+        }
+        axis.after(ticks, 0, 0)
+    }
+
+    /// Of the axes that `are_meant`, after the pieces of the way there.
+    fn hold_then_stop(&self, ramp: &[Piece], are_meant: [bool; 3], hold: u64) -> HoldThenStop {
         let mut pieces = HoldThenStop::new();
-        if axes.iter().all(|axis| axis.velocity == 0) {
+        if are_meant == [false; 3] {
             return pieces;
         }
         // Five of five.
@@ -97,7 +109,17 @@ impl Jog {
             ticks: hold,
             jerk: [0; 3],
         });
-        let _ = pieces.extend_from_slice(&velocity_pieces(axes, &[0; 3], self.brake));
+        if self.from_rest {
+            // The way there takes back just what it gave.
+            for piece in ramp {
+                let jerk = [0, 1, 2].map(|i| if are_meant[i] { -piece.jerk[i] } else { 0 });
+                let _ = pieces.push(Piece { jerk, ..*piece });
+            }
+        } else {
+            let still = AxisState::default();
+            let axes = [0, 1, 2].map(|i| if are_meant[i] { self.steady[i] } else { still });
+            let _ = pieces.extend_from_slice(&velocity_pieces(&axes, &[0; 3], self.brake));
+        }
         pieces
     }
 }

@@ -92,6 +92,7 @@ impl SteadyMotion {
     }
 
     /// Seconds until something at `from` that moves as the point does is `radius` out.
+    #[inline(never)]
     fn straight(&self, from: [f32; 2], radius: f32) -> f32 {
         let [x, y] = self.velocity;
         crossing(
@@ -123,7 +124,10 @@ impl SteadyMotion {
 
     /// The platform's centre after so many seconds.
     #[inline(never)]
-    fn platform(&self, seconds: f32) -> [f32; 2] {
+    pub fn platform(&self, seconds: f32) -> [f32; 2] {
+        if self.centre == [0.0; 2] {
+            return self.point_after(seconds);
+        }
         let turned = truncate(self.turning * seconds * UNITS_PER_RAD);
         let angle = Angle::from_units(self.theta.wrapping_add(turned));
         let (sin, cos) = Fixed::sin_cos(angle);

@@ -15,11 +15,10 @@
 //! All times are whole ticks, lengths of segments rounded up, those of ramps to even numbers: nothing gets faster by
 //! it.
 
-use super::path_profile::PathProfile;
-use super::ramp::{JerkRamp, JerkRamps};
-use super::rounded_ramps::RoundedRamps;
+use super::rounded_ramps::{JerkRamp, JerkRamps, RoundedRamps};
 use super::segments::Corners;
 use crate::motion::limits::PathLimits;
+use crate::motion::plan::quantise::PathProfile;
 use crate::motion::tolerances::WHOLE_DURATION;
 use crate::number::float::{FloatMinMax, ceil_i32};
 

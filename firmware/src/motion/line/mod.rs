@@ -14,17 +14,14 @@
 //! | `pivot_demand` | the pivots' demands on a grid of places along the line |
 //! | `topp` | the largest squared speed at every place: time-optimal path parametrisation |
 //! | `segments` | that curve as a few segments of constant acceleration |
-//! | `ramp`, `jerk_ramps` | the steps of acceleration between them as ramps of limited jerk |
+//! | `jerk_ramps` | the steps of acceleration between them as ramps of limited jerk |
 //! | `rounded_ramps` | the ramps in whole numbers, at rest to the bit at the end |
-//! | `path_profile` | segments of constant jerk of the path parameter, and the plan that they make |
 
 pub(crate) mod disk;
 pub(super) mod jerk_ramps;
 pub(crate) mod path;
-pub(super) mod path_profile;
 pub(super) mod pivot_demand;
 pub(crate) mod planner;
-pub(crate) mod ramp;
 pub(super) mod rounded_ramps;
 pub(crate) mod segments;
 pub(super) mod topp;

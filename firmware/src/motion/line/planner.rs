@@ -3,12 +3,12 @@
 use super::disk::check_line;
 use super::jerk_ramps::write_path_profile;
 use super::path::Path;
-use super::path_profile::PathProfile;
 use super::pivot_demand::{DemandGrid, PathState};
 use super::segments::{Corners, fit_segments_below, remove_close_corners};
 use super::topp::{GRID_POINTS, velocity_limit_squared};
 use crate::motion::constraints::Constraints;
 use crate::motion::limits::PathLimits;
+use crate::motion::plan::quantise::PathProfile;
 use crate::motion::plan::{Plan, PlanStart, Position};
 use crate::motion::profile::rest_to_rest::RestToRestProfile;
 use crate::motion::refusal::Refusal;

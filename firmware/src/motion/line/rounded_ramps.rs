@@ -3,13 +3,26 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end,
 //! up to a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::path_profile::{JERK_BITS, JerkSegment, PathProfile};
-use super::ramp::{JerkRamp, JerkRamps};
 use super::segments::MAX_SEGMENTS;
 use crate::motion::plan::MAX_PIECES;
+use crate::motion::plan::quantise::{JERK_BITS, JerkSegment, PathProfile};
 use crate::number::float::{FloatMinMax, i64_to_f32_fast, i128_to_f32_fast, round_i32};
 use crate::number::wide_integer::{mul_i64_u32, mul_i128_u32};
 use heapless::Vec;
+
+/// A ramp of the acceleration, before it is rounded.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct JerkRamp {
+    /// Where its middle is, ticks.
+    pub middle: i32,
+    /// How long it is, ticks: even.
+    pub ticks: i32,
+    /// How much the acceleration changes, s per tick squared.
+    pub change: f32,
+}
+
+/// Ramps that make a motion.
+pub(super) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;
 
 /// The ramps in integers.
 pub(super) struct RoundedRamps {

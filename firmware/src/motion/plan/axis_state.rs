@@ -117,6 +117,7 @@ impl AxisState {
 
     /// Where this is at rest in the end, when a nudge comes on top for so many ticks. What rounding leaves of a
     /// velocity does not count.
+    #[inline(never)]
     pub(crate) fn rest_position(&self, ticks: u64, nudge: i64) -> i64 {
         let rest = Self {
             position: self.position,

@@ -32,6 +32,7 @@ const RADIANS: [f32; 3] = [1.0, 1.0, TAU];
 
 impl MotionState {
     /// Of the axes of a plan at `hz` ticks a second, where a displacement is counted from.
+    #[inline(never)]
     pub fn new(axes: &[AxisState; 3], hz: f32) -> Self {
         let (once, twice) = (PER_AXIS_UNIT * hz, PER_AXIS_UNIT * hz * hz);
         Self {
@@ -40,10 +41,14 @@ impl MotionState {
             a: [0, 1, 2].map(|i| i64_to_f32_fast(axes[i].acceleration) * (twice * RADIANS[i])),
         }
     }
-}
 
-impl MotionState {
+    /// Whether nothing moves, nor is about to.
+    pub fn is_at_rest(&self) -> bool {
+        self.v == [0.0; 3] && self.a == [0.0; 3]
+    }
+
     /// From where the axes are to a position.
+    #[inline(never)]
     pub fn between(axes: &[AxisState; 3], to: &Position) -> [f32; 3] {
         [0, 1, 2].map(|i| {
             let way = to[i].wrapping_sub(axes[i].rounded());
@@ -59,13 +64,13 @@ impl CubicSegment {
         [0, 1, 2].map(|i| i64_to_f32_fast(piece.jerk[i]) * (thrice * RADIANS[i]))
     }
 
-    /// A piece of a plan that starts from `axes`, at `hz` ticks a second.
-    pub fn new(axes: &[AxisState; 3], piece: &Piece, hz: f32) -> Self {
+    /// Without a jerk yet, from `axes` on, at `hz` ticks a second.
+    pub fn new(axes: &[AxisState; 3], hz: f32) -> Self {
         Self {
             from: [0, 1].map(|i| i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
             theta: axes[2].rounded() as u32,
             start: MotionState::new(axes, hz),
-            jerk: Self::jerk(piece, hz),
+            jerk: [0.0; 3],
         }
     }
 

@@ -8,7 +8,7 @@
 //! | `motion_plan` | the plan: what it starts from, its pieces, where it ends |
 //! | `sum` | two motions that overlap, as one |
 //! | `units` | the units of positions and axes as floats |
-//! | `quantise` | times and velocities in whole ticks and integers |
+//! | `quantise` | profiles in whole ticks and integers |
 //! | `cubic_segment` | a piece in floats: the state at an instant of it |
 //! | `setpoint` | what the control loop is given at a tick |
 //! | `rotation_centre` | the point that is moved, and what its motion is for the platform's centre |

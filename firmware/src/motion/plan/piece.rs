@@ -11,12 +11,12 @@ pub const MAX_PIECES: usize = 32;
 
 /// So many ticks of constant jerk, of all axes together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Piece<J = i64> {
+pub struct Piece {
     /// Length in ticks.
     pub ticks: u64,
-    /// Jerk of each axis: in integers 2^-72 track radii or turns per tick cubed, a multiple of
-    /// [`JERK_STEP`](super::axis_state::JERK_STEP); in floats track radii and rad per second cubed.
-    pub jerk: [J; 3],
+    /// Jerk of each axis: 2^-72 track radii or turns per tick cubed, a multiple of
+    /// [`JERK_STEP`](super::axis_state::JERK_STEP).
+    pub jerk: [i64; 3],
 }
 
 impl Piece {
@@ -31,7 +31,7 @@ impl Piece {
 }
 
 /// Pieces of a plan.
-pub(crate) type Pieces<J = i64> = Vec<Piece<J>, MAX_PIECES>;
+pub(crate) type Pieces = Vec<Piece, MAX_PIECES>;
 
 /// The axes after all of these pieces.
 pub(crate) fn state_after_pieces(

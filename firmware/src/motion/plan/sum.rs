@@ -7,15 +7,14 @@
 //! ```
 
 use super::piece::{Piece, Pieces};
-use core::ops::Add;
 
 /// Writes the sum of `first` and of `second`, which begins `delay` ticks later. `None` where it has more pieces than
 /// there is room for.
-pub(crate) fn write_sum<J: Copy + Default + PartialEq + Add<Output = J>>(
-    first: &[Piece<J>],
-    second: &[Piece<J>],
+pub(crate) fn write_sum(
+    first: &[Piece],
+    second: &[Piece],
     delay: u64,
-    pieces: &mut Pieces<J>,
+    pieces: &mut Pieces,
 ) -> Option<()> {
     pieces.clear();
     let mut cursors = [Cursor::new(first, 0), Cursor::new(second, delay)];
@@ -34,7 +33,8 @@ pub(crate) fn write_sum<J: Copy + Default + PartialEq + Add<Output = J>>(
 }
 
 /// Adds a piece: nothing where it has no ticks, to the last where that has the same jerk.
-pub(crate) fn push_piece<J: PartialEq>(pieces: &mut Pieces<J>, piece: Piece<J>) -> Option<()> {
+#[inline(never)]
+pub(crate) fn push_piece(pieces: &mut Pieces, piece: Piece) -> Option<()> {
     match pieces.last_mut() {
         _ if piece.ticks == 0 => Some(()),
         Some(last) if last.jerk == piece.jerk => {
@@ -46,21 +46,21 @@ pub(crate) fn push_piece<J: PartialEq>(pieces: &mut Pieces<J>, piece: Piece<J>) 
 }
 
 /// Where one of the motions is.
-struct Cursor<'a, J> {
+struct Cursor<'a> {
     /// Ticks until its jerk changes.
     left: u64,
-    jerk: [J; 3],
-    rest: core::slice::Iter<'a, Piece<J>>,
+    jerk: [i64; 3],
+    rest: core::slice::Iter<'a, Piece>,
 }
 
 /// Ticks until anything changes when all is over.
 const NEVER: u64 = u64::MAX;
 
-impl<'a, J: Copy + Default> Cursor<'a, J> {
-    fn new(pieces: &'a [Piece<J>], delay: u64) -> Self {
+impl<'a> Cursor<'a> {
+    fn new(pieces: &'a [Piece], delay: u64) -> Self {
         let mut cursor = Self {
             left: delay,
-            jerk: [J::default(); 3],
+            jerk: [0; 3],
             rest: pieces.iter(),
         };
         cursor.enter();
@@ -78,9 +78,8 @@ impl<'a, J: Copy + Default> Cursor<'a, J> {
     fn enter(&mut self) {
         while self.left == 0 {
             let next = self.rest.next();
-            (self.left, self.jerk) = next.map_or((NEVER, [J::default(); 3]), |piece| {
-                (piece.ticks, piece.jerk)
-            });
+            (self.left, self.jerk) =
+                next.map_or((NEVER, [0; 3]), |piece| (piece.ticks, piece.jerk));
         }
     }
 }

@@ -13,6 +13,8 @@
 //! themselves, a millionth.
 
 use crate::motion::limits::PathLimits;
+use crate::motion::plan::quantise::{JerkSegment, PathProfile};
+use crate::motion::plan::{Plan, Position};
 use crate::motion::tolerances::WHOLE_DURATION;
 use crate::number::float::{FloatMinMax, ceil_ticks, ticks_to_f32};
 use crate::number::{cbrt_f32, sqrt_f32};
@@ -81,6 +83,28 @@ impl RestToRestProfile {
     /// Jerk times this is the way: b1 b2 b3.
     pub fn volume(&self) -> i128 {
         i128::from(self.jerk * self.ramp) * i128::from(self.travel)
+    }
+}
+
+impl RestToRestProfile {
+    /// Writes pieces and nudge of a plan from `from` to its end.
+    pub(crate) fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
+        let mut path_profile = PathProfile::default();
+        self.write(&mut path_profile);
+        path_profile.write_plan(plan, from)
+    }
+
+    /// Writes it as a path profile: its jerks are 1 and -1.
+    pub(crate) fn write(&self, path_profile: &mut PathProfile) {
+        path_profile.segments.clear();
+        for (ticks, jerk) in self.segments() {
+            if ticks > 0 {
+                // Seven segments, room for more.
+                let _ = path_profile.segments.push(JerkSegment { ticks, jerk });
+            }
+        }
+        path_profile.six_times_distance = 6 * self.volume();
+        path_profile.bits = 0;
     }
 }
 

@@ -44,6 +44,7 @@ pub(crate) struct AccelerationLimits {
 
 impl AccelerationLimits {
     /// Those of ordinary motion.
+    #[inline(never)]
     pub fn new(constraints: &Constraints) -> Self {
         let limits = &constraints.limits;
         let speeds = |mm_s: f64, deg_s: f64| constraints.speeds(mm_s, deg_s);
@@ -76,6 +77,7 @@ pub(crate) struct VelocityProfile {
 
 impl VelocityProfile {
     /// From a state to a velocity, track radii and rad per second.
+    #[inline(never)]
     pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &AccelerationLimits) -> Self {
         let over = [
             1.0 / limits.acceleration.linear,
@@ -183,7 +185,12 @@ impl VelocityProfile {
 
     /// The times in whole ticks, with what is too short by then lengthened; the first and the last are not zero.
     pub fn ticks(&self, hz: f32) -> [u64; 3] {
-        let [n1, n2, n3] = (self.times_s()).map(|seconds| ceil(seconds * hz - WHOLE_TICKS));
+        self.whole_ticks(self.times_s(), hz)
+    }
+
+    /// The same of the three times, as they are before rounding.
+    pub fn whole_ticks(&self, times_s: [f32; 3], hz: f32) -> [u64; 3] {
+        let [n1, n2, n3] = times_s.map(|seconds| ceil(seconds * hz - WHOLE_TICKS));
         let mut n = [n1.fmax(1.0), n2, n3.fmax(1.0)];
         let tick_s = 1.0 / hz;
         for round in 0..LENGTHENINGS {
@@ -231,9 +238,10 @@ impl VelocityProfile {
         [0, 1, 2].map(|i| self.change[i] - self.acceleration[i] * half_s)
     }
 
-    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared.
-    pub fn direction(&self, limits: &AccelerationLimits) -> [f32; 3] {
-        let w = self.left_after(self.rough_times_s()[0] / 2.0);
+    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
+    /// first segment lasts this long.
+    pub fn direction(&self, limits: &AccelerationLimits, first_s: f32) -> [f32; 3] {
+        let w = self.left_after(first_s / 2.0);
         let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
         let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
         [

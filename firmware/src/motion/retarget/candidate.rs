@@ -1,16 +1,17 @@
-//! One way to the new target: for translation and for rotation each an ending of the motion under way, a line from
-//! there, and the delay between them.
+//! One way to the new target: for translation and for rotation, or for both as one, an ending of the motion under way, a
+//! line from there, and the delay between them.
 
 use super::ending::{Ended, Ending, Leaving};
 use super::line::Line;
-use super::overlap::Overlap;
-use super::part::Part;
-use crate::motion::plan::{Piece, Pieces, Plan, Position, state_after_pieces, write_sum};
+use super::overlap::{Overlap, Part};
+use crate::motion::plan::{Piece, Pieces, Plan, Position, write_sum};
 use crate::number::float::{FloatMinMax, ticks_to_f32};
+use heapless::Vec;
 
-/// The way of translation, or of rotation.
+/// The way of a part.
 #[derive(Clone, Copy)]
 pub(super) struct PartWay {
+    part: Part,
     pub ending: Ending,
     ending_ticks: u64,
     /// None where there is no way left to go.
@@ -19,10 +20,10 @@ pub(super) struct PartWay {
 }
 
 /// The part of what is left of the longest delay that is added when a delay was too short.
-const LATER: u64 = 3;
+const DELAY_STEPS: u64 = 3;
 
 impl PartWay {
-    /// With the least delay at which the path's or the rotation's own limits are kept; `None` where it would not be
+    /// With the least delay at which the path's and the rotation's own limits are kept; `None` where it would not be
     /// over before `soonest`.
     pub fn new(
         leaving: &Leaving<'_>,
@@ -33,9 +34,10 @@ impl PartWay {
         soonest: u64,
     ) -> Option<Self> {
         let mut way = Self {
+            part,
             ending,
             ending_ticks: ended.ticks,
-            line: Line::new(part.only(ended.left), share, leaving),
+            line: Line::new(part.select(ended.left, [0.0; 3]), share, leaving),
             delay: 0,
         };
         if way.ticks() >= soonest {
@@ -56,11 +58,11 @@ impl PartWay {
     }
 
     /// Slower, so that it takes up to `ticks`: less is asked of the pivots.
-    pub fn level(&mut self, overlap: &Overlap, ended: &Ended, part: Part, ticks: u64) {
+    pub fn stretch(&mut self, overlap: &Overlap, ended: &Ended, ticks: u64) {
         if let Some(line) = &mut self.line {
             let longer = ticks_to_f32(ticks - self.delay) / ticks_to_f32(line.profile.ticks());
             if let Some(slowed) = line.slowed(longer.fmax(1.0))
-                && overlap.is_kept(&ended.corners, &slowed, part, self.delay)
+                && overlap.is_kept(&ended.corners, &slowed, self.part, self.delay)
             {
                 *line = slowed;
             }
@@ -68,10 +70,10 @@ impl PartWay {
     }
 
     /// Takes a longer delay.
-    fn later(&mut self) {
+    fn delay_more(&mut self) {
         let left = self.ending_ticks.saturating_sub(self.delay);
         self.delay += if left > self.ending_ticks / 16 {
-            left.div_ceil(LATER)
+            left.div_ceil(DELAY_STEPS)
         } else {
             left
         };
@@ -80,116 +82,86 @@ impl PartWay {
 
 /// See the module.
 pub(super) struct Candidate {
-    pub parts: [PartWay; 2],
+    pub ways: Vec<PartWay, 2>,
 }
 
 impl Candidate {
     pub fn ticks(&self) -> u64 {
-        self.parts[0].ticks().max(self.parts[1].ticks())
+        self.ways.iter().map(PartWay::ticks).fold(0, u64::max)
     }
 
     /// Takes longer delays; whether there were any left.
-    pub fn later(&mut self) -> bool {
-        let longest = |part: &PartWay| part.delay >= part.ending_ticks || part.line.is_none();
-        if self.parts.iter().all(longest) {
+    pub fn delay_more(&mut self) -> bool {
+        let longest = |way: &PartWay| way.delay >= way.ending_ticks || way.line.is_none();
+        if self.ways.iter().all(longest) {
             return false;
         }
-        for part in &mut self.parts {
-            part.later();
-        }
+        self.ways.iter_mut().for_each(PartWay::delay_more);
         true
     }
 
     /// Slower lines; one that would take longer than can be counted stays as it is.
     pub fn slow(&mut self, slower: f32) {
-        for line in self.parts.iter_mut().filter_map(|part| part.line.as_mut()) {
+        for line in self.ways.iter_mut().filter_map(|way| way.line.as_mut()) {
             if let Some(slowed) = line.slowed(slower) {
                 *line = slowed;
             }
         }
     }
 
-    /// Writes its pieces in floats; `None` where there are too many.
+    /// Writes its pieces; `None` where there are too many.
     #[inline(never)]
-    pub fn write_floats(
+    pub fn write(
         &self,
         leaving: &Leaving<'_>,
+        to: &Position,
         ended: &mut Ended,
-        pieces: &mut Pieces<f32>,
+        pieces: &mut Pieces,
     ) -> Option<()> {
-        let mut other = Pieces::new();
-        let (mut from, mut to) = self.buffers(pieces, &mut other);
-        let [translation, rotation] = &self.parts;
-        leaving.write_ended(translation.ending, ended)?;
-        from.clone_from(&ended.pieces);
-        if translation.ending != rotation.ending {
-            leaving.write_ended(rotation.ending, ended)?;
-            to.clone_from(from);
-            write_parts(to, &mut ended.pieces, from)?;
+        let mut line_plan = Plan::default();
+        let mut endings = self.ways.iter().map(|way| way.ending);
+        let first = endings.next()?;
+        leaving.write(first, ended)?;
+        if let Some(second) = endings.next().filter(|&second| second != first) {
+            let [x, y, _] = ended.rest;
+            keep(&mut ended.pieces, Part::Translation);
+            copy(&ended.pieces, &mut line_plan.pieces);
+            ended.of = None;
+            leaving.write(second, ended)?;
+            keep(&mut ended.pieces, Part::Rotation);
+            write_sum(&line_plan.pieces, &ended.pieces, 0, pieces)?;
+            copy(pieces, &mut ended.pieces);
+            (ended.rest[0], ended.rest[1]) = (x, y);
         }
-        for line in self
-            .parts
-            .iter()
-            .filter_map(|part| Some((part.line.as_ref()?, part.delay)))
-        {
-            write_sum(from, &line.0.pieces(leaving.hz), line.1, to)?;
-            core::mem::swap(&mut from, &mut to);
-        }
-        Some(())
-    }
-
-    /// Writes its pieces.
-    #[inline(never)]
-    pub fn write(&self, leaving: &Leaving<'_>, to: &Position, pieces: &mut Pieces) -> Option<()> {
-        let (mut other, mut line_plan) = (Pieces::new(), Plan::default());
-        let (mut from, mut sum) = self.buffers(pieces, &mut other);
-        let [translation, rotation] = &self.parts;
-        leaving.write(translation.ending, from)?;
-        if translation.ending != rotation.ending {
-            sum.clone_from(from);
-            leaving.write(rotation.ending, &mut line_plan.pieces)?;
-            write_parts(sum, &mut line_plan.pieces, from)?;
-        }
-        let rest = state_after_pieces(&leaving.state, from, &[0; 3]).map(|axis| axis.rounded());
-        let ends = [[to[0], to[1], rest[2]], [rest[0], rest[1], to[2]]];
-        for (part, end) in self.parts.iter().zip(ends) {
-            if let Some(line) = &part.line {
+        ended.of = None;
+        let rest = ended.rest;
+        let (mut from, mut sum) = (&mut ended.pieces, &mut *pieces);
+        for way in &self.ways {
+            if let Some(line) = &way.line {
                 line_plan.pieces.clear();
-                line_plan.end = end;
+                line_plan.end = way.part.select(*to, rest);
                 line.profile.write_plan(&mut line_plan, &rest)?;
-                write_sum(from, &line_plan.pieces, part.delay, sum)?;
+                write_sum(from, &line_plan.pieces, way.delay, sum)?;
                 core::mem::swap(&mut from, &mut sum);
             }
         }
-        Some(())
-    }
-
-    /// Two lists of pieces, of which the first is the last after an exchange for each line.
-    fn buffers<'a, J>(
-        &self,
-        last: &'a mut Pieces<J>,
-        other: &'a mut Pieces<J>,
-    ) -> (&'a mut Pieces<J>, &'a mut Pieces<J>) {
-        let [first, second] = [0, 1].map(|i| self.parts[i].line.is_some());
-        if first == second {
-            (last, other)
-        } else {
-            (other, last)
+        // After an even number of lines the last sum is in the other list.
+        if self.ways.iter().filter(|way| way.line.is_some()).count() % 2 == 0 {
+            copy(from, sum);
         }
+        Some(())
     }
 }
 
-/// Writes the sum of what one list of pieces says of translation, and another of rotation.
-fn write_parts<J: Copy + Default + PartialEq + core::ops::Add<Output = J>>(
-    translation: &mut [Piece<J>],
-    rotation: &mut [Piece<J>],
-    pieces: &mut Pieces<J>,
-) -> Option<()> {
-    for piece in translation.iter_mut() {
-        piece.jerk[2] = J::default();
+/// Leaves what pieces say of a part.
+fn keep(pieces: &mut [Piece], part: Part) {
+    for piece in pieces {
+        piece.jerk = part.select(piece.jerk, [0; 3]);
     }
-    for piece in rotation.iter_mut() {
-        piece.jerk = [J::default(), J::default(), piece.jerk[2]];
-    }
-    write_sum(translation, rotation, 0, pieces)
+}
+
+fn copy(from: &[Piece], to: &mut Pieces) {
+    to.clear();
+    // As many.
+    let _ = to.extend_from_slice(from);
 }

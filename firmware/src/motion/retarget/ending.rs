@@ -1,25 +1,25 @@
 //! How the motion under way comes to rest.
 
-use super::corner::{Corner, Corners};
 use crate::motion::check::is_over;
 use crate::motion::constraints::Constraints;
 use crate::motion::plan::axis_state::AxisState;
 use crate::motion::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::motion::plan::quantise::velocity_pieces;
-use crate::motion::plan::{Piece, Pieces, Plan, Position, pieces_after, push_piece};
-use crate::motion::profile::velocity::{
-    AccelerationLimits, VelocityProfile, stop_displacements, stop_peak,
+use crate::motion::plan::{
+    MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
 };
+use crate::motion::profile::velocity::{AccelerationLimits, VelocityProfile};
 use crate::motion::speeds::Speeds;
 use crate::number::float::ticks_to_f32;
+use heapless::Vec;
 
 /// How the motion under way comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ending {
     /// As it is planned.
     Followed,
-    /// By a stop with this share of the limits of acceleration, and of jerk.
-    Stop(f32, f32),
+    /// By a stop with these shares of the limits.
+    Stop { acceleration: f32, jerk: f32 },
 }
 
 /// What is left, and when.
@@ -35,13 +35,39 @@ pub(super) struct Leaving<'a> {
     pub hz: f32,
 }
 
-/// An ending in floats, how long it takes and how far it leads.
+/// Where a motion's jerk changes: the state there, track radii, rad and seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corner {
+    pub at_s: f32,
+    pub v: [f32; 3],
+    pub a: [f32; 3],
+    pub j: [f32; 3],
+}
+
+impl Corner {
+    /// The state at a later time.
+    fn next(&self, at_s: f32) -> Self {
+        let seconds = at_s - self.at_s;
+        let half = seconds / 2.0;
+        Self {
+            at_s,
+            v: [0, 1, 2].map(|i| self.v[i] + seconds * (self.a[i] + half * self.j[i])),
+            a: [0, 1, 2].map(|i| self.a[i] + seconds * self.j[i]),
+            j: [0.0; 3],
+        }
+    }
+}
+
+/// An ending: its pieces, its corners, of which the last is rest, and how long it takes.
 #[derive(Default)]
 pub(super) struct Ended {
-    pub pieces: Pieces<f32>,
-    pub corners: Corners,
+    /// What these are of; nothing where the pieces have become another motion's.
+    pub of: Option<Ending>,
+    pub pieces: Pieces,
+    pub corners: Vec<Corner, { MAX_PIECES + 1 }>,
     pub ticks: u64,
-    /// The way from its end to the target, track radii and rad.
+    /// Where it comes to rest, and the way from there to the target, track radii and rad.
+    pub rest: Position,
     pub left: [f32; 3],
 }
 
@@ -83,31 +109,25 @@ impl<'a> Leaving<'a> {
     }
 
     /// Writes an ending; `None` where there is none.
-    pub fn write_ended(&self, ending: Ending, ended: &mut Ended) -> Option<()> {
-        ended.pieces.clear();
+    #[inline(never)]
+    pub fn write(&self, ending: Ending, ended: &mut Ended) -> Option<()> {
+        if ended.of == Some(ending) {
+            return Some(());
+        }
+        ended.of = None;
+        let Ended {
+            pieces, corners, ..
+        } = ended;
+        pieces.clear();
         match ending {
-            Ending::Followed => {
-                // In whole numbers: of a long way a float does not hold a small correction.
-                let rest = self.of.end.map(AxisState::at_rest);
-                ended.left = MotionState::between(&rest, &self.to);
-                for piece in pieces_after(&self.of.pieces, self.at) {
-                    let jerk = CubicSegment::jerk(&piece, self.hz);
-                    let ticks = piece.ticks;
-                    ended.pieces.push(Piece { ticks, jerk }).ok()?;
-                }
-            }
-            Ending::Stop(acceleration, jerk) => {
-                let ticks = self.stop(acceleration, jerk).ticks(self.hz);
-                let times = ticks.map(|ticks| ticks_to_f32(ticks) / self.hz);
-                let [.., displacement] = stop_displacements(&self.now, times);
-                let way = MotionState::between(&self.state, &self.to);
-                ended.left = [0, 1, 2].map(|i| way[i] - displacement[i]);
-                let peak = stop_peak(&self.now, times);
-                let first = [0, 1, 2].map(|i| (peak[i] - self.now.a[i]) / times[0]);
-                let last = peak.map(|peak| -peak / times[2]);
-                for (ticks, jerk) in ticks.into_iter().zip([first, [0.0; 3], last]) {
-                    push_piece(&mut ended.pieces, Piece { ticks, jerk })?;
-                }
+            Ending::Followed => pieces_after(&self.of.pieces, self.at)
+                .try_for_each(|piece| push_piece(pieces, piece))?,
+            Ending::Stop { acceleration, jerk } => {
+                let limits = self.limits.scaled(acceleration, jerk);
+                let profile = VelocityProfile::new(&self.now, &[0.0; 3], &limits);
+                velocity_pieces(&self.state, &[0; 3], profile.ticks(self.hz))
+                    .into_iter()
+                    .try_for_each(|piece| push_piece(pieces, piece))?;
             }
         }
         let mut now = Corner {
@@ -115,36 +135,28 @@ impl<'a> Leaving<'a> {
             a: self.now.a,
             ..Corner::default()
         };
-        ended.corners.clear();
+        corners.clear();
         ended.ticks = 0;
-        for piece in &ended.pieces {
-            now.j = piece.jerk;
+        for piece in &*pieces {
+            now.j = CubicSegment::jerk(piece, self.hz);
             // There is room for all.
-            let _ = ended.corners.push(now);
+            let _ = corners.push(now);
             ended.ticks += piece.ticks;
             now = now.next(ticks_to_f32(ended.ticks) / self.hz);
         }
-        let _ = ended.corners.push(now);
-        Some(())
-    }
-
-    fn stop(&self, acceleration: f32, jerk: f32) -> VelocityProfile {
-        let limits = self.limits.scaled(acceleration, jerk);
-        VelocityProfile::new(&self.now, &[0.0; 3], &limits)
-    }
-
-    /// Writes the pieces of an ending.
-    pub fn write(&self, ending: Ending, pieces: &mut Pieces) -> Option<()> {
-        pieces.clear();
-        match ending {
-            Ending::Followed => pieces_after(&self.of.pieces, self.at)
-                .try_for_each(|piece| push_piece(pieces, piece)),
-            Ending::Stop(acceleration, jerk) => {
-                let ticks = self.stop(acceleration, jerk).ticks(self.hz);
-                let four: [Piece; 4] = velocity_pieces(&self.state, &[0; 3], ticks);
-                four.into_iter()
-                    .try_for_each(|piece| push_piece(pieces, piece))
+        let _ = corners.push(now);
+        ended.rest = match ending {
+            // The nudge of the motion that is left is not in the pieces.
+            Ending::Followed => [0, 1, 2].map(|i| {
+                AxisState::at_rest(self.of.end[i]).rest_position(ended.ticks, -self.of.nudge[i])
+            }),
+            Ending::Stop { .. } => {
+                state_after_pieces(&self.state, pieces, &[0; 3]).map(|axis| axis.rounded())
             }
-        }
+        };
+        // In whole numbers: of a long way a float does not hold a small correction.
+        ended.left = MotionState::between(&ended.rest.map(AxisState::at_rest), &self.to);
+        ended.of = Some(ending);
+        Some(())
     }
 }

@@ -2,11 +2,10 @@
 
 use super::ending::Leaving;
 use crate::motion::limits::PathLimits;
-use crate::motion::plan::Piece;
 use crate::motion::profile::rest_to_rest::RestToRestProfile;
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
-use crate::number::float::{FloatMinMax, hypot, i128_to_f32_fast, ticks_to_f32};
+use crate::number::float::{FloatMinMax, hypot, ticks_to_f32};
 
 /// Where the jerk of the path parameter changes: times since the line began, and the state there.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,14 +75,5 @@ impl Line {
             corner(b3 + b2, half, -acceleration, jerk),
             corner(b1 + b2 + b3, 0.0, 0.0, 0.0),
         ]
-    }
-
-    /// Its pieces in floats.
-    pub fn pieces(&self, hz: f32) -> [Piece<f32>; 7] {
-        let jerk = hz * hz * hz / i128_to_f32_fast(self.profile.volume());
-        self.profile.segments().map(|(ticks, sign)| Piece {
-            ticks,
-            jerk: self.way.map(|way| way * (jerk * sign as f32)),
-        })
     }
 }

@@ -14,66 +14,91 @@
 //! end, in place of a stop: for a target that is corrected, and out of a stop. The soonest wins. PLCopen calls it
 //! superimposed motion.
 //!
+//! A first way has to be there soon: of two endings, with one line for all axes, and the check is asked once. The soonest way
+//! is looked for while that is under way: all endings, and a line and a delay each for translation and rotation; a line
+//! that asks too much of the pivots is slowed down, one that meets an edge delayed. Where there is no first way, the stop
+//! that was sent before goes on, and the soonest way leaves that.
+//!
 //! | file | idea |
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
-//! | `part`, `corner` | translation or rotation; a motion by its corners |
 //! | `ending` | how the motion under way comes to rest |
 //! | `line` | the plain line from there |
-//! | `candidate` | for translation and for rotation an ending, a line, and the least delay between them |
-//! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats |
+//! | `overlap` | translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
+//! | `candidate` | for each part an ending, a line, and the least delay between them |
 
 mod candidate;
-mod corner;
 mod ending;
 mod line;
 mod overlap;
-mod part;
 
-use super::check::PlanCheck;
 use super::check::target::check_target;
 use super::check::violation::Violation;
+use super::check::{Budget, PlanCheck};
 use super::constraints::Constraints;
 use super::plan::axis_state::AxisState;
-use super::plan::{Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use super::plan::{Plan, PlanStart, Position, nudge_to, state_after_pieces};
 use super::refusal::{Refusal, RetargetError};
 use super::tolerances::SLOWER_FOR_PIVOTS;
 use crate::number::sqrt_f32;
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
-use overlap::Overlap;
-use part::Part;
+use overlap::{Overlap, Part};
 
 /// How the motion under way ends, and the shares of the limits that the line gets.
-const ENDINGS: [(Ending, &[f32]); 7] = [
+const ENDINGS: [(Ending, &[f32]); 5] = [
     (Ending::Followed, &[1.0, 0.5]),
-    (Ending::Stop(1.0, 1.0), &[1.0, 0.7]),
-    (Ending::Stop(0.7, 0.7), &[0.7, 1.0]),
-    (Ending::Stop(1.0, 0.7), &[0.7]),
-    (Ending::Stop(1.0, 0.5), &[0.5, 0.85]),
-    (Ending::Stop(0.5, 0.5), &[0.85]),
-    (Ending::Stop(0.85, 0.85), &[0.5]),
+    (stop(1.0, 1.0), &[1.0, 0.7]),
+    (stop(0.7, 0.7), &[0.7, 1.0]),
+    (stop(1.0, 0.7), &[0.7]),
+    (stop(1.0, 0.5), &[0.5, 0.85]),
 ];
+
+const fn stop(acceleration: f32, jerk: f32) -> Ending {
+    Ending::Stop { acceleration, jerk }
+}
 
 /// How many of the ways are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// So many that the stage is soon on its way.
+    /// So few that the stage is soon on its way.
     First,
     /// All.
     All,
 }
 
-/// Of the endings, how many are tried at first.
-const FIRST: usize = 2;
-/// Intervals that the checks of a first way may take together, and those of all.
-const FIRST_INTERVALS: usize = 24;
-const ALL_INTERVALS: usize = 60;
+/// What an effort comes to.
+struct Search {
+    /// What has a line and a delay of its own.
+    parts: &'static [Part],
+    /// How many of the endings, and of the shares of each.
+    endings: usize,
+    shares: usize,
+    /// How often the check may be asked, and how many intervals it may take before the next failure counts.
+    checks: usize,
+    intervals: usize,
+}
 
-const PARTS: [Part; 2] = [Part::Translation, Part::Rotation];
-
-/// How often the check may be asked.
-const CHECKS: usize = 4;
+impl Effort {
+    const fn search(self) -> Search {
+        match self {
+            Self::First => Search {
+                parts: &[Part::Whole],
+                endings: 2,
+                shares: 1,
+                checks: 1,
+                intervals: 5,
+            },
+            Self::All => Search {
+                parts: &[Part::Translation, Part::Rotation],
+                endings: ENDINGS.len(),
+                shares: 2,
+                checks: 4,
+                intervals: 60,
+            },
+        }
+    }
+}
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
 ///
@@ -90,10 +115,7 @@ pub fn plan_retarget(
     constraints: &Constraints,
     effort: Effort,
 ) -> Result<Plan, RetargetError> {
-    let (tried, mut intervals) = match effort {
-        Effort::First => (FIRST, FIRST_INTERVALS),
-        Effort::All => (ENDINGS.len(), ALL_INTERVALS),
-    };
+    let search = effort.search();
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
@@ -106,30 +128,38 @@ pub fn plan_retarget(
         return Err(RetargetError::NeedsStop);
     }
     let mut ended = Ended::default();
-    let mut candidate = soonest(&leaving, tried, &mut ended).ok_or(RetargetError::NeedsStop)?;
-    let mut pieces = Pieces::new();
+    let mut candidate = soonest(&leaving, &search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut plan = Plan {
+        id,
+        start: PlanStart::Splice {
+            plan: of.id,
+            tick: at,
+        },
+        end: to,
+        ..Plan::default()
+    };
     let plan_check = PlanCheck::new(constraints, &leaving.state);
-    for _ in 0..CHECKS {
-        if intervals == 0 {
+    let mut budget = Budget {
+        intervals: search.intervals,
+        samples_pivots: search.checks > 1,
+    };
+    for _ in 0..search.checks {
+        if budget.intervals == 0 {
             break;
         }
-        (candidate.write_floats(&leaving, &mut ended, &mut pieces))
+        (candidate.write(&leaving, &to, &mut ended, &mut plan.pieces))
             .ok_or(RetargetError::NeedsStop)?;
-        match plan_check.check_floats(&pieces, &leaving.state, &mut intervals) {
+        match plan_check.check(&plan.pieces, &leaving.state, &mut budget) {
             Ok(()) => {
-                let start = PlanStart::Splice {
-                    plan: of.id,
-                    tick: at,
-                };
-                return written(id, start, &candidate, &leaving, &to)
-                    .ok_or(RetargetError::NeedsStop);
+                close(&mut plan, &leaving).ok_or(RetargetError::NeedsStop)?;
+                return Ok(plan);
             }
             Err(Violation::PivotRate(over)) => candidate.slow(margin(over)),
             Err(Violation::PivotAcceleration(over)) => {
                 candidate.slow(margin(sqrt_f32(over)));
             }
             Err(_) => {
-                if !candidate.later() {
+                if !candidate.delay_more() {
                     break;
                 }
             }
@@ -147,15 +177,15 @@ fn margin(over: f32) -> f32 {
 }
 
 /// The soonest of the candidates, and the part that is over sooner slowed down to the other.
-fn soonest(leaving: &Leaving<'_>, tried: usize, ended: &mut Ended) -> Option<Candidate> {
+fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Candidate> {
     let overlap = Overlap::new(leaving);
     let mut best: [Option<PartWay>; 2] = [None; 2];
-    for (ending, shares) in ENDINGS.into_iter().take(tried) {
-        if leaving.write_ended(ending, ended).is_none() || leaving.is_over(ended) {
+    for (ending, shares) in ENDINGS.into_iter().take(search.endings) {
+        if leaving.write(ending, ended).is_none() || leaving.is_over(ended) {
             continue;
         }
-        for (part, best) in PARTS.into_iter().zip(&mut best) {
-            for &share in shares {
+        for (&part, best) in search.parts.iter().zip(&mut best) {
+            for &share in shares.iter().take(search.shares) {
                 let soonest = best.as_ref().map_or(u64::MAX, |best| best.ticks());
                 let ending = (ending, &*ended);
                 let other = PartWay::new(leaving, &overlap, ending, share, part, soonest);
@@ -163,16 +193,15 @@ fn soonest(leaving: &Leaving<'_>, tried: usize, ended: &mut Ended) -> Option<Can
             }
         }
     }
-    let [Some(translation), Some(rotation)] = best else {
+    let ways = best.into_iter().flatten().collect();
+    let mut candidate = Candidate { ways };
+    if candidate.ways.len() < search.parts.len() {
         return None;
-    };
-    let mut candidate = Candidate {
-        parts: [translation, rotation],
-    };
+    }
     let ticks = candidate.ticks();
-    for (way, part) in candidate.parts.iter_mut().zip(PARTS) {
-        if way.ticks() < ticks && leaving.write_ended(way.ending, ended).is_some() {
-            way.level(&overlap, ended, part, ticks);
+    for way in &mut candidate.ways {
+        if way.ticks() < ticks && leaving.write(way.ending, ended).is_some() {
+            way.stretch(&overlap, ended, ticks);
         }
     }
     Some(candidate)
@@ -182,28 +211,14 @@ fn soonest(leaving: &Leaving<'_>, tried: usize, ended: &mut Ended) -> Option<Can
 /// reference stage.
 const NEAR: u64 = 1 << 12;
 
-/// The plan of a candidate.
-#[inline(never)]
-fn written(
-    id: u32,
-    start: PlanStart,
-    candidate: &Candidate,
-    leaving: &Leaving<'_>,
-    to: &Position,
-) -> Option<Plan> {
-    let mut plan = Plan {
-        id,
-        start,
-        end: *to,
-        ..Plan::default()
-    };
-    candidate.write(leaving, to, &mut plan.pieces)?;
+/// Gives a plan the nudge that leads it to its end exactly; `None` where its pieces lead elsewhere.
+fn close(plan: &mut Plan, leaving: &Leaving<'_>) -> Option<()> {
     let end = state_after_pieces(&leaving.state, &plan.pieces, &[0; 3]);
     // The nudge is not held against any limit: it is for roundings only.
-    let is_near = |i: usize| end[i].rounded().wrapping_sub(to[i]).unsigned_abs() < NEAR;
+    let is_near = |i: usize| end[i].rounded().abs_diff(plan.end[i]) < NEAR;
     if !(0..3).all(is_near) {
         return None;
     }
-    plan.nudge = nudge_to(&end, to, plan.ticks())?;
-    Some(plan)
+    plan.nudge = nudge_to(&end, &plan.end, plan.ticks())?;
+    Some(())
 }

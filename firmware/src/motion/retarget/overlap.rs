@@ -1,14 +1,48 @@
 //! Whether an ending and a line that overlap keep to the limits of path and rotation, in floats: what the pivots and
 //! the workspace ask for is left to the check.
 
-use super::corner::Corner;
-use super::ending::Leaving;
+use super::ending::{Corner, Leaving};
 use super::line::{Line, LineCorner};
-use super::part::Part;
 use crate::motion::profile::velocity::AccelerationLimits;
 use crate::motion::speeds::Speeds;
 use crate::motion::tolerances::OVERLAP;
 use crate::number::float::{FloatMinMax, ticks_to_f32};
+
+/// Translation, rotation, or both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Translation,
+    Rotation,
+    Whole,
+}
+
+impl Part {
+    /// Whether the sizes of a sum of two vectors are within a limit.
+    #[inline]
+    pub fn is_within(self, a: &[f32; 3], way: &[f32; 3], rate: f32, limit: &Speeds) -> bool {
+        let [x, y, theta] = [0, 1, 2].map(|i| a[i] + way[i] * rate);
+        let translation = x * x + y * y <= limit.linear * limit.linear;
+        let rotation = theta.abs() <= limit.angular;
+        match self {
+            Self::Translation => translation,
+            Self::Rotation => rotation,
+            Self::Whole => translation && rotation,
+        }
+    }
+
+    /// One vector in what is of this part, the other in what is not.
+    pub fn select<T>(
+        self,
+        [x, y, theta]: [T; 3],
+        [other_x, other_y, other_theta]: [T; 3],
+    ) -> [T; 3] {
+        match self {
+            Self::Translation => [x, y, other_theta],
+            Self::Rotation => [other_x, other_y, theta],
+            Self::Whole => [x, y, theta],
+        }
+    }
+}
 
 /// What the sum keeps to.
 pub(super) struct Overlap {
@@ -19,7 +53,7 @@ pub(super) struct Overlap {
 }
 
 /// How often a delay is halved in the search.
-const HALVINGS: usize = 5;
+const HALVINGS: usize = 3;
 
 impl Overlap {
     pub fn new(leaving: &Leaving<'_>) -> Self {

@@ -52,6 +52,7 @@ impl Knot {
     }
 
     /// The jerks that lead from `from` to `to`, of which the position may be off by what half a jerk step makes.
+    #[inline(never)]
     pub fn jerks(&self, from: &AxisState, to: &AxisState) -> [i64; 3] {
         let alone = from.after(self.whole(), 0, 0);
         let t = self.whole;

@@ -26,6 +26,7 @@ pub(super) struct CurvePoint {
 }
 
 /// The curve a part `f` (0 to 1) on from the third sample of `window` to the fourth.
+#[inline(never)]
 pub(super) fn curve_point(window: &[Position; WINDOW], axis: usize, f: f32) -> CurvePoint {
     let origin = window[2][axis];
     let s = window.map(|sample| sample[axis].wrapping_sub(origin) as f32);

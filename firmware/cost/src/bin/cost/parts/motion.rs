@@ -28,7 +28,7 @@ pub fn run(bench: &mut Bench) {
             1,
             |random| (Moving::new(random), position(random)),
             |(now, to)| now.retargeted(*to, effort),
-            |_, plan| of_plan(plan.as_ref()),
+            |_, plan| of_plan(plan.as_ref().ok()),
         );
     }
     bench.part(
