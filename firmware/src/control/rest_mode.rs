@@ -130,14 +130,13 @@ impl RestMode {
             return self.stiffness;
         }
         let (mut fast, mut slow, mut lasting) = (0, 0.0_f32, 0.0_f32);
-        for i in 0..3 {
-            let sum = &mut self.slow_sums[i];
-            *sum += (sums[i] as f32 - *sum) * config.smoothing;
-            slow = slow.max(sum.abs());
-            let lasting_sum = &mut self.lasting_sums[i];
-            *lasting_sum += (*sum - *lasting_sum) * config.lasting_smoothing;
+        let smoothed = self.slow_sums.iter_mut().zip(&mut self.lasting_sums);
+        for ((slow_sum, lasting_sum), &sum) in smoothed.zip(sums) {
+            *slow_sum += (sum as f32 - *slow_sum) * config.smoothing;
+            *lasting_sum += (*slow_sum - *lasting_sum) * config.lasting_smoothing;
+            slow = slow.max(slow_sum.abs());
             lasting = lasting.max(lasting_sum.abs());
-            fast = sums[i].unsigned_abs().max(fast);
+            fast = sum.unsigned_abs().max(fast);
         }
         let is_soft = self.stiffness.gains <= config.stiffness;
         if fast > config.wake_sums[usize::from(is_soft)] {

@@ -65,8 +65,8 @@ pub(super) enum ValueSource {
     AllPivots(GetOfPivot, SetOfPivot),
 }
 
-pub(super) type GetOfPivot = fn(&Parameters, usize) -> f64;
-pub(super) type SetOfPivot = fn(&mut Parameters, usize, f64);
+pub(in crate::gcs) type GetOfPivot = fn(&Parameters, usize) -> f64;
+pub(in crate::gcs) type SetOfPivot = fn(&mut Parameters, usize, f64);
 
 /// A value as it is answered.
 pub(in crate::gcs) enum Value {

@@ -1,8 +1,8 @@
 //! Parameters that each pivot has of its own. One identifier means all three, and one each means one: the second digit from the right.
 
-use super::super::descriptor::{Kind, Parameter, ValueSource};
+use super::super::descriptor::{GetOfPivot, Kind, Parameter, SetOfPivot, ValueSource};
 use super::{DRIVE, Group, RIPPLE_GROUP, SERVO};
-use crate::parameters::{Drive, FeedbackFilters, Gains, Parameters, Ripple};
+use crate::parameters::{Drive, FeedbackFilters, Gains, Ripple};
 
 /// What a pivot has.
 pub(super) struct OfPivot {
@@ -11,8 +11,8 @@ pub(super) struct OfPivot {
     text: &'static str,
     unit: &'static str,
     range: [f64; 2],
-    get: fn(&Parameters, usize) -> f64,
-    set: fn(&mut Parameters, usize, f64),
+    get: GetOfPivot,
+    set: SetOfPivot,
 }
 
 /// Pivots.
@@ -56,10 +56,7 @@ const fn of_pivot(
     text: &'static str,
     unit: &'static str,
     range: [f64; 2],
-    (get, set): (
-        fn(&Parameters, usize) -> f64,
-        fn(&mut Parameters, usize, f64),
-    ),
+    (get, set): (GetOfPivot, SetOfPivot),
 ) -> OfPivot {
     OfPivot {
         group,
