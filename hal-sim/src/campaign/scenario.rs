@@ -70,7 +70,8 @@ impl Scenario {
         let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
         let at = match injection {
             Injection::DamagedSettings => 0,
-            Injection::QueueFull => between_lines(in_motion, &lines),
+            // At rest: in motion what needs a place in the queue waits for one.
+            Injection::QueueFull => between_lines(FIRST_MOTION / 2, &lines),
             _ => in_motion,
         };
         Self {

@@ -177,7 +177,8 @@ fn settings_go_from_one_controller_to_another_as_text() {
     let second = folder.join("second.bin");
     let served = Served::start(&second);
     let imported = said(&served.settings("import", &file));
-    assert_eq!(imported, "2 parameters and 1 macros changed, and kept\n");
+    // The gain by the name that means all pivots, and by each pivot's.
+    assert_eq!(imported, "5 parameters and 1 macros changed, and kept\n");
     let again = said(&served.settings("import", &file));
     assert_eq!(again, "0 parameters and 0 macros changed, and kept\n");
     drop(served);
