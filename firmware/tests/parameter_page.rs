@@ -10,7 +10,7 @@ use std::fmt::Write;
 const HEAD: &str = "# Parameters
 
 Written by `UPDATE=1 cargo test -p firmware --test parameter_page` from the one table that the controller has
-(`firmware/src/gcs/parameter/table.rs`); edit that, not this.
+(`firmware/src/gcs/parameter/table/`); edit that, not this.
 
 `SPA 1 <id> <value>` sets one, `SPA? 1 <id>` asks for it, `HPA?` lists all; ids in decimal or hexadecimal. Values are those of
 the reference stage. A value out of its range, or one that does not go together with the others, is refused with error 17, and
