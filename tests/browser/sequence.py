@@ -68,7 +68,7 @@ class Sequence(OnPage):
         self.load(browser, "FRF\nMOV X 200\nMOV X 1\n")
         browser.click("#sequence-run")
         browser.wait_text("#sequence-said", "line 2: MOV X 200: out of the stage’s reach or of the soft limits (error 7)")
-        self.assertAlmostEqual(self.shown(browser, "x", "target"), 0, delta=0.1)
+        self.near(browser, "x", 0, 0.1, "target")
 
     def test_steps(self):
         browser = self.page()

@@ -341,7 +341,9 @@ fn what_a_stage_has_to_be_set_up_for_is_told_and_brakes_and_its_twin_is_not() {
             "{fires:?}"
         );
         let end = set_up_with(setup, motion, twin);
-        assert_eq!(end.told.lines().next(), Some("0 no fault"), "{twin:?}");
+        // What is looser than the reference is told behind it.
+        let said = end.told.lines().next().map(str::trim_end);
+        assert_eq!(said, Some("0 no fault"), "{twin:?}");
         assert!(end.driven, "{twin:?}: {:?}", end.pins);
     }
 }
@@ -407,8 +409,8 @@ fn slow(instructions_per_second: u64) -> (String, usize) {
 #[test]
 fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counted() {
     for (rate, said) in [
-        (80_000_000, "control loop late too often"),
-        (110_000_000, "0 no fault"),
+        (95_000_000, "control loop late too often"),
+        (140_000_000, "0 no fault"),
     ] {
         let (told, resets) = slow(rate);
         println!("{rate}: {resets} resets, {told}");
