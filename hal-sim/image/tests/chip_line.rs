@@ -9,12 +9,12 @@ use std::sync::mpsc;
 
 /// No line of these is a command, but the beginning of any with the end of any other is one that moves the stage.
 const FLOOD: &[u8] = b"MOV X 5               BAD               \n";
-/// Answered by 10 KB: 0.1 s in which the command side waits for the line and takes nothing.
+/// Answered by 20 KB: 0.2 s in which the command side waits for the line and takes nothing.
 const LONG: &[u8] = b"HPA?\n";
 const QUESTIONS: &[u8] = b"\nERR?\nMOV? X\n";
 
 /// Ticks of the flood: it ends while a long answer is under way, so that its last line is lost.
-const FLOODED: std::ops::Range<u64> = 1_000..7_000;
+const FLOODED: std::ops::Range<u64> = 1_000..5_000;
 /// Ticks from one to the next.
 const LONG_EVERY: u64 = 3_000;
 /// By then the last long answer is through.
@@ -54,5 +54,9 @@ fn pieces_of_lines_never_make_up_one() {
     });
     assert_eq!(run.expect("a run").gaps, Vec::<String>::new());
     let answers = told.recv().expect("the last period");
-    assert_eq!(answers, "304\nX=0\n");
+    // It stands where it was found.
+    let place_mm = answers
+        .strip_prefix("304\nX=")
+        .and_then(|x| x.trim_end().parse::<f64>().ok());
+    assert!(place_mm.is_some_and(|x| x.abs() < 1e-4), "{answers}");
 }
