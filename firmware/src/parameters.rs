@@ -395,8 +395,9 @@ impl Parameters {
             frozen_rad: 2e-4,
             // Half a volt is 0.7 N m, seven times the friction.
             frozen_v: 0.5,
-            // Ten times what the noise of encoders makes of the reference gains.
-            oscillation_v: 8.0,
+            // An unstable loop swings by more than half of the supply; a stable one that rings on a machine it was not told of by a third
+            // at most.
+            oscillation_v: 20.0,
             max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,
