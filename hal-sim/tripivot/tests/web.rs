@@ -1,8 +1,8 @@
 //! The page as browsers and others meet it: who may look, who may drive, what comes of bad messages, and that it comes back.
 #![cfg(unix)]
 
-use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -503,6 +503,40 @@ fn each_page_is_a_connection_of_its_own() {
     drop(one);
     other.reply("STP");
     other.reply("MOV X 3");
+}
+
+/// A port with one serial line behind it: the next client waits until the one before is gone.
+fn one_client_at_a_time(stage: SocketAddr) -> SocketAddr {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    thread::spawn(move || {
+        while let Ok((client, _)) = listener.accept() {
+            let controller = TcpStream::connect(stage).unwrap();
+            let (mut from, mut to) = (client.try_clone().unwrap(), controller.try_clone().unwrap());
+            let there = thread::spawn(move || {
+                let _ = io::copy(&mut from, &mut to);
+                let _ = to.shutdown(Shutdown::Both);
+            });
+            let (mut from, mut to) = (controller, client);
+            let _ = io::copy(&mut from, &mut to);
+            let _ = there.join();
+        }
+    });
+    address
+}
+
+/// So is the emulated chip, and a real board behind a converter.
+#[test]
+fn behind_a_port_for_one_client_pages_share_its_line() {
+    let stage = Stage::start("127.0.0.1:0");
+    let endpoint = Endpoint::Tcp(one_client_at_a_time(stage.address).to_string());
+    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    one.reply("FRF");
+    other.reply("MOV X 1");
+    one.until("POS? X", 1.0);
+    // What would change another's words is refused, as on a serial line.
+    assert!(other.ask("VAR A 1")["reason"].is_string());
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -43,14 +43,16 @@ pub(super) struct Bridge {
     bypass: Arc<Mutex<Option<Port>>>,
     endpoint: Endpoint,
     viewers: Arc<AtomicU64>,
+    takes_several: Arc<AtomicBool>,
 }
 
-/// How a viewer's lines get to the controller.
-pub(super) enum Way {
-    /// Over a connection of its own.
-    Own(OwnLine),
-    /// Over the line that all share.
-    Shared(Bridge, ViewerNumber),
+/// How a viewer's lines get to the controller: over a connection of its own where the other end takes several, and else over the
+/// line that all share.
+pub(super) struct Way {
+    bridge: Bridge,
+    viewer: ViewerNumber,
+    /// Opened with its first line; a serial line has none.
+    own: Option<OwnLine>,
 }
 
 /// What waits for the line.
@@ -93,6 +95,7 @@ impl Bridge {
         let (status, _) = broadcast::channel(BACKLOG);
         let (hello_sender, hello) = watch::channel(Arc::from(""));
         let bypass = Arc::default();
+        let takes_several = Arc::<AtomicBool>::default();
         let worker = Worker {
             endpoint: endpoint.clone(),
             incoming,
@@ -100,6 +103,7 @@ impl Bridge {
             hello: hello_sender,
             bypass: Arc::clone(&bypass),
             arbiter: RefCell::default(),
+            takes_several: Arc::clone(&takes_several),
         };
         worker.say_offline("not connected yet".to_owned());
         thread::Builder::new()
@@ -112,6 +116,7 @@ impl Bridge {
             bypass,
             endpoint,
             viewers: Arc::default(),
+            takes_several,
         })
     }
 
@@ -127,16 +132,15 @@ impl Bridge {
 
     /// The way of one more viewer.
     pub fn way(&self) -> io::Result<HeldWay> {
-        let number = self.viewers.fetch_add(1, Ordering::Relaxed) + 1;
-        let way = if self.endpoint.is_tcp() {
-            Way::Own(OwnLine::start(
-                self.endpoint.clone(),
-                format!("page_{number}"),
-            )?)
-        } else {
-            Way::Shared(self.clone(), number)
-        };
-        Ok(HeldWay(Arc::new(way)))
+        let viewer = self.viewers.fetch_add(1, Ordering::Relaxed) + 1;
+        let own = (self.endpoint.is_tcp())
+            .then(|| OwnLine::start(self.endpoint.clone(), format!("page_{viewer}")))
+            .transpose()?;
+        Ok(HeldWay(Arc::new(Way {
+            bridge: self.clone(),
+            viewer,
+            own,
+        })))
     }
 
     async fn ask(&self, viewer: ViewerNumber, line: String) -> Result<Answer, Refusal> {
@@ -167,16 +171,21 @@ impl Bridge {
 
 impl Way {
     /// Whether other viewers use it too.
-    pub const fn is_shared(&self) -> bool {
-        matches!(self, Self::Shared(..))
+    pub fn is_shared(&self) -> bool {
+        self.own_line().is_none()
     }
 
     /// Has a line carried out in its turn.
     pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
-        match self {
-            Self::Own(own) => own.ask(line).await,
-            Self::Shared(bridge, viewer) => bridge.ask(*viewer, line).await,
+        match self.own_line() {
+            Some(own) => own.ask(line).await,
+            None => self.bridge.ask(self.viewer, line).await,
         }
+    }
+
+    fn own_line(&self) -> Option<&OwnLine> {
+        let takes_several = self.bridge.takes_several.load(Ordering::Relaxed);
+        self.own.as_ref().filter(|_| takes_several)
     }
 }
 
@@ -185,13 +194,16 @@ pub(super) struct HeldWay(pub Arc<Way>);
 
 impl Drop for HeldWay {
     fn drop(&mut self) {
-        match &*self.0 {
-            Way::Own(own) => own.close(),
-            Way::Shared(bridge, viewer) => {
-                // With no room for that, or nobody there, its ownership ends with the line.
-                let _ = bridge.requests.try_send(Pending::Gone(*viewer));
-            }
+        let Way {
+            bridge,
+            viewer,
+            own,
+        } = &*self.0;
+        if let Some(own) = own {
+            own.close();
         }
+        // With no room for that, or nobody there, its ownership ends with the line.
+        let _ = bridge.requests.try_send(Pending::Gone(*viewer));
     }
 }
 
@@ -203,6 +215,7 @@ struct Worker {
     hello: watch::Sender<Arc<str>>,
     bypass: Arc<Mutex<Option<Port>>>,
     arbiter: RefCell<Arbiter>,
+    takes_several: Arc<AtomicBool>,
 }
 
 /// All viewers and the server are gone.
@@ -227,6 +240,8 @@ impl Worker {
     fn serve(&self) -> io::Result<Done> {
         let mut line = Line::open(&self.endpoint)?;
         self.set_bypass(Some(line.bypass()?));
+        let takes_several = self.endpoint.is_tcp() && Line::has_another(&self.endpoint);
+        self.takes_several.store(takes_several, Ordering::Relaxed);
         let help = line.ask_known(&["HLP?"])?.remove(0);
         self.say(&Hello {
             connected: true,
@@ -236,7 +251,7 @@ impl Worker {
             reason: String::new(),
         });
         self.arbiter.borrow_mut().forget();
-        if !self.endpoint.is_tcp() {
+        if !takes_several {
             // A controller that does not know it says so, and does without.
             line.ask(&format!("JTM {JOG_TIME_MS}"))?;
         }

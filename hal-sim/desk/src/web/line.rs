@@ -15,6 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const SILENCE: Duration = Duration::from_millis(50);
 /// How long it may go on talking unasked.
 const TALK: Duration = Duration::from_secs(3);
+/// How long a second connection may take to answer.
+const ANOTHER: Duration = Duration::from_secs(1);
 /// Longest answer: more than the recorder of any controller holds.
 const ANSWER_BYTES: usize = 16 << 20;
 
@@ -53,6 +55,16 @@ impl Line {
         line.identity = line.ask_known(&["*IDN?"])?.remove(0);
         line.ask_known(&["ERR?"])?;
         Ok(line)
+    }
+
+    /// Whether a second connection is answered beside the first. Behind a TCP port may lie one serial line, whose next client waits
+    /// until the first is gone.
+    pub(super) fn has_another(endpoint: &Endpoint) -> bool {
+        let Ok(mut port) = endpoint.open() else {
+            return false;
+        };
+        let asked = port.write_all(b"\n*IDN?\n").is_ok();
+        asked && matches!(port.read_within(&mut [0; 1], ANOTHER), Ok(Some(1)))
     }
 
     fn wait_for_silence(&mut self) -> io::Result<()> {

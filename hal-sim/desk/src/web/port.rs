@@ -37,7 +37,7 @@ impl fmt::Display for Endpoint {
 }
 
 impl Endpoint {
-    /// Whether everybody there has a connection of his own.
+    /// Whether everybody there may have a connection of his own.
     pub(super) const fn is_tcp(&self) -> bool {
         matches!(self, Self::Tcp(_))
     }
