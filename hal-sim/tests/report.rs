@@ -163,7 +163,7 @@ fn the_summary_tells_what_happened() {
 #[test]
 fn pictures_document_and_summary_tell_the_conditions() {
     let run = run(1_001, 20);
-    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections all but backlash; settings none kept";
+    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections of a kind machine but backlash; settings none kept";
     for text in [run.picture(), run.motion_picture(), run.document()] {
         assert!(text.contains(line));
     }
@@ -171,7 +171,7 @@ fn pictures_document_and_summary_tell_the_conditions() {
     for line in [
         "  program             made up 1.2",
         "  mismatch            60 %",
-        "  imperfections       all but backlash",
+        "  imperfections       of a kind machine but backlash",
     ] {
         assert!(
             summary.lines().any(|other| other == line),

@@ -6,7 +6,8 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `parameters` | every number, with its origin; which imperfections are simulated |
+//! | `parameters` | every number, with its origin |
+//! | `imperfections` | which departures from an ideal machine are simulated |
 //! | `state` | the state vector |
 //! | `body` | platform and payload |
 //! | `drive` | winding, motor, transmission |
@@ -22,6 +23,7 @@ mod dynamics;
 mod friction;
 mod geometry;
 mod guide;
+mod imperfections;
 mod parameters;
 mod state;
 mod stops;
@@ -31,7 +33,8 @@ pub use drive::{Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
 pub use geometry::{OffGuide, PivotGeometry};
-pub use parameters::{AXES, FrictionParameters, Imperfections, Payload, PlantParameters};
+pub use imperfections::{Imperfections, NAMED, Named};
+pub use parameters::{AXES, FrictionParameters, Payload, PlantParameters};
 pub use stops::EndStops;
 
 use dynamics::Dynamics;

@@ -5,6 +5,7 @@
 
 use super::built::BUILT;
 use super::geometry::PivotGeometry;
+use super::imperfections::Imperfections;
 
 /// Number of pivots, drives, encoders and guides.
 pub const AXES: usize = 3;
@@ -30,89 +31,6 @@ impl Payload {
         eccentricity_m: 0.0,
         direction_rad: 0.0,
     };
-}
-
-/// Which departures from an ideal machine are simulated.
-///
-/// A flag only gates its effect: the size stands in [`PlantParameters`] (or in the parameters of the device), so an
-/// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
-/// whole counts, and the true angle is the plant's to tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Imperfections {
-    /// Coulomb, static and presliding friction at the rings (the bristle model).
-    pub dry_friction: bool,
-    /// Viscous friction at the rings.
-    pub viscous_friction: bool,
-    /// Elastic transmission. Off, the spring is made so stiff that the resonance is four times as high: a rigid joint
-    /// would need another state vector, and nothing in the controller's band can tell the two apart.
-    pub compliance: bool,
-    /// Dead zone in the transmission.
-    pub backlash: bool,
-    /// Torque ripple of the motors.
-    pub torque_ripple: bool,
-    /// Random noise of the encoders, beyond their quantisation.
-    pub encoder_noise: bool,
-    /// First harmonic error of the encoders.
-    pub encoder_eccentricity: bool,
-    /// Voltage lost in the bridges' dead time.
-    pub dead_time: bool,
-    /// Friction of the carriages on their guides.
-    pub guide_friction: bool,
-    /// Guides and carriages that give way across the guide. Off, they are rigid.
-    pub guide_compliance: bool,
-    /// Errors of the geometry: [`PlantParameters::pivots`].
-    pub geometry: bool,
-    /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
-    pub pwm_quantisation: bool,
-}
-
-impl Imperfections {
-    /// An ideal machine: no friction, no backlash, no noise. Integers stay integers: counts of encoders and PWM.
-    pub const NONE: Self = Self {
-        dry_friction: false,
-        viscous_friction: false,
-        compliance: true,
-        backlash: false,
-        torque_ripple: false,
-        encoder_noise: false,
-        encoder_eccentricity: false,
-        dead_time: false,
-        guide_friction: false,
-        guide_compliance: false,
-        geometry: false,
-        pwm_quantisation: false,
-    };
-
-    /// A kind machine: guides without friction, rigid and exact, and encoders that have been calibrated.
-    pub const CALIBRATED: Self = Self {
-        dry_friction: true,
-        viscous_friction: true,
-        compliance: true,
-        backlash: true,
-        torque_ripple: true,
-        encoder_noise: true,
-        encoder_eccentricity: false,
-        dead_time: true,
-        guide_friction: false,
-        guide_compliance: false,
-        geometry: false,
-        pwm_quantisation: true,
-    };
-
-    /// Everything.
-    pub const ALL: Self = Self {
-        encoder_eccentricity: true,
-        guide_friction: true,
-        guide_compliance: true,
-        geometry: true,
-        ..Self::CALIBRATED
-    };
-}
-
-impl Default for Imperfections {
-    fn default() -> Self {
-        Self::CALIBRATED
-    }
 }
 
 /// Friction by the bristle model. A ring's is in N m and rad, a guide's in N and m.
