@@ -57,7 +57,7 @@ fn demonstration(parameters: &Parameters, stage: &StageParameters, options: &Run
         return format!("{fault} |");
     }
     let facts = outcome.run.facts();
-    let centre = &facts.following_error.centre_um;
+    let centre = &facts.true_error.centre_um;
     let settling: Vec<f64> = (outcome.run.moves.iter())
         .filter_map(|one| Some(one.settle_s()? * 1e3))
         .collect();

@@ -118,7 +118,11 @@ impl Imperfections {
     #[must_use]
     pub fn beyond(mut self, mut other: Self) -> Vec<&'static str> {
         let is_beyond = |named: &&Named| *(named.flag)(&mut self) && !*(named.flag)(&mut other);
-        NAMED.iter().filter(is_beyond).map(|named| named.name).collect()
+        NAMED
+            .iter()
+            .filter(is_beyond)
+            .map(|named| named.name)
+            .collect()
     }
 }
 
