@@ -22,7 +22,7 @@ fn tripivot(folder: &Path, arguments: &[&str]) -> Output {
 #[test]
 fn a_machine_is_printed_changed_and_run() {
     let folder = folder("own-machine");
-    fs::write(folder.join("step.gcs"), "FRF\nMOV X 1\n").unwrap();
+    fs::write(folder.join("step.gcs"), "FRF\nMOV X 1\nWAC ONT? X = 1\n").unwrap();
     let printed = tripivot(&folder, &["machine"]).stdout;
     let text = String::from_utf8(printed).unwrap();
     assert!(text.contains("platform_mass_kg = 3.0"), "{text}");
