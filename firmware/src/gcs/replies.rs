@@ -52,6 +52,10 @@ impl Interpreter {
             }
             Query::JogTime => one_line(out, format_args!("{}", session.jog_time_ms.unwrap_or(0.0))),
             Query::Ownership => self.reply_ownership(session, out),
+            Query::Recovery => one_line(
+                out,
+                format_args!("{}", u8::from(self.commander.is_recovering())),
+            ),
             Query::PiezoChannels => one_line(out, format_args!("0")),
             Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),

@@ -235,6 +235,8 @@ const AFTER_GAINS: &[Parameter] = &[
 #[rustfmt::skip]
 const POWER: &[Parameter] = &[
     DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(power.supply_v)),
+    DRIVE.float(0x5450_080D, "largest voltage of a motor; the bridge gives 98 % of the supply at most", "V", [1.0, 60.0], at!(power.voltage_limit_v)),
+    DRIVE.float(0x5450_080E, "largest voltage of a motor in recovery (RCV)", "V", [1.0, 24.0], at!(power.recovery_voltage_v)),
     Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.power.pwm_hz)) },
     Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.power.pwm_counts))) },
 ];
