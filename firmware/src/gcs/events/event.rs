@@ -51,6 +51,8 @@ pub(in crate::gcs) enum Event {
     Recovered,
     /// It was given up on the way, or refused; the servo is off.
     RecoveryGivenUp,
+    /// A value is stored that this firmware does not allow; it is not in force.
+    UnusableParameter(u32, f64),
     /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
@@ -89,6 +91,12 @@ impl fmt::Display for Event {
                 write!(
                     f,
                     "not referenced: the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
+                )
+            }
+            Self::UnusableParameter(id, value) => {
+                write!(
+                    f,
+                    "kept parameter 0x{id:X} = {value} is out of its range: not in force"
                 )
             }
             Self::Recovery([x, y, w]) => {
