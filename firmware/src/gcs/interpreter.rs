@@ -9,6 +9,7 @@ use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
 use super::recorder::RecorderState;
+use super::recovery::RecoveryOwner;
 use super::statistics::Statistics;
 use super::variables::Variables;
 use crate::commander::Commander;
@@ -46,6 +47,7 @@ pub struct Interpreter {
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
+    pub(super) recovery_owner: RecoveryOwner,
     pub(super) wants_restart: bool,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
@@ -72,6 +74,7 @@ impl Interpreter {
             connections: Connections::default(),
             jogs: Jogs::default(),
             ownership: Ownership::default(),
+            recovery_owner: RecoveryOwner::default(),
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),
