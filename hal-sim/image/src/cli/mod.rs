@@ -4,6 +4,7 @@
 
 mod arguments;
 mod chip;
+mod chip_cycles;
 mod chip_load;
 mod chip_serve;
 mod chip_tick;
@@ -43,6 +44,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::ChipServe(arguments) => chip_serve::run(&arguments),
         Command::Cost(arguments) => cost::run(&arguments),
         Command::ChipLoad(arguments) => chip_load::run(&arguments),
+        Command::ChipCycles(arguments) => chip_cycles::run(&arguments),
         Command::ChipTick(arguments) => chip_tick::run(&arguments),
         Command::ImageCheck => image_check::run(),
     }
