@@ -40,8 +40,6 @@ pub struct StageDriver<F> {
     pub bridge_faults: [bool; 3],
     pub probes: Vec<(u64, [BridgeState; 3])>,
     pub actions: Vec<(u64, Action)>,
-    /// Where the core has come by since the caller looked last, of what it watches.
-    pub path: Vec<u64>,
     /// The ticks' instructions, where somebody has asked for them.
     pub following: Option<Following>,
     /// When the timers were started, since the last reset.
@@ -67,7 +65,6 @@ impl<F> StageDriver<F> {
             bridge_faults: [false; 3],
             probes: Vec::new(),
             actions: Vec::new(),
-            path: Vec::new(),
             following: None,
             started_at: None,
             tick: 0,
@@ -117,7 +114,6 @@ impl<F> StageDriver<F> {
 
     fn note_hit(&mut self, hit: Hit, host: &mut dyn Host) {
         let (address, at, instructions) = (hit.address, hit.at, hit.instruction_count);
-        self.path.push(address);
         if let Some(following) = &mut self.following {
             match address {
                 _ if address == self.landmarks.tick_begin => following.begin(address, host),
@@ -192,11 +188,9 @@ where
             cost: self.cost,
             resets: &self.resets,
             probes: &self.probes,
-            path: &self.path,
             following: &mut self.following,
             ends: [self.landmarks.tick_begin, self.landmarks.tick_end],
         });
-        self.path.clear();
         session
             .board_mut()
             .set_bridge_faults(now, self.bridge_faults);

@@ -41,7 +41,7 @@ impl Following {
     }
 
     /// What is to be watched, besides where a tick begins and ends.
-    pub fn addresses(&self) -> impl Iterator<Item = u64> {
+    pub fn addresses(&self) -> impl Iterator<Item = u64> + use<'_> {
         let ends = self.ends;
         self.program
             .addresses()

@@ -63,4 +63,4 @@ pub use run::{ChipError, ChipOutcome, run};
 pub use serve::{LineNotice, LineServer};
 pub use twin::{Agreed, Divergence, Twin};
 pub use uses::{Use, Used, UsedTick, uses};
-pub use way::{Way, follow};
+pub use way::follow;

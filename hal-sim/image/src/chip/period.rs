@@ -82,8 +82,6 @@ pub struct Period<'a> {
     pub resets: &'a [Reset],
     /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
     pub probes: &'a [(u64, [BridgeState; 3])],
-    /// Where the core has come by since the period before: the tick's begin and end, and what [`Period::watch`] asked for.
-    pub path: &'a [u64],
     pub(super) following: &'a mut Option<Following>,
     /// Where a tick begins and ends.
     pub(super) ends: [u64; 2],
@@ -134,11 +132,6 @@ impl Period<'_> {
             .read(address, Width::W32)
             .ok()
             .map(|word| word as u32)
-    }
-
-    /// Has the core's way over an instruction noted from now on. Returns whether it can be.
-    pub fn watch(&mut self, instruction: u64) -> bool {
-        self.host.watch(Watch::Instruction(instruction))
     }
 
     /// Has the instructions of ticks noted from the next one on, or no more. Returns whether they can be.

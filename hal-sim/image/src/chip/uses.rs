@@ -4,6 +4,7 @@ use super::follow::Step;
 use super::{Bench, ChipError, Period, bench, elf_file};
 use crate::cycles::Program;
 use hal_sim::machine::devices::{Stage, StageParameters};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::ControlFlow::{Break, Continue};
 use std::ops::Range;
@@ -93,8 +94,11 @@ struct Stretch {
     taken: Option<Use>,
 }
 
+/// From a line to the tick that takes the order in it, at most.
+const ORDER_TICKS: u64 = 40;
+
 /// Lines, and the tick before which they are sent.
-const LINES: [(u64, &[u8]); 8] = [
+const LINES: [(u64, &[u8]); 10] = [
     (150, b"FRF X\n"),
     (1_000, b"MOV X 40 Y 20 W 90\n"),
     (4_000, b"MOV X -30 Y 35 W -90\n"),
@@ -105,10 +109,11 @@ const LINES: [(u64, &[u8]); 8] = [
         b"RTR 1\nDRC 1 X 1 2 X 2 3 X 3 4 Y 1 5 Y 2 6 W 1 7 1 73 8 0 204\n",
     ),
     (20_200, b"DRT 0 2 0\n"),
-    (20_500, b"MOV X 40 Y 20 W 90\n"),
+    (20_300, b"DRT 0 4 0\n"),
+    (20_500, b"DRT 0 2 0\nMOV X 40 Y 20 W 90\n"),
+    // In the middle of the recorded move.
+    (21_200, b"MOV X 10 Y 40 W 0\n"),
 ];
-/// One in the middle of the recorded move.
-const LAST_TARGET: (u64, &[u8]) = (21_200, b"MOV X 10 Y 40 W 0\n");
 /// Streamed targets: one every 20 ticks on a circle that begins and ends where the stage is.
 const STREAM: Range<u64> = 15_200..17_200;
 const STREAM_EVERY: u64 = 20;
@@ -133,7 +138,8 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
         stretch(4_000, quarter.max(400), Use::Moving, plan),
         stretch(5_000, quarter, Use::Moving, plan),
         stretch(15_600, ticks, Use::Streaming, None),
-        stretch(20_200, 100, Use::Holding, Some(Use::RecordOrder)),
+        stretch(20_200, ORDER_TICKS, Use::RecordOrder, None),
+        stretch(20_300, ORDER_TICKS, Use::RecordOrder, None),
         stretch(
             20_500,
             ticks.max(300),
@@ -179,8 +185,20 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
     if !outcome.gaps.is_empty() {
         return Err(ChipError::Gaps(outcome.gaps));
     }
-    let ticks = told.recv().map_err(|_| ChipError::Lost)?;
+    let mut ticks = told.recv().map_err(|_| ChipError::Lost)?;
+    keep_orders(&mut ticks);
     Ok(Used { program, ticks })
+}
+
+/// Of the ticks in which an order to record may come, those that take it: the longest of each stretch, by far.
+fn keep_orders(ticks: &mut Vec<UsedTick>) {
+    let mut longest: BTreeMap<u64, (usize, u64)> = BTreeMap::new();
+    for tick in ticks.iter().filter(|tick| tick.used == Use::RecordOrder) {
+        let longest = longest.entry(tick.tick / 100).or_default();
+        *longest = (*longest).max((tick.steps.len(), tick.tick));
+    }
+    let taken: BTreeSet<u64> = longest.into_values().map(|(_, tick)| tick).collect();
+    ticks.retain(|tick| tick.used != Use::RecordOrder || taken.contains(&tick.tick));
 }
 
 struct Run {
@@ -223,7 +241,7 @@ impl Run {
 }
 
 fn send(period: &mut Period<'_>) {
-    for (at, line) in LINES.into_iter().chain([LAST_TARGET]) {
+    for (at, line) in LINES {
         if period.tick == at {
             period.send(line);
         }

@@ -68,6 +68,11 @@ pub(super) struct ChipServe {
 /// Where the repository keeps the figures, for a program that is run where it was built.
 const FIGURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../firmware/figures.csv");
 
+const LIMITS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../firmware/cycle-limits.csv"
+);
+
 /// Load on the emulated chip.
 #[derive(Args, Clone, Debug)]
 pub(super) struct ChipLoad {
@@ -82,6 +87,19 @@ pub(super) struct ChipCycles {
     /// Ticks of each use, about.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = value_parser!(u64).range(40..=4_000))]
     pub(super) ticks: u64,
+    /// Functions and lines named that wait most.
+    #[arg(long, value_name = "N", default_value_t = 15)]
+    pub(super) top: usize,
+    /// Compare with the limits that the repository keeps, and the model with llvm-mca: exit code 1 when a tick is over its limit, or
+    /// the two are more than 2 % apart.
+    #[arg(long)]
+    pub(super) check: bool,
+    /// Write the limits that these ticks give.
+    #[arg(long, conflicts_with = "check")]
+    pub(super) write: bool,
+    /// The limits.
+    #[arg(long, value_name = "FILE", default_value = LIMITS)]
+    pub(super) limits: PathBuf,
 }
 
 /// One tick on the emulated chip.

@@ -13,6 +13,7 @@ mod error;
 mod exercise;
 mod image_check;
 mod period;
+mod place;
 
 use std::process::ExitCode;
 

@@ -10,12 +10,15 @@
 //! | `core`, `fetch` | the core; how it fetches instructions |
 //! | `program` | the instructions of the image's tick, by address |
 //! | `flash` | the flash and its accelerator |
-//! | `tally` | ticks of each use through the model |
+//! | `tally`, `print` | ticks of each use through the model, and how they are printed |
+//! | `limits` | what a tick may take |
 
 mod core;
 mod fetch;
 mod flash;
 mod instruction;
+mod limits;
+mod print;
 mod program;
 mod registers;
 mod setting;
@@ -23,7 +26,9 @@ mod tally;
 
 pub use self::core::{Bus, Core, Cycles, Ran};
 pub use instruction::{Instruction, Kind, Place, address};
+pub use limits::{GOAL, Limit, LimitsError, limits, over, read_limits, write_limits};
+pub use print::{Tallies, print_cycles, print_kinds, print_places};
 pub use program::Program;
 pub use registers::Registers;
 pub use setting::Setting;
-pub use tally::{Row, Tally};
+pub use tally::{Row, Tally, modelled_without_jumps};

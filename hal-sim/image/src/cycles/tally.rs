@@ -117,8 +117,16 @@ fn row<'a>(
     row
 }
 
+/// Cycles of a tick's instructions by themselves, one behind the other: what another model without a memory is compared with.
+#[must_use]
+pub fn modelled_without_jumps(used: &Used, tick: &UsedTick) -> u64 {
+    let mut core = Core::new(Setting::WITHOUT_WAIT_STATES);
+    let cycles = core.run(ran(used, &tick.steps), |_, _| {});
+    cycles.table + cycles.float
+}
+
 /// The steps of a tick as the model takes them.
-pub fn ran<'a>(used: &'a Used, steps: &'a [Step]) -> impl Iterator<Item = Ran<'a>> {
+fn ran<'a>(used: &'a Used, steps: &'a [Step]) -> impl Iterator<Item = Ran<'a>> {
     steps.iter().filter_map(|step| {
         let instruction = used.program.at(step.at)?;
         Some(Ran {
