@@ -1,8 +1,7 @@
 //! The model of the core against ARM's table, by sequences made by hand (as `llvm-mc -mcpu=cortex-m4 -show-encoding` assembles
-//! them); and the image's ticks through it, which needs `cargo stage` first, then `cargo chip-test`.
+//! them). The image's ticks go through it in `cargo chip-cycles --check`.
 
-use image::chip::{Use, uses};
-use image::cycles::{Bus, Core, Cycles, Instruction, Kind, Ran, Setting, Tally, address};
+use image::cycles::{Bus, Core, Cycles, Instruction, Kind, Ran, Setting, address};
 use image::proof::Engine;
 
 const ADD: &[u8] = &[0x40, 0x18]; // adds r0, r0, r1
@@ -301,31 +300,4 @@ fn what_jumps_is_known() {
     ] {
         assert_eq!(decoded(code, START).kind, kind, "{code:02X?}");
     }
-}
-
-#[test]
-fn ticks_of_every_use_go_through_the_model_and_its_guesses_are_in_order() {
-    let used = uses(40).expect("the image: build it with `cargo stage`");
-    let [without, optimistic, nominal, pessimistic] = [
-        Setting::WITHOUT_WAIT_STATES,
-        Setting::OPTIMISTIC,
-        Setting::NOMINAL,
-        Setting::PESSIMISTIC,
-    ]
-    .map(|setting| Tally::of(&used, setting));
-    for (index, row) in nominal.rows.iter().enumerate() {
-        let of = |tally: &Tally| tally.rows[index].mean();
-        assert!(!row.cycles.is_empty(), "{}", row.name());
-        assert!(of(&without) < of(&optimistic), "{}", row.name());
-        assert!(of(&optimistic) < of(&nominal), "{}", row.name());
-        assert!(of(&nominal) < of(&pessimistic), "{}", row.name());
-    }
-    let mean = |used| {
-        let row = nominal
-            .rows
-            .iter()
-            .find(|row| row.used == used && !row.writing);
-        row.map_or(0.0, |row| row.mean())
-    };
-    assert!(mean(Use::Off) < mean(Use::Moving) && mean(Use::Moving) < mean(Use::Recording));
 }
