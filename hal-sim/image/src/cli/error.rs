@@ -32,6 +32,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Figures(#[from] crate::cost::FiguresError),
     #[error(transparent)]
+    Limits(#[from] crate::cycles::LimitsError),
+    #[error(transparent)]
     Proof(#[from] crate::proof::ProofError),
     /// A part costs more than it did.
     #[error("{0}")]
