@@ -1,6 +1,6 @@
 //! The run's clock: stops the emulator once a control period and moves everything outside the chip.
 
-use super::board::ChipBoard;
+use super::board::{ChipBoard, HSE_ON, RCC_CR};
 use super::cost::TickCost;
 use super::period::{Action, Period, Reset};
 use super::timeline::{EARLY_NS, FIRST_TICK_NS, LATCH_NS, PERIOD_NS};
@@ -141,6 +141,7 @@ impl<F> StageDriver<F> {
                 Action::EmergencyStop(pressed) => board.set_emergency_stop(now, pressed),
                 // The register exists: the image wrote to it before.
                 Action::HaltLoop => drop(board.stop_latch_timer(now)),
+                Action::DelayLatch(counts) => drop(board.delay_latch(now, counts)),
                 Action::Probe => self
                     .probes
                     .push((now.0, board.bridges(now, self.bridge_faults))),
@@ -224,6 +225,13 @@ where
                     && access.value & COUNTER_ENABLE != 0 =>
             {
                 self.started_at = Some(now.0);
+            }
+            Settled::Access { access, .. }
+                if access.address == RCC_CR
+                    && access.kind == AccessKind::Write
+                    && access.value & u64::from(HSE_ON) != 0 =>
+            {
+                session.board_mut().crystal_switched_on(now);
             }
             Settled::Hit(hit) if hit.kind == HitKind::Instruction => {
                 self.note_hit(hit.address, hit.at, hit.instruction_count);

@@ -4,8 +4,8 @@ use super::board::ChipBoard;
 use super::cost::TickCost;
 use super::timeline::{EARLY_NS, LATCH_NS};
 use hal_sim::machine::devices::{BridgeState, Stage};
-use rigless::device::ResetCause;
-use rigless::emulator::{Host, Watch};
+use rigless::device::{Level, ResetCause};
+use rigless::emulator::{Host, InterruptLine, Watch};
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 
@@ -25,6 +25,8 @@ pub enum Action {
     EmergencyStop(bool),
     /// Stop the timer that starts every control period: the loop halts.
     HaltLoop,
+    /// Move the latches to come by so many counts of TIM3 (84 MHz): later, or, less than 0, earlier again.
+    DelayLatch(i32),
     /// Keep what the bridges' pins say, for [`Period::probes`].
     Probe,
 }
@@ -128,6 +130,24 @@ impl Period<'_> {
             .read(address, Width::W32)
             .ok()
             .map(|word| word as u32)
+    }
+
+    /// The register of a peripheral at an address, as the program last left it, or `None` where there is none. The registers of
+    /// the processor itself are not among them.
+    pub fn register(&mut self, address: u64) -> Option<u32> {
+        self.board.register(self.at, address)
+    }
+
+    /// Raises an interrupt of the chip by its number, as its peripheral would.
+    pub fn interrupt(&mut self, number: u16) {
+        if let Some(line) = InterruptLine::new(number) {
+            self.host.set_interrupt(line, Level::High);
+        }
+    }
+
+    /// Sets the supply of the chip itself, mV.
+    pub fn set_chip_supply(&mut self, millivolts: u32) {
+        self.board.set_chip_supply(millivolts);
     }
 
     /// Has the core's way over an instruction noted from now on. Returns whether it can be.

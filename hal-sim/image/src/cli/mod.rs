@@ -12,6 +12,7 @@ mod error;
 mod exercise;
 mod image_check;
 mod period;
+mod seal;
 
 use std::process::ExitCode;
 
@@ -45,5 +46,6 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::ChipLoad(arguments) => chip_load::run(&arguments),
         Command::ChipTick(arguments) => chip_tick::run(&arguments),
         Command::ImageCheck => image_check::run(),
+        Command::Seal => seal::run(),
     }
 }
