@@ -21,6 +21,7 @@
 //! | [`recorder`] | the data recorder, and a running hash of every tick |
 //! | [`parameters`] | every tunable, in physical units |
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
+//! | [`image_checksum`] | whether the program in flash is whole |
 //! | [`drivers`] | chips on the board: encoder frames, bridges |
 //! | [`fault`] | kinds of fault, what each does and why |
 //! | [`mode`] | the modes of the controller |
@@ -33,6 +34,7 @@ pub mod drivers;
 pub mod fault;
 pub mod fault_record;
 pub mod gcs;
+pub mod image_checksum;
 pub mod mode;
 pub mod motion;
 pub mod number;

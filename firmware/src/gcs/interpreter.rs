@@ -2,7 +2,7 @@
 
 use super::connections::Connections;
 use super::error::ErrorCode;
-use super::events::EventLog;
+use super::events::{BoardNotice, Crash, Event, EventLog};
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
 use super::macros::Macros;
@@ -89,6 +89,16 @@ impl Interpreter {
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);
+    }
+
+    /// Notes how the program ended before this start, for `EVT?`. To be called before anything is served.
+    pub fn add_crash(&mut self, crash: Crash) {
+        self.events.add(0, Event::Crashed(crash));
+    }
+
+    /// Notes what the board has found out about itself, for `EVT?`. To be called before anything is served.
+    pub fn add_board_notice(&mut self, notice: BoardNotice) {
+        self.events.add(0, Event::BoardNotice(notice));
     }
 
     /// The tick of the latest snapshot taken; 0 before the first.

@@ -82,7 +82,7 @@ mod wave;
 
 pub use arguments::ParseError;
 pub use error::ErrorCode;
-pub use events::START_CAUSES;
+pub use events::{BoardNotice, CRASH_FILE_BYTES, Crash, CrashCause, START_CAUSES};
 pub use frames::{FrameQuery, ListItem};
 pub use interpreter::{Identity, Interpreter};
 pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};
