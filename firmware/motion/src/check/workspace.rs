@@ -98,6 +98,7 @@ impl Workspace {
     }
 
     /// Of the platform's centre from the track's.
+    #[inline(never)]
     pub fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
         if self.arm > 0.0 {
             segment.platform(sample, self.centre).radius()
