@@ -36,9 +36,15 @@ pub mod fault_record;
 pub mod gcs;
 pub mod image_checksum;
 pub mod mode;
-pub mod motion;
-pub mod number;
 pub mod parameters;
 pub mod queues;
 pub mod recorder;
 pub mod settings_store;
+
+/// Plans, and what they are held against; and the planners.
+pub mod motion {
+    pub use ::motion::*;
+    pub use planners::*;
+}
+
+pub use number;

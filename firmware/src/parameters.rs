@@ -312,19 +312,7 @@ impl Parameters {
     /// The reference stage.
     pub const REFERENCE: Self = Self {
         geometry: Geometry::REFERENCE,
-        limits: Limits {
-            rate_hz: 20_000.0,
-            speed_mm_s: 200.0,
-            acceleration_mm_s2: 4_000.0,
-            jerk_mm_s3: 400_000.0,
-            turn_speed_deg_s: 360.0,
-            turn_acceleration_deg_s2: 7_200.0,
-            turn_jerk_deg_s3: 720_000.0,
-            pivot_rate_rad_s: 10.0,
-            // At 10 rad/s the motor constant leaves 18 V of 48 for 26 N m, on 0.035 kg m^2 twice this.
-            pivot_acceleration_rad_s2: 300.0,
-            stop_factor: 2.0,
-        },
+        limits: Limits::REFERENCE,
         platform: Platform {
             mass_kg: 3.0,
             inertia_kg_m2: 0.02,
