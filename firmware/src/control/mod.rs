@@ -42,7 +42,7 @@ mod tick_queues;
 pub mod units;
 
 pub use command::Command;
-pub use snapshot::{SNAPSHOT_SLOTS, Snapshot};
+pub use snapshot::{SNAPSHOT_SLOTS, ServoReport, Snapshot};
 pub use state::{Inputs, Outputs, State};
 pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
 pub use tick::tick;

@@ -242,9 +242,7 @@ impl State {
             duty[i] = servo.step(config, &setpoint, &common);
             if i == self.inspection_slot {
                 servo.learn(config);
-                if let Some(share) = servos.scheduled_share(&wanted.lengths, &wanted.cosines, i) {
-                    servo.schedule(share);
-                }
+                servo.schedule(servos.scheduled_share(&wanted.lengths, &wanted.cosines, i));
             }
             sum += servo.requested_counts();
         }

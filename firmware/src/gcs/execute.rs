@@ -59,7 +59,7 @@ impl Interpreter {
             }
             Action::Set(settings) => self.set(&settings, session, queues),
             Action::Store(addresses) => {
-                self.store_parameters(&addresses)?;
+                self.store_parameters(&addresses, queues)?;
                 self.wait(session, Awaited::Stored);
                 Ok(())
             }

@@ -5,6 +5,7 @@ use super::error::ErrorCode;
 use super::events::EventLog;
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
+use super::learnt::ServoReports;
 use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
@@ -42,6 +43,7 @@ pub struct Interpreter {
     pub(super) recorder_state: RecorderState,
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
+    pub(super) servo_reports: ServoReports,
     pub(super) heartbeat: Heartbeat,
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
@@ -68,6 +70,7 @@ impl Interpreter {
             recorder_state: RecorderState::new(),
             events: EventLog::new(),
             statistics: Statistics::default(),
+            servo_reports: ServoReports::default(),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),

@@ -26,6 +26,7 @@
 //! | `output`, `reply_writer` | where replies go, and their form |
 //! | `error` | error numbers, and the table from the commander's errors to them |
 //! | `text` | names and short texts |
+//! | `learnt` | what the servos have learnt, told and kept |
 //! | `streaming` | the time between streamed targets |
 //!
 //! | folder | commands |
@@ -54,6 +55,7 @@ mod frames;
 mod heartbeat;
 mod interpreter;
 mod jog;
+mod learnt;
 mod macros;
 mod monitor;
 mod output;

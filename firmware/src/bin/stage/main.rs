@@ -139,13 +139,16 @@ mod app {
         }
         // Before anything can move.
         let mut settings_store = SettingsStore::new(flash);
-        let state = match settings_store.restore(interpreter) {
+        let problem = settings_store.restore(interpreter);
+        let config = Config::new(interpreter.parameters());
+        let state = match problem {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
         }
-        .with_motor_heat(RETAINED_MEMORY.motor_heat());
+        .with_motor_heat(RETAINED_MEMORY.motor_heat())
+        .with_learnt(&config);
         let local = Local {
-            config: Config::new(interpreter.parameters()),
+            config,
             state: context.local.state_place.write(state),
             trace_writer: TraceWriter::default(),
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),

@@ -2,6 +2,7 @@
 
 use super::filter::FilterConfig;
 use super::inertia::carried_inertia;
+use super::learnt::Learnt;
 use super::platform_torque::Body;
 use super::ripple::RippleConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
@@ -76,6 +77,8 @@ pub struct PivotServoConfig {
     /// Anti-windup: largest size of the integral, V.
     pub(super) integral_limit: f32,
     pub(super) learnt_weight_limit: [f32; FEATURES],
+    /// What it starts with, and goes on with when this changes.
+    pub(in crate::control) learnt: Learnt,
 }
 
 impl ServoConfig {
@@ -92,17 +95,15 @@ impl ServoConfig {
     }
 
     /// The share of a pivot's velocity gain and integral gain for what it moves with its guides so long and at such angles;
-    /// `None` where the gains are the same everywhere.
+    /// 1 where the gains are the same everywhere.
     #[inline]
-    pub fn scheduled_share(
-        &self,
-        lengths: &[f32; 3],
-        cosines: &[f32; 3],
-        pivot: usize,
-    ) -> Option<f32> {
-        let per_inertia = self.gains_per_inertia?;
-        let ring = self.pivots.get(pivot)?.inertia;
-        Some(per_inertia * (ring + carried_inertia(&self.body, lengths, cosines, pivot)))
+    pub fn scheduled_share(&self, lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> f32 {
+        match (self.gains_per_inertia, self.pivots.get(pivot)) {
+            (Some(per_inertia), Some(PivotServoConfig { inertia, .. })) => {
+                per_inertia * (inertia + carried_inertia(&self.body, lengths, cosines, pivot))
+            }
+            _ => 1.0,
+        }
     }
 
     /// PWM counts per volt at a measured supply (ADC counts). A supply that reads as nothing gives no drive.
@@ -174,6 +175,7 @@ impl PivotServoConfig {
             oscillation_swing: oscillation_v as f32,
             integral_limit: (power.supply_v * 0.5) as f32,
             learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
+            learnt: Learnt::new(&parameters.learnt[pivot]),
         }
     }
 }

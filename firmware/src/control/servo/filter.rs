@@ -96,6 +96,9 @@ impl Filters {
     /// The filtered value; without filters the value itself.
     #[inline]
     pub fn step(&mut self, config: &FilterConfig, value: f32) -> f32 {
+        if config.count == 0 {
+            return value;
+        }
         let mut value = value;
         for (section, state) in config.sections.iter().zip(&mut self.0).take(config.count) {
             let ([b0, b1, b2], [a1, a2]) = (section.b, section.a);
