@@ -37,8 +37,8 @@ pub(super) struct Arguments {
 pub(super) struct RunOutput {
     /// Tell the result as one JSON document on standard output.
     ///
-    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, eccentricity, settings);
-    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); moves (start_s, profile_end_s, settled_s,
+    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, with, settings);
+    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); true_error (centre_um, theta_urad, of the true pose); moves (start_s, profile_end_s, settled_s,
     /// settle_ms, x_mm, y_mm, theta_deg; null where the stage had not settled when the next move began or the run ended);
     /// never_settled, how many of those had a tenth of a second for it, or more; peak_duty (0 to 1);
     /// smallest_separation_deg; simulated_s; wall_s; answers (line, answer); fault (null without one); folder.
