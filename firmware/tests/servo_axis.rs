@@ -246,3 +246,24 @@ fn a_restart_keeps_what_the_current_has_told() {
     servo.restart();
     assert_eq!(*servo.learnt(), learnt);
 }
+
+/// What a table of iterative learning holds at its end goes over to the integral: not a count of the duty changes, and nothing is learnt.
+#[test]
+fn what_is_taken_over_is_no_step() {
+    let config = config();
+    let full = full_loop(SUPPLY_COUNTS);
+    let mut servo = PivotServo::default();
+    let with = |learnt_volts| PivotSetpoint {
+        learnt_volts,
+        ..asking(1.0, 0.0)
+    };
+    servo.step(&config, &with(2.0), &full);
+    let Duty(before) = servo.step(&config, &with(2.0), &full);
+    servo.take_over(&config, 2.0);
+    for _ in 0..10 {
+        let Duty(after) = servo.step(&config, &with(0.0), &full);
+        assert!(after.abs_diff(before) <= 1, "{before} {after}");
+        servo.learn(&config);
+    }
+    assert_eq!(servo.learnt().weights, [0.0; 3]);
+}

@@ -11,6 +11,7 @@
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
+//! | `trial` | trials of iterative learning |
 //! | `rest_mode` | slower loops while the setpoint rests |
 //! | `settling` | whether the stage has settled |
 //! | `supervisor/` | which commands are taken in which state, and what is a fault |
@@ -39,6 +40,7 @@ mod state;
 mod supervisor;
 mod tick;
 mod tick_queues;
+mod trial;
 pub mod units;
 
 pub use command::Command;

@@ -10,6 +10,7 @@ use super::settling::Settling;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
+use crate::iterative_learning::Trial;
 use crate::mode::Mode;
 use crate::motion::PlanFollower;
 
@@ -57,6 +58,7 @@ pub struct State {
     pub(super) encoders: [Encoder; 3],
     pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
+    pub(super) trial: Trial,
     pub(super) settling: Settling,
     pub(super) rest_mode: RestMode,
     pub(super) supply: f32,

@@ -33,6 +33,7 @@
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
+//! | `iterative_learning` | `ILC`: moves that are repeated |
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
@@ -54,6 +55,7 @@ mod execute;
 mod frames;
 mod heartbeat;
 mod interpreter;
+mod iterative_learning;
 mod jog;
 mod learnt;
 mod macros;

@@ -6,6 +6,7 @@ use super::learnt::Learnt;
 use super::platform_torque::Body;
 use super::ripple::RippleConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::iterative_learning::InversePlant;
 use crate::parameters::Parameters;
 
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
@@ -79,6 +80,8 @@ pub struct PivotServoConfig {
     pub(super) learnt_weight_limit: [f32; FEATURES],
     /// What it starts with, and goes on with when this changes.
     pub(in crate::control) learnt: Learnt,
+    /// What it moves in the middle of the disk, kg m^2.
+    middle_inertia: f32,
 }
 
 impl ServoConfig {
@@ -118,6 +121,18 @@ impl ServoConfig {
 }
 
 impl PivotServoConfig {
+    /// From errors to the volts that they are worth, for iterative learning.
+    #[inline]
+    pub fn inverse_plant(&self) -> InversePlant {
+        const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
+        let [volt_per_rate, volt_per_torque, _] = self.model_weights;
+        InversePlant {
+            volt_s2: RAD * volt_per_torque * self.middle_inertia,
+            volt_s: RAD * (self.volt_per_rate + volt_per_rate),
+            lead_ticks: self.lead_ticks,
+        }
+    }
+
     fn new(parameters: &Parameters, pivot: usize) -> Self {
         let Parameters {
             servo,
@@ -138,6 +153,9 @@ impl PivotServoConfig {
         let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
         let rad_per_unit = 1.0 / UNITS_PER_RAD;
         let full = f64::from(power.pwm_counts);
+        // In the middle of the disk; a pivot alone.
+        let carried = carried_inertia(&Body::new(parameters), &[1.0; 3], &[1.0; 3], pivot);
+        let middle_inertia = drive.inertia_kg_m2 + f64::from(carried);
         // What a change of one count in a tick is worth grows with the gain, and the thresholds with it.
         let filters = FilterConfig::new(&servo.filters[pivot], limits.rate_hz);
         let volt_per_count =
@@ -176,6 +194,7 @@ impl PivotServoConfig {
             integral_limit: (power.supply_v * 0.5) as f32,
             learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
             learnt: Learnt::new(&parameters.learnt[pivot]),
+            middle_inertia: middle_inertia as f32,
         }
     }
 }

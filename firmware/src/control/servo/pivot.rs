@@ -28,6 +28,8 @@ pub struct PivotSetpoint {
     pub angle: Angle,
     /// Size of the motor's current as it was measured, ADC counts.
     pub current_counts: u16,
+    /// What iterative learning adds, V.
+    pub learnt_volts: f32,
 }
 
 /// What the three loops have in common at a tick.
@@ -160,7 +162,8 @@ impl PivotServo {
         self.signals = [rate, torque, friction];
         let feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
             + (config.model_weights[1] + self.learnt.weights[1]) * torque
-            + (config.model_weights[2] + self.learnt.weights[2]) * friction;
+            + (config.model_weights[2] + self.learnt.weights[2]) * friction
+            + setpoint.learnt_volts;
 
         let r = r + self.scheduled_excess * r;
         let feedback = self.filters.step(
@@ -200,6 +203,19 @@ impl PivotServo {
             );
         }
         self.quantise(limited)
+    }
+
+    /// Volts that somebody else has given until now: the integral's from now on. Nothing is learnt from that.
+    pub fn take_over(&mut self, config: &PivotServoConfig, volts: f32) {
+        let before = self.integral;
+        self.integral = clamp_symmetric(before + volts, config.integral_limit);
+        self.integral_when_learnt += self.integral - before;
+    }
+
+    /// Learns nothing from what the integral has collected since it did last.
+    #[inline]
+    pub fn skip_learning(&mut self) {
+        self.integral_when_learnt = self.integral;
     }
 
     /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
