@@ -17,6 +17,7 @@
 //! | [`commander`] | the stage as the command side sees it: plans, what is sent and what is pending; no word of GCS |
 //! | [`queues`] | between the command side and the tick: commands one way, snapshots the other |
 //! | [`control`] | the tick: encoder frames in, duties out; servo, supervisor, referencing, settling |
+//! | [`iterative_learning`] | tables of voltage that go with a move that is repeated, and what they learn |
 //! | [`fault_record`] | what is still there after a reset: events, and the ticks around a fault |
 //! | [`recorder`] | the data recorder, and a running hash of every tick |
 //! | [`parameters`] | every tunable, in physical units |
@@ -35,6 +36,7 @@ pub mod fault;
 pub mod fault_record;
 pub mod gcs;
 pub mod image_checksum;
+pub mod iterative_learning;
 pub mod mode;
 pub mod parameters;
 pub mod queues;

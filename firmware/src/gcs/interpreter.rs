@@ -5,6 +5,7 @@ use super::error::ErrorCode;
 use super::events::{BoardNotice, Crash, Event, EventLog};
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
+use super::learnt::ServoReports;
 use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
@@ -43,6 +44,7 @@ pub struct Interpreter {
     pub(super) recorder_state: RecorderState,
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
+    pub(super) servo_reports: ServoReports,
     pub(super) heartbeat: Heartbeat,
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
@@ -70,6 +72,7 @@ impl Interpreter {
             recorder_state: RecorderState::new(),
             events: EventLog::new(),
             statistics: Statistics::default(),
+            servo_reports: ServoReports::default(),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),

@@ -160,14 +160,16 @@ mod app {
         let unusable_settings = settings_store.restore(interpreter);
         let damaged = self_check.image_damaged.then_some(FaultKind::ImageDamaged);
         let no_crystal = without_crystal.then_some(FaultKind::CrystalFailed);
+        let config = Config::new(interpreter.parameters());
         // The one that stays first.
         let state = match damaged.or(no_crystal).or(unusable_settings) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
         }
-        .with_motor_heat(RETAINED_MEMORY.motor_heat());
+        .with_motor_heat(RETAINED_MEMORY.motor_heat())
+        .with_learnt(&config);
         let local = Local {
-            config: Config::new(interpreter.parameters()),
+            config,
             state: context.local.state_place.write(state),
             trace_writer: TraceWriter::default(),
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),

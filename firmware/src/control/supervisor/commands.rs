@@ -128,6 +128,13 @@ impl State {
     /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that sends no snapshot.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
         let moved = [0, 1, 2].map(|i| !config.encoders[i].has_same_mounting(&wanted.encoders[i]));
+        for (i, servo) in self.servo.iter_mut().enumerate() {
+            // Other ones than were set last: what has been learnt since then stays otherwise.
+            let learnt = &wanted.servo.pivots[i].learnt;
+            if config.servo.pivots[i].learnt != *learnt {
+                servo.restore(learnt);
+            }
+        }
         config.clone_from(wanted);
         for (encoder, moved) in self.encoders.iter_mut().zip(moved) {
             if moved {
