@@ -14,7 +14,7 @@
 //! | `interpreter` | what all connections share |
 //! | `session` | input, line, error and wait of a connection |
 //! | `service` | what a connection has sent: taken, understood, carried out, answered |
-//! | `connections` | numbers of connections, who commanded last, what ends with one |
+//! | `connection_number`, `connections` | what a connection is known by; who commanded last, what ends with one |
 //! | `waits` | what holds up the lines of a connection |
 //! | `table` | what commands there are; parsing, `HLP?` and dispatch read it |
 //! | `syntax` | what an entry of the table is |
@@ -26,17 +26,20 @@
 //! | `output`, `reply_writer` | where replies go, and their form |
 //! | `error` | error numbers, and the table from the commander's errors to them |
 //! | `text` | names and short texts |
+//! | `learnt` | what the servos have learnt, told and kept |
 //! | `streaming` | the time between streamed targets |
 //!
 //! | folder | commands |
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
+//! | `iterative_learning` | `ILC`: moves that are repeated |
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
+//! | `recovery` | the way back of a stage that was found out of its reach |
 //!
 //! Each folder has, as far as there is something to say: `state`, `request`, `parse`, `execute`, `replies`.
 //!
@@ -46,6 +49,7 @@
 //! questions, which are answered: a script does not go on after a stop, and a client gets its answers.
 
 mod arguments;
+mod connection_number;
 mod connections;
 mod error;
 mod events;
@@ -53,7 +57,9 @@ mod execute;
 mod frames;
 mod heartbeat;
 mod interpreter;
+mod iterative_learning;
 mod jog;
+mod learnt;
 mod macros;
 mod monitor;
 mod output;
@@ -62,6 +68,7 @@ mod parameter;
 mod parse;
 mod persistence;
 mod recorder;
+mod recovery;
 mod replies;
 mod reply_writer;
 mod request;
@@ -79,7 +86,7 @@ mod wave;
 
 pub use arguments::ParseError;
 pub use error::ErrorCode;
-pub use events::START_CAUSES;
+pub use events::{BoardNotice, CRASH_FILE_BYTES, Crash, CrashCause, START_CAUSES};
 pub use frames::{FrameQuery, ListItem};
 pub use interpreter::{Identity, Interpreter};
 pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};

@@ -1,5 +1,6 @@
 //! `WPA` and `RPA`.
 
+use super::state::KeptParameters;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -10,15 +11,17 @@ use crate::queues::CommandQueues;
 use crate::settings_store::StoreError;
 
 impl Interpreter {
-    /// `WPA`: those named, or all parameters, as they are now, and the macros.
+    /// `WPA`: those named, or all parameters, as they are now, what the servos have learnt among them, and the macros.
     pub(in crate::gcs) fn store_parameters(
         &mut self,
         addresses: &Addresses,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_store()?;
         if self.persistence.before.is_some() {
             return Err(ErrorCode::Busy);
         }
+        self.take_over_learnt(queues)?;
         let wanted = replaced(&self.persistence.stored, &self.parameters, addresses)?;
         let before = core::mem::replace(&mut self.persistence.stored, wanted);
         self.persistence.before = Some(before);
@@ -39,6 +42,19 @@ impl Interpreter {
         Ok(())
     }
 
+    /// Whether something may be stored that nobody has asked for.
+    pub(in crate::gcs) fn may_store_by_itself(&self) -> bool {
+        let persistence = &self.persistence;
+        !persistence.stored_is_invalid && persistence.before.is_none() && self.check_store().is_ok()
+    }
+
+    /// What was learnt, beside what is stored as it is.
+    pub(in crate::gcs) fn store_learnt(&mut self) {
+        let before = self.persistence.stored.clone();
+        self.persistence.stored.learnt = self.parameters.learnt;
+        self.persistence.before = Some(before);
+    }
+
     fn check_store(&self) -> Result<(), ErrorCode> {
         if !self.persistence.has_store {
             return Err(ErrorCode::NotForStage);
@@ -57,7 +73,12 @@ impl Interpreter {
         persistence.result = result.map_err(ErrorCode::from);
         let code = persistence.result.err();
         match (code, asked_for) {
-            (None, _) => persistence.stored_is_invalid = false,
+            (None, asked_for) => {
+                persistence.stored_is_invalid = false;
+                if asked_for.is_some() {
+                    persistence.unusable.clear();
+                }
+            }
             (Some(_), Some(before)) => persistence.stored = before,
             // Who recorded the macro does not wait for it.
             (Some(code), None) => self.report_to_all(code),
@@ -86,8 +107,21 @@ impl Interpreter {
         self.macros.all()
     }
 
-    /// Starts with these parameters; `unknown` ones were stored besides.
-    pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
+    /// Values that are not in force and stay stored all the same, as long as nobody asks for others.
+    pub(super) fn unusable_to_store(&self) -> &[(u32, f64)] {
+        match self.persistence.before {
+            Some(_) => &[],
+            None => &self.persistence.unusable,
+        }
+    }
+
+    /// Starts with these parameters.
+    pub(super) fn restore_parameters(&mut self, kept: KeptParameters) {
+        let KeptParameters {
+            mut parameters,
+            unknown,
+            unusable,
+        } = kept;
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
         recorder.points = recorder.points.min(MAX_RECORD_ROWS as u32);
@@ -102,6 +136,10 @@ impl Interpreter {
         if unknown > 0 {
             self.events.add(0, Event::UnknownParameters(unknown));
         }
+        for &(id, value) in &unusable {
+            self.events.add(0, Event::UnusableParameter(id, value));
+        }
+        self.persistence.unusable = unusable;
     }
 
     /// Adds to the text of a macro that is stored; false when it is none, or there is no room.

@@ -20,6 +20,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
+    Stage(#[from] tripivot::cli::stage::StageError),
+    #[error(transparent)]
     Script(#[from] ScriptError),
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
