@@ -19,8 +19,8 @@ import peripherals as part
 
 FLASH, FLASH_BYTES = 0x0800_0000, 2 << 20
 MEMORIES = ((FLASH, FLASH_BYTES), (0x2000_0000, 192 << 10), (0x1000_0000, 64 << 10), (0x1FFF_0000, 64 << 10))
-# Where handlers return to: nothing lies there.
-RETURN = 0x6000_0000
+# Where handlers return to, and what stands there.
+RETURN, ENDLESS = 0x6000_0000, b"\xfe\xe7"
 FLASH_SIZE_KIB = (0x1FFF_7A22, 2048)
 WFI = b"\x30\xbf"
 # What an exception leaves on the stack, floating-point registers and all.
@@ -44,6 +44,7 @@ class Chip:
         for start, size in MEMORIES:
             self.uc.mem_map(start, size)
         self.uc.mem_map(RETURN, 0x1000)
+        self.uc.mem_write(RETURN, ENDLESS)
         self.uc.mem_write(FLASH, b"\xff" * FLASH_BYTES)
         self.uc.mem_write(FLASH_SIZE_KIB[0], struct.pack("<H", FLASH_SIZE_KIB[1]))
         for address, data in segments + memory:
@@ -54,6 +55,7 @@ class Chip:
         self.sending, self.sent = [], bytearray()
         self.make_peripherals()
         self.uc.mmio_map(0x4000_0000, 0x8_0000, self.read, 0x4000_0000, self.write, 0x4000_0000)
+        self.uc.mmio_map(0x4200_0000, 0x200_0000, self.read_bit, None, self.write_bit, None)
         self.uc.mmio_map(0xE000_0000, 0x10_0000, self.read, 0xE000_0000, self.write, 0xE000_0000)
         self.uc.hook_add(UC_HOOK_BLOCK, self.on_block)
         stack, reset = struct.unpack("<II", self.uc.mem_read(FLASH, 8))
@@ -110,6 +112,17 @@ class Chip:
             value = peripheral.read(at & ~3) & ~(mask << shift) | (value & mask) << shift
         peripheral.write(at & ~3, value)
 
+    def read_bit(self, _uc, offset, _size, _data):
+        """A word of the bit band is a bit of a peripheral."""
+        at, bit = 0x4000_0000 + offset // 128 * 4, offset // 4 % 32
+        peripheral, register = self.find(at)
+        return peripheral.read(register) >> bit & 1
+
+    def write_bit(self, _uc, offset, _size, value, _data):
+        at, bit = 0x4000_0000 + offset // 128 * 4, offset // 4 % 32
+        peripheral, register = self.find(at)
+        peripheral.write(register, peripheral.read(register) & ~(1 << bit) | (value & 1) << bit)
+
     def instructions(self, start, end):
         """How many stand from one address to another."""
         key = (start, end)
@@ -122,7 +135,7 @@ class Chip:
         return self.lengths[key]
 
     def on_block(self, uc, address, size, _data):
-        if self.now >= self.stop_at:
+        if self.now >= self.stop_at or address == RETURN:
             uc.emu_stop()
         self.now += self.instructions(address, address + size)
         self.block = (address, address + size)
@@ -130,7 +143,7 @@ class Chip:
     def run(self):
         """Runs on until the next event, a return, or sleep."""
         try:
-            self.uc.emu_start(self.pc, RETURN)
+            self.uc.emu_start(self.pc, 0xFFFF_FFFF)
         except UcError as error:
             at = self.uc.reg_read(UC_ARM_REG_PC)
             raise Failed(f"{error} at {at:#x}") from error
@@ -138,6 +151,7 @@ class Chip:
         start, end = self.block
         self.sleeping = False
         if at == RETURN:
+            self.now -= self.instructions(start, end) if start == RETURN else 0
             self.uc.context_restore(self.kept.pop()[0])
             at = self.uc.reg_read(UC_ARM_REG_PC)
         elif start <= at < end:
@@ -150,9 +164,8 @@ class Chip:
     # Interrupts and time.
 
     def look(self):
-        """Something has changed that may interrupt: the core is to be asked."""
+        """Something has changed that may interrupt: the core is to be asked after the block under way."""
         self.stop_at = 0
-        self.uc.emu_stop()
 
     def fail(self, why):
         self.failure = why
