@@ -36,6 +36,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
+        self.check_commissioned()?;
         if snapshot.referenced {
             self.set_servo(true, queues)?;
             return Ok(false);

@@ -111,6 +111,8 @@ pub enum ErrorCode {
     /// The pose that the encoders show is outside the disk, a guide or the separation of pivots: wiring or zeros are wrong, or the
     /// stage was left there.
     ReferenceOutside = 4003,
+    /// Nobody has said yet how this machine is set up (`CMS`): nothing drives.
+    NotCommissioned = 4005,
 }
 
 impl ErrorCode {
@@ -139,6 +141,7 @@ impl From<CommandError> for ErrorCode {
         match error {
             CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
             CommandError::NotReady => Self::NotReady,
+            CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,

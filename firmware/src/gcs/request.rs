@@ -75,6 +75,8 @@ pub enum Query {
     Fault,
     /// `MON?`
     Monitor,
+    /// `CMS?`
+    Commissioned,
     /// `HBT?`
     Heartbeat,
     /// `JTM?`
@@ -157,6 +159,8 @@ pub enum Action {
     Halt(AxisSet),
     /// `FLC`
     Acknowledge,
+    /// `CMS`: 0 or 1.
+    Commission(f64),
     /// `HBT`, ms.
     Heartbeat(f64),
     /// `JTM`, ms.

@@ -61,6 +61,16 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     ask("CCL?", Query::Level, "get command level"),
     entry(
+        "CMS",
+        Syntax::Number(Action::Commission),
+        "<0|1> set whether the machine is commissioned",
+    ),
+    ask(
+        "CMS?",
+        Query::Commissioned,
+        "get whether the machine is commissioned",
+    ),
+    entry(
         "CST?",
         Syntax::Property(Property::Stage),
         "[{<axis>}] get stage type",

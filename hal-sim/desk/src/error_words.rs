@@ -67,6 +67,7 @@ error_words! {
     MotionError: "a fault is latched: acknowledge it first",
     FlashFailed: "the settings cannot be kept: the flash does not take them",
     OwnedByAnother: "another connection owns the stage: OWN? tells which; only stopping is possible",
+    NotCommissioned: "the machine is not commissioned, so nothing drives: CMS? says what is missing",
     ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros; EVT? has the pose",
 }
 

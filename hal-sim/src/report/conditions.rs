@@ -21,7 +21,7 @@ pub struct Conditions {
     pub without: Vec<&'static str>,
     /// Whether the encoders were eccentric, as on a stage that has not been calibrated.
     pub eccentricity: bool,
-    /// File that the controller kept its settings in, if it kept them.
+    /// File that the controller kept its settings in. Without one it had those that the simulated machine comes with.
     pub settings: Option<String>,
 }
 
@@ -37,7 +37,9 @@ impl Conditions {
             ("imperfections", self.imperfections()),
             (
                 "settings",
-                self.settings.clone().unwrap_or_else(|| "none kept".into()),
+                self.settings
+                    .clone()
+                    .unwrap_or_else(|| "the machine's own".into()),
             ),
         ]
     }
@@ -88,7 +90,7 @@ mod tests {
              imperfections all but backlash, dead-time, encoders eccentric; settings kept.bin"
         );
         assert!((Conditions::default().to_string()).ends_with(
-            "seed 0; mismatch 0 %; payload 0 kg; imperfections all; settings none kept"
+            "seed 0; mismatch 0 %; payload 0 kg; imperfections all; settings the machine's own"
         ));
     }
 }

@@ -16,5 +16,5 @@ pub mod observer;
 pub mod run;
 
 pub use ::script::{client, script};
-pub use assembly::{ControllerMemory, IDENTITY, Rig};
+pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use conditions::run_conditions;

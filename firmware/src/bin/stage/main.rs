@@ -86,7 +86,8 @@ mod app {
         serial: "0",
         version: env!("CARGO_PKG_VERSION"),
     };
-    const PARAMETERS: Parameters = Parameters::REFERENCE;
+    /// What is in force until settings have been stored.
+    const PARAMETERS: Parameters = Parameters::REFERENCE.uncommissioned();
 
     #[shared]
     struct Shared {

@@ -86,6 +86,12 @@ impl Interpreter {
         self.macros.all()
     }
 
+    /// Starts with these parameters, as if they had been stored: the settings that a machine comes with. To be called before anything
+    /// else is.
+    pub fn start_with(&mut self, parameters: Parameters) {
+        self.restore_parameters(parameters, 0);
+    }
+
     /// Starts with these parameters; `unknown` ones were stored besides.
     pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
         // As many as any choice of signals leaves room for: which they were is not kept.

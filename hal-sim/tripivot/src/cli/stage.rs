@@ -47,6 +47,10 @@ pub struct SimulatedStage {
     /// Switch on the eccentricity of the encoders: a stage that has not been calibrated.
     #[arg(long)]
     pub eccentricity: bool,
+    /// Start with a controller that keeps no settings: it knows neither zeros nor directions of the encoders, and nothing drives before
+    /// it is commissioned. Without this, an empty store gets the settings that the simulated machine comes with.
+    #[arg(long)]
+    pub uncommissioned: bool,
 }
 
 /// What a simulated stage can do without.
@@ -98,6 +102,7 @@ pub fn stage_options(arguments: &SimulatedStage) -> RunOptions {
         mismatch_percent: arguments.mismatch,
         payload_kg: arguments.payload,
         imperfections: imperfections(arguments),
+        uncommissioned: arguments.uncommissioned,
         ..RunOptions::default()
     }
 }
