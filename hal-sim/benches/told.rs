@@ -57,7 +57,7 @@ fn demonstration(parameters: &Parameters, stage: &StageParameters, options: &Run
         return format!("{fault} |");
     }
     let facts = outcome.run.facts();
-    let centre = &facts.following_error.centre_um;
+    let centre = &facts.true_error.centre_um;
     let settling: Vec<f64> = (outcome.run.moves.iter())
         .filter_map(|one| Some(one.settle_s()? * 1e3))
         .collect();
@@ -81,8 +81,8 @@ fn told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
         gains.integral_v_rad *= weaker;
         drive.torque_constant_n_m_a = plant.torque_constant_n_m_a;
         drive.inertia_kg_m2 = plant.ring_inertia_kg_m2 + plant.motor_inertia_kg_m2;
-        drive.viscous_n_m_s = plant.viscous_n_m_s_rad;
-        drive.coulomb_n_m = plant.coulomb_n_m;
+        drive.viscous_n_m_s = plant.ring_friction.viscous;
+        drive.coulomb_n_m = plant.ring_friction.coulomb;
     }
     let payload = &plant.payload;
     let (sin, cos) = payload.direction_rad.sin_cos();

@@ -73,7 +73,7 @@ fn bristles_spring_back_in_part_when_the_torque_goes() {
 fn motors_reach_the_speed_of_their_voltage() {
     let mut plant = with(Imperfections {
         torque_ripple: false,
-        ..Imperfections::ALL
+        ..Imperfections::CALIBRATED
     });
     run(&mut plant, 1.0, &[Drive::Voltage(12.0); AXES]);
     // 12 V = R i + K w and K i = Tc + b w, with K = 3 N m/A seen at the ring.
@@ -144,7 +144,7 @@ fn backlash_lets_the_motor_turn_before_the_ring() {
         backlash_rad: 1e-3,
         imperfections: Imperfections {
             torque_ripple: false,
-            ..Imperfections::ALL
+            ..Imperfections::CALIBRATED
         },
         ..PlantParameters::REFERENCE
     });

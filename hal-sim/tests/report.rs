@@ -28,7 +28,8 @@ fn sample(tick: u32, ticks: u32) -> Sample {
         setpoint: place,
         setpoint_rate: [0.0; 3],
         pose: place,
-        error: [0.3, -0.4, 2.0],
+        following_error: [0.06, -0.08, 1.0],
+        true_error: [0.3, -0.4, 2.0],
         pivot_setpoint_deg: pivots.map(f64::to_degrees),
         pivot_rate_rad_s: [0.0; 3],
         motion: MotionSample {
@@ -118,9 +119,10 @@ fn the_tables_hold_what_was_recorded() {
         (cell(1, "x_mm"), cell(1, "y_setpoint_mm")),
         ("50.000000000", "0.000000000")
     );
-    assert_eq!(cell(7, "theta_error_urad"), "2.000000");
+    assert_eq!(cell(7, "theta_true_error_urad"), "2.000000");
     assert_eq!(cell(7, "duty_2"), "-0.5000000");
-    assert_eq!(cell(7, "error_xy_um"), "0.500000");
+    assert_eq!(cell(7, "xy_true_error_um"), "0.500000");
+    assert_eq!(cell(7, "xy_following_error_um"), "0.100000");
     let separation_deg = sample(120, 1_001).separation_deg;
     assert_eq!(cell(7, "separation_deg"), format!("{separation_deg:.6}"));
     let last_deg: f64 = cell(51, "pivot_2_setpoint_deg").parse().expect("a number");
@@ -143,8 +145,9 @@ fn the_tables_hold_what_was_recorded() {
 fn the_summary_tells_what_happened() {
     let summary = run(1_001, 20).summary().to_string();
     for line in [
-        "following error while moving (997 ticks)",
-        "  centre, distance         0.500       0.500  um",
+        "errors while moving (997 ticks)",
+        "  following, centre        0.100       0.100  um",
+        "  true pose, centre        0.500       0.500  um",
         "    1      0.000      1.000   -2.000     720.000      0.5000       10.00",
         "    2      1.000      1.000   -2.000     720.000      0.5000       never",
         "  never settled: 1",
@@ -163,7 +166,7 @@ fn the_summary_tells_what_happened() {
 #[test]
 fn pictures_document_and_summary_tell_the_conditions() {
     let run = run(1_001, 20);
-    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections all but backlash; settings the machine's own";
+    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections of a kind machine but backlash; settings the machine's own";
     for text in [run.picture(), run.motion_picture(), run.document()] {
         assert!(text.contains(line));
     }
@@ -171,7 +174,7 @@ fn pictures_document_and_summary_tell_the_conditions() {
     for line in [
         "  program             made up 1.2",
         "  mismatch            60 %",
-        "  imperfections       all but backlash",
+        "  imperfections       of a kind machine but backlash",
     ] {
         assert!(
             summary.lines().any(|other| other == line),
@@ -208,8 +211,8 @@ fn a_quantity_has_one_colour() {
     for (title, paints) in [
         ("Centre, mm", &["x", "y"][..]),
         ("Orientation \u{3b8}, \u{b0}", &["theta"]),
-        ("Following error of the centre, \u{b5}m", &["centre"]),
-        ("Following error of \u{3b8}, \u{b5}rad", &["theta"]),
+        ("Error of the centre, \u{b5}m", &["steel", "centre"]),
+        ("Error of \u{3b8}, \u{b5}rad", &["steel", "theta"]),
         ("Speed of the moved point, mm/s", &["centre"]),
         ("Rate of \u{3b8}, \u{b0}/s", &["theta"]),
     ] {
@@ -295,7 +298,8 @@ fn odd_numbers_do_not_break_the_picture() {
     for value in [f64::NAN, f64::INFINITY, -1e300, 1e-300] {
         odd.trace.record(&Sample {
             pose: [value; 3],
-            error: [value; 3],
+            following_error: [value; 3],
+            true_error: [value; 3],
             duty: [value; 3],
             ..sample(50, 50)
         });

@@ -75,7 +75,7 @@ class Report(WithDriver):
         self.assertEqual(loaded, [])
         self.assertEqual(browser.errors(), [])
         self.assertIn("20 moves", browser.text("#span-text"))
-        self.assertIn("following error while moving", browser.text("#summary"))
+        self.assertIn("errors while moving", browser.text("#summary"))
         self.assertIn("seed 1; mismatch 20 %", browser.text("#conditions"))
         self.assertLess(pathlib.Path(ARGUMENTS.report).stat().st_size, 5_000_000)
 

@@ -13,15 +13,15 @@ fn the_demonstration_keeps_its_promises() {
     assert_eq!(outcome.fault, None);
     let statistics = outcome.run.trace.statistics();
     let (centre_um, theta_urad) = (
-        statistics.error_xy_um.rms(),
-        statistics.error_theta_urad.rms(),
+        statistics.true_error.xy_um.rms(),
+        statistics.true_error.theta_urad.rms(),
     );
     assert!(
         centre_um < 0.315 && theta_urad < 2.95,
         "{centre_um} um, {theta_urad} urad"
     );
     // It has moved, far and long: 95 % of the disk, three turns.
-    assert!(statistics.error_xy_um.count() > 170_000);
+    assert!(statistics.true_error.xy_um.count() > 170_000);
     assert!(outcome.run.moves.len() >= 20);
     let furthest = (outcome.run.moves.iter()).map(|one| one.target[0].hypot(one.target[1]));
     assert!((furthest.fold(0.0, f64::max) - 76.0).abs() < 0.0073);

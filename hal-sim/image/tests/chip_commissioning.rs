@@ -39,7 +39,10 @@ fn asked(parameters: &Parameters, lines: &'static [u8]) -> (String, bool) {
 fn an_erased_bank_drives_nothing_and_says_why() {
     let parameters = Parameters::REFERENCE.uncommissioned();
     let (answers, awake) = asked(&parameters, b"FRF\nERR?\nMOV X 1\nERR?\nCMS?\n");
-    assert!(answers.starts_with("4005\n4005\n0 not commissioned"), "{answers}");
+    assert!(
+        answers.starts_with("4005\n4005\n0 not commissioned"),
+        "{answers}"
+    );
     assert!(!awake, "a bridge was awake");
 }
 

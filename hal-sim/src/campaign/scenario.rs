@@ -6,7 +6,7 @@ use firmware::parameters::Parameters;
 
 use super::injection::{HEARTBEAT_MS, Injection};
 use crate::machine::devices::StageParameters;
-use crate::machine::plant::{AXES, Payload, PlantParameters};
+use crate::machine::plant::{AXES, FrictionParameters, Payload, PlantParameters};
 use crate::random::Random;
 
 /// How far a plant's parameter is off, as a share of it.
@@ -111,9 +111,12 @@ fn plant(random: &mut Random) -> PlantParameters {
         transmission_stiffness_n_m_rad: vary(reference.transmission_stiffness_n_m_rad),
         transmission_damping_n_m_s_rad: vary(reference.transmission_damping_n_m_s_rad),
         backlash_rad: vary(reference.backlash_rad),
-        coulomb_n_m: vary(reference.coulomb_n_m),
-        presliding_rad: vary(reference.presliding_rad),
-        viscous_n_m_s_rad: vary(reference.viscous_n_m_s_rad),
+        ring_friction: FrictionParameters {
+            coulomb: vary(reference.ring_friction.coulomb),
+            presliding: vary(reference.ring_friction.presliding),
+            viscous: vary(reference.ring_friction.viscous),
+            ..reference.ring_friction
+        },
         ripple_n_m: vary(reference.ripple_n_m),
         ..reference
     };

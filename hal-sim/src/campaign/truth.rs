@@ -4,7 +4,7 @@
 use core::f64::consts::TAU;
 
 use firmware::parameters::{EncoderMounting, Parameters};
-use kinematics::{Inverse, Pose, inverse};
+use kinematics::{Pose, inverse};
 
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
@@ -16,16 +16,9 @@ const UNITS: f64 = 4_294_967_296.0;
 /// How far a guide is pressed into its end stop, mm; 0 where none is.
 #[must_use]
 pub fn overrun_mm(plant: &Plant) -> f64 {
-    let radius_m = plant.parameters().track_radius_m;
     let [inner_m, outer_m] = plant.parameters().guide_range_m;
-    let Ok(Inverse { guides, .. }) = inverse(&pose(plant.pose(), radius_m)) else {
-        return f64::INFINITY;
-    };
-    (guides.iter())
-        .map(|guide| {
-            let rho_m = guide.rho() * radius_m;
-            (inner_m - rho_m).max(rho_m - outer_m)
-        })
+    (plant.rhos_m().into_iter())
+        .map(|rho_m| (inner_m - rho_m).max(rho_m - outer_m))
         .fold(0.0, f64::max)
         * 1e3
 }
@@ -73,14 +66,6 @@ fn shown_turns(setup: &EncoderMounting, counts: u32) -> f64 {
     let turned = counts.wrapping_sub(setup.zero_counts) % COUNTS_PER_TURN;
     let turns = f64::from(turned) / f64::from(COUNTS_PER_TURN);
     if setup.reversed { -turns } else { turns }
-}
-
-fn pose([x_m, y_m, theta]: [f64; 3], radius_m: f64) -> Pose<f64> {
-    Pose {
-        x: x_m / radius_m,
-        y: y_m / radius_m,
-        theta,
-    }
 }
 
 /// Places of a path, and how far others lie from it, mm.

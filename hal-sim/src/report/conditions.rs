@@ -17,11 +17,11 @@ pub struct Conditions {
     pub mismatch_percent: f64,
     /// Load that the controller knew nothing of, kg.
     pub payload_kg: f64,
-    /// Imperfections that were switched off, by their names on the command line.
+    /// Imperfections of a kind machine that were switched off, by their names on the command line.
     pub without: Vec<&'static str>,
-    /// Whether the encoders were eccentric, as on a stage that has not been calibrated.
-    pub eccentricity: bool,
-    /// File that the controller kept its settings in. Without one it had those that the simulated machine comes with.
+    /// Imperfections that were on beyond those of a kind machine.
+    pub with: Vec<&'static str>,
+    /// File that the controller kept its settings in, if any: without one it had those that the simulated machine comes with.
     pub settings: Option<String>,
 }
 
@@ -45,12 +45,11 @@ impl Conditions {
     }
 
     fn imperfections(&self) -> String {
-        let mut text = match self.without[..] {
-            [] => "all".to_owned(),
-            _ => format!("all but {}", self.without.join(", ")),
-        };
-        if self.eccentricity {
-            text += ", encoders eccentric";
+        let mut text = "of a kind machine".to_owned();
+        for (names, word) in [(&self.without, "but"), (&self.with, "and")] {
+            if !names.is_empty() {
+                text += &format!(" {word} {}", names.join(", "));
+            }
         }
         text
     }
@@ -81,16 +80,16 @@ mod tests {
             mismatch_percent: -12.5,
             payload_kg: 5.0,
             without: vec!["backlash", "dead-time"],
-            eccentricity: true,
+            with: vec!["geometry"],
             settings: Some("kept.bin".to_owned()),
         };
         assert_eq!(
             conditions.to_string(),
             "tripivot 1.2.3 abc; reference stage; seed 7; mismatch -12.5 %; payload 5 kg; \
-             imperfections all but backlash, dead-time, encoders eccentric; settings kept.bin"
+             imperfections of a kind machine but backlash, dead-time and geometry; settings kept.bin"
         );
         assert!((Conditions::default().to_string()).ends_with(
-            "seed 0; mismatch 0 %; payload 0 kg; imperfections all; settings the machine's own"
+            "seed 0; mismatch 0 %; payload 0 kg; imperfections of a kind machine; settings the machine's own"
         ));
     }
 }

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use ::csv::Writer;
 
-use super::sample::{Move, Sample};
+use super::sample::{Move, Sample, xy};
 use super::trace::Trace;
 use drawing::{ReportError, unwritable};
 
-const TRACE_COLUMNS: [&str; 28] = [
+const TRACE_COLUMNS: [&str; 32] = [
     "time_s",
     "moving",
     "x_setpoint_mm",
@@ -21,9 +21,12 @@ const TRACE_COLUMNS: [&str; 28] = [
     "x_mm",
     "y_mm",
     "theta_deg",
-    "x_error_um",
-    "y_error_um",
-    "theta_error_urad",
+    "x_following_error_um",
+    "y_following_error_um",
+    "theta_following_error_urad",
+    "x_true_error_um",
+    "y_true_error_um",
+    "theta_true_error_urad",
     "pivot_1_setpoint_deg",
     "pivot_2_setpoint_deg",
     "pivot_3_setpoint_deg",
@@ -37,7 +40,8 @@ const TRACE_COLUMNS: [&str; 28] = [
     "duty_2",
     "duty_3",
     "separation_deg",
-    "error_xy_um",
+    "xy_following_error_um",
+    "xy_true_error_um",
 ];
 
 const MOVE_COLUMNS: [&str; 7] = [
@@ -82,7 +86,8 @@ fn trace_row(sample: &Sample) -> [String; TRACE_COLUMNS.len()] {
         (sample.setpoint, 9),
         (sample.setpoint_rate, 6),
         (sample.pose, 9),
-        (sample.error, 6),
+        (sample.following_error, 6),
+        (sample.true_error, 6),
         (sample.pivot_setpoint_deg, 9),
         (sample.pivot_rate_rad_s, 9),
         (sample.pivot_error_lsb, 4),
@@ -94,8 +99,9 @@ fn trace_row(sample: &Sample) -> [String; TRACE_COLUMNS.len()] {
     std::array::from_fn(|column| match column {
         0 => fixed(sample.time_s, 6),
         1 => u8::from(sample.moving).to_string(),
-        26 => fixed(sample.separation_deg, 6),
-        27 => fixed(sample.error_xy_um(), 6),
+        29 => fixed(sample.separation_deg, 6),
+        30 => fixed(xy(&sample.following_error), 6),
+        31 => fixed(xy(&sample.true_error), 6),
         _ => cells.next().unwrap_or_default(),
     })
 }

@@ -101,7 +101,7 @@ fn facts(run: &Run) -> Facts<'_> {
     let times: Vec<f64> = plots.pose.bins().iter().map(|bin| bin.end_s).collect();
     let mut channels = Vec::new();
     add(&mut channels, plots.pose.bins(), &[0, 1, 2]);
-    add(&mut channels, plots.error.bins(), &[0, 1]);
+    add(&mut channels, plots.error.bins(), &[0, 1, 3, 4]);
     add(&mut channels, plots.motion.bins(), &[0, 3]);
     add(&mut channels, plots.pivots.bins(), &[0, 1, 2]);
     add(&mut channels, plots.pivot_rates.bins(), &[0, 1, 2]);

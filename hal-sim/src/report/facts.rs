@@ -15,6 +15,8 @@ pub struct Facts<'a> {
     pub conditions: &'a Conditions,
     /// Following errors while moving.
     pub following_error: FollowingError,
+    /// Errors of the true pose.
+    pub true_error: TrueError,
     /// The moves in the order of time.
     pub moves: Vec<Leg>,
     /// How many of them never settled, though they had the time to.
@@ -29,7 +31,7 @@ pub struct Facts<'a> {
     pub wall_s: f64,
 }
 
-/// Following errors over the moving ticks.
+/// Following errors over the moving ticks: what the encoders see.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FollowingError {
     /// So many.
@@ -40,6 +42,15 @@ pub struct FollowingError {
     pub theta_urad: PeakRms,
     /// Measured minus setpoint of the three pivots, encoder LSB.
     pub pivots_lsb: PeakRms,
+}
+
+/// Errors of the true pose over the moving ticks: where the platform is.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TrueError {
+    /// Distance of the centre from its setpoint.
+    pub centre_um: PeakRms,
+    /// Orientation minus its setpoint.
+    pub theta_urad: PeakRms,
 }
 
 /// Largest magnitude and root mean square.
@@ -101,10 +112,14 @@ pub(super) fn facts(run: &Run) -> Facts<'_> {
         run: &run.name,
         conditions: &run.conditions,
         following_error: FollowingError {
-            ticks: statistics.error_theta_urad.count(),
-            centre_um: (&statistics.error_xy_um).into(),
-            theta_urad: (&statistics.error_theta_urad).into(),
+            ticks: statistics.pivot_error_lsb.count() / 3,
+            centre_um: (&statistics.following_error.xy_um).into(),
+            theta_urad: (&statistics.following_error.theta_urad).into(),
             pivots_lsb: (&statistics.pivot_error_lsb).into(),
+        },
+        true_error: TrueError {
+            centre_um: (&statistics.true_error.xy_um).into(),
+            theta_urad: (&statistics.true_error.theta_urad).into(),
         },
         moves: run.moves.iter().map(Leg::from).collect(),
         never_settled: run.never_settled(),

@@ -58,14 +58,14 @@ pub(super) fn draw_conditions(svg: &mut Svg, run: &Run) {
 fn facts_line(run: &Run) -> String {
     let statistics = run.trace.statistics();
     let moves = run.moves.len();
-    if statistics.error_xy_um.count() == 0 {
+    if statistics.true_error.xy_um.count() == 0 {
         return format!("{moves} moves in {:.1} s", statistics.end_s);
     }
     let mut line = format!(
-        "{moves} moves in {:.1} s  \u{b7}  rms following error {} \u{b5}m, {} \u{b5}rad",
+        "{moves} moves in {:.1} s  \u{b7}  rms error of the true pose {} \u{b5}m, {} \u{b5}rad",
         statistics.end_s,
-        digits(statistics.error_xy_um.rms()),
-        digits(statistics.error_theta_urad.rms()),
+        digits(statistics.true_error.xy_um.rms()),
+        digits(statistics.true_error.theta_urad.rms()),
     );
     if let Some(worst_s) = worst_settle_s(&run.moves) {
         line += &format!("  \u{b7}  settled within {:.1} ms", 1e3 * worst_s);
@@ -239,9 +239,11 @@ fn draw_pose(svg: &mut Svg, plots: &Plots, time: &TimeAxis, centre: &Rect, theta
     chart.draw(svg, theta, time);
 }
 
-fn spread_note(spread: &Spread) -> String {
-    let (peak, rms) = (digits(spread.peak()), digits(spread.rms()));
-    format!("moving: peak {peak}, rms {rms}")
+/// Of the following error, and of the true pose's.
+fn both_notes(seen: &Spread, truth: &Spread) -> String {
+    let [peak, rms, true_peak, true_rms] =
+        [seen.peak(), seen.rms(), truth.peak(), truth.rms()].map(digits);
+    format!("moving, peak and rms: following {peak}, {rms}; true pose {true_peak}, {true_rms}")
 }
 
 /// Three significant digits, in plain notation.
@@ -259,23 +261,33 @@ fn draw_errors(
     theta: &Rect,
 ) {
     let statistics = run.trace.statistics();
-    let errors = &statistics.error_xy_um;
     let chart = Chart {
-        title: "Following error of the centre, \u{b5}m",
-        note: spread_note(errors),
+        title: "Error of the centre, \u{b5}m",
+        note: both_notes(
+            &statistics.following_error.xy_um,
+            &statistics.true_error.xy_um,
+        ),
         bins: plots.error.bins(),
         factor: 1.0,
-        series: &[series("distance", colour::CENTRE, 0)],
+        series: &[
+            series("true pose", colour::STEEL, 3),
+            series("following, by the encoders", colour::CENTRE, 0),
+        ],
         steps: Steps::Decimal,
         from_zero: true,
         marks: &[],
     };
     chart.draw(svg, centre, time);
-    let errors = &statistics.error_theta_urad;
     let chart = Chart {
-        title: "Following error of \u{3b8}, \u{b5}rad",
-        note: spread_note(errors),
-        series: &[series("\u{3b8}", colour::THETA, 1)],
+        title: "Error of \u{3b8}, \u{b5}rad",
+        note: both_notes(
+            &statistics.following_error.theta_urad,
+            &statistics.true_error.theta_urad,
+        ),
+        series: &[
+            series("true pose", colour::STEEL, 4),
+            series("following, by the encoders", colour::THETA, 1),
+        ],
         ..chart
     };
     chart.draw(svg, theta, time);

@@ -13,8 +13,12 @@ pub struct Sample {
     pub setpoint_rate: [f64; 3],
     /// The plant's true pose at the same instant: mm, mm, deg.
     pub pose: [f64; 3],
-    /// Pose minus setpoint: um, um, urad. Not taken from the two above, where the difference would drown in roundings.
-    pub error: [f64; 3],
+    /// Following error, what the encoders see: the pivots' measured minus setpoint, as a pose by the controller's geometry; um, um,
+    /// urad.
+    pub following_error: [f64; 3],
+    /// True pose error, where the platform is: true pose minus setpoint; um, um, urad. Not taken from the two above, where the
+    /// difference would drown in roundings.
+    pub true_error: [f64; 3],
     /// Setpoints of the pivots on the track, deg, multi-turn.
     pub pivot_setpoint_deg: [f64; 3],
     /// Rates of the pivots' setpoints, rad/s.
@@ -40,11 +44,9 @@ pub struct MotionSample {
     pub pivots_rad_s2: [f64; 3],
 }
 
-impl Sample {
-    /// Distance between the true centre and its setpoint, um.
-    pub fn error_xy_um(&self) -> f64 {
-        self.error[0].hypot(self.error[1])
-    }
+/// Length of an error's x and y.
+pub(super) fn xy(error: &[f64; 3]) -> f64 {
+    error[0].hypot(error[1])
 }
 
 /// One move from rest to rest.

@@ -1,6 +1,6 @@
 //! What a run amounts to, gathered from every tick.
 
-use super::sample::Sample;
+use super::sample::{Sample, xy};
 
 /// Peak and root mean square of one signed or unsigned quantity.
 #[derive(Clone, Copy, PartialEq, Default, Debug)]
@@ -40,13 +40,29 @@ impl Spread {
     }
 }
 
-/// Following errors over the moving ticks; duty and separation over all of them.
+/// An error of the pose.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct PoseSpread {
+    /// Distance of the centre from its setpoint, um.
+    pub xy_um: Spread,
+    /// Orientation minus its setpoint, urad.
+    pub theta_urad: Spread,
+}
+
+impl PoseSpread {
+    fn add(&mut self, error: &[f64; 3]) {
+        self.xy_um.add(xy(error));
+        self.theta_urad.add(error[2]);
+    }
+}
+
+/// Errors over the moving ticks; duty and separation over all of them.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Statistics {
-    /// Distance of the centre from its setpoint, um, moving ticks.
-    pub error_xy_um: Spread,
-    /// Orientation minus its setpoint, urad, moving ticks.
-    pub error_theta_urad: Spread,
+    /// What the encoders see, moving ticks.
+    pub following_error: PoseSpread,
+    /// Where the platform is, moving ticks.
+    pub true_error: PoseSpread,
     /// Measured minus setpoint of all three pivots together, encoder LSB, moving ticks.
     pub pivot_error_lsb: Spread,
     /// Largest magnitude of any duty, 0 to 1, all ticks.
@@ -62,8 +78,8 @@ pub struct Statistics {
 impl Default for Statistics {
     fn default() -> Self {
         Self {
-            error_xy_um: Spread::default(),
-            error_theta_urad: Spread::default(),
+            following_error: PoseSpread::default(),
+            true_error: PoseSpread::default(),
             pivot_error_lsb: Spread::default(),
             peak_duty: 0.0,
             separation_deg: f64::INFINITY,
@@ -88,8 +104,8 @@ impl Statistics {
     }
 
     fn add_errors(&mut self, sample: &Sample) {
-        self.error_xy_um.add(sample.error_xy_um());
-        self.error_theta_urad.add(sample.error[2]);
+        self.following_error.add(&sample.following_error);
+        self.true_error.add(&sample.true_error);
         for error in sample.pivot_error_lsb {
             self.pivot_error_lsb.add(error);
         }

@@ -33,19 +33,26 @@ impl fmt::Display for Summary<'_> {
 
 fn errors(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     let statistics = run.trace.statistics();
-    let ticks = statistics.error_theta_urad.count();
+    let (seen, truth) = (&statistics.following_error, &statistics.true_error);
+    let ticks = seen.theta_urad.count();
     if ticks == 0 {
         return writeln!(f, "following error: the setpoint never moved\n");
     }
-    writeln!(f, "following error while moving ({ticks} ticks)")?;
+    writeln!(f, "errors while moving ({ticks} ticks)")?;
     writeln!(f, "                      {:>10}  {:>10}", "peak", "rms")?;
     let mut line = |what: &str, spread: &Spread, unit: &str| {
         let (peak, rms) = (spread.peak(), spread.rms());
         writeln!(f, "  {what:<20}{peak:>10.3}  {rms:>10.3}  {unit}")
     };
-    line("centre, distance", &statistics.error_xy_um, "um")?;
-    line("orientation", &statistics.error_theta_urad, "urad")?;
-    line("pivots", &statistics.pivot_error_lsb, "encoder LSB")?;
+    line(
+        "following, pivots",
+        &statistics.pivot_error_lsb,
+        "encoder LSB",
+    )?;
+    line("following, centre", &seen.xy_um, "um")?;
+    line("following, theta", &seen.theta_urad, "urad")?;
+    line("true pose, centre", &truth.xy_um, "um")?;
+    line("true pose, theta", &truth.theta_urad, "urad")?;
     writeln!(f)
 }
 

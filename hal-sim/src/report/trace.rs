@@ -1,7 +1,7 @@
 //! The recorder of a run: every tick goes in; statistics, plots and table rows come out.
 
 use super::path::Path;
-use super::sample::Sample;
+use super::sample::{Sample, xy};
 use super::statistics::Statistics;
 use drawing::envelope::Envelope;
 
@@ -24,8 +24,8 @@ pub struct Trace {
 pub(crate) struct Plots {
     /// True pose: mm, mm, deg.
     pub(crate) pose: Envelope<3>,
-    /// Distance of the centre from its setpoint in um; orientation error in urad; whether moving (1) or not (0).
-    pub(crate) error: Envelope<3>,
+    /// Following error of the centre in um and of theta in urad; whether moving (1) or not (0); the same errors of the true pose.
+    pub(crate) error: Envelope<5>,
     /// Deg.
     pub(crate) pivots: Envelope<3>,
     /// -1 to 1.
@@ -74,7 +74,8 @@ impl Trace {
         let time_s = sample.time_s;
         let moving = f64::from(u8::from(sample.moving));
         self.plots.pose.add(time_s, &sample.pose);
-        (self.plots.error).add(time_s, &[sample.error_xy_um(), sample.error[2], moving]);
+        let (seen, truth) = (&sample.following_error, &sample.true_error);
+        (self.plots.error).add(time_s, &[xy(seen), seen[2], moving, xy(truth), truth[2]]);
         self.plots.pivots.add(time_s, &sample.pivot_setpoint_deg);
         self.plots.duty.add(time_s, &sample.duty);
         let [v, a, j] = sample.motion.translation;
@@ -123,7 +124,8 @@ mod tests {
             setpoint: [0.0; 3],
             setpoint_rate: [0.0; 3],
             pose: [0.0; 3],
-            error: [3.0, 4.0, -f64::from(tick)],
+            following_error: [0.6, -0.8, 0.5],
+            true_error: [3.0, 4.0, -f64::from(tick)],
             pivot_setpoint_deg: [0.0; 3],
             pivot_rate_rad_s: [0.0; 3],
             motion: MotionSample::default(),
@@ -141,13 +143,18 @@ mod tests {
         assert_eq!(times, [0, 3, 6, 9].map(|tick| f64::from(tick) * 50e-6));
         let statistics = trace.statistics();
         assert_eq!(statistics.ticks, 11);
-        assert_eq!(statistics.error_xy_um.count(), 8);
-        assert_eq!(statistics.error_xy_um.peak(), 5.0);
-        assert_eq!(statistics.error_xy_um.rms(), 5.0);
-        assert_eq!(statistics.error_theta_urad.peak(), 10.0);
+        assert_eq!(statistics.true_error.xy_um.count(), 8);
+        assert_eq!(statistics.true_error.xy_um.peak(), 5.0);
+        assert_eq!(statistics.true_error.xy_um.rms(), 5.0);
+        assert_eq!(statistics.true_error.theta_urad.peak(), 10.0);
         let sum_of_squares: f64 = (3..11).map(|tick| f64::from(tick * tick)).sum();
         let rms = (sum_of_squares / 8.0).sqrt();
-        assert!((statistics.error_theta_urad.rms() - rms).abs() < 1e-12);
+        assert!((statistics.true_error.theta_urad.rms() - rms).abs() < 1e-12);
+        let seen = statistics.following_error;
+        assert_eq!(
+            (seen.xy_um.count(), seen.xy_um.peak(), seen.theta_urad.rms()),
+            (8, 1.0, 0.5)
+        );
         assert!((statistics.pivot_error_lsb.rms() - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
         assert_eq!(statistics.peak_duty, 0.1);
         assert_eq!(statistics.separation_deg, 94.0);
@@ -158,11 +165,11 @@ mod tests {
     fn a_nan_error_shows() {
         let mut trace = Trace::new(1);
         trace.record(&Sample {
-            error: [f64::NAN, 0.0, 0.0],
+            true_error: [f64::NAN, 0.0, 0.0],
             ..sample(5)
         });
         trace.record(&sample(6));
-        assert!(trace.statistics().error_xy_um.peak().is_nan());
-        assert!(trace.statistics().error_xy_um.rms().is_nan());
+        assert!(trace.statistics().true_error.xy_um.peak().is_nan());
+        assert!(trace.statistics().true_error.xy_um.rms().is_nan());
     }
 }

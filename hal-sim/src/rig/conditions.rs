@@ -13,25 +13,8 @@ pub fn run_conditions(options: &RunOptions) -> Conditions {
         seed: options.seed,
         mismatch_percent: options.mismatch_percent,
         payload_kg: options.payload_kg,
-        without: without(&options.imperfections),
-        eccentricity: options.imperfections.encoder_eccentricity,
+        without: Imperfections::CALIBRATED.beyond(options.imperfections),
+        with: (options.imperfections).beyond(Imperfections::CALIBRATED),
         settings: None,
     }
-}
-
-/// What is switched off, by its name on the command line.
-fn without(on: &Imperfections) -> Vec<&'static str> {
-    [
-        (on.dry_friction, "dry-friction"),
-        (on.viscous_friction, "viscous-friction"),
-        (on.compliance, "compliance"),
-        (on.backlash, "backlash"),
-        (on.torque_ripple, "torque-ripple"),
-        (on.encoder_noise, "encoder-noise"),
-        (on.dead_time, "dead-time"),
-        (on.pwm_quantisation, "pwm-quantisation"),
-    ]
-    .into_iter()
-    .filter_map(|(is_on, name)| (!is_on).then_some(name))
-    .collect()
 }

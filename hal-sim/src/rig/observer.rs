@@ -5,6 +5,7 @@ use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
+use kinematics::{Pose, direct_rates, inverse};
 use std::f64::consts::{PI, TAU};
 
 const TURN: f64 = 4_294_967_296.0;
@@ -87,7 +88,8 @@ impl Observer {
                 f64::from(twist.theta).to_degrees(),
             ],
             pose: [true_mm[0], true_mm[1], true_rad.to_degrees()],
-            error: [
+            following_error: self.following_error(tick),
+            true_error: [
                 (true_mm[0] - setpoint[0]) * 1e3,
                 (true_mm[1] - setpoint[1]) * 1e3,
                 (true_rad - turns * TAU) * 1e6,
@@ -101,6 +103,27 @@ impl Observer {
             duty: tick.duty.map(|duty| f64::from(duty.0) / self.pwm_counts),
             separation_deg: separation_rad(pivots.map(|units| units / TURN * TAU)).to_degrees(),
         }
+    }
+
+    /// What the encoders see of the pose's error, um, um, urad: the errors of the pivots through the Jacobian at the setpoint.
+    fn following_error(&self, tick: &TickSample) -> [f64; 3] {
+        let [x, y, turns] = tick.setpoint.position.map(|units| units as f64 / TURN);
+        let pose = Pose {
+            x,
+            y,
+            theta: turns.fract() * TAU,
+        };
+        let errors = [0, 1, 2].map(|i| {
+            (tick.pivots[i].units() - tick.pivot_setpoints[i].units()) as f64 / TURN * TAU
+        });
+        inverse(&pose).map_or([f64::NAN; 3], |inverse| {
+            let off = direct_rates(&inverse.guides, &errors);
+            [
+                off.x * self.radius_mm * 1e3,
+                off.y * self.radius_mm * 1e3,
+                off.theta * 1e6,
+            ]
+        })
     }
 
     fn motion(&mut self, tick: &TickSample) -> MotionSample {

@@ -9,7 +9,7 @@ use firmware::parameters::Parameters;
 
 use super::{ControllerMemory, Rig};
 use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
-use crate::machine::plant::{Imperfections, Payload, PlantParameters};
+use crate::machine::plant::{FrictionParameters, Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
 use crate::rig::client::{Client, Event};
 use crate::rig::observer::{Observer, TickRecord};
@@ -87,8 +87,11 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
             platform_inertia_kg_m2: reference.platform_inertia_kg_m2 * more,
             ring_inertia_kg_m2: reference.ring_inertia_kg_m2 * more,
             motor_inertia_kg_m2: reference.motor_inertia_kg_m2 * more,
-            coulomb_n_m: reference.coulomb_n_m * more,
-            viscous_n_m_s_rad: reference.viscous_n_m_s_rad * more,
+            ring_friction: FrictionParameters {
+                coulomb: reference.ring_friction.coulomb * more,
+                viscous: reference.ring_friction.viscous * more,
+                ..reference.ring_friction
+            },
             torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
             payload: Payload {
                 mass_kg: options.payload_kg,

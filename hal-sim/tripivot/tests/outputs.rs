@@ -16,6 +16,7 @@ const COMMANDS: &[&str] = &[
     "view",
     "record",
     "settings",
+    "board",
     "faults",
     "inverse",
     "direct",
@@ -158,7 +159,9 @@ fn a_run_as_a_document_in_a_folder_that_says_what_it_is() {
     );
     assert_eq!(run["moves"].as_array().unwrap().len(), 1);
     assert!((number(&run["moves"][0]["x_mm"]) - 1.0).abs() < 1e-6);
-    assert!(number(&run["following_error"]["centre_um"]["rms"]) > 0.0);
+    for error in ["following_error", "true_error"] {
+        assert!(number(&run[error]["centre_um"]["rms"]) > 0.0);
+    }
     let conditions = &run["conditions"];
     let version = stdout(&tripivot(&working, &["--version"]));
     assert_eq!(conditions["program"], version.trim());
@@ -178,7 +181,7 @@ fn a_run_as_a_document_in_a_folder_that_says_what_it_is() {
         assert_eq!(&beside[name], value, "{name}");
     }
     let line = format!(
-        "{}; simulated reference stage, controller on the host; seed 7; mismatch -5 %; payload 0.5 kg; imperfections all but backlash; settings kept.bin",
+        "{}; simulated reference stage, controller on the host; seed 7; mismatch -5 %; payload 0.5 kg; imperfections of a kind machine but backlash; settings kept.bin",
         version.trim()
     );
     for file in ["picture.svg", "motion.svg", "report.html"] {

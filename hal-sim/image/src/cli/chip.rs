@@ -77,13 +77,13 @@ fn beside(on_chip: &ChipOutcome, on_host: &RunOutcome) {
         );
     };
     row(
-        "rms error, centre",
-        |run| run.trace.statistics().error_xy_um.rms(),
+        "rms true error, centre",
+        |run| run.trace.statistics().true_error.xy_um.rms(),
         "um",
     );
     row(
-        "rms error, theta",
-        |run| run.trace.statistics().error_theta_urad.rms(),
+        "rms true error, theta",
+        |run| run.trace.statistics().true_error.theta_urad.rms(),
         "urad",
     );
     row("last x", |run| last(run, 0), "mm");

@@ -1,22 +1,31 @@
 //! The equations of motion: from state and drives to the state's time derivative.
 //!
-//! Coordinates are x, y (m) and theta of the platform, plus a motor angle a drive. The rings hang on the platform
-//! through the inverse kinematics, `phi' = J q'`, so by d'Alembert
+//! Coordinates are x, y (m) and theta of the platform q, and for each drive the angle of its ring phi and of its motor. A guide couples
+//! platform and ring by its gap `f(q, phi)`, see `geometry.rs`. Guides that give way pass on a force against the gap, and platform and
+//! rings are bodies of their own:
 //!
 //! ```text
-//! (M_body + J^T I_ring J) q'' = J^T (T_spring - T_friction + T_external - I_ring J' q')
-//!                             + F_body + F_stops + F_external
+//! M_body q''   = F_body + F_external + sum of the guides' forces on the platform
+//! I_ring phi'' = T_spring - T_friction + T_external + the guide's torque on the ring
+//! ```
+//!
+//! Rigid guides keep f at 0, so `phi' = J q'` with `J = -f_q / f_phi`, `phi'' = J q'' + b` with b the part that is there while nothing
+//! accelerates, and by d'Alembert
+//!
+//! ```text
+//! (M_body + J^T I_ring J) q'' = J^T (torques on the rings - I_ring b) + forces on the platform
 //! ```
 
-use kinematics::{Acceleration, Guide, Inverse, InverseError, Pose, Scalar, Twist};
+use kinematics::Scalar;
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::Body;
 use super::drive::{Drive, DriveModel};
 use super::friction::Friction;
+use super::geometry::{Geometry, GuideState, OffGuide};
+use super::guide::Guides;
 use super::parameters::{AXES, PlantParameters};
 use super::state::State;
-use super::stops::EndStops;
 
 /// Forces from outside, for tests and disturbances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,54 +43,65 @@ pub struct External {
 /// Stiffness of what jams a ring, N m/rad, and its damping, about half of what lets the ring not swing.
 const JAM_N_M_RAD: f64 = 1e5;
 const JAM_N_M_S_RAD: f64 = 50.0;
+/// A pivot on a rigid guide that is further off its line after a step, m, was torn off.
+const TORN_OFF_M: f64 = 1e-6;
 
 /// Everything that is constant while the machine moves.
 #[derive(Clone, Debug)]
 pub(super) struct Dynamics {
-    inverse_radius_1_m: f64,
     ring_inertia_kg_m2: f64,
     gravity_m_s2: [f64; 2],
     pub body: Body,
     pub drive: DriveModel,
-    pub friction: Friction,
-    pub stops: EndStops,
+    pub ring_friction: Friction,
+    pub guides: Guides,
+    pub geometry: Geometry,
+}
+
+/// Forces on the platform (N, N, N m) and torques on the rings (N m).
+struct Forces {
+    platform: Vector3<f64>,
+    ring_n_m: Vector3<f64>,
 }
 
 impl Dynamics {
     pub fn new(parameters: &PlantParameters) -> Self {
+        let flags = parameters.imperfections;
         Self {
-            inverse_radius_1_m: 1.0 / parameters.track_radius_m,
             ring_inertia_kg_m2: parameters.ring_inertia_kg_m2,
             gravity_m_s2: parameters.gravity_m_s2,
             body: Body::new(parameters),
             drive: DriveModel::new(parameters),
-            friction: Friction::new(parameters),
-            stops: EndStops::new(parameters),
+            ring_friction: Friction::new(
+                &parameters.ring_friction,
+                flags.dry_friction,
+                flags.viscous_friction,
+            ),
+            guides: Guides::new(parameters),
+            geometry: Geometry::new(parameters),
         }
     }
 
-    /// Ring angles and guides at a pose (m, m, rad).
-    pub fn inverse(&self, pose: &Vector3<f64>) -> Result<Inverse<f64>, InverseError> {
-        kinematics::inverse(&Pose {
-            x: pose.x * self.inverse_radius_1_m,
-            y: pose.y * self.inverse_radius_1_m,
-            theta: pose.z,
-        })
-    }
-
-    /// Jacobian from (m/s, m/s, rad/s) to ring rates in rad/s.
-    pub fn jacobian(&self, guides: &[Guide<f64>; AXES]) -> Matrix3<f64> {
-        let mut jacobian = kinematics::jacobian(guides);
-        jacobian.column_mut(0).scale_mut(self.inverse_radius_1_m);
-        jacobian.column_mut(1).scale_mut(self.inverse_radius_1_m);
-        jacobian
+    /// Jacobian from (m/s, m/s, rad/s) to ring rates in rad/s while the pivots stay on their guides.
+    pub fn jacobian(&self, guides: &[GuideState; AXES]) -> Result<Matrix3<f64>, OffGuide> {
+        let mut jacobian = Matrix3::zeros();
+        for (i, guide) in guides.iter().enumerate() {
+            let lever_m = self.geometry.lever_m(i, guide)?;
+            let row = guide.gap_by_pose() / -lever_m;
+            jacobian.set_row(i, &row.transpose());
+        }
+        Ok(jacobian)
     }
 
     /// Mass matrix of body and rings for (x, y, theta), SI. The motors are apart, behind their springs.
     pub fn mass_matrix(&self, theta_rad: f64, jacobian: &Matrix3<f64>) -> Matrix3<f64> {
+        self.body.mass_matrix(self.first_moment(theta_rad))
+            + self.ring_inertia_kg_m2 * jacobian.tr_mul(jacobian)
+    }
+
+    fn first_moment(&self, theta_rad: f64) -> [f64; 2] {
         let (sin, cos) = <f64 as Scalar>::sin_cos(theta_rad);
-        let body = self.body.mass_matrix(self.body.first_moment(sin, cos));
-        body + self.ring_inertia_kg_m2 * jacobian.tr_mul(jacobian)
+        self.body.first_moment(sin, cos)
     }
 
     /// Time derivative of the state. `step_s` is the length of the integration step that it is for.
@@ -91,108 +111,135 @@ impl Dynamics {
         drives: &[Drive; AXES],
         external: &External,
         step_s: f64,
-    ) -> Result<State, InverseError> {
-        match self.inverse(&state.pose) {
-            // By reference: moved out, its copy would wait for the stores inside `inverse`, 4 % of a step.
-            Ok(ref inverse) => Ok(self.derivative_at(inverse, state, drives, external, step_s)),
-            Err(reason) => Err(reason),
-        }
-    }
-
-    fn derivative_at(
-        &self,
-        Inverse { pivots, guides }: &Inverse<f64>,
-        state: &State,
-        drives: &[Drive; AXES],
-        external: &External,
-        step_s: f64,
-    ) -> State {
-        let jacobian = self.jacobian(guides);
-        let ring_rad_s = jacobian * state.twist;
+    ) -> Result<State, OffGuide> {
+        let guides = self.geometry.guides(&state.pose, &state.ring_rad);
         let mut rate = State {
             pose: state.twist,
-            twist: Vector3::zeros(),
+            ring_rad: state.ring_rad_s,
             motor_rad: state.motor_rad_s,
-            motor_rad_s: Vector3::zeros(),
-            current_a: Vector3::zeros(),
-            bristle_rad: Vector3::zeros(),
+            ..State::zeros()
         };
-        let mut ring_n_m = Vector3::from(external.ring_torque_n_m);
+        let moment_kg_m = self.first_moment(state.pose.z);
+        let mut forces = self.outer_forces(state, moment_kg_m, external);
         for i in 0..AXES {
-            let transmitted_n_m = self.drive.transmitted_torque(
-                state.motor_rad[i] - pivots[i],
-                state.motor_rad_s[i] - ring_rad_s[i],
-            );
-            let friction = self
-                .friction
-                .evaluate(ring_rad_s[i], state.bristle_rad[i], step_s);
-            ring_n_m[i] += transmitted_n_m - friction.torque_n_m;
-            if let Some(at_rad) = external.jammed_at_rad[i] {
-                ring_n_m[i] -= JAM_N_M_RAD * (pivots[i] - at_rad) + JAM_N_M_S_RAD * ring_rad_s[i];
-            }
-            rate.bristle_rad[i] = friction.bristle_rate_rad_s;
-            rate.motor_rad_s[i] = self.drive.motor_acceleration(
-                state.current_a[i],
-                state.motor_rad[i],
-                transmitted_n_m,
-            );
-            rate.current_a[i] =
-                self.drive
-                    .current_rate(drives[i], state.current_a[i], state.motor_rad_s[i]);
+            self.add_drive(i, state, drives[i], step_s, &mut forces, &mut rate);
+            self.add_guide(i, &guides[i], state, step_s, &mut forces, &mut rate);
         }
-        rate.twist = self.acceleration(state, guides, &jacobian, ring_n_m, external);
-        rate
+        let body = self.body.mass_matrix(moment_kg_m);
+        if self.guides.are_rigid() {
+            self.accelerate_as_one(&guides, state, &body, &forces, &mut rate)?;
+        } else {
+            for (i, guide) in guides.iter().enumerate() {
+                self.geometry.lever_m(i, guide)?;
+            }
+            rate.twist = solve_symmetric(&body, &forces.platform);
+            rate.ring_rad_s = forces.ring_n_m / self.ring_inertia_kg_m2;
+        }
+        Ok(rate)
     }
 
-    /// Acceleration of the platform under the torques on its rings.
-    fn acceleration(
+    /// What acts from outside, and the body's own inertia.
+    fn outer_forces(&self, state: &State, moment_kg_m: [f64; 2], external: &External) -> Forces {
+        let body = (self.body).forces(moment_kg_m, state.twist.z, self.gravity_m_s2);
+        let [x_n, y_n] = external.force_n;
+        let mut ring_n_m = Vector3::from(external.ring_torque_n_m);
+        for (i, jammed) in external.jammed_at_rad.iter().enumerate() {
+            if let Some(at_rad) = jammed {
+                ring_n_m[i] -= JAM_N_M_RAD * (state.ring_rad[i] - at_rad)
+                    + JAM_N_M_S_RAD * state.ring_rad_s[i];
+            }
+        }
+        Forces {
+            platform: body + Vector3::new(x_n, y_n, external.torque_n_m),
+            ring_n_m,
+        }
+    }
+
+    /// One drive: its current, its motor, and what it passes on to the ring; and the ring's friction.
+    fn add_drive(
         &self,
+        i: usize,
         state: &State,
-        guides: &[Guide<f64>; AXES],
-        jacobian: &Matrix3<f64>,
-        ring_n_m: Vector3<f64>,
-        external: &External,
-    ) -> Vector3<f64> {
-        // Guide 2 is the platform's y' axis, so its direction holds the sine and cosine of theta.
-        let (sin, cos) = (-guides[1].cos, guides[1].sin);
-        let moment_kg_m = self.body.first_moment(sin, cos);
-        let inertial_n_m = ring_n_m - self.ring_inertia_kg_m2 * self.bias(guides, &state.twist);
-        let mut force = jacobian.tr_mul(&inertial_n_m)
-            + self
-                .body
-                .forces(moment_kg_m, state.twist.z, self.gravity_m_s2)
-            + Vector3::new(
-                external.force_n[0],
-                external.force_n[1],
-                external.torque_n_m,
-            );
-        for guide in guides {
-            if let Some(stop) = self.stops.force(guide, &state.twist) {
-                force += stop;
-            }
-        }
-        let mass = self.body.mass_matrix(moment_kg_m)
-            + self.ring_inertia_kg_m2 * jacobian.tr_mul(jacobian);
-        solve_symmetric(&mass, &force)
+        drive: Drive,
+        step_s: f64,
+        forces: &mut Forces,
+        rate: &mut State,
+    ) {
+        let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
+        let transmitted_n_m = self.drive.transmitted_torque(
+            motor_rad - state.ring_rad[i],
+            motor_rad_s - state.ring_rad_s[i],
+        );
+        let friction =
+            (self.ring_friction).evaluate(state.ring_rad_s[i], state.bristle_rad[i], step_s);
+        forces.ring_n_m[i] += transmitted_n_m - friction.force;
+        rate.bristle_rad[i] = friction.bristle_rate;
+        let current_a = state.current_a[i];
+        rate.motor_rad_s[i] =
+            (self.drive).motor_acceleration(current_a, motor_rad, transmitted_n_m);
+        rate.current_a[i] = self.drive.current_rate(drive, current_a, motor_rad_s);
     }
 
-    /// `J' q'`: what the rings accelerate while the platform does not, rad/s^2.
-    fn bias(&self, guides: &[Guide<f64>; AXES], twist: &Vector3<f64>) -> Vector3<f64> {
-        let twist = Twist {
-            x: twist.x * self.inverse_radius_1_m,
-            y: twist.y * self.inverse_radius_1_m,
-            theta: twist.z,
-        };
-        let unaccelerated = Acceleration {
-            x: 0.0,
-            y: 0.0,
-            theta: 0.0,
-        };
-        Vector3::from(kinematics::pivot_accelerations(
-            guides,
-            &twist,
-            &unaccelerated,
-        ))
+    /// One guide, between platform and ring.
+    fn add_guide(
+        &self,
+        i: usize,
+        guide: &GuideState,
+        state: &State,
+        step_s: f64,
+        forces: &mut Forces,
+        rate: &mut State,
+    ) {
+        let guide_forces = self.guides.forces(
+            guide,
+            &state.twist,
+            state.ring_rad_s[i],
+            state.guide_bristle_m[i],
+            step_s,
+        );
+        forces.platform += guide_forces.on_platform(guide);
+        forces.ring_n_m[i] += guide_forces.on_ring_n_m(guide);
+        rate.guide_bristle_m[i] = guide_forces.bristle_rate_m_s;
+    }
+
+    /// Accelerations while rigid guides tie platform and rings together.
+    fn accelerate_as_one(
+        &self,
+        guides: &[GuideState; AXES],
+        state: &State,
+        body: &Matrix3<f64>,
+        forces: &Forces,
+        rate: &mut State,
+    ) -> Result<(), OffGuide> {
+        let jacobian = self.jacobian(guides)?;
+        let mut bias_rad_s2 = Vector3::zeros();
+        for (i, guide) in guides.iter().enumerate() {
+            let gap_m_s2 = guide.gap_bias_m_s2(&state.twist, state.ring_rad_s[i]);
+            bias_rad_s2[i] = -gap_m_s2 / self.geometry.lever_m(i, guide)?;
+        }
+        let inertial_n_m = forces.ring_n_m - self.ring_inertia_kg_m2 * bias_rad_s2;
+        let mass = body + self.ring_inertia_kg_m2 * jacobian.tr_mul(&jacobian);
+        let force = forces.platform + jacobian.tr_mul(&inertial_n_m);
+        rate.twist = solve_symmetric(&mass, &force);
+        rate.ring_rad_s = jacobian * rate.twist + bias_rad_s2;
+        Ok(())
+    }
+
+    /// After a step: puts the pivots back on rigid guides, from which the integrator's error lets them stray.
+    pub fn close_gaps(&self, state: &mut State) -> Result<(), OffGuide> {
+        if !self.guides.are_rigid() {
+            return Ok(());
+        }
+        let guides = self.geometry.guides(&state.pose, &state.ring_rad);
+        for (i, guide) in guides.iter().enumerate() {
+            if guide.gap_m.abs() > TORN_OFF_M {
+                return Err(OffGuide { guide: i });
+            }
+            let lever_m = self.geometry.lever_m(i, guide)?;
+            state.ring_rad[i] -= guide.gap_m / lever_m;
+            state.ring_rad_s[i] = -guide.gap_by_pose().dot(&state.twist) / lever_m;
+        }
+        Ok(())
     }
 }
 

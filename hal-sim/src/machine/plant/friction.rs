@@ -1,107 +1,114 @@
-//! Friction at a ring: the LuGre bristle model with presliding and Stribeck effect, plus viscous friction.
+//! Friction of a ring, or of a carriage on its guide: the LuGre bristle model with presliding and Stribeck effect, plus viscous
+//! friction.
 //!
 //! Canudas de Wit et al., "A new model for control of systems with friction", IEEE TAC 40(3), 1995:
-//! `z' = v - sigma0 |v| z / g(v)` and `T = sigma0 z + sigma1 z' + sigma2 v`. Two changes:
+//! `z' = v - sigma0 |v| z / g(v)` and `T = sigma0 z + sigma1 z' + sigma2 v`. Three changes:
 //!
 //! - `g(v) = Tc + (Ts - Tc) / (1 + (v/vs)^2)` (Hess and Soom, 1990) in place of the Gaussian: the same shape without
 //!   an exponential, which would be a third of the cost of a step.
 //! - `z' = k (z_ss - z)` with `k = sigma0 |v| / g` and `z_ss = sign(v) g / sigma0` is the same equation, written so
 //!   that its stiff part can be limited: `k` never exceeds 2 / step. The bristle then still settles, within a step or
 //!   two, on the very torque that it settles on in the exact model, and the integrator stays stable at any rate.
+//! - `sigma1(v) = sigma1 / (1 + (sigma1 v / 2 Tc)^2)`: the bristles' damping fades, so that `sigma1(v) |v|` never exceeds Tc. With a
+//!   constant sigma1 a quick reversal would find twice the Coulomb friction. With `s = sigma0 z / g` the dry part is
+//!   `g s + sigma1 v (1 - s)`, which lies between `-g` and `g` for all `s` from -1 to 1 as soon as `sigma1 |v| <= g`.
 
-use super::parameters::PlantParameters;
+use super::parameters::FrictionParameters;
 
-/// Precomputed constants of one ring's friction.
+/// Precomputed constants of one friction. A ring's are in N m and rad, a guide's in N and m.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
-    coulomb_n_m: f64,
-    static_excess_n_m: f64,
-    inverse_stribeck_s_rad: f64,
-    stiffness_n_m_rad: f64,
-    bristle_damping_n_m_s_rad: f64,
-    viscous_n_m_s_rad: f64,
+    coulomb: f64,
+    static_excess: f64,
+    inverse_stribeck: f64,
+    stiffness: f64,
+    bristle_damping: f64,
+    /// sigma1 / 2 Tc: of the rate at which the bristles' damping has fallen to half.
+    inverse_fading_rate: f64,
+    viscous: f64,
 }
 
-/// Friction torque (it opposes the motion: subtract it) and rate of the bristle.
+/// Friction (it opposes the motion: subtract it) and rate of the bristle.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionState {
-    /// Torque that the ring has to overcome, N m.
-    pub torque_n_m: f64,
-    /// Time derivative of the bristle deflection, rad/s.
-    pub bristle_rate_rad_s: f64,
+    /// What has to be overcome, N m or N.
+    pub force: f64,
+    /// Time derivative of the bristle deflection, rad/s or m/s.
+    pub bristle_rate: f64,
 }
 
 impl Friction {
-    /// Takes the constants, with the switched-off effects at zero.
+    /// Takes the constants, with what is switched off at zero.
     #[must_use]
-    pub fn new(parameters: &PlantParameters) -> Self {
+    pub fn new(parameters: &FrictionParameters, is_dry: bool, is_viscous: bool) -> Self {
         let on = |flag: bool| if flag { 1.0 } else { 0.0 };
-        let dry = on(parameters.imperfections.dry_friction);
-        let viscous = on(parameters.imperfections.viscous_friction);
+        let (dry, viscous) = (on(is_dry), on(is_viscous));
         Self {
-            coulomb_n_m: parameters.coulomb_n_m * dry,
-            static_excess_n_m: parameters.coulomb_n_m * (parameters.stiction_ratio - 1.0) * dry,
-            inverse_stribeck_s_rad: 1.0 / parameters.stribeck_rad_s,
-            stiffness_n_m_rad: parameters.coulomb_n_m / parameters.presliding_rad * dry,
-            bristle_damping_n_m_s_rad: parameters.bristle_damping_n_m_s_rad * dry,
-            viscous_n_m_s_rad: parameters.viscous_n_m_s_rad * viscous,
+            coulomb: parameters.coulomb * dry,
+            static_excess: parameters.coulomb * (parameters.stiction_ratio - 1.0) * dry,
+            inverse_stribeck: 1.0 / parameters.stribeck_rate,
+            stiffness: parameters.coulomb / parameters.presliding * dry,
+            bristle_damping: parameters.bristle_damping * dry,
+            inverse_fading_rate: 0.5 * parameters.bristle_damping / parameters.coulomb,
+            viscous: parameters.viscous * viscous,
         }
     }
 
-    /// Evaluates the model at a ring rate and a bristle deflection (rad), for an integration step of `step_s`.
+    /// Evaluates the model at a rate and a bristle deflection, for an integration step of `step_s`.
     #[must_use]
-    pub fn evaluate(&self, rate_rad_s: f64, bristle_rad: f64, step_s: f64) -> FrictionState {
-        let viscous_n_m = self.viscous_n_m_s_rad * rate_rad_s;
-        if self.coulomb_n_m == 0.0 {
+    pub fn evaluate(&self, rate: f64, bristle: f64, step_s: f64) -> FrictionState {
+        let viscous = self.viscous * rate;
+        if self.coulomb == 0.0 {
             return FrictionState {
-                torque_n_m: viscous_n_m,
-                bristle_rate_rad_s: 0.0,
+                force: viscous,
+                bristle_rate: 0.0,
             };
         }
-        let bristle_rate_rad_s = self.bristle_rate(rate_rad_s, bristle_rad, step_s);
+        let bristle_rate = self.bristle_rate(rate, bristle, step_s);
+        let fading = rate * self.inverse_fading_rate;
+        let damping = self.bristle_damping / (1.0 + fading * fading);
         FrictionState {
-            torque_n_m: self.stiffness_n_m_rad * bristle_rad
-                + self.bristle_damping_n_m_s_rad * bristle_rate_rad_s
-                + viscous_n_m,
-            bristle_rate_rad_s,
+            force: self.stiffness * bristle + damping * bristle_rate + viscous,
+            bristle_rate,
         }
     }
 
     /// Energy stored in the bristle, J.
     #[must_use]
-    pub fn energy_j(&self, bristle_rad: f64) -> f64 {
-        0.5 * self.stiffness_n_m_rad * bristle_rad * bristle_rad
+    pub fn energy_j(&self, bristle: f64) -> f64 {
+        0.5 * self.stiffness * bristle * bristle
     }
 
-    fn bristle_rate(&self, rate_rad_s: f64, bristle_rad: f64, step_s: f64) -> f64 {
-        let stribeck = rate_rad_s * self.inverse_stribeck_s_rad;
+    fn bristle_rate(&self, rate: f64, bristle: f64, step_s: f64) -> f64 {
+        let stribeck = rate * self.inverse_stribeck;
         // g(v) as a fraction, so that its reciprocal costs the only division.
         let denominator = 1.0 + stribeck * stribeck;
-        let numerator_n_m = self.coulomb_n_m * denominator + self.static_excess_n_m;
-        let scale = self.stiffness_n_m_rad * denominator / numerator_n_m;
-        let relaxation_1_s = scale * rate_rad_s.abs();
+        let numerator = self.coulomb * denominator + self.static_excess;
+        let scale = self.stiffness * denominator / numerator;
+        let relaxation_1_s = scale * rate.abs();
         if relaxation_1_s * step_s <= 2.0 {
             // In this form the rate is smooth through zero, where the sign below is not defined.
-            return rate_rad_s - relaxation_1_s * bristle_rad;
+            return rate - relaxation_1_s * bristle;
         }
-        let settled_rad = rate_rad_s.signum() / scale;
-        2.0 / step_s * (settled_rad - bristle_rad)
+        let settled = rate.signum() / scale;
+        2.0 / step_s * (settled - bristle)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::machine::plant::PlantParameters;
 
     const STEP_S: f64 = 15e-6;
 
+    fn ring() -> Friction {
+        Friction::new(&PlantParameters::REFERENCE.ring_friction, true, true)
+    }
+
     /// Lets the bristle run at a constant rate, with the plant's own integrator, and returns the friction torque.
     fn settle(friction: &Friction, rate_rad_s: f64, steps: u32) -> f64 {
-        let slope = |bristle| {
-            friction
-                .evaluate(rate_rad_s, bristle, STEP_S)
-                .bristle_rate_rad_s
-        };
+        let slope = |bristle| friction.evaluate(rate_rad_s, bristle, STEP_S).bristle_rate;
         let mut bristle = 0.0;
         for _ in 0..steps {
             let first = slope(bristle);
@@ -110,12 +117,12 @@ mod tests {
             let fourth = slope(bristle + STEP_S * third);
             bristle += STEP_S / 6.0 * (first + 2.0 * (second + third) + fourth);
         }
-        friction.evaluate(rate_rad_s, bristle, STEP_S).torque_n_m
+        friction.evaluate(rate_rad_s, bristle, STEP_S).force
     }
 
     #[test]
     fn sliding_friction_is_coulomb_plus_viscous_at_any_rate() {
-        let friction = Friction::new(&PlantParameters::REFERENCE);
+        let friction = ring();
         for rate_rad_s in [1.0_f64, 10.0, 17.0, 100.0, 1000.0] {
             for signed_rad_s in [rate_rad_s, -rate_rad_s] {
                 let expected_n_m = signed_rad_s.signum() * (0.1 + 0.05 * rate_rad_s);
@@ -130,16 +137,46 @@ mod tests {
 
     #[test]
     fn slow_sliding_needs_the_break_away_torque() {
-        let friction = Friction::new(&PlantParameters::REFERENCE);
+        let friction = ring();
         let torque_n_m = settle(&friction, 1e-4, 1_000_000);
         assert!((torque_n_m - 0.12).abs() < 1e-4, "{torque_n_m}");
     }
 
     #[test]
     fn presliding_is_a_spring() {
-        let friction = Friction::new(&PlantParameters::REFERENCE);
+        let friction = ring();
         let state = friction.evaluate(0.0, 50e-6, STEP_S);
-        assert!((state.torque_n_m - 0.05).abs() < 1e-12);
-        assert_eq!(state.bristle_rate_rad_s, 0.0);
+        assert!((state.force - 0.05).abs() < 1e-12);
+        assert_eq!(state.bristle_rate, 0.0);
+    }
+
+    #[test]
+    fn dry_friction_never_exceeds_the_break_away_torque() {
+        let friction = ring();
+        // Sways with 300 rad/s^2 at their ends, slow and quick, and one at the largest rate of a pivot.
+        for frequency_hz in [0.5_f64, 2.0, 5.0, 20.0, 100.0, 500.0] {
+            let omega_1_s = core::f64::consts::TAU * frequency_hz;
+            let rate = |time_s: f64| {
+                300.0 / omega_1_s * <f64 as kinematics::Scalar>::sin_cos(omega_1_s * time_s).0
+            };
+            let (mut bristle, mut worst_n_m) = (0.0, 0.0_f64);
+            for step in 0..(2.0 / frequency_hz / STEP_S) as u64 {
+                let time_s = step as f64 * STEP_S;
+                let slope = |bristle, part| {
+                    friction
+                        .evaluate(rate(time_s + part * STEP_S), bristle, STEP_S)
+                        .bristle_rate
+                };
+                let first = slope(bristle, 0.0);
+                let second = slope(bristle + 0.5 * STEP_S * first, 0.5);
+                let third = slope(bristle + 0.5 * STEP_S * second, 0.5);
+                let fourth = slope(bristle + STEP_S * third, 1.0);
+                bristle += STEP_S / 6.0 * (first + 2.0 * (second + third) + fourth);
+                let rate = rate(time_s + STEP_S);
+                let dry_n_m = friction.evaluate(rate, bristle, STEP_S).force - 0.05 * rate;
+                worst_n_m = worst_n_m.max(dry_n_m.abs());
+            }
+            assert!(worst_n_m < 0.1201, "{frequency_hz} Hz: {worst_n_m} N m");
+        }
     }
 }

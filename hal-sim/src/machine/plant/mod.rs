@@ -6,17 +6,24 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `parameters` | every number, with its origin; which imperfections are simulated |
+//! | `parameters` | every number, with its origin |
+//! | `imperfections` | which departures from an ideal machine are simulated |
 //! | `state` | the state vector |
 //! | `body` | platform and payload |
 //! | `drive` | winding, motor, transmission |
-//! | `friction`, `stops` | friction of a ring; ends of the guides |
+//! | `geometry`, `built` | where a pivot lies on its guide, with every error of geometry; the reference stage's |
+//! | `guide` | a guide's forces: across it, along it, at its ends |
+//! | `friction`, `stops` | friction by bristles, of rings and of guides; ends of the guides |
 //! | `dynamics` | the equations of motion |
 
 mod body;
+mod built;
 mod drive;
 mod dynamics;
 mod friction;
+mod geometry;
+mod guide;
+mod imperfections;
 mod parameters;
 mod state;
 mod stops;
@@ -25,23 +32,25 @@ pub use body::Body;
 pub use drive::{Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
-pub use parameters::{AXES, Imperfections, Payload, PlantParameters};
+pub use geometry::{OffGuide, PivotGeometry};
+pub use imperfections::{Imperfections, NAMED, Named};
+pub use parameters::{AXES, FrictionParameters, Payload, PlantParameters};
 pub use stops::EndStops;
 
 use dynamics::Dynamics;
-use kinematics::InverseError;
+use geometry::GuideState;
 use nalgebra::{Matrix3, Vector3};
 use state::State;
 
 /// Why the plant stands still: its equations no longer hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Broken {
-    /// The platform was torn out of the guides: no pivot angles belong to this pose.
+    /// A pivot cannot be on its guide at this pose: the platform was torn out of the guides.
     Unreachable {
         /// Last pose (m, m, rad).
         pose: [f64; 3],
-        /// What the inverse kinematics said.
-        reason: InverseError,
+        /// Which guide, 0 to 2.
+        guide: usize,
     },
     /// A state is no longer finite: a force or a voltage that is not a number, or a step that is far too long.
     NotFinite,
@@ -65,14 +74,7 @@ impl Plant {
         let mut plant = Self {
             parameters,
             dynamics,
-            state: State {
-                pose: Vector3::zeros(),
-                twist: Vector3::zeros(),
-                motor_rad: Vector3::zeros(),
-                motor_rad_s: Vector3::zeros(),
-                current_a: Vector3::zeros(),
-                bristle_rad: Vector3::zeros(),
-            },
+            state: State::zeros(),
             external: External::default(),
             broken: None,
         };
@@ -84,26 +86,20 @@ impl Plant {
     /// A pose that no pivots can take breaks the plant; any other mends it.
     pub fn set_pose_at_rest(&mut self, pose: [f64; 3]) {
         let pose = Vector3::from(pose);
-        match self.dynamics.inverse(&pose) {
-            Ok(inverse) => {
+        match self.dynamics.geometry.rings_rad(&pose) {
+            Ok(ring_rad) => {
                 self.broken = None;
-                self.state = State {
-                    pose,
-                    twist: Vector3::zeros(),
-                    motor_rad: Vector3::from(inverse.pivots),
-                    motor_rad_s: Vector3::zeros(),
-                    current_a: Vector3::zeros(),
-                    bristle_rad: Vector3::zeros(),
-                };
+                self.state = State::at_rest(pose, ring_rad);
             }
             Err(reason) => self.break_down(reason),
         }
     }
 
-    /// Gives the machine a platform velocity (m/s, m/s, rad/s) with the motors following at the same rate.
+    /// Gives the machine a platform velocity (m/s, m/s, rad/s) with rings and motors following at the same rate.
     pub fn set_velocity(&mut self, velocity: [f64; 3]) {
         self.state.twist = Vector3::from(velocity);
-        self.state.motor_rad_s = Vector3::from(self.pivot_rates_rad_s());
+        self.state.ring_rad_s = self.jacobian() * self.state.twist;
+        self.state.motor_rad_s = self.state.ring_rad_s;
     }
 
     /// Pushes from outside until the next call.
@@ -157,16 +153,25 @@ impl Plant {
     /// Ring angles, rad, multi-turn.
     #[must_use]
     pub fn pivots_rad(&self) -> [f64; AXES] {
-        // The state was reachable when it was taken over; NaN would show a broken invariant at once.
-        self.dynamics
-            .inverse(&self.state.pose)
-            .map_or([f64::NAN; AXES], |inverse| inverse.pivots)
+        self.state.ring_rad.into()
     }
 
     /// Ring rates, rad/s.
     #[must_use]
     pub fn pivot_rates_rad_s(&self) -> [f64; AXES] {
-        (self.jacobian() * self.state.twist).into()
+        self.state.ring_rad_s.into()
+    }
+
+    /// Places of the pivots on their guides, m from the platform's centre.
+    #[must_use]
+    pub fn rhos_m(&self) -> [f64; AXES] {
+        self.guides().map(|guide| guide.rho_m)
+    }
+
+    /// How far the pivots have pushed their guides aside, m, to the guides' left. Rigid guides are not.
+    #[must_use]
+    pub fn gaps_m(&self) -> [f64; AXES] {
+        self.guides().map(|guide| guide.gap_m)
     }
 
     /// Motor angles seen at the ring, rad, multi-turn.
@@ -190,10 +195,8 @@ impl Plant {
     /// Jacobian from (m/s, m/s, rad/s) to ring rates (rad/s) where it stands.
     #[must_use]
     pub fn jacobian(&self) -> Matrix3<f64> {
-        self.dynamics.inverse(&self.state.pose).map_or_else(
-            |_| Matrix3::repeat(f64::NAN),
-            |inverse| self.dynamics.jacobian(&inverse.guides),
-        )
+        // A state was on its guides when it was taken over; NaN would show a broken invariant at once.
+        (self.dynamics.jacobian(&self.guides())).unwrap_or_else(|_| Matrix3::repeat(f64::NAN))
     }
 
     /// Mass matrix of platform, payload and rings for (x, y, theta), SI, without the motors.
@@ -206,36 +209,45 @@ impl Plant {
     /// Kinetic energy of platform, payload, rings and motors, J.
     #[must_use]
     pub fn kinetic_energy_j(&self) -> f64 {
-        let twist = self.state.twist;
-        0.5 * twist.dot(&(self.mass_matrix() * twist))
-            + 0.5 * self.parameters.motor_inertia_kg_m2 * self.state.motor_rad_s.norm_squared()
+        let State {
+            twist,
+            ring_rad_s,
+            motor_rad_s,
+            ..
+        } = self.state;
+        let body = (self.dynamics).mass_matrix(self.state.pose.z, &Matrix3::zeros());
+        0.5 * twist.dot(&(body * twist))
+            + 0.5 * self.parameters.ring_inertia_kg_m2 * ring_rad_s.norm_squared()
+            + 0.5 * self.parameters.motor_inertia_kg_m2 * motor_rad_s.norm_squared()
     }
 
-    /// Energy in the transmissions' springs, the bristles and the end stops, J.
+    /// Energy in the transmissions' springs, the guides, the bristles and the end stops, J.
     #[must_use]
     pub fn elastic_energy_j(&self) -> f64 {
-        let Ok(inverse) = self.dynamics.inverse(&self.state.pose) else {
-            return f64::NAN;
-        };
+        let state = &self.state;
+        let guides = self.guides();
         (0..AXES)
             .map(|i| {
-                self.dynamics
-                    .drive
-                    .spring_energy_j(self.state.motor_rad[i] - inverse.pivots[i])
-                    + self.dynamics.friction.energy_j(self.state.bristle_rad[i])
-                    + self.dynamics.stops.energy_j(&inverse.guides[i])
+                let windup_rad = state.motor_rad[i] - state.ring_rad[i];
+                self.dynamics.drive.spring_energy_j(windup_rad)
+                    + self.dynamics.ring_friction.energy_j(state.bristle_rad[i])
+                    + (self.dynamics.guides).energy_j(&guides[i], state.guide_bristle_m[i])
             })
             .sum()
     }
 
-    fn break_down(&mut self, reason: InverseError) {
+    fn guides(&self) -> [GuideState; AXES] {
+        (self.dynamics.geometry).guides(&self.state.pose, &self.state.ring_rad)
+    }
+
+    fn break_down(&mut self, OffGuide { guide }: OffGuide) {
         self.broken = Some(Broken::Unreachable {
             pose: self.state.pose.into(),
-            reason,
+            guide,
         });
     }
 
-    fn runge_kutta(&self, step_s: f64, drives: &[Drive; AXES]) -> Result<State, InverseError> {
+    fn runge_kutta(&self, step_s: f64, drives: &[Drive; AXES]) -> Result<State, OffGuide> {
         let rate = |state: &State| {
             self.dynamics
                 .derivative(state, drives, &self.external, step_s)
@@ -254,6 +266,7 @@ impl Plant {
             let (before_a, after_a) = (start.current_a[i], end.current_a[i]);
             end.current_a[i] = self.dynamics.drive.settle_current(drive, before_a, after_a);
         }
+        self.dynamics.close_gaps(&mut end)?;
         Ok(end)
     }
 }

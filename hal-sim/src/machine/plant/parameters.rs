@@ -3,6 +3,10 @@
 //! "Reference stage" in an origin means the table of the project's reference stage: a given. "Chosen" means that the
 //! reference stage leaves it open; the reason follows.
 
+use super::built::BUILT;
+use super::geometry::PivotGeometry;
+use super::imperfections::Imperfections;
+
 /// Number of pivots, drives, encoders and guides.
 pub const AXES: usize = 3;
 
@@ -29,72 +33,21 @@ impl Payload {
     };
 }
 
-/// Which departures from an ideal machine are simulated.
-///
-/// A flag only gates its effect: the size stands in [`PlantParameters`] (or in the parameters of the device), so an
-/// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
-/// whole counts, and the true angle is the plant's to tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Imperfections {
-    /// Coulomb, static and presliding friction at the rings (the bristle model).
-    pub dry_friction: bool,
-    /// Viscous friction at the rings.
-    pub viscous_friction: bool,
-    /// Elastic transmission. Off, the spring is made so stiff that the resonance is four times as high: a rigid joint
-    /// would need another state vector, and nothing in the controller's band can tell the two apart.
-    pub compliance: bool,
-    /// Dead zone in the transmission.
-    pub backlash: bool,
-    /// Torque ripple of the motors.
-    pub torque_ripple: bool,
-    /// Random noise of the encoders, beyond their quantisation.
-    pub encoder_noise: bool,
-    /// First harmonic error of the encoders.
-    pub encoder_eccentricity: bool,
-    /// Voltage lost in the bridges' dead time.
-    pub dead_time: bool,
-    /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
-    pub pwm_quantisation: bool,
-}
-
-impl Imperfections {
-    /// An ideal machine: no friction, no backlash, no noise. Integers stay integers: counts of encoders and PWM.
-    pub const NONE: Self = Self {
-        dry_friction: false,
-        viscous_friction: false,
-        compliance: true,
-        backlash: false,
-        torque_ripple: false,
-        encoder_noise: false,
-        encoder_eccentricity: false,
-        dead_time: false,
-        pwm_quantisation: false,
-    };
-
-    /// A real machine whose encoders have been calibrated: everything but their eccentricity.
-    pub const CALIBRATED: Self = Self {
-        dry_friction: true,
-        viscous_friction: true,
-        compliance: true,
-        backlash: true,
-        torque_ripple: true,
-        encoder_noise: true,
-        encoder_eccentricity: false,
-        dead_time: true,
-        pwm_quantisation: true,
-    };
-
-    /// Everything.
-    pub const ALL: Self = Self {
-        encoder_eccentricity: true,
-        ..Self::CALIBRATED
-    };
-}
-
-impl Default for Imperfections {
-    fn default() -> Self {
-        Self::CALIBRATED
-    }
+/// Friction by the bristle model. A ring's is in N m and rad, a guide's in N and m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionParameters {
+    /// Coulomb friction: N m or N.
+    pub coulomb: f64,
+    /// Break-away over Coulomb friction.
+    pub stiction_ratio: f64,
+    /// Rate at which half of the static excess has gone (Stribeck): rad/s or m/s.
+    pub stribeck_rate: f64,
+    /// Presliding distance, Coulomb friction over bristle stiffness: rad or m.
+    pub presliding: f64,
+    /// Damping of the bristles: N m s/rad or N s/m.
+    pub bristle_damping: f64,
+    /// Viscous friction: N m s/rad or N s/m.
+    pub viscous: f64,
 }
 
 /// The machine behind the bridges' terminals. See [`PlantParameters::REFERENCE`] for the origin of the numbers.
@@ -131,18 +84,8 @@ pub struct PlantParameters {
     pub transmission_damping_n_m_s_rad: f64,
     /// Full width of the transmission's dead zone, seen at the ring, rad.
     pub backlash_rad: f64,
-    /// Coulomb friction of one ring, N m.
-    pub coulomb_n_m: f64,
-    /// Break-away torque over Coulomb torque.
-    pub stiction_ratio: f64,
-    /// Rate at which half of the static excess has gone (Stribeck), rad/s.
-    pub stribeck_rad_s: f64,
-    /// Presliding distance, Coulomb torque over bristle stiffness, rad.
-    pub presliding_rad: f64,
-    /// Damping of the bristles, N m s/rad.
-    pub bristle_damping_n_m_s_rad: f64,
-    /// Viscous friction of one ring, N m s/rad.
-    pub viscous_n_m_s_rad: f64,
+    /// Friction of one ring: N m, rad.
+    pub ring_friction: FrictionParameters,
     /// Amplitude of the torque ripple, seen at the ring, N m.
     pub ripple_n_m: f64,
     /// Periods of the ripple in one turn of the motor.
@@ -153,12 +96,20 @@ pub struct PlantParameters {
     pub stop_stiffness_n_m: f64,
     /// Damping of a guide's end stop while it is pressed, N s/m.
     pub stop_damping_n_s_m: f64,
+    /// Stiffness of a carriage and its guide across the guide, N/m.
+    pub guide_stiffness_n_m: f64,
+    /// Damping across a guide, N s/m.
+    pub guide_damping_n_s_m: f64,
+    /// Friction of a carriage along its guide: N, m.
+    pub guide_friction: FrictionParameters,
+    /// How pivots, rings and guides are built.
+    pub pivots: [PivotGeometry; AXES],
     /// What of all this is simulated.
     pub imperfections: Imperfections,
 }
 
 impl PlantParameters {
-    /// The reference stage, empty, level, with every imperfection but the encoders' eccentricity.
+    /// The reference stage, empty and level, with the imperfections of a kind machine.
     pub const REFERENCE: Self = Self {
         // Reference stage.
         track_radius_m: 0.1,
@@ -188,14 +139,16 @@ impl PlantParameters {
         // an unloaded pivot hunts in the gap, by about 4 encoder LSB for each urad: nothing but the ring has friction.
         backlash_rad: 0.3e-6,
         // Reference stage.
-        coulomb_n_m: 0.1,
-        stiction_ratio: 1.2,
-        presliding_rad: 100e-6,
-        viscous_n_m_s_rad: 0.05,
-        // Chosen: 0.5 mm/s on the track, the order reported for greased rolling bearings.
-        stribeck_rad_s: 5e-3,
-        // Chosen: a tenth of critical for the ring on its bristles, 2 * 0.1 * sqrt(1000 * 0.02).
-        bristle_damping_n_m_s_rad: 0.9,
+        ring_friction: FrictionParameters {
+            coulomb: 0.1,
+            stiction_ratio: 1.2,
+            presliding: 100e-6,
+            viscous: 0.05,
+            // Chosen: 0.5 mm/s on the track, the order reported for greased rolling bearings.
+            stribeck_rate: 5e-3,
+            // Chosen: a tenth of critical for the ring on its bristles, 2 * 0.1 * sqrt(1000 * 0.02).
+            bristle_damping: 0.9,
+        },
         // Reference stage.
         ripple_n_m: 0.03,
         // Chosen: a commutator of 13 bars, each brush passing each bar.
@@ -206,6 +159,24 @@ impl PlantParameters {
         stop_stiffness_n_m: 1e6,
         // ... and loses most of the energy in one stroke.
         stop_damping_n_s_m: 2e3,
+        // Reference stage: 10 to 50 N/um is what carriages on rails of this size give; the stiff end.
+        guide_stiffness_n_m: 50e6,
+        // Reference stage: 1 to 3 % of critical. 2 %, for a ring's 0.8 kg against the platform's 2 kg: 2 * 0.02 * sqrt(5e7 * 0.57).
+        guide_damping_n_s_m: 214.0,
+        guide_friction: FrictionParameters {
+            // Reference stage: 1 N, with lubricated seals 0.5 to 3 N.
+            coulomb: 1.0,
+            stiction_ratio: 1.2,
+            // Chosen: 20 um, the order that is reported for balls on rails.
+            presliding: 20e-6,
+            // Chosen: as the rings' 0.5 mm/s.
+            stribeck_rate: 0.5e-3,
+            // Chosen: a tenth of critical for the platform's 3 kg on its bristles, 2 * 0.1 * sqrt(5e4 * 3).
+            bristle_damping: 77.0,
+            // Chosen: as much again as the Coulomb friction at 0.2 m/s.
+            viscous: 5.0,
+        },
+        pivots: BUILT,
         imperfections: Imperfections::CALIBRATED,
     };
 

@@ -15,13 +15,13 @@ const pivots = (from) => [1, 2, 3].map((number) => ({ name: `pivot ${number}`, s
 const plots = [
   { title: "Centre, mm", series: [{ name: "x", paint: "x", channel: 0 }, { name: "y", paint: "y", channel: 1 }], decimals: 3 },
   { title: "Orientation θ, °", series: [{ name: "θ", paint: "theta", channel: 2 }], decimals: 3 },
-  { title: "Following error of the centre, µm", series: [{ name: "distance", paint: "centre", channel: 3 }], decimals: 3 },
-  { title: "Following error of θ, µrad", series: [{ name: "θ", paint: "theta", channel: 4 }], decimals: 2 },
-  { title: "Speed of the moved point, mm/s", series: [{ name: "set", paint: "centre", channel: 5 }], decimals: 1 },
-  { title: "Rate of θ, °/s", series: [{ name: "set", paint: "theta", channel: 6 }], decimals: 1 },
-  { title: "Pivots on the track, °", series: pivots(7), decimals: 2 },
-  { title: "Rates of the pivots, rad/s", series: pivots(10), decimals: 2 },
-  { title: "Duty of the motors", series: pivots(13), decimals: 3 },
+  { title: "Error of the centre, µm", series: [{ name: "true pose", paint: "steel", channel: 5 }, { name: "following, by the encoders", paint: "centre", channel: 3 }], decimals: 3 },
+  { title: "Error of θ, µrad", series: [{ name: "true pose", paint: "steel", channel: 6 }, { name: "following, by the encoders", paint: "theta", channel: 4 }], decimals: 2 },
+  { title: "Speed of the moved point, mm/s", series: [{ name: "set", paint: "centre", channel: 7 }], decimals: 1 },
+  { title: "Rate of θ, °/s", series: [{ name: "set", paint: "theta", channel: 8 }], decimals: 1 },
+  { title: "Pivots on the track, °", series: pivots(9), decimals: 2 },
+  { title: "Rates of the pivots, rad/s", series: pivots(12), decimals: 2 },
+  { title: "Duty of the motors", series: pivots(15), decimals: 3 },
 ].map((what) => {
   const canvas = make("canvas", { className: "plot", tabIndex: 0, role: "img", "aria-label": `${what.title}, over time` });
   byId("plots").append(canvas);
@@ -33,7 +33,7 @@ const plots = [
 /** The pose at the cursor, inside the lowest and highest of its stretch: what the plots say there. */
 function poseAt(time) {
   const value = (channel) => valueAt(data, channel, time);
-  return { centre: [value(0), value(1)], deg: value(2), pivots: [value(7), value(8), value(9)] };
+  return { centre: [value(0), value(1)], deg: value(2), pivots: [value(9), value(10), value(11)] };
 }
 
 /** Where the centre has been up to a time. */

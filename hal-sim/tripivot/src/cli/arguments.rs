@@ -4,7 +4,7 @@ use super::number::{whole, within};
 use super::stage::{SimulatedStage, Simulation};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use controller::{Access, Controller, RecordRun, SettingsCommand, View};
+pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
@@ -37,8 +37,8 @@ pub(super) struct Arguments {
 pub(super) struct RunOutput {
     /// Tell the result as one JSON document on standard output.
     ///
-    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, eccentricity, settings);
-    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); moves (start_s, profile_end_s, settled_s,
+    /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, with, settings);
+    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); true_error (centre_um, theta_urad, of the true pose); moves (start_s, profile_end_s, settled_s,
     /// settle_ms, x_mm, y_mm, theta_deg; null where the stage had not settled when the next move began or the run ended);
     /// never_settled, how many of those had a tenth of a second for it, or more; peak_duty (0 to 1);
     /// smallest_separation_deg; simulated_s; wall_s; answers (line, answer); fault (null without one); folder.
@@ -69,6 +69,9 @@ pub(super) enum Command {
     /// Write settings of a controller that runs already into a readable file, or bring them back from one.
     #[command(subcommand)]
     Settings(SettingsCommand),
+    /// Run the tests that are to be repeated on every board, over its command line; nothing moves without --move. Exit code 1 if one
+    /// fails.
+    Board(BoardRun),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
     /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use hal_sim::machine::plant::Imperfections;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use hal_sim::machine::plant::{Imperfections, NAMED};
 use hal_sim::report::DEFAULT_EVERY;
 use hal_sim::rig::run::RunOptions;
 
@@ -41,39 +42,24 @@ pub struct SimulatedStage {
     /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
     #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=PAYLOAD_LIMIT_KG))]
     pub payload: f64,
-    /// Imperfections of the simulated stage to switch off.
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub without: Vec<Imperfection>,
-    /// Switch on the eccentricity of the encoders: a stage that has not been calibrated.
-    #[arg(long)]
-    pub eccentricity: bool,
+    /// Imperfections of the simulated stage to switch off; `all` leaves an ideal machine.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
+    pub without: Vec<String>,
+    /// Imperfections to switch on that a kind machine has not; `all` makes it an unkind one.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
+    pub with: Vec<String>,
     /// Start with a controller that keeps no settings: it knows neither zeros nor directions of the encoders, and nothing drives before
     /// it is commissioned. Without this, an empty store gets the settings that the simulated machine comes with.
     #[arg(long)]
     pub uncommissioned: bool,
 }
 
-/// What a simulated stage can do without.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
-pub enum Imperfection {
-    /// All of them.
-    All,
-    /// Coulomb, static and presliding friction.
-    DryFriction,
-    /// Viscous friction.
-    ViscousFriction,
-    /// Elastic transmission.
-    Compliance,
-    /// Dead zone in the transmission.
-    Backlash,
-    /// Torque ripple of the motors.
-    TorqueRipple,
-    /// Encoder noise.
-    EncoderNoise,
-    /// Dead time of the bridges.
-    DeadTime,
-    /// Counts of the PWM.
-    PwmQuantisation,
+/// A name of an imperfection.
+fn imperfection(more: &[&'static str]) -> PossibleValuesParser {
+    (more.iter().copied())
+        .chain(NAMED.iter().map(|named| named.name))
+        .collect::<Vec<_>>()
+        .into()
 }
 
 /// Beyond that the simulated motors have no torque, or the platform no mass.
@@ -108,27 +94,23 @@ pub fn stage_options(arguments: &SimulatedStage) -> RunOptions {
 }
 
 fn imperfections(arguments: &SimulatedStage) -> Imperfections {
-    let mut on = Imperfections {
-        encoder_eccentricity: arguments.eccentricity,
-        ..Imperfections::CALIBRATED
-    };
-    for without in &arguments.without {
-        match without {
-            Imperfection::All => {
-                on = Imperfections {
-                    compliance: false,
-                    ..Imperfections::NONE
-                }
-            }
-            Imperfection::DryFriction => on.dry_friction = false,
-            Imperfection::ViscousFriction => on.viscous_friction = false,
-            Imperfection::Compliance => on.compliance = false,
-            Imperfection::Backlash => on.backlash = false,
-            Imperfection::TorqueRipple => on.torque_ripple = false,
-            Imperfection::EncoderNoise => on.encoder_noise = false,
-            Imperfection::DeadTime => on.dead_time = false,
-            Imperfection::PwmQuantisation => on.pwm_quantisation = false,
+    let all = |names: &[String]| names.iter().any(|name| name == "all");
+    let start = if all(&arguments.without) {
+        // The transmission that does not give way, as well.
+        Imperfections {
+            compliance: false,
+            ..Imperfections::NONE
         }
-    }
-    on
+    } else if all(&arguments.with) {
+        Imperfections::ALL
+    } else {
+        Imperfections::CALIBRATED
+    };
+    let switched = |on: Imperfections, (name, is_on): (&String, bool)| {
+        // What the command line takes is a name, or `all`.
+        on.switched(name, is_on).unwrap_or(on)
+    };
+    let without = arguments.without.iter().map(|name| (name, false));
+    let with = arguments.with.iter().map(|name| (name, true));
+    without.chain(with).fold(start, switched)
 }

@@ -1,0 +1,345 @@
+//! Where a pivot lies on its guide, on a machine as it was built: every error of the mechanism's geometry enters here.
+//!
+//! The residual form, which needs no inverse kinematics and shares no formula with the controller's:
+//!
+//! ```text
+//! P = a + (R + r(phi)) (cos phi, sin phi)         pivot on its ring: centre a, radius R, run-out r
+//! t = theta + g + e                               direction of the guide: g = -30, 90, 210 deg, e its error
+//! u = (cos t, sin t),  n = (-sin t, cos t)        along the guide, and to its left
+//! rho = u . (P - C)                               place on the guide
+//! f   = n . (P - C) - d0 - S(rho)                 what the pivot is off the guide's line: offset d0, straightness S
+//! ```
+//!
+//! A guide that gives way passes on a force against f; a rigid one keeps f at 0. Angles from a pose are found by Newton's method.
+
+use kinematics::Scalar;
+use nalgebra::{Vector2, Vector3};
+
+use super::parameters::{AXES, PlantParameters};
+
+/// Directions of the three guides in the platform, rad.
+const GUIDE_RAD: [f64; AXES] = {
+    use core::f64::consts::FRAC_PI_6;
+    [-FRAC_PI_6, 3.0 * FRAC_PI_6, 7.0 * FRAC_PI_6]
+};
+/// The part of rho over which the straightness is a sum of Legendre polynomials: from the middle, over the track radius.
+const STRAIGHTNESS_SPAN: f64 = 0.8;
+/// A guide that lies closer to the ring's tangent's normal than this, as the cosine of the angle between pivot and guide, has come loose.
+const LEAST_COSINE: f64 = 0.01;
+/// Newton's steps from a pivot straight on its guide; twelve are enough at a cosine of 0.01.
+const MAX_STEPS: u32 = 30;
+/// A step so small, over the size of the angle, is the last: the next would be its square.
+const SMALL_STEP: f64 = 1e-10;
+
+/// How one pivot, its ring and its guide are built. All zero is the drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PivotGeometry {
+    /// Centre of the ring in the base frame, m.
+    pub ring_centre_m: [f64; 2],
+    /// Radius of the pivot less the track radius, m.
+    pub radius_error_m: f64,
+    /// Error of the guide's direction in the platform, rad.
+    pub guide_error_rad: f64,
+    /// Distance of the guide's line from the platform's centre, to its left, m.
+    pub guide_offset_m: f64,
+    /// Run-out of the pivot along its radius, m: cosine and sine of twice to six times the ring's angle.
+    pub runout_m: [[f64; 2]; 5],
+    /// Straightness of the guide, m: Legendre polynomials 2 to 9 of the place on it.
+    pub straightness_m: [f64; 8],
+}
+
+impl PivotGeometry {
+    /// As drawn.
+    pub const IDEAL: Self = Self {
+        ring_centre_m: [0.0; 2],
+        radius_error_m: 0.0,
+        guide_error_rad: 0.0,
+        guide_offset_m: 0.0,
+        runout_m: [[0.0; 2]; 5],
+        straightness_m: [0.0; 8],
+    };
+
+    /// With every length times `factor`.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            ring_centre_m: self.ring_centre_m.map(|m| m * factor),
+            radius_error_m: self.radius_error_m * factor,
+            guide_error_rad: self.guide_error_rad,
+            guide_offset_m: self.guide_offset_m * factor,
+            runout_m: self.runout_m.map(|pair| pair.map(|m| m * factor)),
+            straightness_m: self.straightness_m.map(|m| m * factor),
+        }
+    }
+}
+
+/// A pivot cannot be on its guide at this pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OffGuide {
+    /// Which guide, 0 to 2.
+    pub guide: usize,
+}
+
+/// A function of one variable at one place, and its first two derivatives.
+#[derive(Clone, Copy, Debug, Default)]
+struct Curve {
+    value: f64,
+    slope: f64,
+    curvature: f64,
+}
+
+/// One pivot on its ring and one guide on the platform.
+#[derive(Clone, Copy, Debug)]
+struct Pivot {
+    built: PivotGeometry,
+    has_runout: bool,
+    has_straightness: bool,
+    radius_m: f64,
+    /// Sine and cosine of the guide's direction in the platform.
+    direction: (f64, f64),
+    direction_rad: f64,
+}
+
+/// The three pivots and guides.
+#[derive(Clone, Copy, Debug)]
+pub struct Geometry {
+    track_radius_m: f64,
+    pivots: [Pivot; AXES],
+}
+
+/// A pivot and its guide at a pose and an angle of the ring; see the head of the file for the letters.
+#[derive(Clone, Copy, Debug)]
+pub struct GuideState {
+    u: Vector2<f64>,
+    n: Vector2<f64>,
+    /// f, m.
+    pub gap_m: f64,
+    /// rho, m.
+    pub rho_m: f64,
+    /// Distance of the pivot to the left of the platform's centre, `n . (P - C)`, m.
+    side_m: f64,
+    straightness: Curve,
+    /// First and second derivative of P by the ring's angle, m.
+    pivot_slope_m: Vector2<f64>,
+    pivot_curvature_m: Vector2<f64>,
+}
+
+impl Geometry {
+    /// Takes the constants; with the errors of geometry switched off, those of the drawing.
+    #[must_use]
+    pub fn new(parameters: &PlantParameters) -> Self {
+        let mut guides = parameters.pivots.iter().zip(GUIDE_RAD);
+        let pivots = [(); AXES].map(|()| {
+            let (&built, direction_rad) = guides.next().unwrap_or((&PivotGeometry::IDEAL, 0.0));
+            let built = if parameters.imperfections.geometry {
+                built
+            } else {
+                PivotGeometry::IDEAL
+            };
+            let direction_rad = direction_rad + built.guide_error_rad;
+            Pivot {
+                built,
+                has_runout: built.runout_m != PivotGeometry::IDEAL.runout_m,
+                has_straightness: built.straightness_m != PivotGeometry::IDEAL.straightness_m,
+                radius_m: parameters.track_radius_m + built.radius_error_m,
+                direction: <f64 as Scalar>::sin_cos(direction_rad),
+                direction_rad,
+            }
+        });
+        Self {
+            track_radius_m: parameters.track_radius_m,
+            pivots,
+        }
+    }
+
+    /// The three guides at a pose (m, m, rad) and angles of the rings.
+    #[must_use]
+    pub fn guides(&self, pose: &Vector3<f64>, ring_rad: &Vector3<f64>) -> [GuideState; AXES] {
+        let turned = <f64 as Scalar>::sin_cos(pose.z);
+        [0, 1, 2].map(|i| self.guide(i, pose, turned, ring_rad[i]))
+    }
+
+    /// Angles of the rings with every pivot on its guide, rad, multi-turn with theta.
+    ///
+    /// # Errors
+    /// [`OffGuide`]: no pivot reaches the guide there.
+    pub fn rings_rad(&self, pose: &Vector3<f64>) -> Result<Vector3<f64>, OffGuide> {
+        let straight = Vector3::from(self.pivots.map(|pivot| pose.z + pivot.direction_rad));
+        let turned = <f64 as Scalar>::sin_cos(pose.z);
+        let mut ring_rad = straight;
+        for guide in 0..AXES {
+            ring_rad[guide] = self.ring_rad(guide, pose, turned, straight[guide])?;
+        }
+        Ok(ring_rad)
+    }
+
+    fn ring_rad(
+        &self,
+        guide: usize,
+        pose: &Vector3<f64>,
+        turned: (f64, f64),
+        start_rad: f64,
+    ) -> Result<f64, OffGuide> {
+        let mut angle_rad = start_rad;
+        for _ in 0..MAX_STEPS {
+            let state = self.guide(guide, pose, turned, angle_rad);
+            let step_rad = -state.gap_m / self.lever_m(guide, &state)?;
+            angle_rad += step_rad;
+            if step_rad.abs() < SMALL_STEP * (1.0 + angle_rad.abs()) {
+                return Ok(angle_rad);
+            }
+        }
+        Err(OffGuide { guide })
+    }
+
+    /// How far a pivot leaves its guide for each rad of its ring, m: the radius times the cosine between the two.
+    ///
+    /// # Errors
+    /// [`OffGuide`]: the pivot moves along the guide, or has passed that place.
+    pub fn lever_m(&self, guide: usize, state: &GuideState) -> Result<f64, OffGuide> {
+        let lever_m = state.gap_by_ring_m();
+        if lever_m > LEAST_COSINE * self.track_radius_m {
+            Ok(lever_m)
+        } else {
+            Err(OffGuide { guide })
+        }
+    }
+
+    fn guide(
+        &self,
+        i: usize,
+        pose: &Vector3<f64>,
+        (sin, cos): (f64, f64),
+        ring_rad: f64,
+    ) -> GuideState {
+        let pivot = &self.pivots[i];
+        let (guide_sin, guide_cos) = pivot.direction;
+        let u = Vector2::new(
+            cos * guide_cos - sin * guide_sin,
+            sin * guide_cos + cos * guide_sin,
+        );
+        let n = Vector2::new(-u.y, u.x);
+        let (ring_sin, ring_cos) = <f64 as Scalar>::sin_cos(ring_rad);
+        let (outwards, onwards) = (
+            Vector2::new(ring_cos, ring_sin),
+            Vector2::new(-ring_sin, ring_cos),
+        );
+        let runout = pivot.runout(ring_sin, ring_cos);
+        let radius_m = pivot.radius_m + runout.value;
+        let place = Vector2::from(pivot.built.ring_centre_m) + radius_m * outwards - pose.xy();
+        let (rho_m, side_m) = (u.dot(&place), n.dot(&place));
+        let straightness = pivot.straightness(rho_m, self.track_radius_m);
+        GuideState {
+            u,
+            n,
+            gap_m: side_m - pivot.built.guide_offset_m - straightness.value,
+            rho_m,
+            side_m,
+            straightness,
+            pivot_slope_m: runout.slope * outwards + radius_m * onwards,
+            pivot_curvature_m: (runout.curvature - radius_m) * outwards
+                + 2.0 * runout.slope * onwards,
+        }
+    }
+}
+
+impl Pivot {
+    /// Run-out of the pivot by the ring's angle, m.
+    fn runout(&self, sin: f64, cos: f64) -> Curve {
+        let mut curve = Curve::default();
+        if !self.has_runout {
+            return curve;
+        }
+        let (mut harmonic_sin, mut harmonic_cos) = (sin, cos);
+        for (&[in_phase, across], harmonic) in self.built.runout_m.iter().zip(2_u32..) {
+            (harmonic_sin, harmonic_cos) = (
+                harmonic_sin * cos + harmonic_cos * sin,
+                harmonic_cos * cos - harmonic_sin * sin,
+            );
+            let times = f64::from(harmonic);
+            let value = in_phase * harmonic_cos + across * harmonic_sin;
+            curve.value += value;
+            curve.slope += times * (across * harmonic_cos - in_phase * harmonic_sin);
+            curve.curvature -= times * times * value;
+        }
+        curve
+    }
+
+    /// Straightness of the guide by the place on it, m.
+    fn straightness(&self, rho_m: f64, track_radius_m: f64) -> Curve {
+        let mut curve = Curve::default();
+        if !self.has_straightness {
+            return curve;
+        }
+        let per_m = 1.0 / (STRAIGHTNESS_SPAN * track_radius_m);
+        let x = (rho_m - track_radius_m) * per_m;
+        // Bonnet's recursion, and P'(n+1) = P'(n-1) + (2 n + 1) P(n), from the first two polynomials.
+        let mut last = [1.0, 0.0, 0.0];
+        let mut this = [x, 1.0, 0.0];
+        for (&size_m, n) in self.built.straightness_m.iter().zip(1_u32..) {
+            let n = f64::from(n);
+            let odd = 2.0 * n + 1.0;
+            let next = [
+                (odd * x * this[0] - n * last[0]) / (n + 1.0),
+                last[1] + odd * this[0],
+                last[2] + odd * this[1],
+            ];
+            curve.value += size_m * next[0];
+            curve.slope += size_m * next[1] * per_m;
+            curve.curvature += size_m * next[2] * per_m * per_m;
+            (last, this) = (this, next);
+        }
+        curve
+    }
+}
+
+impl GuideState {
+    /// Derivative of f by x (m), y (m) and theta (rad).
+    #[must_use]
+    pub fn gap_by_pose(&self) -> Vector3<f64> {
+        let across = self.across();
+        let by_theta_m = -self.rho_m - self.straightness.slope * self.side_m;
+        Vector3::new(-across.x, -across.y, by_theta_m)
+    }
+
+    /// Derivative of f by the ring's angle, m.
+    #[must_use]
+    pub fn gap_by_ring_m(&self) -> f64 {
+        self.across().dot(&self.pivot_slope_m)
+    }
+
+    /// Derivative of rho by x (m), y (m) and theta (rad).
+    #[must_use]
+    pub fn rho_by_pose(&self) -> Vector3<f64> {
+        Vector3::new(-self.u.x, -self.u.y, self.side_m)
+    }
+
+    /// Derivative of rho by the ring's angle, m.
+    #[must_use]
+    pub fn rho_by_ring_m(&self) -> f64 {
+        self.u.dot(&self.pivot_slope_m)
+    }
+
+    /// Second derivative of f by time while neither platform nor ring accelerates, m/s^2.
+    #[must_use]
+    pub fn gap_bias_m_s2(&self, twist: &Vector3<f64>, ring_rad_s: f64) -> f64 {
+        let spin = twist.z;
+        let (moving, bent) = (
+            self.pivot_slope_m * ring_rad_s - twist.xy(),
+            self.pivot_curvature_m * (ring_rad_s * ring_rad_s),
+        );
+        let rho_rate = spin * self.side_m + self.u.dot(&moving);
+        let side_bias =
+            -spin * spin * self.side_m - 2.0 * spin * self.u.dot(&moving) + self.n.dot(&bent);
+        let rho_bias =
+            -spin * spin * self.rho_m + 2.0 * spin * self.n.dot(&moving) + self.u.dot(&bent);
+        side_bias
+            - self.straightness.curvature * rho_rate * rho_rate
+            - self.straightness.slope * rho_bias
+    }
+
+    /// The direction across the guide where the pivot is: n, turned with the guide's own slope.
+    fn across(&self) -> Vector2<f64> {
+        self.n - self.straightness.slope * self.u
+    }
+}

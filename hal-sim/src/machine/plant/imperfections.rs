@@ -1,0 +1,133 @@
+//! Which departures from an ideal machine are simulated, and their names.
+
+/// Which departures from an ideal machine are simulated.
+///
+/// A flag only gates its effect: the size stands in [`PlantParameters`](super::PlantParameters) (or in the parameters of the device), so an
+/// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
+/// whole counts, and the true angle is the plant's to tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Imperfections {
+    /// Coulomb, static and presliding friction at the rings (the bristle model).
+    pub dry_friction: bool,
+    /// Viscous friction at the rings.
+    pub viscous_friction: bool,
+    /// Elastic transmission. Off, the spring is made so stiff that the resonance is four times as high: a rigid joint
+    /// would need another state vector, and nothing in the controller's band can tell the two apart.
+    pub compliance: bool,
+    /// Dead zone in the transmission.
+    pub backlash: bool,
+    /// Torque ripple of the motors.
+    pub torque_ripple: bool,
+    /// Random noise of the encoders, beyond their quantisation.
+    pub encoder_noise: bool,
+    /// First harmonic error of the encoders.
+    pub encoder_eccentricity: bool,
+    /// Voltage lost in the bridges' dead time.
+    pub dead_time: bool,
+    /// Friction of the carriages on their guides.
+    pub guide_friction: bool,
+    /// Guides and carriages that give way across the guide. Off, they are rigid.
+    pub guide_compliance: bool,
+    /// Errors of the geometry: [`pivots`](super::PlantParameters::pivots).
+    pub geometry: bool,
+    /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
+    pub pwm_quantisation: bool,
+}
+
+impl Imperfections {
+    /// An ideal machine: no friction, no backlash, no noise. Integers stay integers: counts of encoders and PWM.
+    pub const NONE: Self = Self {
+        dry_friction: false,
+        viscous_friction: false,
+        compliance: true,
+        backlash: false,
+        torque_ripple: false,
+        encoder_noise: false,
+        encoder_eccentricity: false,
+        dead_time: false,
+        guide_friction: false,
+        guide_compliance: false,
+        geometry: false,
+        pwm_quantisation: false,
+    };
+
+    /// A kind machine: guides without friction, rigid and exact, and encoders that have been calibrated.
+    pub const CALIBRATED: Self = Self {
+        dry_friction: true,
+        viscous_friction: true,
+        compliance: true,
+        backlash: true,
+        torque_ripple: true,
+        encoder_noise: true,
+        encoder_eccentricity: false,
+        dead_time: true,
+        guide_friction: false,
+        guide_compliance: false,
+        geometry: false,
+        pwm_quantisation: true,
+    };
+
+    /// Everything.
+    pub const ALL: Self = Self {
+        encoder_eccentricity: true,
+        guide_friction: true,
+        guide_compliance: true,
+        geometry: true,
+        ..Self::CALIBRATED
+    };
+}
+
+/// One imperfection: its name on the command line, and its flag.
+pub struct Named {
+    /// Words with hyphens between.
+    pub name: &'static str,
+    /// Where it is switched.
+    pub flag: fn(&mut Imperfections) -> &mut bool,
+}
+
+/// Every imperfection that can be switched.
+pub const NAMED: [Named; 12] = [
+    named("dry-friction", |on| &mut on.dry_friction),
+    named("viscous-friction", |on| &mut on.viscous_friction),
+    named("compliance", |on| &mut on.compliance),
+    named("backlash", |on| &mut on.backlash),
+    named("torque-ripple", |on| &mut on.torque_ripple),
+    named("encoder-noise", |on| &mut on.encoder_noise),
+    named("encoder-eccentricity", |on| &mut on.encoder_eccentricity),
+    named("dead-time", |on| &mut on.dead_time),
+    named("guide-friction", |on| &mut on.guide_friction),
+    named("guide-compliance", |on| &mut on.guide_compliance),
+    named("geometry", |on| &mut on.geometry),
+    named("pwm-quantisation", |on| &mut on.pwm_quantisation),
+];
+
+const fn named(name: &'static str, flag: fn(&mut Imperfections) -> &mut bool) -> Named {
+    Named { name, flag }
+}
+
+impl Imperfections {
+    /// With one of them, by its name, switched; `None`: there is no such name.
+    #[must_use]
+    pub fn switched(mut self, name: &str, is_on: bool) -> Option<Self> {
+        let named = NAMED.iter().find(|named| named.name == name)?;
+        *(named.flag)(&mut self) = is_on;
+        Some(self)
+    }
+
+    /// Names of those that are on here and not there.
+    #[must_use]
+    pub fn beyond(mut self, mut other: Self) -> Vec<&'static str> {
+        let is_beyond = |named: &&Named| *(named.flag)(&mut self) && !*(named.flag)(&mut other);
+        NAMED
+            .iter()
+            .filter(is_beyond)
+            .map(|named| named.name)
+            .collect()
+    }
+}
+
+impl Default for Imperfections {
+    fn default() -> Self {
+        Self::CALIBRATED
+    }
+}
