@@ -22,6 +22,7 @@
 //! | [`parameters`] | every tunable, in physical units |
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
 //! | [`drivers`] | chips on the board: encoder frames, bridges |
+//! | [`self_test`] | what a board can be asked about itself |
 //! | [`fault`] | kinds of fault, what each does and why |
 //! | [`mode`] | the modes of the controller |
 //! | [`number`] | fixed point and the functions of the tick, the same bits on every machine |
@@ -39,4 +40,5 @@ pub mod number;
 pub mod parameters;
 pub mod queues;
 pub mod recorder;
+pub mod self_test;
 pub mod settings_store;

@@ -57,7 +57,7 @@ fn help_lists_what_is_there() {
          JOG JOG? JON? JRC JTM JTM? KEN KEN? KET? KLN KLN? KLS? KLT? KRM KSD KSF KST KSW LIM? LST LST? \
          MAC MAC MAC MAC MAC MAC MAC MAC MAC? MEX MON? MOV MOV? MRT MRW MVR NLM NLM? ONT? OWN OWN? \
          PLM PLM? POS? PUN? RBT RMC? RPA RTR RTR? SAI? SCT SCT? SPA SPA? SPI SPI? SSL SSL? SSN? STE STP SVO SVO? \
-         TMN? TMX? TNR? TPC? TRA? TRS? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
+         TMN? TMX? TNR? TPC? TRA? TRS? TST? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
          WAV WAV? WCL WGC WGC? WGO WGO? WPA WSL WSL? WTR WTR?"
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {

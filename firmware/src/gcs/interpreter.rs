@@ -14,6 +14,7 @@ use super::variables::Variables;
 use crate::commander::Commander;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
+use crate::self_test::Board;
 
 /// Who answers `*IDN?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +48,8 @@ pub struct Interpreter {
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
     pub(super) wants_restart: bool,
+    /// What `TST?` asks, where there is one.
+    pub(super) board: Option<&'static dyn Board>,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
     pub(super) persistence: Persistence,
@@ -73,6 +76,7 @@ impl Interpreter {
             jogs: Jogs::default(),
             ownership: Ownership::default(),
             wants_restart: false,
+            board: None,
             macros: Macros::default(),
             variables: Variables::default(),
             persistence: Persistence::new(parameters),

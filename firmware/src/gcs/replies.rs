@@ -46,6 +46,7 @@ impl Interpreter {
             Query::ParameterHelp => parameter_help(out),
             Query::Level => one_line(out, format_args!("{}", session.level)),
             Query::Commissioned => self.reply_commissioned(out),
+            Query::SelfTest => self.reply_self_test(session, out),
             Query::Heartbeat => {
                 let own = self.heartbeat.promised_ms(session.number);
                 let ms = own.unwrap_or(self.parameters.supervision.host_silence_ms);

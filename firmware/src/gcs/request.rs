@@ -77,6 +77,8 @@ pub enum Query {
     Monitor,
     /// `CMS?`
     Commissioned,
+    /// `TST?`
+    SelfTest,
     /// `HBT?`
     Heartbeat,
     /// `JTM?`

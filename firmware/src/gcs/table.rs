@@ -438,6 +438,11 @@ pub(super) static COMMANDS: &[Entry] = &[
         Quantity::ReferenceSwitch,
         "[{<axis>}] get whether there are reference switches",
     ),
+    ask(
+        "TST?",
+        Query::SelfTest,
+        "get what the board reads about itself",
+    ),
     own("TWG?", wave::count, "get number of wave generators"),
     own(
         "VAR",

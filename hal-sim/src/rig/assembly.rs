@@ -9,6 +9,7 @@
 //!               SettingsFlash
 //! ```
 
+use super::simulated_board::SimulatedBoard;
 use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};
 use embedded_io::Write;
@@ -204,6 +205,7 @@ fn started(
     settings_store: &mut SettingsStore<SettingsFlash>,
 ) -> (Box<Interpreter>, Option<FaultKind>) {
     let mut interpreter = Box::new(Interpreter::new(parameters, IDENTITY));
+    interpreter.set_board(&SimulatedBoard);
     let fault = settings_store.restore(&mut *interpreter);
     (interpreter, fault)
 }

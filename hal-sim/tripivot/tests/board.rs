@@ -6,7 +6,12 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 
 /// A simulated stage; ends with the test.
-struct Served(Child, String, BufReader<ChildStdout>);
+struct Served {
+    child: Child,
+    address: String,
+    // A server whose output is closed ends.
+    _out: BufReader<ChildStdout>,
+}
 
 impl Served {
     fn start(arguments: &[&str]) -> Self {
@@ -17,7 +22,6 @@ impl Served {
             .spawn()
             .unwrap();
         let mut line = String::new();
-        // Kept open: a server whose output is closed ends.
         let mut out = BufReader::new(child.stdout.take().unwrap());
         out.read_line(&mut line).unwrap();
         let address = line
@@ -25,12 +29,16 @@ impl Served {
             .strip_prefix("listening at ")
             .unwrap()
             .to_owned();
-        Self(child, address, out)
+        Self {
+            child,
+            address,
+            _out: out,
+        }
     }
 
     fn board(&self, arguments: &[&str]) -> (Output, String) {
         let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
-            .args(["board", "--connect", &self.1])
+            .args(["board", "--connect", &self.address])
             .args(arguments)
             .output()
             .unwrap();
@@ -42,8 +50,8 @@ impl Served {
 impl Drop for Served {
     fn drop(&mut self) {
         // Dead already, if it has failed.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
@@ -56,7 +64,7 @@ fn a_sound_stage_passes_every_test() {
         !text.contains("FAILED") && !text.contains("left out"),
         "{text}"
     );
-    assert_eq!(text.lines().count(), 15, "{text}");
+    assert_eq!(text.lines().count(), 16, "{text}");
     assert_eq!(output.status.code(), Some(0));
 }
 

@@ -48,12 +48,14 @@ mod clocks;
 mod dma;
 mod encoders;
 mod flash;
+mod identity;
 mod latch;
 mod panic;
 mod pwm;
 mod reset_cause;
 mod restart;
 mod retained_memory;
+mod self_test;
 mod serial;
 mod tick_timing;
 mod trace;
@@ -67,8 +69,9 @@ mod app {
     use crate::{
         board::{Board, Loop},
         flash::SettingsFlash,
-        restart,
+        identity, restart,
         retained_memory::RETAINED_MEMORY,
+        self_test::StageBoard,
         serial::{Receiver, Transmitter},
         tick_timing::TickTiming,
         trace::{self, TRACE, TraceWriter},
@@ -82,10 +85,6 @@ mod app {
     use firmware::queues::{CommandQueues, Queues, TickQueues};
     use firmware::settings_store::SettingsStore;
 
-    const IDENTITY: Identity = Identity {
-        serial: "0",
-        version: env!("CARGO_PKG_VERSION"),
-    };
     /// What is in force until settings have been stored.
     const PARAMETERS: Parameters = Parameters::REFERENCE.uncommissioned();
 
@@ -116,6 +115,7 @@ mod app {
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
+        serial_place: MaybeUninit<identity::Serial> = MaybeUninit::uninit(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
         let Board {
@@ -131,10 +131,15 @@ mod app {
         let mut core = context.core;
         let (tick_queues, command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
+        let identity = Identity {
+            serial: context.local.serial_place.write(identity::serial()),
+            version: env!("CARGO_PKG_VERSION"),
+        };
         let interpreter = context
             .local
             .panel_place
-            .write(Interpreter::new(&PARAMETERS, IDENTITY));
+            .write(Interpreter::new(&PARAMETERS, identity));
+        interpreter.set_board(&StageBoard);
         if let Some(cause) = reset_cause.unasked() {
             interpreter.set_start_cause(cause);
         }

@@ -35,6 +35,11 @@ pub static PLAN: &[Test] = &[
         refusal,
     ),
     test(
+        "self-test",
+        "every reading of TST? is as it has to be (told only on an emulated chip, which has no option bytes)",
+        self_test,
+    ),
+    test(
         "rate",
         "20000 ticks a second of this machine's clock, within 0.5 % (told only on an emulated chip)",
         rate,
@@ -137,6 +142,20 @@ fn refusal(controller: &mut Controller) -> Result<Found> {
         (error, after) == (2, 0),
         format!("error {error}, then {after}"),
     )
+}
+
+fn self_test(controller: &mut Controller) -> Result<Found> {
+    let answer = controller.ask("TST?")?;
+    let bad: Vec<&str> = (answer.lines())
+        .filter(|line| line.ends_with("BAD"))
+        .collect();
+    let readings = answer.lines().count();
+    let text = if bad.is_empty() {
+        format!("{} readings good", readings.saturating_sub(2))
+    } else {
+        bad.join("; ")
+    };
+    found(bad.is_empty() || controller.is_emulated, text)
 }
 
 fn rate(controller: &mut Controller) -> Result<Found> {

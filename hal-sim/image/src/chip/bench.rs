@@ -24,6 +24,9 @@ pub(super) const TICK_END: &str = "stage_tick_end";
 const TRACE: &str = "TRACE";
 /// Where the image keeps its settings: at the beginning of bank 2.
 const SETTINGS_AT: u64 = 0x0810_0000;
+/// The number that the maker burns into a chip, and where: here it says what the chip is.
+const CHIP_NUMBER: &[u8; 12] = b"emulated F42";
+const CHIP_NUMBER_AT: u64 = 0x1FFF_7A10;
 
 /// An image, ready to boot.
 pub struct Bench {
@@ -138,7 +141,16 @@ impl Bench {
         let driver = StageDriver::new(on_period, self.stage, landmarks);
         let settings = self.settings.bytes().to_vec();
         let settings = Image::new(Path::new("settings"), settings, Some(SETTINGS_AT));
-        let images = [self.image, settings.map_err(BenchError::Image)?];
+        let number = Image::new(
+            Path::new("number"),
+            CHIP_NUMBER.to_vec(),
+            Some(CHIP_NUMBER_AT),
+        );
+        let images = [
+            self.image,
+            settings.map_err(BenchError::Image)?,
+            number.map_err(BenchError::Image)?,
+        ];
         let finished =
             emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
         let gaps = gaps::unexpected(&finished.session);
