@@ -4,6 +4,7 @@
 //! unless a line says otherwise.
 
 mod consistency;
+mod recovery;
 
 pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 
@@ -79,6 +80,10 @@ pub struct PowerStage {
     pub pwm_counts: u16,
     /// Nominal supply; the duty is computed from the measured one.
     pub supply_v: f64,
+    /// Largest voltage that the servo puts on a motor at the nominal supply; never more than the bridge can give.
+    pub voltage_limit_v: f64,
+    /// The same while the stage is recovered from out of its reach.
+    pub recovery_voltage_v: f64,
 }
 
 /// A brushed DC motor behind a gear, as seen at the ring.
@@ -334,6 +339,9 @@ impl Parameters {
             pwm_hz: 40e3,
             pwm_counts: PWM_COUNTS,
             supply_v: 48.0,
+            voltage_limit_v: 60.0,
+            // 8.6 N m at rest, a third of what the reference motion asks for; 5 mm/s and friction need half a volt.
+            recovery_voltage_v: 6.0,
         },
         drives: [Drive {
             torque_constant_n_m_a: 0.06,

@@ -34,7 +34,9 @@ fn restarted(mut bench: KeptBench<SECTOR>) -> KeptBench<SECTOR> {
 #[test]
 fn an_empty_store_refuses_whatever_drives_and_says_why() {
     let mut bench = board(Flash::new());
-    for line in ["FRF", "SVO X 1", "MOV X 1", "MVR X 1", "JOG X 1", "STE X 1"] {
+    for line in [
+        "FRF", "SVO X 1", "MOV X 1", "MVR X 1", "JOG X 1", "STE X 1", "RCV 1",
+    ] {
         assert_eq!(bench.error_after(line), "4005", "{line}");
     }
     bench.bench.run(200);

@@ -105,6 +105,9 @@ impl Commander {
             return Err(CommandError::Faulted);
         }
         self.check_commissioned()?;
+        if self.is_recovering() {
+            return Err(CommandError::InMotion);
+        }
         if self.running_generators() != [false; 6] {
             return Err(CommandError::GeneratorsRunning);
         }
@@ -120,8 +123,9 @@ impl Commander {
         }
     }
 
-    /// Brings the motion to rest, if there is one; whatever else was asked is over.
+    /// Brings the motion to rest, if there is one; whatever else was asked is over. A recovery ends with the servo off.
     pub fn stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
+        self.give_up_recovery();
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }

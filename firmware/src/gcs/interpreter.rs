@@ -9,6 +9,7 @@ use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
 use super::recorder::RecorderState;
+use super::recovery::RecoveryOwner;
 use super::statistics::Statistics;
 use super::variables::Variables;
 use crate::commander::Commander;
@@ -47,6 +48,7 @@ pub struct Interpreter {
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
+    pub(super) recovery_owner: RecoveryOwner,
     pub(super) wants_restart: bool,
     /// What `TST?` asks, where there is one.
     pub(super) board: Option<&'static dyn Board>,
@@ -75,6 +77,7 @@ impl Interpreter {
             connections: Connections::default(),
             jogs: Jogs::default(),
             ownership: Ownership::default(),
+            recovery_owner: RecoveryOwner::default(),
             wants_restart: false,
             board: None,
             macros: Macros::default(),

@@ -14,7 +14,7 @@
 //! | `interpreter` | what all connections share |
 //! | `session` | input, line, error and wait of a connection |
 //! | `service` | what a connection has sent: taken, understood, carried out, answered |
-//! | `connections` | numbers of connections, who commanded last, what ends with one |
+//! | `connection_number`, `connections` | what a connection is known by; who commanded last, what ends with one |
 //! | `waits` | what holds up the lines of a connection |
 //! | `table` | what commands there are; parsing, `HLP?` and dispatch read it |
 //! | `syntax` | what an entry of the table is |
@@ -38,6 +38,7 @@
 //! | `self_test` | what the board reads about itself |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
+//! | `recovery` | the way back of a stage that was found out of its reach |
 //!
 //! Each folder has, as far as there is something to say: `state`, `request`, `parse`, `execute`, `replies`.
 //!
@@ -47,6 +48,7 @@
 //! questions, which are answered: a script does not go on after a stop, and a client gets its answers.
 
 mod arguments;
+mod connection_number;
 mod connections;
 mod error;
 mod events;
@@ -63,6 +65,7 @@ mod parameter;
 mod parse;
 mod persistence;
 mod recorder;
+mod recovery;
 mod replies;
 mod reply_writer;
 mod request;

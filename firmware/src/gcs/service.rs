@@ -65,6 +65,7 @@ impl Interpreter {
         self.commander.advance_pending(queues);
         self.watch_heartbeat(queues);
         self.end_jogs(queues);
+        self.advance_recovery(queues);
         self.run_macro(queues);
     }
 

@@ -269,14 +269,14 @@ fn what_stays_under_a_threshold_is_no_fault_and_the_stage_drives_on() {
 /// as they are a following error comes first, or it takes too many seconds.
 const SETUPS: [(&str, &str, Trouble, Trouble, &str); 3] = [
     (
-        "SPA 1 0x54500500 0.2 1 0x54500106 5.5 1 0x54500505 1.05",
+        "SPA 1 0x54500500 0.05 1 0x54500106 5.5 1 0x54500505 1.05",
         "JOG W 300",
         Push(40.0, 100),
         Push(10.0, 100),
         "pivot too fast, pivot 2",
     ),
     (
-        "SPA 1 0x54500500 0.2 1 0x54500506 1 1 0x54500507 60 1 0x54500508 0.02",
+        "SPA 1 0x54500500 0.05 1 0x54500506 0.05 1 0x54500507 36 1 0x54500508 0.02",
         "JOG W 60",
         Jam(1_000),
         Jam(200),

@@ -51,6 +51,13 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::ServoBeforeReference => bare(17),
         Event::SupervisionLoosened(count) => (19, [0; 2], [u32::from(*count), 0, 0]),
         Event::PoseOutside(pose) => (18, [0; 2], pose.map(f32::to_bits)),
+        Event::Recovery(pose) => (20, [0; 2], pose.map(f32::to_bits)),
+        Event::UnusableParameter(id, value) => {
+            let [low, high] = number(*value);
+            (23, [0; 2], [*id, low, high])
+        }
+        Event::Recovered => bare(21),
+        Event::RecoveryGivenUp => bare(22),
     }
 }
 
@@ -87,6 +94,10 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         17 => Event::ServoBeforeReference,
         19 => Event::SupervisionLoosened(a as u16),
         18 => Event::PoseOutside([a, b, c].map(f32::from_bits)),
+        20 => Event::Recovery([a, b, c].map(f32::from_bits)),
+        23 => Event::UnusableParameter(a, number),
+        21 => Event::Recovered,
+        22 => Event::RecoveryGivenUp,
         _ => return None,
     };
     Some((tick, event))

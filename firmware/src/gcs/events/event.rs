@@ -43,8 +43,16 @@ pub(in crate::gcs) enum Event {
     ServoBeforeReference,
     /// So many thresholds of supervision are looser than the reference.
     SupervisionLoosened(u16),
-    /// `FRF` found a pose that the stage can not take: mm, mm, deg.
+    /// `FRF` or `SVO` found a pose that the stage can not take: mm, mm, deg.
     PoseOutside([f32; 3]),
+    /// `RCV`: the stage was found there (mm, mm, deg) and is being driven back.
+    Recovery([f32; 3]),
+    /// It is in reach again, and held.
+    Recovered,
+    /// It was given up on the way, or refused; the servo is off.
+    RecoveryGivenUp,
+    /// A value is stored that this firmware does not allow; it is not in force.
+    UnusableParameter(u32, f64),
     /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
@@ -85,6 +93,17 @@ impl fmt::Display for Event {
                     "not referenced: the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
                 )
             }
+            Self::UnusableParameter(id, value) => {
+                write!(
+                    f,
+                    "kept parameter 0x{id:X} = {value} is out of its range: not in force"
+                )
+            }
+            Self::Recovery([x, y, w]) => {
+                write!(f, "recovery from X {x:.1} Y {y:.1} W {w:.1}")
+            }
+            Self::Recovered => f.write_str("recovered: in reach, held"),
+            Self::RecoveryGivenUp => f.write_str("recovery has ended on its way, servo off"),
             Self::ServoBeforeReference => {
                 f.write_str("servo asked for before the reference: it stays off until FRF")
             }

@@ -1,7 +1,7 @@
 //! The arguments, as clap reads them.
 
 use super::number::{whole, within};
-use super::stage::{SimulatedStage, Simulation};
+use super::stage::{Machine, SimulatedStage, Simulation};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
@@ -72,6 +72,8 @@ pub(super) enum Command {
     /// Run the tests that are to be repeated on every board, over its command line; nothing moves without --move. Exit code 1 if one
     /// fails.
     Board(BoardRun),
+    /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
+    Machine(Machine),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
     /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.

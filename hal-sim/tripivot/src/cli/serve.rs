@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
     let settings = settings_text(arguments, &flash);
     let mut memory = ControllerMemory::new();
-    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage), flash);
+    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage)?, flash);
     let server = Server::bind(ServeOptions {
         listen: arguments.listen.clone(),
         speed: arguments.speed,
