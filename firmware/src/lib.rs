@@ -22,6 +22,7 @@
 //! | [`recorder`] | the data recorder, and a running hash of every tick |
 //! | [`parameters`] | every tunable, in physical units |
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
+//! | [`image_checksum`] | whether the program in flash is whole |
 //! | [`drivers`] | chips on the board: encoder frames, bridges |
 //! | [`fault`] | kinds of fault, what each does and why |
 //! | [`mode`] | the modes of the controller |
@@ -34,11 +35,18 @@ pub mod drivers;
 pub mod fault;
 pub mod fault_record;
 pub mod gcs;
+pub mod image_checksum;
 pub mod iterative_learning;
 pub mod mode;
-pub mod motion;
-pub mod number;
 pub mod parameters;
 pub mod queues;
 pub mod recorder;
 pub mod settings_store;
+
+/// Plans, and what they are held against; and the planners.
+pub mod motion {
+    pub use ::motion::*;
+    pub use planners::*;
+}
+
+pub use number;

@@ -4,6 +4,7 @@
 //! unless a line says otherwise.
 
 mod consistency;
+mod recovery;
 
 pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 
@@ -78,6 +79,10 @@ pub struct PowerStage {
     pub pwm_counts: u16,
     /// Nominal supply; the duty is computed from the measured one.
     pub supply_v: f64,
+    /// Largest voltage that the servo puts on a motor at the nominal supply; never more than the bridge can give.
+    pub voltage_limit_v: f64,
+    /// The same while the stage is recovered from out of its reach.
+    pub recovery_voltage_v: f64,
 }
 
 /// A brushed DC motor behind a gear, as seen at the ring.
@@ -324,19 +329,7 @@ impl Parameters {
     /// The reference stage.
     pub const REFERENCE: Self = Self {
         geometry: Geometry::REFERENCE,
-        limits: Limits {
-            rate_hz: 20_000.0,
-            speed_mm_s: 200.0,
-            acceleration_mm_s2: 4_000.0,
-            jerk_mm_s3: 400_000.0,
-            turn_speed_deg_s: 360.0,
-            turn_acceleration_deg_s2: 7_200.0,
-            turn_jerk_deg_s3: 720_000.0,
-            pivot_rate_rad_s: 10.0,
-            // At 10 rad/s the motor constant leaves 18 V of 48 for 26 N m, on 0.035 kg m^2 twice this.
-            pivot_acceleration_rad_s2: 300.0,
-            stop_factor: 2.0,
-        },
+        limits: Limits::REFERENCE,
         platform: Platform {
             mass_kg: 3.0,
             inertia_kg_m2: 0.02,
@@ -348,6 +341,9 @@ impl Parameters {
             pwm_hz: 40e3,
             pwm_counts: PWM_COUNTS,
             supply_v: 48.0,
+            voltage_limit_v: 60.0,
+            // 8.6 N m at rest, a third of what the reference motion asks for; 5 mm/s and friction need half a volt.
+            recovery_voltage_v: 6.0,
         },
         drives: [Drive {
             torque_constant_n_m_a: 0.06,

@@ -224,6 +224,34 @@ fn a_full_queue_refuses_the_line() {
     assert_eq!(bench.say("SPA? 1 0x54500300\n"), "1 0x54500300=400\n");
 }
 
+/// What no level crosses: a following error of 5 mm on the track, an encoder that shows nothing new for so long or under three quarters of
+/// the supply, a swing of more than the supply.
+#[test]
+fn supervision_has_ceilings() {
+    let mut bench = advanced();
+    for (id, most, over) in [
+        (0x5450_0500, 0.05, 0.051),
+        (0x5450_0504, 0.001, 0.0011),
+        (0x5450_0506, 0.05, 0.051),
+        (0x5450_0507, 36.0, 36.1),
+        (0x5450_0508, 1.0, 1.01),
+        (0x5450_0509, 6.0, 6.1),
+        (0x5450_050A, 120.0, 121.0),
+        (0x5450_0511, 60.0, 60.1),
+    ] {
+        assert_eq!(
+            bench.error_after(&format!("SPA 1 {id} {over}")),
+            "17",
+            "{id:X}"
+        );
+        assert_eq!(
+            bench.error_after(&format!("SPA 1 {id} {most}")),
+            "0",
+            "{id:X}"
+        );
+    }
+}
+
 #[test]
 fn looser_supervision_is_told_wherever_somebody_asks() {
     let mut bench = Bench::ready();

@@ -137,8 +137,35 @@ fn a_parameter_that_is_unknown_here_is_ignored_and_told() {
 }
 
 #[test]
+fn a_value_out_of_its_range_is_told_and_the_others_are_taken() {
+    const FOLLOWING_ERROR: u32 = 0x5450_0500;
+    let image = image(1, &[(FOLLOWING_ERROR, 0.2), (SPEED, 123.5)]);
+    let mut bench = KeptBench::start(flash_with(&record(7, &image)));
+    let read = |bench: &mut KeptBench<SECTOR>, id: u32| bench.bench.value(&format!("SPA? 1 {id}"));
+    assert_eq!(read(&mut bench, SPEED), 123.5);
+    assert_eq!(read(&mut bench, FOLLOWING_ERROR), 2e-3);
+    let told = "kept, not in force: 0x54500500 = 0.2, which may be 0.00002 to 0.05\n";
+    assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
+    let event = "kept parameter 0x54500500 = 0.2 is out of its range: not in force";
+    assert!(bench.say("EVT?\n").contains(event));
+    // A macro is kept besides, and nothing is lost by that: all of it is there after the next start.
+    bench.say("MAC BEG a\nMOV X 1\nMAC END\n");
+    bench.say("");
+    let mut bench = KeptBench::start(bench.keeper.flash().powered());
+    assert_eq!(bench.say("MAC?\n"), "a\n");
+    assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
+    // What is in force is kept when somebody asks for that, and then that is all.
+    assert_eq!(bench.bench.error_after("WPA 100"), "");
+    bench.say("");
+    assert_eq!(bench.say("ERR?\nFLT?\n"), "0\n0 no fault\n");
+    let mut bench = KeptBench::start(bench.keeper.flash().powered());
+    assert_eq!(bench.say("FLT?\n"), "0 no fault\n");
+    assert_eq!(read(&mut bench, SPEED), 123.5);
+}
+
+#[test]
 fn what_cannot_be_in_force_is_damage() {
-    // Out of its range; not a number; two that do not go together; an image that goes on; one that ends early.
+    // Not a number; two that do not go together; an image that goes on; one that ends early.
     let mut longer = image(1, &[(SPEED, 123.5)]);
     longer.push(0);
     let mut shorter = image(1, &[(SPEED, 123.5)]);
@@ -150,7 +177,6 @@ fn what_cannot_be_in_force_is_damage() {
     with_macro.extend(b"MOV X 1\n\0");
     let images = [
         with_macro,
-        image(1, &[(SPEED, 1e9)]),
         image(1, &[(SPEED, f64::NAN)]),
         image(1, &[(0x1600_0201, 100.0), (0x5450_0900, 200.0)]),
         longer,

@@ -5,6 +5,7 @@ import unittest
 
 from foreign import Foreign
 from live import Live
+from owners import Owners
 from panels import Panels
 from real import Real
 from report import Report
@@ -13,7 +14,7 @@ from settings import ARGUMENTS
 from silent import Silent
 from view import OnChip, OnTerminal
 
-__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Panels", "Real", "Report", "Sequence", "Silent"]
+__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Owners", "Panels", "Real", "Report", "Sequence", "Silent"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

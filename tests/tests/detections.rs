@@ -128,7 +128,7 @@ fn an_encoder_that_jumps() {
 #[test]
 fn a_pivot_that_runs_away() {
     let limits = [
-        (FOLLOWING_ERROR, 0.2),
+        (FOLLOWING_ERROR, 0.05),
         (LARGEST_RATE, 5.5),
         (OVERSPEED, 1.05),
     ];
@@ -147,7 +147,7 @@ fn pivots_that_come_too_close() {
     let pushed = |torque_n_m: f64, ticks: u32| {
         let mut bench = Bench::default();
         // A disk whose edge is where two pivots are 60 deg apart.
-        bench.set(&[(FOLLOWING_ERROR, 0.2), (0x5450_0203, 60.0)]);
+        bench.set(&[(FOLLOWING_ERROR, 0.05), (0x5450_0203, 60.0)]);
         assert_eq!(bench.error_after("FRF"), "0");
         bench.settle();
         // Away from guide 1, and so between pivots 2 and 3.
@@ -171,7 +171,7 @@ fn pivots_that_come_too_close() {
 fn a_pivot_that_is_held_fast() {
     let jammed = |ticks: u32| {
         // Not to be taken for its encoder, which a jam holds as fast.
-        let limits = [(FOLLOWING_ERROR, 0.2), (FROZEN, 1.0), (AT_END, 0.02)];
+        let limits = [(FOLLOWING_ERROR, 0.05), (FROZEN, 0.05), (AT_END, 0.02)];
         let mut bench = Bench::turning(&limits, 60.0);
         bench.jam_for(ticks);
         bench.run(400);

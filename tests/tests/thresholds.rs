@@ -62,9 +62,9 @@ fn a_motor_heats_in_its_time_and_is_no_fault_while_nothing_drives_it() {
 #[test]
 fn a_drive_may_be_at_its_end_for_as_long_as_it_says_and_a_pause_starts_anew() {
     let limits = [
-        (FOLLOWING_ERROR, 0.2),
-        (FROZEN, 1.0),
-        (FROZEN_V, 60.0),
+        (FOLLOWING_ERROR, 0.05),
+        (FROZEN, 0.05),
+        (FROZEN_V, 36.0),
         (AT_END, 0.02),
     ];
     let mut bench = Bench::turning(&limits, 60.0);
@@ -92,7 +92,7 @@ fn a_drive_may_be_at_its_end_for_as_long_as_it_says_and_a_pause_starts_anew() {
 #[test]
 fn a_step_over_a_tick_that_did_not_come_is_no_overspeed() {
     let limits = [
-        (FOLLOWING_ERROR, 0.2),
+        (FOLLOWING_ERROR, 0.05),
         (LARGEST_RATE, 5.5),
         (OVERSPEED, 1.05),
     ];
@@ -107,17 +107,17 @@ fn a_step_over_a_tick_that_did_not_come_is_no_overspeed() {
 #[test]
 fn a_frozen_encoder_is_found_by_the_way_its_setpoint_goes() {
     // 0.0002 rad at 0.3 deg/s.
-    let mut bench = Bench::turning(&[(FROZEN_V, 60.0)], 0.3);
+    let mut bench = Bench::turning(&[(FROZEN_V, 36.0)], 0.3);
     freeze(&mut bench, true);
     let ticks = ticks_to(&mut bench, FaultKind::EncoderFrozen);
     assert!((760..760 + SAME).contains(&ticks), "{ticks}");
     // So little that the time alone counts.
-    let mut bench = Bench::turning(&[(FROZEN_V, 60.0), (FROZEN, 2e-6)], 0.3);
+    let mut bench = Bench::turning(&[(FROZEN_V, 36.0), (FROZEN, 2e-6)], 0.3);
     freeze(&mut bench, true);
     let ticks = ticks_to(&mut bench, FaultKind::EncoderFrozen);
     assert!((SAME..=SAME + LOOKS).contains(&ticks), "{ticks}");
     // The way counts from the last reading on.
-    let mut twin = Bench::turning(&[(FROZEN_V, 60.0)], 0.3);
+    let mut twin = Bench::turning(&[(FROZEN_V, 36.0)], 0.3);
     for _ in 0..5 {
         freeze(&mut twin, true);
         twin.run(2 * SAME);
@@ -156,7 +156,7 @@ fn a_frozen_encoder_is_found_by_the_voltage_that_does_not_move_it() {
         (-3.0, 1.5),
         (3.0, -1.5),
     ] {
-        let mut bench = Bench::holding(&[(FROZEN, 1.0)]);
+        let mut bench = Bench::holding(&[(FROZEN, 0.05)]);
         bench.push(torque_n_m);
         bench.run(4_000);
         freeze(&mut bench, true);
@@ -173,7 +173,7 @@ fn a_frozen_encoder_is_found_by_the_voltage_that_does_not_move_it() {
 #[test]
 fn a_servo_that_is_switched_on_starts_anew() {
     for torque_n_m in [3.0, -3.0] {
-        let mut bench = Bench::holding(&[(FROZEN, 1.0)]);
+        let mut bench = Bench::holding(&[(FROZEN, 0.05)]);
         bench.push(torque_n_m);
         bench.run(4_000);
         freeze(&mut bench, true);
@@ -193,7 +193,7 @@ fn a_servo_that_is_switched_on_starts_anew() {
 #[test]
 fn a_new_reading_ends_the_time_that_an_encoder_is_driven() {
     // What comes of it is an oscillation, too.
-    let limits = [(FROZEN, 1.0), (FROZEN_V, 0.5), (OSCILLATION, 120.0)];
+    let limits = [(FROZEN, 0.05), (FROZEN_V, 0.5), (OSCILLATION, 60.0)];
     let mut bench = Bench::turning(&limits, 1.5);
     for _ in 0..20 {
         freeze(&mut bench, true);

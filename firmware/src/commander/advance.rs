@@ -24,12 +24,7 @@ impl Commander {
         self.switch_off_at_rest(queues);
         self.advance_streaming(queues);
         let result = match (self.mode(), &self.pending) {
-            (
-                Mode::Moving,
-                &(Pending::Stop(stop)
-                | Pending::StopThenGoal(stop, _)
-                | Pending::StopThenStream(stop, _)),
-            ) => {
+            (Mode::Moving, &(Pending::Stop(stop) | Pending::StopThenGoal(stop, _))) => {
                 self.send_stop(stop, queues);
                 return;
             }

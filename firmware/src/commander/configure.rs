@@ -3,7 +3,7 @@
 use super::coordinates::travel;
 use super::error::CommandError;
 use super::in_flight::InFlight;
-use super::referencing::ReachMargins;
+use super::reach::ReachMargins;
 use super::state::Commander;
 use crate::control::config::Config;
 use crate::mode::Mode;
@@ -47,7 +47,7 @@ impl Commander {
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
         self.targets = parameters.targets;
-        self.reach_margins = ReachMargins::new(&parameters.supervision);
+        self.reach_margins = ReachMargins::new(parameters);
         self.set_limits(parameters.limits);
     }
 

@@ -27,6 +27,8 @@ pub enum CommandError {
     ReferencingFailed,
     /// The measured pose (mm, mm, deg) is none that the stage can take.
     ReferenceOutside([f64; 3]),
+    /// There is nothing to recover: the measured pose is one that the stage can take, or the servo is on.
+    NothingToRecover,
     /// The axis can not move: its coordinate is 0 and stays 0.
     FrozenAxis(Axis),
     /// No position: not finite, or an angle beyond the travel.
@@ -103,6 +105,7 @@ impl fmt::Display for CommandError {
                     "the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
                 )
             }
+            Self::NothingToRecover => f.write_str("in reach, or held: nothing to recover"),
             Self::OutsideTravel => f.write_str("outside the travel"),
             Self::OutsideSoftLimits => f.write_str("outside the soft limits"),
             Self::VelocityOutOfRange { axis: None } => f.write_str("the velocity is out of range"),

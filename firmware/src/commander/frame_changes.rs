@@ -122,7 +122,7 @@ impl Commander {
     }
 
     fn check_at_rest(&self) -> Result<(), CommandError> {
-        if self.mode() == Mode::Moving || self.is_motion_pending() {
+        if self.mode() == Mode::Moving || self.is_recovering() || self.is_motion_pending() {
             return Err(FrameError::InMotion.into());
         }
         Ok(())

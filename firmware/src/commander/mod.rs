@@ -33,10 +33,11 @@
 //! | `repeated_moves` | the tables of iterative learning, and the moves that they are of |
 //! | `moves` | moves, stops, faults, soft limits |
 //! | `servo_switch` | the servo on and off |
-//! | `rest` | whether the stage rests, by what the encoders measure |
+//! | `rest`, `rest_watch` | whether the stage rests, by what the encoders measure |
 //! | `jog` | constant velocities |
 //! | `streaming`, `stream_source` | streamed targets and running waveforms |
-//! | `referencing` | referencing |
+//! | `referencing`, `reach` | referencing; whether the stage can be where the encoders show it |
+//! | `recovery` | the way back of a stage that was found out of its reach |
 //! | `configure` | other parameters |
 //! | `velocities` | of the whole and of single axes |
 //! | `constraints` | what plans keep to now |
@@ -67,9 +68,12 @@ mod moves;
 mod pending;
 mod quantity;
 mod queries;
+mod reach;
+mod recovery;
 mod referencing;
 mod repeated_moves;
 mod rest;
+mod rest_watch;
 mod sent_plan;
 mod servo_switch;
 mod soft_limits;
@@ -81,6 +85,7 @@ mod wave_changes;
 
 pub use error::CommandError;
 pub use quantity::Quantity;
+pub use recovery::RecoveryEnd;
 pub use referencing::Referencing;
 pub use soft_limits::SoftLimitChange;
 pub use state::Commander;

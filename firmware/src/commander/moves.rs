@@ -104,6 +104,9 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
+        if self.is_recovering() {
+            return Err(CommandError::InMotion);
+        }
         if self.running_generators() != [false; 6] {
             return Err(CommandError::GeneratorsRunning);
         }
@@ -119,14 +122,19 @@ impl Commander {
         }
     }
 
-    /// Brings the motion to rest, if there is one; whatever else was asked is over.
+    /// Brings the motion to rest, if there is one; whatever else was asked is over. A recovery ends with the servo off.
     pub fn stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
+        self.give_up_recovery();
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }
         self.jog_velocities = [0.0; 6];
         self.target_is_rest = true;
         self.pending.request_stop(stop);
+        // At rest, with nothing sent: what was asked for is over, and what is asked for next is not to be stopped by this.
+        if self.mode() == Mode::Holding && !self.is_motion_pending() {
+            self.pending.drop_stop();
+        }
         self.advance_pending(queues);
     }
 

@@ -206,6 +206,7 @@ impl Commander {
     pub(super) fn is_moving(&self) -> bool {
         let settled = self.snapshot.as_ref().is_some_and(|s| s.settled);
         self.is_referencing()
+            || self.is_recovering()
             || self.is_motion_pending()
             || match self.mode() {
                 Mode::Off | Mode::Fault => self.slides_since.is_some(),
@@ -216,7 +217,10 @@ impl Commander {
 
     /// The setpoint moves, or is about to. At rest it does not, whether the stage has settled there or not.
     pub fn is_motion_commanded(&self) -> bool {
-        self.is_referencing() || self.is_motion_pending() || self.mode() == Mode::Moving
+        self.is_referencing()
+            || self.is_recovering()
+            || self.is_motion_pending()
+            || self.mode() == Mode::Moving
     }
 
     /// A motion is pending or in flight that the snapshot does not show yet.

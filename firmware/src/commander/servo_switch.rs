@@ -13,7 +13,8 @@ impl Commander {
     ///
     /// # Errors
     /// [`CommandError::Faulted`], and [`CommandError::InMotion`] for a stage that has been let go and has not come to rest: the
-    /// servo would try to stop it within a tick.
+    /// servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one that is out of its reach, where the
+    /// supervisor would end it at once.
     pub fn set_servo(
         &mut self,
         on: bool,
@@ -22,12 +23,24 @@ impl Commander {
         let Some(snapshot) = self.current_snapshot() else {
             return Err(CommandError::Busy);
         };
+        if self.is_recovering() {
+            return match on {
+                true => Err(CommandError::InMotion),
+                false => {
+                    self.stop(Stop::Urgent, queues);
+                    Ok(())
+                }
+            };
+        }
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
             (true, Mode::Off) if snapshot.referenced && self.rest.is_fast => {
                 Err(CommandError::InMotion)
             }
             (true, Mode::Off) if snapshot.referenced => {
+                if let Some(pose) = self.reach_margins.pose_outside(snapshot) {
+                    return Err(CommandError::ReferenceOutside(pose));
+                }
                 self.send(Command::Servo(true), InFlight::Other, queues)
             }
             (true, _) => {

@@ -6,8 +6,9 @@ use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
 use super::in_flight::InFlight;
 use super::pending::Pending;
-use super::referencing::ReachMargins;
-use super::rest::RestWatch;
+use super::reach::ReachMargins;
+use super::recovery::Recovery;
+use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
@@ -62,6 +63,8 @@ pub struct Commander {
     pub(super) target_is_rest: bool,
     pub(super) moving_axes: AxisSet,
     pub(super) reach_margins: ReachMargins,
+    /// The stage is being driven back into its reach.
+    pub(super) recovery: Option<Recovery>,
     /// Tick at which referencing is given up; over when it is past.
     pub(super) referencing_deadline: u64,
     /// The tick has refused the parameters that were set last.
@@ -105,7 +108,8 @@ impl Commander {
             target: Coordinates::default(),
             target_is_rest: true,
             moving_axes: AxisSet::EMPTY,
-            reach_margins: ReachMargins::new(&parameters.supervision),
+            reach_margins: ReachMargins::new(parameters),
+            recovery: None,
             referencing_deadline: 0,
             configuration_refused: false,
             velocity_is_set: false,

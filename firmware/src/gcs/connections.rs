@@ -1,12 +1,10 @@
 //! Connections as the controller knows them: their numbers, who commanded last, and what ends with one.
 
+use super::connection_number::ConnectionNumber;
 use super::error::ErrorCode;
 use super::interpreter::Interpreter;
 use super::session::Session;
 use super::text::Text;
-
-/// Number of a connection, counted from 1 since the start.
-pub(super) type ConnectionNumber = u32;
 
 /// What is known of all connections together.
 #[derive(Default)]
@@ -30,8 +28,8 @@ impl Interpreter {
         }
     }
 
-    /// A connection has ended. What was its own ends with it: the constant velocities that it commanded and its ownership at
-    /// once, its heartbeat when it should have been heard.
+    /// A connection has ended. What was its own ends with it: the constant velocities that it commanded, its recovery and its
+    /// ownership at once, its heartbeat when it should have been heard.
     pub fn disconnect(&mut self, session: &mut Session) {
         let Some(number) = session.number.take() else {
             return;
@@ -39,6 +37,7 @@ impl Interpreter {
         self.jogs.connection_ended(number);
         self.ownership.release(number);
         self.heartbeat.connection_ended(number);
+        self.recovery_owner.connection_ended(number);
     }
 
     /// A connection has begun a motion.

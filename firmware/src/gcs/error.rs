@@ -111,6 +111,8 @@ pub enum ErrorCode {
     /// The pose that the encoders show is outside the disk, a guide or the separation of pivots: wiring or zeros are wrong, or the
     /// stage was left there.
     ReferenceOutside = 4003,
+    /// There is nothing to recover: the pose that the encoders show is in reach, or the servo is on.
+    NothingToRecover = 4004,
 }
 
 impl ErrorCode {
@@ -145,6 +147,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::GeneratorsRunning => Self::GeneratorActive,
             CommandError::ReferencingFailed => Self::ReferencingFailed,
             CommandError::ReferenceOutside(_) => Self::ReferenceOutside,
+            CommandError::NothingToRecover => Self::NothingToRecover,
             CommandError::FrozenAxis(_)
             | CommandError::OutsideTravel
             | CommandError::OutsideSoftLimits

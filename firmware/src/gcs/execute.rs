@@ -7,7 +7,7 @@ use super::request::Action;
 use super::request::MAX_DELAY_MS;
 use super::session::{Awaited, Session, Wait};
 use crate::commander::axis::{Axis, AxisValues};
-use crate::commander::{Quantity, SoftLimitChange};
+use crate::commander::{CommandError, Quantity, SoftLimitChange};
 use crate::motion::Stop;
 use crate::queues::CommandQueues;
 
@@ -27,8 +27,13 @@ impl Interpreter {
             },
             // Whichever axes are named: the encoders give all of them at once.
             Action::Reference(_) => {
-                if self.commander.begin_referencing(queues)? {
-                    self.wait(session, Awaited::Reference);
+                match self.commander.begin_referencing(queues) {
+                    Ok(true) => self.wait(session, Awaited::Reference),
+                    Ok(false) => {}
+                    Err(error) => {
+                        self.note_pose_outside(&error);
+                        return Err(error.into());
+                    }
                 }
                 Ok(())
             }
@@ -42,6 +47,7 @@ impl Interpreter {
             Action::MoveInTool(values) => Ok(self.commander.move_in_tool(&values, queues)?),
             Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
             Action::Jog(values) => self.jog(&values, session, queues),
+            Action::Recover(value) => self.recover(value, session, queues),
             Action::JogTime(ms) => Self::set_jog_time(ms, session),
             Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
@@ -102,7 +108,10 @@ impl Interpreter {
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         let moves = self.commander.is_motion_commanded();
-        self.commander.set_servo(on, queues)?;
+        if let Err(error) = self.commander.set_servo(on, queues) {
+            self.note_pose_outside(&error);
+            return Err(error.into());
+        }
         if on && self.commander.value(Quantity::Referenced, Axis::X) == 0.0 {
             (self.events).add_once(self.commander.tick(), Event::ServoBeforeReference);
         }
@@ -110,6 +119,13 @@ impl Interpreter {
             self.tell_mover(session);
         }
         Ok(())
+    }
+
+    /// An event where an error says that the stage is out of its reach: the pose.
+    pub(super) fn note_pose_outside(&mut self, error: &CommandError) {
+        if let CommandError::ReferenceOutside(pose) = error {
+            (self.events).add(self.commander.tick(), Event::PoseOutside(tenths(*pose)));
+        }
     }
 
     /// `STP`, `#24` and `HLT`. Error 10 says that something was stopped: nothing is told of a stop that found nothing to stop.
@@ -162,6 +178,11 @@ impl Interpreter {
             stops: self.stops,
         });
     }
+}
+
+/// To a tenth, and never a zero with a sign.
+pub(super) fn tenths(pose: [f64; 3]) -> [f32; 3] {
+    pose.map(|value| (libm::rint(value * 10.0) / 10.0 + 0.0) as f32)
 }
 
 /// What `SVO` asks of the servo, which all movable axes share: off if any of them is to be off, on if any is to be on.

@@ -2,7 +2,7 @@
 
 use super::connections::Connections;
 use super::error::ErrorCode;
-use super::events::EventLog;
+use super::events::{BoardNotice, Crash, Event, EventLog};
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
 use super::learnt::ServoReports;
@@ -10,6 +10,7 @@ use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
 use super::recorder::RecorderState;
+use super::recovery::RecoveryOwner;
 use super::statistics::Statistics;
 use super::variables::Variables;
 use crate::commander::Commander;
@@ -48,6 +49,7 @@ pub struct Interpreter {
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
+    pub(super) recovery_owner: RecoveryOwner,
     pub(super) wants_restart: bool,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
@@ -75,6 +77,7 @@ impl Interpreter {
             connections: Connections::default(),
             jogs: Jogs::default(),
             ownership: Ownership::default(),
+            recovery_owner: RecoveryOwner::default(),
             wants_restart: false,
             macros: Macros::default(),
             variables: Variables::default(),
@@ -89,6 +92,16 @@ impl Interpreter {
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);
+    }
+
+    /// Notes how the program ended before this start, for `EVT?`. To be called before anything is served.
+    pub fn add_crash(&mut self, crash: Crash) {
+        self.events.add(0, Event::Crashed(crash));
+    }
+
+    /// Notes what the board has found out about itself, for `EVT?`. To be called before anything is served.
+    pub fn add_board_notice(&mut self, notice: BoardNotice) {
+        self.events.add(0, Event::BoardNotice(notice));
     }
 
     /// The tick of the latest snapshot taken; 0 before the first.

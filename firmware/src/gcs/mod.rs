@@ -14,7 +14,7 @@
 //! | `interpreter` | what all connections share |
 //! | `session` | input, line, error and wait of a connection |
 //! | `service` | what a connection has sent: taken, understood, carried out, answered |
-//! | `connections` | numbers of connections, who commanded last, what ends with one |
+//! | `connection_number`, `connections` | what a connection is known by; who commanded last, what ends with one |
 //! | `waits` | what holds up the lines of a connection |
 //! | `table` | what commands there are; parsing, `HLP?` and dispatch read it |
 //! | `syntax` | what an entry of the table is |
@@ -39,6 +39,7 @@
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
+//! | `recovery` | the way back of a stage that was found out of its reach |
 //!
 //! Each folder has, as far as there is something to say: `state`, `request`, `parse`, `execute`, `replies`.
 //!
@@ -48,6 +49,7 @@
 //! questions, which are answered: a script does not go on after a stop, and a client gets its answers.
 
 mod arguments;
+mod connection_number;
 mod connections;
 mod error;
 mod events;
@@ -66,6 +68,7 @@ mod parameter;
 mod parse;
 mod persistence;
 mod recorder;
+mod recovery;
 mod replies;
 mod reply_writer;
 mod request;
@@ -83,7 +86,7 @@ mod wave;
 
 pub use arguments::ParseError;
 pub use error::ErrorCode;
-pub use events::START_CAUSES;
+pub use events::{BoardNotice, CRASH_FILE_BYTES, Crash, CrashCause, START_CAUSES};
 pub use frames::{FrameQuery, ListItem};
 pub use interpreter::{Identity, Interpreter};
 pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};

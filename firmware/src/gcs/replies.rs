@@ -2,7 +2,7 @@
 
 use super::interpreter::Interpreter;
 use super::output::{Output, WriteFailed};
-use super::parameter::{loosened, parameter_help};
+use super::parameter::{Parameter, loosened, parameter_help};
 use super::reply_writer::{ReplyWriter, one_line};
 use super::request::{Property, Query};
 use super::session::Session;
@@ -52,6 +52,10 @@ impl Interpreter {
             }
             Query::JogTime => one_line(out, format_args!("{}", session.jog_time_ms.unwrap_or(0.0))),
             Query::Ownership => self.reply_ownership(session, out),
+            Query::Recovery => one_line(
+                out,
+                format_args!("{}", u8::from(self.commander.is_recovering())),
+            ),
             Query::PiezoChannels => one_line(out, format_args!("0")),
             Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),
@@ -149,7 +153,7 @@ impl Interpreter {
             if let Some(worse) = snapshot.stop_ended_by {
                 reply.line(format_args!("its stop was ended: {worse}"))?;
             }
-            self.reply_looseness(&mut reply)?;
+            self.reply_about_parameters(&mut reply)?;
             return reply.end();
         }
         let mut reply = ReplyWriter::new(out);
@@ -164,12 +168,21 @@ impl Interpreter {
                 reply.line(format_args!("{}, pivot {pivot}", kind.text()))?;
             }
         }
-        self.reply_looseness(&mut reply)?;
+        self.reply_about_parameters(&mut reply)?;
         reply.end()
     }
 
-    /// A line for each threshold of supervision that is looser than the reference.
-    fn reply_looseness(&self, reply: &mut ReplyWriter<'_>) -> Result<(), WriteFailed> {
+    /// A line for each threshold of supervision that is looser than the reference, and for each kept value that is not in force.
+    fn reply_about_parameters(&self, reply: &mut ReplyWriter<'_>) -> Result<(), WriteFailed> {
+        for (id, value) in &self.persistence.unusable {
+            let Some(parameter) = Parameter::find(*id) else {
+                continue;
+            };
+            let [lowest, highest] = parameter.range;
+            reply.line(format_args!(
+                "kept, not in force: 0x{id:X} = {value}, which may be {lowest} to {highest}"
+            ))?;
+        }
         for parameter in loosened(&self.parameters) {
             let (id, text) = (parameter.id, parameter.text);
             reply.line(format_args!("looser than the reference: 0x{id:X}, {text}"))?;

@@ -82,6 +82,8 @@ pub enum Query {
     JogTime,
     /// `OWN?`
     Ownership,
+    /// `RCV?`
+    Recovery,
     /// `TPC?`: piezo channels, of which there are none.
     PiezoChannels,
     /// `JON?`: these joysticks, a bit each.
@@ -166,6 +168,8 @@ pub enum Action {
     Heartbeat(f64),
     /// `JTM`, ms.
     JogTime(f64),
+    /// `RCV`: 0 or 1.
+    Recover(f64),
     /// `OWN`: 0 or 1, and a name for the connection.
     Own(f64, Option<Name>),
     /// `LST`
@@ -289,9 +293,10 @@ impl Request {
             Self::Frames(_) => true,
             Self::Quantity(..) | Self::Reachable(_) | Self::FurthestTarget(_) => true,
             Self::Query(query) => matches!(query, Query::Error | Query::Fault | Query::Monitor),
-            Self::Act(action) => {
-                !matches!(action, Action::Stop | Action::Halt(_) | Action::Velocity(_))
-            }
+            Self::Act(action) => !matches!(
+                action,
+                Action::Stop | Action::Halt(_) | Action::Velocity(_) | Action::Recover(0.0)
+            ),
         }
     }
 }

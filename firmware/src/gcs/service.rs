@@ -67,6 +67,7 @@ impl Interpreter {
         self.keep_learnt(queues);
         self.watch_heartbeat(queues);
         self.end_jogs(queues);
+        self.advance_recovery(queues);
         self.run_macro(queues);
     }
 

@@ -1,6 +1,6 @@
 //! One connection: the bytes it has received, its error, and what it waits for.
 
-use super::connections::ConnectionNumber;
+use super::connection_number::ConnectionNumber;
 use super::error::ErrorCode;
 use super::monitor::Monitor;
 use super::recorder::{FaultRecordReadout, RecordReadout};

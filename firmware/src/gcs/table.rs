@@ -362,6 +362,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         "restart the controller",
     ),
     entry(
+        "RCV",
+        Syntax::Number(Action::Recover),
+        "<0|1> drive a stage that is out of its reach slowly back in, as long as this connection lives",
+    ),
+    ask(
+        "RCV?",
+        Query::Recovery,
+        "get whether the stage is being driven back into its reach",
+    ),
+    entry(
         "RMC?",
         Syntax::Plain(Request::Macro(MacroRequest::Running)),
         "get running macros",

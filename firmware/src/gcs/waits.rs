@@ -1,11 +1,10 @@
 //! What holds up the lines of a connection.
 
 use super::error::ErrorCode;
-use super::events::Event;
 use super::interpreter::Interpreter;
 use super::request::{Condition, Operand};
 use super::session::{Awaited, Session};
-use crate::commander::{CommandError, Referencing};
+use crate::commander::Referencing;
 use crate::queues::CommandQueues;
 
 impl Interpreter {
@@ -45,12 +44,7 @@ impl Interpreter {
                 Referencing::Waiting => false,
                 Referencing::Done => true,
                 Referencing::Failed(error) => {
-                    if let CommandError::ReferenceOutside(pose) = error {
-                        // To a tenth, and never a zero with a sign.
-                        let pose = pose.map(|value| (libm::rint(value * 10.0) / 10.0 + 0.0) as f32);
-                        self.events
-                            .add(self.commander.tick(), Event::PoseOutside(pose));
-                    }
+                    self.note_pose_outside(&error);
                     session.error = error.into();
                     true
                 }

@@ -67,7 +67,8 @@ error_words! {
     MotionError: "a fault is latched: acknowledge it first",
     FlashFailed: "the settings cannot be kept: the flash does not take them",
     OwnedByAnother: "another connection owns the stage: OWN? tells which; only stopping is possible",
-    ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros; EVT? has the pose",
+    NothingToRecover: "nothing to recover: the measured pose is in reach, or the servo is on",
+    ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros (EVT? has the pose), then RCV 1 drives it slowly back in",
 }
 
 /// What an error number means, with the number; one that no controller of ours sets, by its number alone.

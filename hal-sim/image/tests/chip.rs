@@ -219,8 +219,8 @@ fn a_restart_by_command_is_told_as_one_and_the_loop_counts_its_cost() {
 #[test]
 fn a_tick_is_followed_from_its_begin_to_its_end() {
     let image = elf_file::find().expect("`cargo stage` builds it");
-    let way = image::chip::follow(600).expect("as many instructions as were counted");
-    let first = way.first().expect("some").0;
+    let (_, steps) = image::chip::follow(600).expect("as many instructions as were counted");
+    let first = steps.first().expect("some").at;
     let code = image::proof::Code::read(&image).expect("understood");
     assert_eq!(code.named("TIM1_UP_TIM10"), Some(first));
 }

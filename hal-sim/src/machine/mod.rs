@@ -3,7 +3,9 @@
 //! | module | idea |
 //! |---|---|
 //! | [`plant`] | bodies, drives, friction and stops, integrated |
+//! | [`file`] | a machine as a file of numbers |
 //! | [`devices`] | what the controller sees of it: encoders, bridges, converters, flash |
 
 pub mod devices;
+pub mod file;
 pub mod plant;

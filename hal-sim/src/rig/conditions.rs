@@ -9,7 +9,7 @@ use crate::report::Conditions;
 pub fn run_conditions(options: &RunOptions) -> Conditions {
     Conditions {
         program: concat!("hal-sim ", env!("CARGO_PKG_VERSION")).to_owned(),
-        machine: "simulated reference stage, controller on the host".to_owned(),
+        machine: format!("simulated {}, controller on the host", options.machine_name),
         seed: options.seed,
         mismatch_percent: options.mismatch_percent,
         payload_kg: options.payload_kg,

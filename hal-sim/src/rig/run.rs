@@ -24,11 +24,16 @@ pub struct RunOptions {
     pub out: PathBuf,
     /// Every so many ticks a row of the trace.
     pub every: u32,
+    /// The machine, before mismatch and payload, whose imperfections are switched below.
+    pub machine: StageParameters,
+    /// What to call it.
+    pub machine_name: String,
     /// Seed of the simulated noise.
     pub seed: u64,
     /// By how much the plant departs from the controller's model of it, in percent.
     pub mismatch_percent: f64,
-    /// Mass of a load on the platform that the controller knows nothing of: a cylinder of 50 mm radius, 20 mm off the centre.
+    /// Mass of a load on the platform that the controller knows nothing of: a cylinder of 50 mm radius, 20 mm off the centre. Zero
+    /// leaves what the machine carries.
     pub payload_kg: f64,
     /// Imperfections of the simulated stage.
     pub imperfections: Imperfections,
@@ -42,6 +47,8 @@ impl Default for RunOptions {
         Self {
             out: PathBuf::from("tripivot-run"),
             every: DEFAULT_EVERY,
+            machine: StageParameters::REFERENCE,
+            machine_name: "reference stage".to_owned(),
             seed: 1,
             mismatch_percent: 20.0,
             payload_kg: 0.0,
@@ -71,13 +78,19 @@ const CYLINDER_M: f64 = 0.05;
 /// Its distance from the platform's centre, m.
 const OFF_CENTRE_M: f64 = 0.02;
 
-/// The reference stage as the options have it: off from the controller's model by their mismatch, heavier, with more
+/// The machine as the options have it: off from the controller's model by their mismatch, heavier, with more
 /// friction, and with weaker motors, the combination that costs the servo most.
 #[must_use]
 pub fn stage_parameters(options: &RunOptions) -> StageParameters {
     let more = 1.0 + options.mismatch_percent / 100.0;
     let less = 1.0 - options.mismatch_percent / 100.0;
-    let reference = PlantParameters::REFERENCE;
+    let reference = options.machine.plant;
+    let load = Payload {
+        mass_kg: options.payload_kg,
+        inertia_kg_m2: options.payload_kg * CYLINDER_M * CYLINDER_M / 2.0,
+        eccentricity_m: OFF_CENTRE_M,
+        direction_rad: 0.7,
+    };
     StageParameters {
         plant: PlantParameters {
             platform_mass_kg: reference.platform_mass_kg * more,
@@ -90,17 +103,16 @@ pub fn stage_parameters(options: &RunOptions) -> StageParameters {
                 ..reference.ring_friction
             },
             torque_constant_n_m_a: reference.torque_constant_n_m_a * less,
-            payload: Payload {
-                mass_kg: options.payload_kg,
-                inertia_kg_m2: options.payload_kg * CYLINDER_M * CYLINDER_M / 2.0,
-                eccentricity_m: OFF_CENTRE_M,
-                direction_rad: 0.7,
+            payload: if options.payload_kg > 0.0 {
+                load
+            } else {
+                reference.payload
             },
             imperfections: options.imperfections,
             ..reference
         },
         seed: options.seed,
-        ..StageParameters::REFERENCE
+        ..options.machine
     }
 }
 

@@ -3,8 +3,8 @@
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -156,11 +156,17 @@ impl Viewer {
         self.socket.send(Message::text(text)).unwrap();
     }
 
-    /// What becomes of a line.
-    fn ask(&mut self, line: &str) -> Value {
+    /// Asks for a line, and goes on; the request's number.
+    fn post(&mut self, line: &str) -> u64 {
         let id = self.next;
         self.next += 1;
         self.send(&json!({"id": id, "token": self.token, "line": line}).to_string());
+        id
+    }
+
+    /// What becomes of a line.
+    fn ask(&mut self, line: &str) -> Value {
+        let id = self.post(line);
         self.wait(|message| message["id"] == id)
     }
 
@@ -647,6 +653,87 @@ fn over_a_line_that_pages_share_none_changes_what_another_says() {
     assert_eq!(other.reply("CCL?").as_deref(), Some("0"));
     assert_eq!(other.ask("SPA 1 0x54500301 41")["error"], 60);
     assert_eq!(one.reply("CCL?").as_deref(), Some("1"));
+}
+
+/// What waits for its turn on a line that pages share does not go out behind a stop; who asked for it is told.
+#[test]
+fn what_was_asked_for_before_a_stop_does_not_follow_it() {
+    let (slow, lines) = SlowController::start();
+    let endpoint = Endpoint::Tcp(slow.to_string());
+    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    // The line is busy with the first for longer than the rest takes.
+    let first = one.post("MOV X 1");
+    while !lines.lock().unwrap().iter().any(|line| line == "MOV X 1") {
+        thread::sleep(Duration::from_millis(1));
+    }
+    let second = one.post("MOV X 2");
+    let question = one.post("POS? Z");
+    thread::sleep(Duration::from_millis(100));
+    assert_eq!(other.ask("STP")["error"], 0);
+    assert_eq!(one.wait(|message| message["id"] == first)["error"], 0);
+    let dropped = one.wait(|message| message["id"] == second);
+    assert_eq!(dropped["reason"], "not sent: a stop came before its turn");
+    assert_eq!(
+        one.wait(|message| message["id"] == question)["kind"],
+        "answer"
+    );
+    // What comes after the stop goes out.
+    assert_eq!(other.ask("MOV X 3")["error"], 0);
+    let sent: Vec<String> = lines
+        .lock()
+        .unwrap()
+        .iter()
+        .filter(|line| line.starts_with("MOV ") || *line == "#24")
+        .cloned()
+        .collect();
+    assert_eq!(sent, ["MOV X 1", "#24", "MOV X 3"]);
+}
+
+/// A controller for one client that takes its time for a move; it keeps what it has received.
+struct SlowController;
+
+impl SlowController {
+    const MOVE: Duration = Duration::from_millis(400);
+
+    fn start() -> (SocketAddr, Arc<Mutex<Vec<String>>>) {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        let lines = Arc::<Mutex<Vec<String>>>::default();
+        let kept = Arc::clone(&lines);
+        thread::spawn(move || {
+            // Further clients wait in vain.
+            let (mut stream, _) = listener.accept().unwrap();
+            let mut line = Vec::new();
+            let mut byte = [0];
+            while matches!(stream.read(&mut byte), Ok(1)) {
+                match byte[0] {
+                    24 => kept.lock().unwrap().push("#24".to_owned()),
+                    b'\n' => {
+                        let text = String::from_utf8(std::mem::take(&mut line)).unwrap();
+                        if text.starts_with("MOV ") {
+                            kept.lock().unwrap().push(text.clone());
+                            thread::sleep(Self::MOVE);
+                        }
+                        let answer = match &*text {
+                            "*IDN?" => "(c)2026 Tripivot, XYT-1, 1, 1",
+                            "ERR?" => "0",
+                            "HLP?" => {
+                                "The following commands are available: \nMOV \nOWN \nOWN? \nend of help"
+                            }
+                            _ if text.ends_with('?') || text.contains("? ") => "X=0",
+                            _ => continue,
+                        };
+                        if stream.write_all(format!("{answer}\n").as_bytes()).is_err() {
+                            return;
+                        }
+                    }
+                    other => line.push(other),
+                }
+            }
+        });
+        (address, lines)
+    }
 }
 
 /// The cookie that a password brings, or what the page says in place of one.

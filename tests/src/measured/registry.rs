@@ -340,6 +340,22 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "cycles",
+        title: "What a tick takes in cycles",
+        group: Group::Chip,
+        about: "Each tick's instructions, as the emulated chip ran them, through a model of the Cortex-M4F (ARM's table, loads that overlap, \
+                results waited for, jumps, slow buses, entry) and of ST's flash accelerator (5 wait states, lines of 128 bits, one read \
+                ahead, 64 lines of instructions and 8 of data cached). What the manuals leave open is guessed three times. Modelled, not \
+                measured: it may be some 6 % off, and what DMA takes of the RAM is not in it. \
+                [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
+                `--check` fails where one is over, or the model without a memory is more than 2 % off `llvm-mca`'s.",
+        command: "cargo chip-cycles",
+        short: Some("cargo chip-cycles --ticks 100"),
+        kind: Kind::Compiled,
+        seconds: 60,
+        without: &[],
+    },
+    Section {
         name: "load",
         title: "The tick under load",
         group: Group::Chip,

@@ -5,6 +5,13 @@ use cortex_m::peripheral::{DCB, DWT};
 
 /// From the tick's interrupt to the PWM period in which its duty acts: 25 us.
 const DEADLINE_CYCLES: u32 = clocks::CORE_HZ / 40_000;
+// Told to who models the tick's cycles: a symbol whose value is the number.
+core::arch::global_asm!(
+    ".global stage_deadline_cycles",
+    ".set stage_deadline_cycles, {}",
+    const DEADLINE_CYCLES
+);
+
 /// More than this between two ticks, and one has been missed: one and a half times 50 us.
 const MISSED_CYCLES: u32 = clocks::CORE_HZ / 20_000 * 3 / 2;
 

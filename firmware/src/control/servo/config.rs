@@ -153,6 +153,7 @@ impl PivotServoConfig {
         let torque_lead_s = servo.latency_s + drive.inductance_h / drive.resistance_ohm;
         let rad_per_unit = 1.0 / UNITS_PER_RAD;
         let full = f64::from(power.pwm_counts);
+        let limit_share = MAX_DUTY.min(power.voltage_limit_v / power.supply_v);
         // In the middle of the disk; a pivot alone.
         let carried = carried_inertia(&Body::new(parameters), &[1.0; 3], &[1.0; 3], pivot);
         let middle_inertia = drive.inertia_kg_m2 + f64::from(carried);
@@ -188,10 +189,10 @@ impl PivotServoConfig {
             current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
                 as f32,
             dead_time_counts: (drive.dead_time_s * power.pwm_hz * full) as f32,
-            max_counts: (MAX_DUTY * full) as f32,
+            max_counts: (limit_share * full) as f32,
             frozen_duty: (frozen_v / power.supply_v * full).min(full) as u16,
             oscillation_swing: oscillation_v as f32,
-            integral_limit: (power.supply_v * 0.5) as f32,
+            integral_limit: (limit_share.min(0.5) * power.supply_v) as f32,
             learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
             learnt: Learnt::new(&parameters.learnt[pivot]),
             middle_inertia: middle_inertia as f32,

@@ -1,13 +1,16 @@
 //! Something that happened.
 
+use super::board_notice::BoardNotice;
+use super::crash::Crash;
 use crate::fault::Fault;
 use core::fmt;
 
-/// What may start a controller unasked: the watchdog, the program, the supply.
-pub const START_CAUSES: [&str; 3] = [
+/// What may start a controller unasked: the watchdog, the program, the supply, the clock.
+pub const START_CAUSES: [&str; 4] = [
     "the watchdog: the control loop stood still",
     "a panic or a processor fault",
     "a dip of the supply",
+    "a failure of the crystal",
 ];
 
 /// Something that happened.
@@ -15,6 +18,10 @@ pub const START_CAUSES: [&str; 3] = [
 pub(in crate::gcs) enum Event {
     /// The controller started; by what, if that is worth telling.
     Start(Option<&'static str>),
+    /// How the program had ended before it.
+    Crashed(Crash),
+    /// What the board found at its start.
+    BoardNotice(BoardNotice),
     Fault(Fault),
     Acknowledged,
     Referenced,
@@ -43,8 +50,16 @@ pub(in crate::gcs) enum Event {
     ServoBeforeReference,
     /// So many thresholds of supervision are looser than the reference.
     SupervisionLoosened(u16),
-    /// `FRF` found a pose that the stage can not take: mm, mm, deg.
+    /// `FRF` or `SVO` found a pose that the stage can not take: mm, mm, deg.
     PoseOutside([f32; 3]),
+    /// `RCV`: the stage was found there (mm, mm, deg) and is being driven back.
+    Recovery([f32; 3]),
+    /// It is in reach again, and held.
+    Recovered,
+    /// It was given up on the way, or refused; the servo is off.
+    RecoveryGivenUp,
+    /// A value is stored that this firmware does not allow; it is not in force.
+    UnusableParameter(u32, f64),
     /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
@@ -54,6 +69,8 @@ impl fmt::Display for Event {
         match self {
             Self::Start(None) => f.write_str("start"),
             Self::Start(Some(cause)) => write!(f, "start by {cause}"),
+            Self::BoardNotice(notice) => f.write_str(notice.text()),
+            Self::Crashed(crash) => crash.fmt(f),
             Self::Fault(fault) => write!(f, "fault: {fault}"),
             Self::Acknowledged => f.write_str("fault acknowledged"),
             Self::Referenced => f.write_str("referenced"),
@@ -85,6 +102,17 @@ impl fmt::Display for Event {
                     "not referenced: the encoders show X {x:.1} Y {y:.1} W {w:.1}, out of reach"
                 )
             }
+            Self::UnusableParameter(id, value) => {
+                write!(
+                    f,
+                    "kept parameter 0x{id:X} = {value} is out of its range: not in force"
+                )
+            }
+            Self::Recovery([x, y, w]) => {
+                write!(f, "recovery from X {x:.1} Y {y:.1} W {w:.1}")
+            }
+            Self::Recovered => f.write_str("recovered: in reach, held"),
+            Self::RecoveryGivenUp => f.write_str("recovery has ended on its way, servo off"),
             Self::ServoBeforeReference => {
                 f.write_str("servo asked for before the reference: it stays off until FRF")
             }

@@ -1,6 +1,6 @@
 //! Who has promised to be heard, and when it was.
 
-use crate::gcs::connections::ConnectionNumber;
+use crate::gcs::connection_number::ConnectionNumber;
 use heapless::Vec;
 
 /// Connections that may have promised to be heard at once.

@@ -1,7 +1,7 @@
 //! Owner and end of the velocity of each axis.
 
 use crate::commander::axis::{Axis, AxisValues};
-use crate::gcs::connections::ConnectionNumber;
+use crate::gcs::connection_number::ConnectionNumber;
 
 /// The velocity of an axis, as one connection has commanded it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

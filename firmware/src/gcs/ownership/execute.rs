@@ -75,6 +75,7 @@ impl Request {
                 action,
                 Action::Stop
                     | Action::Halt(_)
+                    | Action::Recover(0.0)
                     | Action::Own(..)
                     | Action::Level(..)
                     | Action::Heartbeat(_)

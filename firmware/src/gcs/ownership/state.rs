@@ -1,6 +1,6 @@
 //! Who owns, and since when.
 
-use crate::gcs::connections::ConnectionNumber;
+use crate::gcs::connection_number::ConnectionNumber;
 use crate::gcs::text::Text;
 
 /// The connection that owns.

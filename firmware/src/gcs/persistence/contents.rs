@@ -10,6 +10,8 @@
 //!
 //! Numbers begin with their lowest byte.
 
+use super::state::{KeptParameters, UnusableValues};
+use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::macros::{MACRO_BYTES, MAX_MACROS};
 use crate::gcs::parameter::{PARAMETERS, Parameter};
@@ -36,9 +38,10 @@ fn write<S: Sink>(interpreter: &Interpreter, sink: &mut S) -> Result<(), S::Erro
         interpreter.parameters_to_store(),
         interpreter.default_parameters(),
     );
-    let count = settings(stored, defaults).count();
-    sink.put(&(count as u16).to_le_bytes())?;
-    for (id, value) in settings(stored, defaults) {
+    let unusable = interpreter.unusable_to_store();
+    let kept = || settings(stored, defaults).chain(unusable.iter().copied());
+    sink.put(&(kept().count() as u16).to_le_bytes())?;
+    for (id, value) in kept() {
         sink.put(&id.to_le_bytes())?;
         sink.put(&value.to_le_bytes())?;
     }
@@ -71,32 +74,41 @@ fn read<F: NorFlash>(
     if version > VERSION {
         return Err(Unusable::Newer);
     }
-    let (parameters, unknown) = read_parameters(reader, interpreter).ok_or(Unusable::Damaged)?;
+    let kept = read_parameters(reader, interpreter).ok_or(Unusable::Damaged)?;
     if read_macros(reader, interpreter).is_none() || !reader.is_at_end() {
         interpreter.forget_macros();
         return Err(Unusable::Damaged);
     }
-    interpreter.restore_parameters(parameters, unknown);
+    interpreter.restore_parameters(kept);
     Ok(())
 }
 
-/// The parameters, and how many there are that this firmware does not know: they are left alone. A value that is out of
-/// its range is no such thing: `None`, as when they do not go together.
+/// What is stored of the parameters. One that this firmware does not know is left alone; a value that it does not allow is told,
+/// and the controller's own stands in its place. `None` when they do not go together, or are none that a firmware writes.
 fn read_parameters<F: NorFlash>(
     reader: &mut Reader<'_, F>,
     interpreter: &Interpreter,
-) -> Option<(Parameters, u16)> {
-    let mut parameters = interpreter.default_parameters().clone();
-    let mut unknown = 0;
+) -> Option<KeptParameters> {
+    let mut kept = KeptParameters {
+        parameters: interpreter.default_parameters().clone(),
+        unknown: 0,
+        unusable: UnusableValues::new(),
+    };
     for _ in 0..u16::from_le_bytes(reader.take()?) {
         let id = u32::from_le_bytes(reader.take()?);
         let value = f64::from_le_bytes(reader.take()?);
         match Parameter::find(id) {
-            Some(parameter) => parameter.set(value, &mut parameters).ok()?,
-            None => unknown += 1,
+            None => kept.unknown += 1,
+            Some(parameter) => match parameter.set(value, &mut kept.parameters) {
+                Ok(()) => {}
+                Err(ErrorCode::OutOfRange) if value.is_finite() => {
+                    kept.unusable.push((id, value)).ok()?;
+                }
+                Err(_) => return None,
+            },
         }
     }
-    parameters.are_sound().then_some((parameters, unknown))
+    kept.parameters.are_sound().then_some(kept)
 }
 
 fn read_macros<F: NorFlash>(

@@ -1,5 +1,6 @@
 //! `WPA` and `RPA`.
 
+use super::state::KeptParameters;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -72,7 +73,12 @@ impl Interpreter {
         persistence.result = result.map_err(ErrorCode::from);
         let code = persistence.result.err();
         match (code, asked_for) {
-            (None, _) => persistence.stored_is_invalid = false,
+            (None, asked_for) => {
+                persistence.stored_is_invalid = false;
+                if asked_for.is_some() {
+                    persistence.unusable.clear();
+                }
+            }
             (Some(_), Some(before)) => persistence.stored = before,
             // Who recorded the macro does not wait for it.
             (Some(code), None) => self.report_to_all(code),
@@ -101,8 +107,21 @@ impl Interpreter {
         self.macros.all()
     }
 
-    /// Starts with these parameters; `unknown` ones were stored besides.
-    pub(super) fn restore_parameters(&mut self, mut parameters: Parameters, unknown: u16) {
+    /// Values that are not in force and stay stored all the same, as long as nobody asks for others.
+    pub(super) fn unusable_to_store(&self) -> &[(u32, f64)] {
+        match self.persistence.before {
+            Some(_) => &[],
+            None => &self.persistence.unusable,
+        }
+    }
+
+    /// Starts with these parameters.
+    pub(super) fn restore_parameters(&mut self, kept: KeptParameters) {
+        let KeptParameters {
+            mut parameters,
+            unknown,
+            unusable,
+        } = kept;
         // As many as any choice of signals leaves room for: which they were is not kept.
         let recorder = &mut parameters.recorder;
         recorder.points = recorder.points.min(MAX_RECORD_ROWS as u32);
@@ -117,6 +136,10 @@ impl Interpreter {
         if unknown > 0 {
             self.events.add(0, Event::UnknownParameters(unknown));
         }
+        for &(id, value) in &unusable {
+            self.events.add(0, Event::UnusableParameter(id, value));
+        }
+        self.persistence.unusable = unusable;
     }
 
     /// Adds to the text of a macro that is stored; false when it is none, or there is no room.

@@ -2,6 +2,20 @@
 
 use crate::gcs::error::ErrorCode;
 use crate::parameters::Parameters;
+use heapless::Vec;
+
+/// Values that are stored and that this firmware does not allow, with their parameters' numbers.
+pub(in crate::gcs) type UnusableValues = Vec<(u32, f64), MAX_UNUSABLE>;
+/// More of them are no settings of this stage.
+const MAX_UNUSABLE: usize = 8;
+
+/// What was read of the parameters that are stored.
+pub(super) struct KeptParameters {
+    pub parameters: Parameters,
+    /// So many are unknown here.
+    pub unknown: u16,
+    pub unusable: UnusableValues,
+}
 
 /// What is stored, and what is to be.
 pub(in crate::gcs) struct Persistence {
@@ -9,6 +23,8 @@ pub(in crate::gcs) struct Persistence {
     pub(super) defaults: Parameters,
     /// Those that are stored, or about to be.
     pub(super) stored: Parameters,
+    /// Stored values that are not in force, because this firmware does not allow them: they stay stored until `WPA`.
+    pub(in crate::gcs) unusable: UnusableValues,
     /// Somebody keeps settings.
     pub(super) has_store: bool,
     /// What was stored could not be used: `WPA` alone may overwrite it.
@@ -27,6 +43,7 @@ impl Persistence {
         Self {
             defaults: own.clone(),
             stored: own.clone(),
+            unusable: UnusableValues::new(),
             has_store: false,
             stored_is_invalid: false,
             before: None,

@@ -2,7 +2,7 @@
 
 import { byId, setText } from "./dom.js";
 
-const MOVES = /^\s*(MOV|MVR|MRT|MRW|STE|JOG|WGO|MAC\s+N?START)\b/i;
+const MOVES = /^\s*(MOV|MVR|MRT|MRW|STE|JOG|RCV\s+1|WGO|MAC\s+N?START)\b/i;
 
 export class FirstMove {
   /** The machine that may be moved from here, by who and where it is. */
@@ -13,7 +13,7 @@ export class FirstMove {
     this.dialog = byId("first-move");
     // A stop is an answer too.
     stage.link.addEventListener("stopping", () => this.dialog.close("no"));
-    stage.link.gate = async (line) => { if (MOVES.test(line)) await this.agree(/^\s*JOG/i.test(line)); };
+    stage.link.gate = async (line) => { if (MOVES.test(line)) await this.agree(/^\s*(JOG|RCV)/i.test(line)); };
   }
 
   /** Throws unless it may be moved. What has to be held down cannot be taken as meant once a question was in between. */
@@ -32,6 +32,6 @@ export class FirstMove {
     main.inert = false;
     if (this.dialog.returnValue !== "move") throw new Error("not moved: not confirmed");
     this.#agreed = machine;
-    if (isHeld) throw new Error("confirmed: press again to jog");
+    if (isHeld) throw new Error("confirmed: press again");
   }
 }

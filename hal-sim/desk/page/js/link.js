@@ -8,6 +8,11 @@ const RETRY_MS = 700;
 const PATIENCE_MS = 2000;
 const UNKNOWN = "whether it was carried out is not known";
 
+/** A WebSocket of this server. */
+export function socketTo(path) {
+  return new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${path}`);
+}
+
 export class Link extends EventTarget {
   freshness = new Freshness();
   /** Asked before a line goes out; throws if it is not to go. */
@@ -72,7 +77,7 @@ export class Link extends EventTarget {
       this.#lost();
       return;
     }
-    const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+    const socket = socketTo("/live");
     this.#socket = socket;
     this.freshness.begins();
     socket.onmessage = (event) => this.#take(JSON.parse(event.data));
@@ -98,6 +103,7 @@ export class Link extends EventTarget {
   #take(message) {
     const request = this.#settle(message.id);
     if (message.kind === "answer") {
+      if (message.error) this.#tell("error", message.error);
       if (message.error) request?.reject(new GcsError(message.error, request.line));
       else request?.resolve(message.reply);
     } else if (message.kind === "refused") {

@@ -1,5 +1,7 @@
 // The second connection to the server: sequences and the log. The server takes a page whose connection ends for gone.
 
+import { socketTo } from "./link.js";
+
 const RETRY_MS = 300;
 /** Longest wait for the connection. */
 const PATIENCE_MS = 2000;
@@ -36,7 +38,7 @@ export class Operator extends EventTarget {
 
   #open() {
     if (!this.link.open || (this.#socket && this.#socket.readyState !== WebSocket.CLOSED)) return;
-    this.#socket = new WebSocket(`ws://${location.host}/operator`);
+    this.#socket = socketTo("/operator");
     this.#socket.onopen = () => this.dispatchEvent(new Event("opened"));
     this.#socket.onmessage = ({ data }) => {
       const message = JSON.parse(data);

@@ -175,7 +175,7 @@ function unlocking(stage, said) {
   const word = make("input", { type: "password", className: "name", autocomplete: "off", "aria-label": "Password of level 1" });
   const button = make("button", { type: "submit", className: "quiet", textContent: "Unlock level 1" });
   const form = make("form", { className: "row" }, make("label", {}, "password ", word), button,
-    make("span", { className: "faint small", textContent: "Level 1 can break a machine. It is unlocked for all viewers of this page." }));
+    make("span", { className: "faint small", textContent: "Level 1 can break a machine. It is unlocked for this page alone, until it is closed." }));
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     report(said, () => stage.link.ask(`CCL 1 ${word.value.trim()}`), "level 1 is unlocked");

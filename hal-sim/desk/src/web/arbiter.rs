@@ -10,6 +10,11 @@ use super::line::Answer;
 /// Number of a viewer.
 pub(super) type ViewerNumber = u64;
 
+/// What a viewer is called where others ask who commands.
+pub(super) fn page_name(viewer: ViewerNumber) -> String {
+    format!("page_{viewer}")
+}
+
 /// Command level at first.
 const LOWEST_LEVEL: &str = "CCL 0";
 
@@ -21,6 +26,8 @@ pub(super) struct Arbiter {
     levels: HashMap<ViewerNumber, String>,
     /// The one that the controller had last.
     level: Option<String>,
+    /// Whose name the line has.
+    named: Option<ViewerNumber>,
 }
 
 /// What is to be done for a viewer.
@@ -40,26 +47,46 @@ impl Arbiter {
             ["OWN", "1", ..] if is_others => return Verdict::Refuse(ErrorCode::OwnedByAnother),
             // The line's ownership is that of the viewer who has it.
             ["OWN", "0", ..] if is_others => return Verdict::Send(vec!["OWN?".to_owned()]),
-            ["OWN", "1"] => format!("OWN 1 page_{viewer}"),
+            ["OWN", "1"] => format!("OWN 1 {}", page_name(viewer)),
             _ => line.to_owned(),
         };
-        if is_others && parse(line.as_bytes()).is_ok_and(|request| request.changes_stage()) {
+        let changes_stage = parse(line.as_bytes()).is_ok_and(|request| request.changes_stage());
+        if is_others && changes_stage {
             return Verdict::Refuse(ErrorCode::OwnedByAnother);
         }
         let level = self.level_of(viewer);
         let is_same = self.level.as_deref().unwrap_or(LOWEST_LEVEL) == level;
-        let before = (!is_same).then(|| level.to_owned());
-        Verdict::Send(before.into_iter().chain([line]).collect())
+        let level = (!is_same).then(|| level.to_owned());
+        // So that others are told who commanded last. Who owns has given the line its name by that.
+        let is_named = self.named == Some(viewer) || self.owner.is_some();
+        let name = (changes_stage && !is_named).then(|| format!("OWN 0 {}", page_name(viewer)));
+        Verdict::Send(level.into_iter().chain(name).chain([line]).collect())
+    }
+
+    /// Of the lines for a viewer the last has not gone out, perhaps none has.
+    pub fn interrupt(&mut self) {
+        // Neither is that of any viewer: both are given again.
+        self.level = Some(String::new());
+        self.named = None;
     }
 
     /// Takes what became of a viewer's line, and says it as for a connection of its own.
     pub fn note(&mut self, viewer: ViewerNumber, line: &str, answer: &mut Answer) {
         self.level = Some(self.level_of(viewer).to_owned());
+        let changes_stage = parse(line.as_bytes()).is_ok_and(|request| request.changes_stage());
+        self.named = if changes_stage {
+            Some(viewer)
+        } else {
+            self.named
+        };
         let done = answer.error == 0;
         match words(line)[..] {
-            ["OWN", "1", ..] if done => self.owner = Some(viewer),
+            ["OWN", "1", ..] if done => {
+                (self.owner, self.named) = (Some(viewer), Some(viewer));
+            }
             ["OWN", "0", ..] => {
                 answer.reply = None;
+                self.named = None;
                 self.owner = self.owner.filter(|owner| *owner != viewer);
             }
             ["OWN?"] => {
@@ -139,10 +166,26 @@ mod tests {
         let mut arbiter = Arbiter::default();
         assert_eq!(sends(&arbiter, 1, "CCL 1 ADVANCED"), ["CCL 1 ADVANCED"]);
         done(&mut arbiter, 1, "CCL 1 ADVANCED", None);
-        assert_eq!(sends(&arbiter, 1, "MOV X 1"), ["MOV X 1"]);
-        assert_eq!(sends(&arbiter, 2, "MOV X 1"), ["CCL 0", "MOV X 1"]);
-        done(&mut arbiter, 2, "MOV X 1", None);
+        assert_eq!(sends(&arbiter, 1, "POS?"), ["POS?"]);
+        assert_eq!(sends(&arbiter, 2, "POS?"), ["CCL 0", "POS?"]);
+        done(&mut arbiter, 2, "POS?", None);
         assert_eq!(sends(&arbiter, 1, "CCL?"), ["CCL 1 ADVANCED", "CCL?"]);
+    }
+
+    #[test]
+    fn the_line_has_the_name_of_whoever_commands() {
+        let mut arbiter = Arbiter::default();
+        assert_eq!(sends(&arbiter, 1, "MOV X 1"), ["OWN 0 page_1", "MOV X 1"]);
+        done(&mut arbiter, 1, "MOV X 1", None);
+        assert_eq!(sends(&arbiter, 1, "MOV X 2"), ["MOV X 2"]);
+        assert_eq!(sends(&arbiter, 2, "POS?"), ["POS?"]);
+        assert_eq!(sends(&arbiter, 2, "MOV X 3"), ["OWN 0 page_2", "MOV X 3"]);
+        // What did not go out whole is given again.
+        arbiter.interrupt();
+        assert_eq!(
+            sends(&arbiter, 1, "MOV X 1"),
+            ["CCL 0", "OWN 0 page_1", "MOV X 1"]
+        );
     }
 
     #[test]

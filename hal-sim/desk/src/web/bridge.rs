@@ -13,11 +13,12 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tokio::sync::{broadcast, oneshot, watch};
 
-use super::arbiter::{Arbiter, Verdict, ViewerNumber};
+use super::arbiter::{Arbiter, Verdict, ViewerNumber, page_name};
 use super::line::{Answer, Line};
 use super::own_line::{JOG_TIME_MS, OwnLine};
 use super::port::{Endpoint, Port};
 use super::request::Refusal;
+use super::stops::Stops;
 use super::watch::{FAST, SLOW_EVERY, slow};
 
 /// Between two status messages: a screen's refresh.
@@ -44,6 +45,7 @@ pub(super) struct Bridge {
     endpoint: Endpoint,
     viewers: Arc<AtomicU64>,
     takes_several: Arc<AtomicBool>,
+    stops: Stops,
 }
 
 /// How a viewer's lines get to the controller: over a connection of its own where the other end takes several, and else over the
@@ -61,6 +63,8 @@ enum Pending {
     Line {
         viewer: ViewerNumber,
         line: String,
+        /// Stops when it was asked for.
+        stops: u64,
         answer: oneshot::Sender<Result<Answer, Refusal>>,
     },
     /// A viewer is gone.
@@ -96,6 +100,7 @@ impl Bridge {
         let (hello_sender, hello) = watch::channel(Arc::from(""));
         let bypass = Arc::default();
         let takes_several = Arc::<AtomicBool>::default();
+        let stops = Stops::default();
         let worker = Worker {
             endpoint: endpoint.clone(),
             incoming,
@@ -104,6 +109,7 @@ impl Bridge {
             bypass: Arc::clone(&bypass),
             arbiter: RefCell::default(),
             takes_several: Arc::clone(&takes_several),
+            stops: stops.clone(),
         };
         worker.say_offline("not connected yet".to_owned());
         thread::Builder::new()
@@ -117,6 +123,7 @@ impl Bridge {
             endpoint,
             viewers: Arc::default(),
             takes_several,
+            stops,
         })
     }
 
@@ -134,7 +141,7 @@ impl Bridge {
     pub fn way(&self) -> io::Result<HeldWay> {
         let viewer = self.viewers.fetch_add(1, Ordering::Relaxed) + 1;
         let own = (self.endpoint.is_tcp())
-            .then(|| OwnLine::start(self.endpoint.clone(), format!("page_{viewer}")))
+            .then(|| OwnLine::start(self.endpoint.clone(), page_name(viewer), self.stops.clone()))
             .transpose()?;
         Ok(HeldWay(Arc::new(Way {
             bridge: self.clone(),
@@ -148,6 +155,7 @@ impl Bridge {
         let pending = Pending::Line {
             viewer,
             line,
+            stops: self.stops.count(),
             answer,
         };
         (self.requests.try_send(pending)).map_err(|error| match error {
@@ -157,9 +165,11 @@ impl Bridge {
         answered.await.unwrap_or(Err(Refusal::Broken))
     }
 
-    /// Stops the stage, ahead of everything: has been sent when this returns.
+    /// Stops the stage, ahead of everything: has been sent when this returns, and nothing goes out after it that was asked for
+    /// before.
     pub fn stop(&self) -> Result<Answer, Refusal> {
         let mut bypass = self.bypass.lock().unwrap_or_else(PoisonError::into_inner);
+        self.stops.note();
         let port = bypass.as_mut().ok_or(Refusal::Offline)?;
         port.write_all(&[STOP]).map_err(|_| Refusal::Broken)?;
         Ok(Answer {
@@ -173,6 +183,11 @@ impl Way {
     /// Whether other viewers use it too.
     pub fn is_shared(&self) -> bool {
         self.own_line().is_none()
+    }
+
+    /// What others are told who commands.
+    pub fn name(&self) -> String {
+        page_name(self.viewer)
     }
 
     /// Has a line carried out in its turn.
@@ -216,6 +231,7 @@ struct Worker {
     bypass: Arc<Mutex<Option<Port>>>,
     arbiter: RefCell<Arbiter>,
     takes_several: Arc<AtomicBool>,
+    stops: Stops,
 }
 
 /// All viewers and the server are gone.
@@ -287,16 +303,13 @@ impl Worker {
             Pending::Line {
                 viewer,
                 line: text,
+                stops,
                 answer,
             } => {
-                let result = self.carry_out(line, viewer, &text);
+                let result = self.carry_out(line, viewer, &text, stops);
+                let told = result.as_ref().map_or(Err(Refusal::Broken), Clone::clone);
                 // A viewer that is gone needs no answer.
-                let _ = answer.send(
-                    result
-                        .as_ref()
-                        .map(Answer::clone)
-                        .map_err(|_| Refusal::Broken),
-                );
+                let _ = answer.send(told);
                 result.map(drop)
             }
             Pending::Gone(viewer) if self.arbiter.borrow_mut().leave(viewer) => {
@@ -306,14 +319,20 @@ impl Worker {
         }
     }
 
-    fn carry_out(&self, line: &mut Line, viewer: ViewerNumber, text: &str) -> io::Result<Answer> {
+    fn carry_out(
+        &self,
+        line: &mut Line,
+        viewer: ViewerNumber,
+        text: &str,
+        asked_after: u64,
+    ) -> io::Result<Result<Answer, Refusal>> {
         let mut arbiter = self.arbiter.borrow_mut();
         let lines = match arbiter.judge(viewer, text) {
             Verdict::Refuse(code) => {
-                return Ok(Answer {
+                return Ok(Ok(Answer {
                     reply: None,
                     error: code.number(),
-                });
+                }));
             }
             Verdict::Send(lines) => lines,
         };
@@ -322,10 +341,19 @@ impl Worker {
             error: 0,
         };
         for line_out in &lines {
-            answer = line.ask(line_out)?;
+            {
+                // As long as this is held no stop goes out.
+                let _held = self.bypass.lock().unwrap_or_else(PoisonError::into_inner);
+                if self.stops.have_ended(asked_after, text) {
+                    arbiter.interrupt();
+                    return Ok(Err(Refusal::Stopped));
+                }
+                line.send(line_out)?;
+            }
+            answer = line.take_answer()?;
         }
         arbiter.note(viewer, text, &mut answer);
-        Ok(answer)
+        Ok(Ok(answer))
     }
 
     fn poll(&self, line: &mut Line, questions: &[&'static str]) -> io::Result<()> {

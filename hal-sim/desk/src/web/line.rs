@@ -105,7 +105,17 @@ impl Line {
 
     /// Sends a line that may be answered or not, or be refused.
     pub fn ask(&mut self, line: &str) -> io::Result<Answer> {
-        (self.port).write_all(format!("ERR?\n{line}\nERR?\n*IDN?\n").as_bytes())?;
+        self.send(line)?;
+        self.take_answer()
+    }
+
+    /// Sends such a line; [`Line::take_answer`] follows.
+    pub(super) fn send(&mut self, line: &str) -> io::Result<()> {
+        (self.port).write_all(format!("ERR?\n{line}\nERR?\n*IDN?\n").as_bytes())
+    }
+
+    /// What became of the line that was sent last.
+    pub(super) fn take_answer(&mut self) -> io::Result<Answer> {
         self.answer()?;
         let mut answers = Vec::new();
         while answers.len() < 2 || answers.last() != Some(&self.identity) {

@@ -9,7 +9,7 @@ use axum::response::{Html, IntoResponse, Redirect, Response};
 use serde::Deserialize;
 
 use super::http::Peer;
-use super::server::Shared;
+use super::shared::Shared;
 
 /// Where it is.
 pub(super) const PATH: &str = "/login";

@@ -18,6 +18,7 @@
 //! | `own_line` | over TCP: a viewer's own connection |
 //! | `arbiter` | over a serial line: what viewers that share it have for themselves |
 //! | `request` | what viewers may send |
+//! | `stops` | what was asked for before a stop and waits for its turn |
 //! | `guard` | who may look and who may drive |
 //! | `password` | the password, where others than this machine may reach the page |
 //! | `login` | asking for it |
@@ -25,7 +26,7 @@
 //! | `viewer` | one browser: status and answers out, requests in |
 //! | `operator` | sequences that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
-//! | `server` | the page's files, the token, the WebSocket |
+//! | `server`, `shared` | the page's files, the token, the WebSockets; what their handlers share |
 //!
 //! Nobody is waited for: a viewer that does not read loses status messages and is told how many; a stop from any viewer
 //! goes out at once, ahead of everything else.
@@ -43,6 +44,8 @@ mod password;
 mod port;
 mod request;
 mod server;
+mod shared;
+mod stops;
 mod viewer;
 mod watch;
 

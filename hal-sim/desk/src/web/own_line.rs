@@ -13,6 +13,7 @@ use tokio::sync::oneshot;
 use super::line::{Answer, Line};
 use super::port::{Endpoint, Port};
 use super::request::Refusal;
+use super::stops::Stops;
 
 /// Requests that may wait for the line.
 const WAITING: usize = 16;
@@ -24,6 +25,8 @@ pub(super) const JOG_TIME_MS: u32 = 300;
 /// A line that waits for its turn.
 struct Pending {
     line: String,
+    /// Stops when it was asked for.
+    stops: u64,
     answer: oneshot::Sender<Result<Answer, Refusal>>,
 }
 
@@ -31,6 +34,7 @@ struct Pending {
 pub(super) struct OwnLine {
     requests: SyncSender<Pending>,
     port: Arc<Mutex<OpenPort>>,
+    stops: Stops,
 }
 
 /// What there is to be closed.
@@ -42,24 +46,34 @@ struct OpenPort {
 
 impl OwnLine {
     /// The thread of a connection that is opened when it is needed; `name` is shown to those who ask who commands.
-    pub fn start(endpoint: Endpoint, name: String) -> io::Result<Self> {
+    pub fn start(endpoint: Endpoint, name: String, stops: Stops) -> io::Result<Self> {
         let (requests, incoming) = mpsc::sync_channel(WAITING);
         let port = Arc::<Mutex<OpenPort>>::default();
         let worker = Worker {
             endpoint,
             name,
             port: Arc::clone(&port),
+            stops: stops.clone(),
         };
         thread::Builder::new()
             .name("viewer".into())
             .spawn(move || worker.run(&incoming))?;
-        Ok(Self { requests, port })
+        Ok(Self {
+            requests,
+            port,
+            stops,
+        })
     }
 
     /// Has a line carried out.
     pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
         let (answer, answered) = oneshot::channel();
-        (self.requests.try_send(Pending { line, answer })).map_err(|error| match error {
+        let pending = Pending {
+            line,
+            stops: self.stops.count(),
+            answer,
+        };
+        (self.requests.try_send(pending)).map_err(|error| match error {
             TrySendError::Full(_) => Refusal::TooMany,
             TrySendError::Disconnected(_) => Refusal::Offline,
         })?;
@@ -84,13 +98,24 @@ struct Worker {
     endpoint: Endpoint,
     name: String,
     port: Arc<Mutex<OpenPort>>,
+    stops: Stops,
 }
 
 impl Worker {
     /// Until the viewer is gone.
     fn run(self, incoming: &Receiver<Pending>) {
         let mut line = None;
-        for Pending { line: text, answer } in incoming {
+        for Pending {
+            line: text,
+            stops,
+            answer,
+        } in incoming
+        {
+            if self.stops.have_ended(stops, &text) {
+                // A viewer that is gone needs no answer. So below.
+                let _ = answer.send(Err(Refusal::Stopped));
+                continue;
+            }
             let result = match &mut line {
                 Some(line) => carry_out(line, &text),
                 closed => match self.open() {
@@ -101,7 +126,6 @@ impl Worker {
             if result.is_err() {
                 line = None;
             }
-            // A viewer that is gone needs no answer.
             let _ = answer.send(result);
         }
     }

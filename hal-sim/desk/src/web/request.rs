@@ -49,6 +49,8 @@ pub(super) enum Refusal {
     Shared(String),
     #[error("too many requests at once")]
     TooMany,
+    #[error("not sent: a stop came before its turn")]
+    Stopped,
     #[error("not connected to the controller")]
     Offline,
     #[error(

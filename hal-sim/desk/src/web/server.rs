@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
 use axum::Router;
-use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
+use axum::extract::ws::{WebSocket, WebSocketUpgrade};
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
@@ -21,12 +22,16 @@ use super::operator::{self, Operator};
 use super::password::Password;
 use super::port::Endpoint;
 use super::request::MESSAGE_BYTES;
+use super::shared::Shared;
 use super::{PageError, http, lesson, login, viewer};
 use crate::assets;
 use drawing::assets::Asset;
 
 /// What browsers are to enforce: nothing from elsewhere, and no page of somebody else's around this one.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What a handler of a WebSocket gets.
+type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
 /// To pages of others.
 const ONLY_OWN: &str = "only the page of this server may connect\n";
@@ -60,15 +65,6 @@ impl PageOptions {
             public_url: None,
         }
     }
-}
-
-/// What handlers share.
-#[derive(Clone)]
-pub(super) struct Shared {
-    bridge: Bridge,
-    pub guard: Arc<Guard>,
-    pub password: Option<Arc<Password>>,
-    operator: Operator,
 }
 
 impl Page {
@@ -188,37 +184,40 @@ async fn lesson_frames() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], lesson::json()).into_response()
 }
 
-async fn live(
-    State(shared): State<Shared>,
-    headers: HeaderMap,
-    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
-) -> Response {
-    if !shared.guard.allows_origin(&headers) {
-        return (StatusCode::FORBIDDEN, ONLY_OWN).into_response();
-    }
-    match upgrade {
-        Ok(upgrade) => upgrade
-            .max_message_size(MESSAGE_BYTES)
-            .on_upgrade(|socket| {
-                viewer::serve(socket, shared.bridge, shared.guard, shared.operator)
-            }),
-        Err(rejection) => rejection.into_response(),
-    }
+async fn live(State(shared): State<Shared>, headers: HeaderMap, upgrade: Upgrade) -> Response {
+    upgraded(
+        &shared.clone(),
+        &headers,
+        upgrade,
+        MESSAGE_BYTES,
+        |socket| viewer::serve(socket, shared.bridge, shared.guard, shared.operator),
+    )
 }
 
 /// Sequences and the log.
-async fn operate(
-    State(shared): State<Shared>,
-    headers: HeaderMap,
-    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
+async fn operate(State(shared): State<Shared>, headers: HeaderMap, upgrade: Upgrade) -> Response {
+    upgraded(
+        &shared.clone(),
+        &headers,
+        upgrade,
+        operator::MESSAGE_BYTES,
+        |socket| operator::serve(socket, shared.operator, shared.guard),
+    )
+}
+
+/// A WebSocket for a page of this server, served so.
+fn upgraded<F: Future<Output = ()> + Send + 'static>(
+    shared: &Shared,
+    headers: &HeaderMap,
+    upgrade: Upgrade,
+    message_bytes: usize,
+    serve: impl FnOnce(WebSocket) -> F + Send + 'static,
 ) -> Response {
-    if !shared.guard.allows_origin(&headers) {
+    if !shared.guard.allows_origin(headers) {
         return (StatusCode::FORBIDDEN, ONLY_OWN).into_response();
     }
     match upgrade {
-        Ok(upgrade) => upgrade
-            .max_message_size(operator::MESSAGE_BYTES)
-            .on_upgrade(|socket| operator::serve(socket, shared.operator, shared.guard)),
+        Ok(upgrade) => upgrade.max_message_size(message_bytes).on_upgrade(serve),
         Err(rejection) => rejection.into_response(),
     }
 }

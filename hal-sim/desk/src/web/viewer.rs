@@ -34,6 +34,8 @@ enum Reply {
     },
     /// It did not.
     Refused { id: Option<u64>, reason: String },
+    /// What the viewer is called where others ask who commands.
+    You { name: String },
     /// So many status messages were lost, because they were not read in time.
     Lost { messages: u64 },
 }
@@ -46,6 +48,7 @@ impl Reply {
             Self::Answer { error: 0, .. } => "taken".to_owned(),
             Self::Answer { error, .. } => refused_with(*error),
             Self::Refused { reason, .. } => reason.clone(),
+            Self::You { name } => name.clone(),
             Self::Lost { messages } => format!("{messages} messages lost"),
         }
     }
@@ -67,6 +70,9 @@ pub(super) async fn serve(
     hello.mark_changed();
     let (answers, mut answered) = mpsc::channel::<Arc<str>>(AT_ONCE);
     let slots = Arc::new(Semaphore::new(AT_ONCE));
+    let you = json(&Reply::You { name: way.0.name() });
+    // There is room.
+    let _ = answers.try_send(you);
     loop {
         let text = tokio::select! {
             // Requests first: a stop must not wait for the status.

@@ -27,6 +27,8 @@ pub struct Bench {
     symbols: Symbols,
     stage: Stage,
     instructions_per_second: NonZeroU64,
+    has_crystal: bool,
+    flash_kib: Option<u16>,
 }
 
 /// What a run leaves behind.
@@ -86,6 +88,8 @@ impl Bench {
             symbols,
             stage,
             instructions_per_second: STAGE_RATE,
+            has_crystal: true,
+            flash_kib: None,
         })
     }
 
@@ -94,6 +98,24 @@ impl Bench {
     pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
         Self {
             instructions_per_second,
+            ..self
+        }
+    }
+
+    /// The same with a crystal that does not start.
+    #[must_use]
+    pub fn without_crystal(self) -> Self {
+        Self {
+            has_crystal: false,
+            ..self
+        }
+    }
+
+    /// The same on a chip whose manufacturer says that it has so many KiB of flash.
+    #[must_use]
+    pub fn with_flash_kib(self, flash_kib: u16) -> Self {
+        Self {
+            flash_kib: Some(flash_kib),
             ..self
         }
     }
@@ -114,7 +136,13 @@ impl Bench {
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
-        let board = board.at_rate(self.instructions_per_second);
+        let mut board = board.at_rate(self.instructions_per_second);
+        if !self.has_crystal {
+            board = board.without_crystal();
+        }
+        if let Some(flash_kib) = self.flash_kib {
+            board = board.with_flash_kib(flash_kib);
+        }
         let mut session =
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));

@@ -1,11 +1,12 @@
 //! The run's clock: stops the emulator once a control period and moves everything outside the chip.
 
-use super::board::ChipBoard;
+use super::board::{ChipBoard, HSE_ON, RCC_CR};
 use super::cost::TickCost;
+use super::follow::Following;
 use super::period::{Action, Period, Reset};
 use super::timeline::{EARLY_NS, FIRST_TICK_NS, LATCH_NS, PERIOD_NS};
 use hal_sim::machine::devices::{BridgeState, Stage};
-use rigless::emulator::{AccessKind, Driver, HitKind, Host, Settled, Stop};
+use rigless::emulator::{AccessKind, Driver, Hit, HitKind, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use std::ops::ControlFlow;
@@ -39,8 +40,8 @@ pub struct StageDriver<F> {
     pub bridge_faults: [bool; 3],
     pub probes: Vec<(u64, [BridgeState; 3])>,
     pub actions: Vec<(u64, Action)>,
-    /// Where the core has come by since the caller looked last, of what it watches.
-    pub path: Vec<u64>,
+    /// The ticks' instructions, where somebody has asked for them.
+    pub following: Option<Following>,
     /// When the timers were started, since the last reset.
     pub started_at: Option<u64>,
     /// The tick to come, since the last reset.
@@ -64,7 +65,7 @@ impl<F> StageDriver<F> {
             bridge_faults: [false; 3],
             probes: Vec::new(),
             actions: Vec::new(),
-            path: Vec::new(),
+            following: None,
             started_at: None,
             tick: 0,
             tick_began: None,
@@ -111,8 +112,15 @@ impl<F> StageDriver<F> {
         }
     }
 
-    fn note_hit(&mut self, address: u64, at: VirtualNanos, instructions: u64) {
-        self.path.push(address);
+    fn note_hit(&mut self, hit: Hit, host: &mut dyn Host) {
+        let (address, at, instructions) = (hit.address, hit.at, hit.instruction_count);
+        if let Some(following) = &mut self.following {
+            match address {
+                _ if address == self.landmarks.tick_begin => following.begin(address, host),
+                _ if address == self.landmarks.tick_end => following.end(),
+                _ => following.step(address, host),
+            }
+        }
         let Some(started_at) = self.started_at else {
             return;
         };
@@ -141,6 +149,7 @@ impl<F> StageDriver<F> {
                 Action::EmergencyStop(pressed) => board.set_emergency_stop(now, pressed),
                 // The register exists: the image wrote to it before.
                 Action::HaltLoop => drop(board.stop_latch_timer(now)),
+                Action::DelayLatch(counts) => drop(board.delay_latch(now, counts)),
                 Action::Probe => self
                     .probes
                     .push((now.0, board.bridges(now, self.bridge_faults))),
@@ -180,9 +189,9 @@ where
             cost: self.cost,
             resets: &self.resets,
             probes: &self.probes,
-            path: &self.path,
+            following: &mut self.following,
+            ends: [self.landmarks.tick_begin, self.landmarks.tick_end],
         });
-        self.path.clear();
         session
             .board_mut()
             .set_bridge_faults(now, self.bridge_faults);
@@ -207,7 +216,7 @@ where
     fn on_settled(
         &mut self,
         session: &mut Session<ChipBoard>,
-        _host: &mut dyn Host,
+        host: &mut dyn Host,
         settled: Settled,
     ) {
         let now = match settled {
@@ -225,8 +234,17 @@ where
             {
                 self.started_at = Some(now.0);
             }
-            Settled::Hit(hit) if hit.kind == HitKind::Instruction => {
-                self.note_hit(hit.address, hit.at, hit.instruction_count);
+            Settled::Hit(hit) if hit.kind == HitKind::Instruction => self.note_hit(hit, host),
+            Settled::Access { access, .. } => {
+                let switches_crystal_on = access.address == RCC_CR
+                    && access.kind == AccessKind::Write
+                    && access.value & u64::from(HSE_ON) != 0;
+                if switches_crystal_on {
+                    session.board_mut().crystal_switched_on(now);
+                }
+                if let Some(following) = &mut self.following {
+                    following.access(&access);
+                }
             }
             _ => {}
         }

@@ -1,7 +1,8 @@
 //! Where the images lie.
 
+use object::{Object, ObjectSymbol};
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Names a built image `stage`, instead of the one in this build's target folder.
 pub const IMAGE_VARIABLE: &str = "TRIPIVOT_IMAGE";
@@ -26,4 +27,12 @@ pub fn built(name: &str) -> Option<PathBuf> {
         .ancestors()
         .map(|folder| folder.join(IN_TARGET_FOLDER).join(name))
         .find(|path| path.is_file())
+}
+
+/// The value of one of an image's symbols.
+#[must_use]
+pub fn symbol(path: &Path, name: &str) -> Option<u64> {
+    let bytes = std::fs::read(path).ok()?;
+    let file = object::File::parse(&*bytes).ok()?;
+    Some(file.symbol_by_name(name)?.address())
 }

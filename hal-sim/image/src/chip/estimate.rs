@@ -1,8 +1,8 @@
 //! What `llvm-mca` makes of instructions that ran one after the other: cycles of a Cortex-M4 without wait states. Jumps count
 //! as instructions; that the core refills its pipeline after one is not in it.
 
-use super::way::Way;
-use crate::proof::Step;
+use super::follow::Step;
+use crate::cycles::{Kind, Program};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -30,7 +30,7 @@ pub struct Estimate {
 ///
 /// # Errors
 /// Why there is no estimate, for whoever reads the report: most machines do not have it.
-pub fn estimate(way: &Way) -> Result<Estimate, String> {
+pub fn estimate(program: &Program, steps: &[Step]) -> Result<Estimate, String> {
     let missing = |error: std::io::Error| format!("{PROGRAM}: {error}");
     let mut child = Command::new(PROGRAM)
         .args(ARGUMENTS)
@@ -40,7 +40,9 @@ pub fn estimate(way: &Way) -> Result<Estimate, String> {
         .spawn()
         .map_err(missing)?;
     if let Some(mut input) = child.stdin.take() {
-        input.write_all(source(way).as_bytes()).map_err(missing)?;
+        input
+            .write_all(source(program, steps).as_bytes())
+            .map_err(missing)?;
     }
     let output = child.wait_with_output().map_err(missing)?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -62,14 +64,14 @@ pub fn estimate(way: &Way) -> Result<Estimate, String> {
 }
 
 /// The instructions as an assembler takes them. Where a jump leads does not matter here.
-fn source(way: &Way) -> String {
+fn source(program: &Program, steps: &[Step]) -> String {
     let mut text = String::from(".syntax unified\n.fpu fpv4-sp-d16\n");
-    for (_, decoded) in way {
-        let line = match decoded.step {
-            Step::Call(_) | Step::Jump(_) => jump(&decoded.text),
-            _ => decoded.text.clone(),
-        };
-        text.push_str(&line);
+    for step in steps {
+        let line = program.text(step.at).unwrap_or_default();
+        match program.at(step.at).map(|it| it.kind) {
+            Some(Kind::Jump) => text.push_str(&jump(line)),
+            _ => text.push_str(line),
+        }
         text.push('\n');
     }
     text

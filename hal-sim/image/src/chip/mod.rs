@@ -20,10 +20,11 @@
 //! | `bench`, `driver`, `period` | the bench, its clock, and what a caller sees once a period |
 //! | `board`, `encoder`, `line` | what lies around the chip |
 //! | `run`, `serve`, `exercise/` | a script; clients over TCP; motion from a seed |
+//! | `uses` | everything that the tick is used for, followed |
 //! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
 //! | `load` | the tick under all the load there is |
-//! | `cost`, `way`, `estimate` | what ticks take; one tick instruction by instruction; in cycles |
+//! | `cost`, `follow`, `way`, `estimate` | what ticks take; their instructions; one tick's by where they are written; `llvm-mca` on it |
 //! | `gaps` | what the emulator does not model |
 //! | `elf_file` | where the images lie |
 //!
@@ -37,6 +38,7 @@ pub mod elf_file;
 mod encoder;
 mod estimate;
 mod exercise;
+mod follow;
 pub(crate) mod gaps;
 mod line;
 mod load;
@@ -45,12 +47,14 @@ mod run;
 mod serve;
 mod timeline;
 mod twin;
+mod uses;
 mod way;
 
 pub use bench::{Bench, BenchError, Outcome};
 pub use cost::TickCost;
 pub use estimate::{Estimate, estimate};
 pub use exercise::{Cost, Doing, Exercise, ExerciseOptions, Tally, Worst, exercise};
+pub use follow::Step;
 pub use gaps::{Allowed, GAPS};
 pub use load::{Load, load};
 pub use period::{Action, Period, Reset, Service, Trace};
@@ -58,4 +62,5 @@ pub use rigless::device::ResetCause;
 pub use run::{ChipError, ChipOutcome, run};
 pub use serve::{LineNotice, LineServer};
 pub use twin::{Agreed, Divergence, Twin};
-pub use way::{Way, follow};
+pub use uses::{Use, Used, UsedTick, uses};
+pub use way::follow;

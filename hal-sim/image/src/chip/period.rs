@@ -2,12 +2,15 @@
 
 use super::board::ChipBoard;
 use super::cost::TickCost;
+use super::follow::{Following, Step};
 use super::timeline::{EARLY_NS, LATCH_NS};
+use crate::cycles::Program;
 use hal_sim::machine::devices::{BridgeState, Stage};
-use rigless::device::ResetCause;
-use rigless::emulator::{Host, Watch};
+use rigless::device::{Level, ResetCause};
+use rigless::emulator::{Host, InterruptLine, Watch};
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
+use std::sync::Arc;
 
 /// A restart of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +28,8 @@ pub enum Action {
     EmergencyStop(bool),
     /// Stop the timer that starts every control period: the loop halts.
     HaltLoop,
+    /// Move the latches to come by so many counts of TIM3 (84 MHz): later, or, less than 0, earlier again.
+    DelayLatch(i32),
     /// Keep what the bridges' pins say, for [`Period::probes`].
     Probe,
 }
@@ -79,8 +84,9 @@ pub struct Period<'a> {
     pub resets: &'a [Reset],
     /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
     pub probes: &'a [(u64, [BridgeState; 3])],
-    /// Where the core has come by since the period before: the tick's begin and end, and what [`Period::watch`] asked for.
-    pub path: &'a [u64],
+    pub(super) following: &'a mut Option<Following>,
+    /// Where a tick begins and ends.
+    pub(super) ends: [u64; 2],
 }
 
 impl Period<'_> {
@@ -130,9 +136,47 @@ impl Period<'_> {
             .map(|word| word as u32)
     }
 
-    /// Has the core's way over an instruction noted from now on. Returns whether it can be.
-    pub fn watch(&mut self, instruction: u64) -> bool {
-        self.host.watch(Watch::Instruction(instruction))
+    /// Has the instructions of ticks noted from the next one on, or no more. Returns whether they can be.
+    pub fn follow(&mut self, program: Option<&Arc<Program>>) -> bool {
+        let before = std::mem::replace(
+            self.following,
+            program.map(|program| Following::new(program, self.ends)),
+        );
+        if let Some(before) = before {
+            for at in before.addresses() {
+                self.host.unwatch(Watch::Instruction(at));
+            }
+        }
+        let following = self.following.as_ref();
+        following.is_none_or(|it| {
+            it.addresses()
+                .all(|at| self.host.watch(Watch::Instruction(at)))
+        })
+    }
+
+    /// The instructions of the last tick, from the first of its handler to the symbol `stage_tick_end`; `None` when it was not
+    /// followed to its end.
+    #[must_use]
+    pub fn steps(&self) -> Option<&[Step]> {
+        self.following.as_ref().and_then(Following::steps)
+    }
+
+    /// The register of a peripheral at an address, as the program last left it, or `None` where there is none. The registers of
+    /// the processor itself are not among them.
+    pub fn register(&mut self, address: u64) -> Option<u32> {
+        self.board.register(self.at, address)
+    }
+
+    /// Raises an interrupt of the chip by its number, as its peripheral would.
+    pub fn interrupt(&mut self, number: u16) {
+        if let Some(line) = InterruptLine::new(number) {
+            self.host.set_interrupt(line, Level::High);
+        }
+    }
+
+    /// Sets the supply of the chip itself, mV.
+    pub fn set_chip_supply(&mut self, millivolts: u32) {
+        self.board.set_chip_supply(millivolts);
     }
 
     /// The image's record.

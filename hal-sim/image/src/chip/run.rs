@@ -154,8 +154,10 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
             trace: runner.observer.trace,
             moves: runner.observer.moves,
             conditions: Conditions {
-                machine: "simulated reference stage, controller's image on the emulated chip"
-                    .to_owned(),
+                machine: format!(
+                    "simulated {}, controller's image on the emulated chip",
+                    options.machine_name
+                ),
                 ..run_conditions(options)
             },
             wall_s: runner.progress.finish(),

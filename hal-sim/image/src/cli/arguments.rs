@@ -29,9 +29,14 @@ pub(super) enum Command {
     ChipLoad(ChipLoad),
     /// Follow one tick of a move on the emulated chip, instruction by instruction, and tell what they are spent on.
     ChipTick(ChipTick),
+    /// What ticks take in cycles of the real core and its flash, by what they are used for: a model of both over the instructions that
+    /// ran on the emulated chip.
+    ChipCycles(ChipCycles),
     /// Prove of the chip's image that its control loop cannot panic and how deep its stack gets; print what it takes of flash and
     /// RAM. Exit code 1 if the proof fails.
     ImageCheck,
+    /// Give the chip's image its checksum, which it checks at every start. To be done after `cargo stage`, before flashing.
+    Seal,
 }
 
 /// A run on the emulated chip.
@@ -65,12 +70,38 @@ pub(super) struct ChipServe {
 /// Where the repository keeps the figures, for a program that is run where it was built.
 const FIGURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../firmware/figures.csv");
 
+const LIMITS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../firmware/cycle-limits.csv"
+);
+
 /// Load on the emulated chip.
 #[derive(Args, Clone, Debug)]
 pub(super) struct ChipLoad {
     /// Ticks.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = value_parser!(u64).range(1_000..=10_000_000))]
     pub(super) ticks: u64,
+}
+
+/// Cycles of ticks.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipCycles {
+    /// Ticks of each use, about.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = value_parser!(u64).range(40..=4_000))]
+    pub(super) ticks: u64,
+    /// Functions and lines named that wait most.
+    #[arg(long, value_name = "N", default_value_t = 15)]
+    pub(super) top: usize,
+    /// Compare with the limits that the repository keeps, and the model with llvm-mca: exit code 1 when a tick is over its limit, or
+    /// the two are more than 2 % apart.
+    #[arg(long)]
+    pub(super) check: bool,
+    /// Write the limits that these ticks give.
+    #[arg(long, conflicts_with = "check")]
+    pub(super) write: bool,
+    /// The limits.
+    #[arg(long, value_name = "FILE", default_value = LIMITS)]
+    pub(super) limits: PathBuf,
 }
 
 /// One tick on the emulated chip.

@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &ChipRun) -> Result<ExitCode, CliError> {
         .file_stem()
         .unwrap_or(name.as_os_str())
         .to_string_lossy();
-    let options = options(&format!("chip-{stem}"), &arguments.simulation);
+    let options = options(&format!("chip-{stem}"), &arguments.simulation)?;
     claim_folder(&options.out, &FILES)?;
     let mut on_chip = chip::run(&script, &options)?;
     on_chip.run.conditions.program = format!("image {VERSION}");

@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &ChipServe) -> Result<ExitCode, CliError> {
         server.address().map_err(listen)?
     );
     (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
-    let options = stage_options(&arguments.stage);
+    let options = stage_options(&arguments.stage)?;
     server.run(&options, stop, |notice| eprintln!("{notice}"))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -20,6 +20,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
+    Stage(#[from] tripivot::cli::stage::StageError),
+    #[error(transparent)]
     Script(#[from] ScriptError),
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),
@@ -29,6 +31,8 @@ pub(super) enum CliError {
     Cost(#[from] crate::cost::CostError),
     #[error(transparent)]
     Figures(#[from] crate::cost::FiguresError),
+    #[error(transparent)]
+    Limits(#[from] crate::cycles::LimitsError),
     #[error(transparent)]
     Proof(#[from] crate::proof::ProofError),
     /// A part costs more than it did.

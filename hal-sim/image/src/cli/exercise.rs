@@ -11,7 +11,7 @@ use tripivot::cli::stage::options;
 pub(super) fn run(ticks: u64, arguments: &ChipRun) -> Result<ExitCode, CliError> {
     let options = ExerciseOptions {
         ticks,
-        run: options("exercise", &arguments.simulation),
+        run: options("exercise", &arguments.simulation)?,
         flip: arguments.flip,
     };
     let seed = options.run.seed;

@@ -4,6 +4,7 @@
 
 mod arguments;
 mod chip;
+mod chip_cycles;
 mod chip_load;
 mod chip_serve;
 mod chip_tick;
@@ -12,6 +13,8 @@ mod error;
 mod exercise;
 mod image_check;
 mod period;
+mod place;
+mod seal;
 
 use std::process::ExitCode;
 
@@ -43,7 +46,9 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::ChipServe(arguments) => chip_serve::run(&arguments),
         Command::Cost(arguments) => cost::run(&arguments),
         Command::ChipLoad(arguments) => chip_load::run(&arguments),
+        Command::ChipCycles(arguments) => chip_cycles::run(&arguments),
         Command::ChipTick(arguments) => chip_tick::run(&arguments),
         Command::ImageCheck => image_check::run(),
+        Command::Seal => seal::run(),
     }
 }

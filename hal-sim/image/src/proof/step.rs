@@ -50,6 +50,8 @@ pub struct Decoded {
     pub step: Step,
     /// Its length, bytes.
     pub length: u64,
+    /// As it stands in memory, as many bytes as it has.
+    pub bytes: [u8; 4],
     /// As it is written.
     pub text: String,
 }
@@ -75,17 +77,37 @@ impl Engine {
     /// # Errors
     /// Where they are none.
     pub fn decode(&self, bytes: &[u8], at: u64) -> Result<Decoded, ProofError> {
+        self.look(bytes, at, |instruction, arm| {
+            let name = instruction.mnemonic().unwrap_or_default();
+            let mut bytes = [0; 4];
+            for (place, byte) in bytes.iter_mut().zip(instruction.bytes()) {
+                *place = *byte;
+            }
+            Decoded {
+                step: step(instruction, arm),
+                bytes,
+                length: instruction.bytes().len() as u64,
+                text: format!("{name} {}", instruction.op_str().unwrap_or_default()),
+            }
+        })
+    }
+
+    /// What somebody makes of the first instruction of these bytes.
+    ///
+    /// # Errors
+    /// Where they are none.
+    pub fn look<T>(
+        &self,
+        bytes: &[u8],
+        at: u64,
+        make: impl FnOnce(&Insn<'_>, &ArmInsnDetail<'_>) -> T,
+    ) -> Result<T, ProofError> {
         let none = || ProofError::Bytes(at);
         let found = self.0.disasm_count(bytes, at, 1).map_err(|_| none())?;
         let instruction = found.iter().next().ok_or_else(none)?;
         let detail = self.0.insn_detail(instruction).map_err(|_| none())?;
         let ArchDetail::ArmDetail(arm) = detail.arch_detail();
-        let name = instruction.mnemonic().unwrap_or_default();
-        Ok(Decoded {
-            step: step(instruction, &arm),
-            length: instruction.bytes().len() as u64,
-            text: format!("{name} {}", instruction.op_str().unwrap_or_default()),
-        })
+        Ok(make(instruction, &arm))
     }
 }
 

@@ -8,6 +8,8 @@
 //!
 //! The CRC has the polynomial 0x43 (x^6 + x + 1) and start value 0 and covers position, error and warning.
 
+use serde::{Deserialize, Serialize};
+
 /// Bits of position in a frame.
 pub const POSITION_BITS: u32 = 26;
 
@@ -18,7 +20,8 @@ pub const COUNTS_PER_TURN: u32 = 1 << POSITION_BITS;
 const BODY_BITS: u32 = 2 + POSITION_BITS + 2 + 6;
 
 /// How long the line idles and acknowledges before the start bit, in clocks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Preamble {
     /// Clocks until the encoder pulls the line low.
     pub idle_bits: u32,

@@ -4,6 +4,7 @@
 //! all switches. [`BridgePins`] are the firmware's side of a [`Bridge`]; [`BridgeState`] is the same as plain data, for
 //! a front that reads pulses and levels off an emulated chip.
 
+use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 use std::convert::Infallible;
 use std::rc::Rc;
@@ -19,9 +20,11 @@ pub const MAX_DUTY: u16 = 4200;
 pub const FINE_PWM: u16 = 32_000;
 
 /// What a bridge is made like.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct BridgeParameters {
-    /// Supply, V.
+    /// Supply, V. A stage puts the plant's here.
+    #[serde(skip, default = "reference_supply_v")]
     pub supply_v: f64,
     /// PWM frequency, Hz.
     pub pwm_hz: f64,
@@ -41,6 +44,10 @@ impl BridgeParameters {
         dead_time_s: 200e-9,
         dead_time_knee_a: 0.043,
     };
+}
+
+const fn reference_supply_v() -> f64 {
+    BridgeParameters::REFERENCE.supply_v
 }
 
 /// What the pins of one bridge say.

@@ -5,6 +5,7 @@
 
 use core::convert::Infallible;
 use core::f64::consts::TAU;
+use serde::{Deserialize, Serialize};
 
 use embedded_hal::spi::{ErrorType, SpiBus};
 use kinematics::Scalar;
@@ -13,7 +14,8 @@ use super::biss::{self, COUNTS_PER_TURN, Preamble};
 use crate::random::Random;
 
 /// What an encoder is made and mounted like.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct EncoderParameters {
     /// Position that it reports where the ring's angle is zero, counts.
     pub zero_counts: u32,

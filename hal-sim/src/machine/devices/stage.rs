@@ -15,6 +15,7 @@ use super::analog;
 use super::bridge::{BridgeParameters, BridgeState};
 use super::encoder::{Encoder, EncoderParameters};
 use crate::machine::plant::{AXES, Drive, Plant, PlantParameters};
+use serde::{Deserialize, Serialize};
 
 /// Substeps before the new drive acts, in parts of the period.
 const OLD_DRIVE: [f64; 2] = [0.25, 0.25];
@@ -24,7 +25,8 @@ const TO_LATCH: f64 = 0.2;
 const AFTER_LATCH: f64 = 0.3;
 
 /// Everything that a simulated stage is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct StageParameters {
     /// Control period, s.
     pub period_s: f64,
@@ -34,7 +36,8 @@ pub struct StageParameters {
     pub encoders: [EncoderParameters; AXES],
     /// The bridges; their supply is the plant's.
     pub bridge: BridgeParameters,
-    /// Seed of every random number.
+    /// Seed of every random number. It is a run's, and no part of a machine's file.
+    #[serde(skip, default = "reference_seed")]
     pub seed: u64,
 }
 
@@ -64,8 +67,14 @@ impl StageParameters {
             },
         ],
         bridge: BridgeParameters::REFERENCE,
-        seed: 1,
+        seed: REFERENCE_SEED,
     };
+}
+
+const REFERENCE_SEED: u64 = 1;
+
+const fn reference_seed() -> u64 {
+    REFERENCE_SEED
 }
 
 impl Default for StageParameters {

@@ -14,6 +14,7 @@
 
 use kinematics::Scalar;
 use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::parameters::{AXES, PlantParameters};
 
@@ -32,7 +33,8 @@ const MAX_STEPS: u32 = 30;
 const SMALL_STEP: f64 = 1e-10;
 
 /// How one pivot, its ring and its guide are built. All zero is the drawing.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PivotGeometry {
     /// Centre of the ring in the base frame, m.
     pub ring_centre_m: [f64; 2],

@@ -1,11 +1,14 @@
 //! Which departures from an ideal machine are simulated, and their names.
 
+use serde::{Deserialize, Serialize};
+
 /// Which departures from an ideal machine are simulated.
 ///
 /// A flag only gates its effect: the size stands in [`PlantParameters`](super::PlantParameters) (or in the parameters of the device), so an
 /// effect can be switched off and on again without losing its number. The counts of the encoders have no flag: a frame holds
 /// whole counts, and the true angle is the plant's to tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Imperfections {
     /// Coulomb, static and presliding friction at the rings (the bristle model).
     pub dry_friction: bool,

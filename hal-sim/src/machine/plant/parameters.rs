@@ -6,12 +6,14 @@
 use super::built::BUILT;
 use super::geometry::PivotGeometry;
 use super::imperfections::Imperfections;
+use serde::{Deserialize, Serialize};
 
 /// Number of pivots, drives, encoders and guides.
 pub const AXES: usize = 3;
 
 /// A load on the platform. Its centre and its own inertia are given in the platform frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Payload {
     /// Mass, kg. Reference stage: 0 to 5.
     pub mass_kg: f64,
@@ -34,7 +36,8 @@ impl Payload {
 }
 
 /// Friction by the bristle model. A ring's is in N m and rad, a guide's in N and m.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FrictionParameters {
     /// Coulomb friction: N m or N.
     pub coulomb: f64,
@@ -51,7 +54,8 @@ pub struct FrictionParameters {
 }
 
 /// The machine behind the bridges' terminals. See [`PlantParameters::REFERENCE`] for the origin of the numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PlantParameters {
     /// Track radius, m.
     pub track_radius_m: f64,

@@ -1,7 +1,7 @@
 //! The arguments, as clap reads them.
 
 use super::number::{whole, within};
-use super::stage::{SimulatedStage, Simulation};
+use super::stage::{Machine, SimulatedStage, Simulation};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 pub(super) use controller::{Access, Controller, RecordRun, SettingsCommand, View};
@@ -69,6 +69,8 @@ pub(super) enum Command {
     /// Write settings of a controller that runs already into a readable file, or bring them back from one.
     #[command(subcommand)]
     Settings(SettingsCommand),
+    /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
+    Machine(Machine),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
     /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.

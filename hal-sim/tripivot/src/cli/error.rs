@@ -38,6 +38,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),
     #[error(transparent)]
+    Stage(#[from] super::stage::StageError),
+    #[error(transparent)]
     Script(#[from] ScriptError),
     #[error(transparent)]
     Serve(#[from] desk::serve::ServeError),

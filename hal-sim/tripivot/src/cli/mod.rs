@@ -6,7 +6,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `arguments`, `number`, `usage`, `error` | what is typed, and what is said of it where it is wrong |
-//! | `stage`, `simulate`, `serve` | the simulated stage: its options, a run, in real time |
+//! | `stage`, `machine`, `simulate`, `serve` | the simulated stage: its options, its numbers, a run, in real time |
 //! | `view`, `record`, `settings` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
@@ -21,6 +21,7 @@ mod error;
 mod faults;
 mod inverse;
 mod json;
+mod machine;
 mod map;
 
 mod number;
@@ -79,6 +80,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Serve(arguments)) => serve::run(&arguments),
         Some(Command::View(arguments)) => view::run(&arguments),
         Some(Command::Record(arguments)) => record::run(&arguments),
+        Some(Command::Machine(arguments)) => machine::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),

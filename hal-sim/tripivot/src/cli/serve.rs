@@ -24,7 +24,7 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     let flash = (arguments.settings.as_deref())
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
     let mut memory = ControllerMemory::new();
-    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage), flash);
+    let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage)?, flash);
     let server = Server::bind(ServeOptions {
         listen: arguments.listen.clone(),
         speed: arguments.speed,

@@ -60,7 +60,7 @@ fn simulate(
     json: bool,
 ) -> Result<ExitCode, CliError> {
     let flash = settings.map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
-    let options = options(name, arguments);
+    let options = options(name, arguments)?;
     claim_folder(&options.out, &FILES)?;
     let mut outcome = run::run_with(script, &options, flash);
     let conditions = &mut outcome.run.conditions;

@@ -2,8 +2,12 @@
 
 use std::path::PathBuf;
 
+use std::{fs, io};
+
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use hal_sim::machine::devices::StageParameters;
+use hal_sim::machine::file::{MachineError, from_text};
 use hal_sim::machine::plant::{Imperfections, NAMED};
 use hal_sim::report::DEFAULT_EVERY;
 use hal_sim::rig::run::RunOptions;
@@ -36,9 +40,10 @@ pub struct SimulatedStage {
     /// Seed of the simulated noise: the same seed gives the same trace.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub seed: u64,
-    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors.
-    #[arg(long, value_name = "PERCENT", default_value_t = 20.0, allow_negative_numbers = true, value_parser = within(-MISMATCH_LIMIT_PERCENT..=MISMATCH_LIMIT_PERCENT))]
-    pub mismatch: f64,
+    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors [default: 20,
+    /// and 0 for a machine of one's own].
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = within(-MISMATCH_LIMIT_PERCENT..=MISMATCH_LIMIT_PERCENT))]
+    pub mismatch: Option<f64>,
     /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
     #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=PAYLOAD_LIMIT_KG))]
     pub payload: f64,
@@ -48,6 +53,79 @@ pub struct SimulatedStage {
     /// Imperfections to switch on that a kind machine has not; `all` makes it an unkind one.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
     pub with: Vec<String>,
+    /// The machine itself.
+    #[command(flatten)]
+    pub machine: Machine,
+}
+
+/// A machine of one's own.
+#[derive(Args, Clone, Debug)]
+pub struct Machine {
+    /// File of the machine's numbers; `tripivot machine` prints one to start from [default: the reference stage].
+    #[arg(id = "machine", long = "machine", value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// Set one number of the machine, as in plant.platform_mass_kg=3.5; again for more.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl Machine {
+    const fn is_reference(&self) -> bool {
+        self.file.is_none() && self.set.is_empty()
+    }
+
+    /// Its numbers.
+    ///
+    /// # Errors
+    /// [`StageError`]: the file, or what is set, is no machine.
+    pub fn parameters(&self) -> Result<StageParameters, StageError> {
+        let text = match &self.file {
+            Some(file) => fs::read_to_string(file).map_err(|error| StageError::Unreadable {
+                file: file.clone(),
+                error,
+            })?,
+            None => String::new(),
+        };
+        from_text(&text, &self.set).map_err(|error| StageError::Machine {
+            origin: (self.file.as_ref())
+                .map_or_else(|| "--set".into(), |file| file.display().to_string()),
+            error,
+        })
+    }
+
+    /// What to call it.
+    fn name(&self) -> String {
+        let mut name = match &self.file {
+            Some(file) => format!("machine of {}", file.display()),
+            None => "reference stage".to_owned(),
+        };
+        for setting in &self.set {
+            name += " with ";
+            name += setting;
+        }
+        name
+    }
+}
+
+/// Why there is no stage to simulate.
+#[derive(Debug, thiserror::Error)]
+pub enum StageError {
+    /// The file of the machine.
+    #[error("cannot read {}: {error}", .file.display())]
+    Unreadable {
+        /// Which.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// What is in it.
+    #[error("{origin}: {error}")]
+    Machine {
+        /// The file, or the command line.
+        origin: String,
+        /// Why.
+        error: MachineError,
+    },
 }
 
 /// A name of an imperfection.
@@ -65,30 +143,42 @@ const MISMATCH_LIMIT_PERCENT: f64 = 80.0;
 const PAYLOAD_LIMIT_KG: f64 = 5.0;
 
 /// What to do in a run called `name`.
-#[must_use]
-pub fn options(name: &str, arguments: &Simulation) -> RunOptions {
+///
+/// # Errors
+/// [`StageError`]: there is no such machine.
+pub fn options(name: &str, arguments: &Simulation) -> Result<RunOptions, StageError> {
     let default = || PathBuf::from(format!("{FOLDER}{name}"));
-    RunOptions {
+    Ok(RunOptions {
         out: arguments.out.clone().unwrap_or_else(default),
         every: arguments.every,
         quiet: arguments.quiet,
-        ..stage_options(&arguments.stage)
-    }
+        ..stage_options(&arguments.stage)?
+    })
 }
 
 /// The stage that was asked for; the rest as it is by default.
-#[must_use]
-pub fn stage_options(arguments: &SimulatedStage) -> RunOptions {
-    RunOptions {
+///
+/// # Errors
+/// [`StageError`]: there is no such machine.
+pub fn stage_options(arguments: &SimulatedStage) -> Result<RunOptions, StageError> {
+    let machine = arguments.machine.parameters()?;
+    let usual = if arguments.machine.is_reference() {
+        RunOptions::default().mismatch_percent
+    } else {
+        0.0
+    };
+    Ok(RunOptions {
         seed: arguments.seed,
-        mismatch_percent: arguments.mismatch,
+        mismatch_percent: arguments.mismatch.unwrap_or(usual),
         payload_kg: arguments.payload,
-        imperfections: imperfections(arguments),
+        imperfections: imperfections(arguments, machine.plant.imperfections),
+        machine,
+        machine_name: arguments.machine.name(),
         ..RunOptions::default()
-    }
+    })
 }
 
-fn imperfections(arguments: &SimulatedStage) -> Imperfections {
+fn imperfections(arguments: &SimulatedStage, usual: Imperfections) -> Imperfections {
     let all = |names: &[String]| names.iter().any(|name| name == "all");
     let start = if all(&arguments.without) {
         // The transmission that does not give way, as well.
@@ -99,7 +189,7 @@ fn imperfections(arguments: &SimulatedStage) -> Imperfections {
     } else if all(&arguments.with) {
         Imperfections::ALL
     } else {
-        Imperfections::CALIBRATED
+        usual
     };
     let switched = |on: Imperfections, (name, is_on): (&String, bool)| {
         // What the command line takes is a name, or `all`.

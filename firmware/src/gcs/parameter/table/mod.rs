@@ -199,15 +199,15 @@ const AFTER_GAINS: &[Parameter] = &[
     WINDOW.float(0x5450_0401, "settling dwell", "s", [5e-5, 10.0], at!(window.dwell_s)),
     WINDOW.float(0x5450_0402, "time over whose mean the error is taken, at most 32 ticks", "s", [5e-5, 1.6e-3], at!(window.mean_s)),
 
-    SUPERVISION.float(0x5450_0500, "largest following error", "rad", [2e-5, 0.2], at!(supervision.following_error_rad)),
+    SUPERVISION.float(0x5450_0500, "largest following error", "rad", [2e-5, 0.05], at!(supervision.following_error_rad)),
     SUPERVISION.float(0x5450_0501, "lowest supply", "V", [24.0, 60.0], at!(supervision.supply_min_v)),
     SUPERVISION.int(0x5450_0502, "bad encoder frames that are bridged", [0.0, 10.0], whole!(u8: supervision.bridged_frames)),
     SUPERVISION.float(0x5450_0503, "largest plausible acceleration of a pivot", "rad/s^2", [1_000.0, 500_000.0],
         at!(supervision.plausible_acceleration_rad_s2)),
     SUPERVISION.float(0x5450_0504, "following error allowed besides, by rate", "rad per rad/s", [0.0, 0.001], at!(supervision.following_error_s)),
     SUPERVISION.float(0x5450_0505, "rate of a pivot that is a fault, over its largest in motion", "", [1.05, 3.0], at!(supervision.overspeed_factor)),
-    SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 1.0], at!(supervision.frozen_rad)),
-    SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 60.0], at!(supervision.frozen_v)),
+    SUPERVISION.float(0x5450_0506, "way in which an encoder must show something new", "rad", [1e-6, 0.05], at!(supervision.frozen_rad)),
+    SUPERVISION.float(0x5450_0507, "voltage beyond what moved a pivot last, after which its encoder must show something new", "V", [0.1, 36.0], at!(supervision.frozen_v)),
     SUPERVISION.float(0x5450_0508, "longest time of a bridge at its largest duty", "s", [1e-3, 1.0], at!(supervision.max_saturation_s)),
     SUPERVISION.float(0x5450_0509, "current that a motor bears for ever", "A", [0.1, 6.0], at!(supervision.motor_current_a)),
     SUPERVISION.float(0x5450_050A, "heating time of a motor", "s", [0.01, 120.0], at!(supervision.motor_heating_s)),
@@ -217,7 +217,7 @@ const AFTER_GAINS: &[Parameter] = &[
     SUPERVISION.float(0x5450_050E, "how far under their smallest angle pivots are a fault", "deg", [0.05, 5.0],
         ValueSource::Settable(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
     SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
-    SUPERVISION.float(0x5450_0511, "swing of a servo's voltage that is an oscillation", "V", [0.5, 120.0], at!(supervision.oscillation_v)),
+    SUPERVISION.float(0x5450_0511, "swing of a servo's voltage that is an oscillation", "V", [0.5, 60.0], at!(supervision.oscillation_v)),
     Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of all connections together, 0 for any; HBT asks for the like of one connection", "ms", [0.0, MAX_DELAY_MS], at!(supervision.host_silence_ms)) },
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),
@@ -238,6 +238,8 @@ const AFTER_GAINS: &[Parameter] = &[
 #[rustfmt::skip]
 const POWER: &[Parameter] = &[
     DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(power.supply_v)),
+    DRIVE.float(0x5450_080D, "largest voltage of a motor; the bridge gives 98 % of the supply at most", "V", [1.0, 60.0], at!(power.voltage_limit_v)),
+    DRIVE.float(0x5450_080E, "largest voltage of a motor in recovery (RCV)", "V", [1.0, 24.0], at!(power.recovery_voltage_v)),
     Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.power.pwm_hz)) },
     Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.power.pwm_counts))) },
 ];

@@ -2,7 +2,7 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `sequence` | a script under way, for pages: their orders, its state |
+//! | `sequence`, `sequence_status` | a script under way, for pages; their orders, its state |
 //! | `runner` | the task that runs it |
 //! | `performer` | one line of it over the line that all share: waits and delays happen here, not in the controller |
 //! | `journal` | who did what |
@@ -12,11 +12,13 @@ mod journal;
 mod performer;
 mod runner;
 mod sequence;
+mod sequence_status;
 mod socket;
 
 use super::bridge::Bridge;
 pub(super) use journal::Journal;
-pub(super) use sequence::{Order, Sequence};
+pub(super) use sequence::Sequence;
+pub(super) use sequence_status::Order;
 pub(super) use socket::{MESSAGE_BYTES, serve};
 
 /// Both, for whoever serves pages.

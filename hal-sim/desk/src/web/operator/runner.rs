@@ -9,7 +9,7 @@ use tokio::time::Instant;
 
 use super::journal::Journal;
 use super::performer::Performer;
-use super::sequence::{Answered, Order, State, Status};
+use super::sequence_status::{Answered, Order, State, Status};
 use crate::web::bridge::{Bridge, json};
 
 /// The task behind a sequence's handle.

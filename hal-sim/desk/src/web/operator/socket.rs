@@ -11,7 +11,7 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::time::{Instant, interval, timeout};
 
 use super::Operator;
-use super::sequence::Order;
+use super::sequence_status::Order;
 use crate::web::guard::Guard;
 
 /// Longest message: a script.

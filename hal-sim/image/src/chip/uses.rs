@@ -1,0 +1,257 @@
+//! What the tick is used for, one use after the other on the emulated chip, and the instructions of its ticks in each.
+
+use super::follow::Step;
+use super::{Bench, ChipError, Period, bench, elf_file};
+use crate::cycles::Program;
+use hal_sim::machine::devices::{Stage, StageParameters};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::ops::ControlFlow::{Break, Continue};
+use std::ops::Range;
+use std::sync::{Arc, mpsc};
+
+/// What a tick has to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Use {
+    /// The servo is off.
+    Off,
+    /// The stage is held where it is.
+    Holding,
+    /// It moves.
+    Moving,
+    /// It takes a plan.
+    PlanTaken,
+    /// It follows targets that come every millisecond; most are plans to be taken.
+    Streaming,
+    /// It takes the order to record.
+    RecordOrder,
+    /// It moves, and eight signals are recorded.
+    Recording,
+    /// It takes a plan then.
+    PlanTakenRecording,
+}
+
+impl Use {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Off,
+        Self::Holding,
+        Self::Moving,
+        Self::PlanTaken,
+        Self::Streaming,
+        Self::RecordOrder,
+        Self::Recording,
+        Self::PlanTakenRecording,
+    ];
+
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Off => "servo off",
+            Self::Holding => "holding",
+            Self::Moving => "moving",
+            Self::PlanTaken => "takes a plan",
+            Self::Streaming => "MOV stream at 1 kHz",
+            Self::RecordOrder => "order to record",
+            Self::Recording => "moving, eight signals recorded",
+            Self::PlanTakenRecording => "the same, takes a plan",
+        }
+    }
+}
+
+impl fmt::Display for Use {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.words())
+    }
+}
+
+/// A tick and what it was used for.
+#[derive(Clone, Debug)]
+pub struct UsedTick {
+    /// Its number from the start.
+    pub tick: u64,
+    /// What for.
+    pub used: Use,
+    /// Its instructions.
+    pub steps: Vec<Step>,
+}
+
+/// Ticks of every use, and the program that they are of.
+#[derive(Debug)]
+pub struct Used {
+    /// The instructions of the tick.
+    pub program: Arc<Program>,
+    /// In the order in which they ran.
+    pub ticks: Vec<UsedTick>,
+}
+
+/// A stretch of ticks that are followed.
+struct Stretch {
+    ticks: Range<u64>,
+    used: Use,
+    /// What those are used for that take a command.
+    taken: Option<Use>,
+}
+
+/// From a line to the tick that takes the order in it, at most.
+const ORDER_TICKS: u64 = 40;
+
+/// Lines, and the tick before which they are sent.
+const LINES: [(u64, &[u8]); 10] = [
+    (150, b"FRF X\n"),
+    (1_000, b"MOV X 40 Y 20 W 90\n"),
+    (4_000, b"MOV X -30 Y 35 W -90\n"),
+    (15_000, b"SPA 1 0x19001900 1\nSCT T 1\n"),
+    (20_000, b"SPA 1 0x19001900 0\n"),
+    (
+        20_100,
+        b"RTR 1\nDRC 1 X 1 2 X 2 3 X 3 4 Y 1 5 Y 2 6 W 1 7 1 73 8 0 204\n",
+    ),
+    (20_200, b"DRT 0 2 0\n"),
+    (20_300, b"DRT 0 4 0\n"),
+    (20_500, b"DRT 0 2 0\nMOV X 40 Y 20 W 90\n"),
+    // In the middle of the recorded move.
+    (21_200, b"MOV X 10 Y 40 W 0\n"),
+];
+/// Streamed targets: one every 20 ticks on a circle that begins and ends where the stage is.
+const STREAM: Range<u64> = 15_200..17_200;
+const STREAM_EVERY: u64 = 20;
+const STREAM_START: [f64; 2] = [-30.0, 35.0];
+const STREAM_RADIUS_MM: f64 = 1.0;
+const END: u64 = 21_600;
+
+/// So many ticks of each use, at least; of those that take a command, as many as there are.
+fn stretches(ticks: u64) -> Vec<Stretch> {
+    let stretch = |from: u64, ticks: u64, used, taken| Stretch {
+        ticks: from..from + ticks,
+        used,
+        taken,
+    };
+    let quarter = ticks.div_ceil(4);
+    let plan = Some(Use::PlanTaken);
+    vec![
+        stretch(60, ticks.min(80), Use::Off, None),
+        stretch(600, ticks, Use::Holding, None),
+        stretch(1_000, quarter.max(300), Use::Moving, plan),
+        stretch(2_000, quarter, Use::Moving, plan),
+        stretch(4_000, quarter.max(400), Use::Moving, plan),
+        stretch(5_000, quarter, Use::Moving, plan),
+        stretch(15_600, ticks, Use::Streaming, None),
+        stretch(20_200, ORDER_TICKS, Use::RecordOrder, None),
+        stretch(20_300, ORDER_TICKS, Use::RecordOrder, None),
+        stretch(
+            20_500,
+            ticks.max(300),
+            Use::Recording,
+            Some(Use::PlanTakenRecording),
+        ),
+        stretch(21_200, 400, Use::Recording, Some(Use::PlanTakenRecording)),
+    ]
+}
+
+/// Has the image in the target folder used in every way, and so many ticks of each followed.
+///
+/// # Errors
+/// When there was no run that counts.
+pub fn uses(ticks: u64) -> Result<Used, ChipError> {
+    let path = elf_file::find().ok_or(ChipError::NoImage)?;
+    let no_bench = |error| ChipError::Bench(path.clone(), error);
+    let program = Program::read(&path, bench::TICK_BEGIN);
+    let program = Arc::new(program.map_err(|error| ChipError::Proof(path.clone(), error))?);
+    let stage = Stage::new(&StageParameters::REFERENCE);
+    let mut run = Run {
+        program: Arc::clone(&program),
+        stretches: stretches(ticks),
+        following: false,
+        commands: 0,
+        ticks: Vec::new(),
+    };
+    let (tell, told) = mpsc::channel();
+    let outcome = Bench::load(&path, stage)
+        .map_err(no_bench)?
+        .run(move |period| {
+            if run.period(period).is_none() {
+                return Break(());
+            }
+            if period.tick < END {
+                return Continue(());
+            }
+            // Nobody is left to be told when the other side is gone.
+            let _ = tell.send(std::mem::take(&mut run.ticks));
+            Break(())
+        });
+    let outcome = outcome.map_err(no_bench)?;
+    if !outcome.gaps.is_empty() {
+        return Err(ChipError::Gaps(outcome.gaps));
+    }
+    let mut ticks = told.recv().map_err(|_| ChipError::Lost)?;
+    keep_orders(&mut ticks);
+    Ok(Used { program, ticks })
+}
+
+/// Of the ticks in which an order to record may come, those that take it: the longest of each stretch, by far.
+fn keep_orders(ticks: &mut Vec<UsedTick>) {
+    let mut longest: BTreeMap<u64, (usize, u64)> = BTreeMap::new();
+    for tick in ticks.iter().filter(|tick| tick.used == Use::RecordOrder) {
+        let longest = longest.entry(tick.tick / 100).or_default();
+        *longest = (*longest).max((tick.steps.len(), tick.tick));
+    }
+    let taken: BTreeSet<u64> = longest.into_values().map(|(_, tick)| tick).collect();
+    ticks.retain(|tick| tick.used != Use::RecordOrder || taken.contains(&tick.tick));
+}
+
+struct Run {
+    program: Arc<Program>,
+    stretches: Vec<Stretch>,
+    following: bool,
+    commands: u32,
+    ticks: Vec<UsedTick>,
+}
+
+impl Run {
+    /// One control period; `None` where the ticks can not be followed.
+    fn period(&mut self, period: &mut Period<'_>) -> Option<()> {
+        let commands = period.trace().commands;
+        let took = commands != std::mem::replace(&mut self.commands, commands);
+        if self.following {
+            let tick = period.tick - 1;
+            let stretch = self.stretches.iter().find(|it| it.ticks.contains(&tick));
+            if let Some(stretch) = stretch {
+                self.ticks.push(UsedTick {
+                    tick,
+                    used: stretch.taken.filter(|_| took).unwrap_or(stretch.used),
+                    steps: period.steps()?.to_vec(),
+                });
+            }
+        }
+        send(period);
+        let follow = self
+            .stretches
+            .iter()
+            .any(|it| it.ticks.contains(&period.tick));
+        if follow != self.following {
+            self.following = follow;
+            period
+                .follow(follow.then_some(&self.program))
+                .then_some(())?;
+        }
+        Some(())
+    }
+}
+
+fn send(period: &mut Period<'_>) {
+    for (at, line) in LINES {
+        if period.tick == at {
+            period.send(line);
+        }
+    }
+    if STREAM.contains(&period.tick) && period.tick.is_multiple_of(STREAM_EVERY) {
+        let done = (period.tick - STREAM.start) as f64 / (STREAM.end - STREAM.start) as f64;
+        let (sine, cosine) = (std::f64::consts::TAU * done).sin_cos();
+        let [x, y] = STREAM_START;
+        let x = x + STREAM_RADIUS_MM * (1.0 - cosine);
+        let y = y + STREAM_RADIUS_MM * sine;
+        period.send(format!("MOV X {x:.6} Y {y:.6}\n").as_bytes());
+    }
+}

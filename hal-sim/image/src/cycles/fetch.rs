@@ -1,0 +1,84 @@
+//! The core's fetch: words of the code, one a cycle where the flash does not hold it up, a few ahead of what runs.
+
+use super::flash::Flash;
+use super::setting::Setting;
+use std::collections::VecDeque;
+
+/// Bytes of a word.
+const WORD: u64 = 4;
+/// From the cycle in which a word is there to the one in which its instruction begins: it is decoded meanwhile.
+const DECODE: u64 = 2;
+
+/// A word that was fetched, and the first cycle in which its instruction can begin.
+#[derive(Clone, Copy, Debug)]
+struct Fetched {
+    word: u64,
+    begins_at: u64,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub struct Fetch {
+    ahead: usize,
+    refill: u64,
+    queue: VecDeque<Fetched>,
+    next: u64,
+    /// The first cycle in which the next fetch can begin.
+    free_at: u64,
+}
+
+impl Fetch {
+    /// Begins at an address, in a cycle.
+    #[must_use]
+    pub fn new(setting: &Setting, address: u64, now: u64) -> Self {
+        Self {
+            ahead: setting.fetched_ahead,
+            refill: setting.refill,
+            queue: VecDeque::new(),
+            next: address / WORD,
+            free_at: now,
+        }
+    }
+
+    /// The cycle in which an instruction can begin that follows what began last, when the core is ready for it in `now`.
+    pub fn begin(&mut self, flash: &mut Flash, address: u64, length: u64, now: u64) -> u64 {
+        let (first, last) = (address / WORD, (address + length - 1) / WORD);
+        self.pass(first, now);
+        while self.next <= last || (self.queue.len() < self.ahead && self.free_at < now) {
+            self.fetch(flash);
+        }
+        let needed = self.queue.iter().rfind(|it| it.word <= last);
+        needed.map_or(now, |it| it.begins_at.max(now))
+    }
+
+    /// A jump to an address is taken by an instruction that ends in the cycle before `now`.
+    pub fn jump(&mut self, flash: &mut Flash, address: u64, now: u64) {
+        // What was begun ahead of it keeps the flash busy.
+        while self.queue.len() < self.ahead && self.free_at + 1 < now {
+            self.fetch(flash);
+        }
+        self.queue.clear();
+        self.next = address / WORD;
+        self.free_at = (now + self.refill).saturating_sub(DECODE);
+    }
+
+    /// Words before this one are done with.
+    fn pass(&mut self, first: u64, now: u64) {
+        let full = self.queue.len() >= self.ahead;
+        let before = self.queue.len();
+        self.queue.retain(|it| it.word >= first);
+        if full && self.queue.len() < before {
+            self.free_at = self.free_at.max(now.saturating_sub(1));
+        }
+    }
+
+    fn fetch(&mut self, flash: &mut Flash) {
+        let there_at = self.free_at + flash.fetch(self.next * WORD, self.free_at);
+        self.queue.push_back(Fetched {
+            word: self.next,
+            begins_at: there_at + DECODE,
+        });
+        self.next += 1;
+        self.free_at = there_at + 1;
+    }
+}

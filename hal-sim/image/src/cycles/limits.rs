@@ -1,0 +1,201 @@
+//! What a tick may take: the file that the repository keeps, and whether ticks keep to it.
+
+use super::tally::{Row, Tally};
+use std::path::{Path, PathBuf};
+
+/// Share of the deadline that a tick may take at most, nominally, in every use: what protection and calibration will need comes on top.
+pub const GOAL: f64 = 0.62;
+/// Until it does, no tick may grow by more than this.
+const SPARE: f64 = 1.10;
+const COLUMNS: [&str; 4] = ["use", "nominal worst", "limit", "why"];
+const BY_GOAL: &str = "62 % of the deadline";
+const BY_FIGURE: &str = "the figure and 10 %, until 62 % of the deadline is met";
+
+/// The limit of a use.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// The use.
+    pub name: String,
+    /// The worst when it was set, cycles.
+    pub worst: u64,
+    /// What it may be, cycles.
+    pub limit: u64,
+    /// Why that.
+    pub why: String,
+}
+
+/// Why the file cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum LimitsError {
+    /// It cannot be read or written.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: csv::Error,
+    },
+    /// It is no file of limits.
+    #[error("{}: line {line} is no limit", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: usize,
+    },
+}
+
+/// The limits that these ticks give, at a deadline in cycles.
+#[must_use]
+pub fn limits(nominal: &Tally, deadline: u64) -> Vec<Limit> {
+    let goal = (GOAL * deadline as f64) as u64;
+    let limit = |row: &Row| {
+        let worst = row.worst();
+        let (limit, why) = if worst <= goal {
+            (goal, BY_GOAL)
+        } else {
+            ((worst as f64 * SPARE) as u64, BY_FIGURE)
+        };
+        Limit {
+            name: row.name(),
+            worst,
+            limit,
+            why: why.to_owned(),
+        }
+    };
+    nominal.rows.iter().map(limit).collect()
+}
+
+/// What is over its limit, or has none, in words.
+#[must_use]
+pub fn over(nominal: &Tally, limits: &[Limit]) -> Vec<String> {
+    let mut found = Vec::new();
+    for row in &nominal.rows {
+        let (name, worst) = (row.name(), row.worst());
+        match limits.iter().find(|limit| limit.name == name) {
+            None => found.push(format!("{name}: has no limit")),
+            Some(_) if row.cycles.is_empty() => {
+                found.push(format!("{name}: there was no such tick"))
+            }
+            Some(limit) if worst > limit.limit => {
+                found.push(format!(
+                    "{name}: {worst} cycles, its limit is {}",
+                    limit.limit
+                ));
+            }
+            Some(_) => {}
+        }
+    }
+    let gone = |limit: &&Limit| nominal.rows.iter().all(|row| row.name() != limit.name);
+    let gone = limits.iter().filter(gone);
+    found
+        .extend(gone.map(|limit| format!("{}: has a limit, but there is no such use", limit.name)));
+    found
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// [`LimitsError`].
+pub fn read_limits(path: &Path) -> Result<Vec<Limit>, LimitsError> {
+    let bad = |error| LimitsError::File {
+        path: path.to_owned(),
+        error,
+    };
+    let mut reader = csv::Reader::from_path(path).map_err(bad)?;
+    let mut limits = Vec::new();
+    for (row, line) in reader.records().zip(2..) {
+        let row = row.map_err(bad)?;
+        let [name, worst, limit, why] =
+            std::array::from_fn(|column| row.get(column).unwrap_or_default());
+        let (Ok(worst), Ok(limit)) = (worst.parse(), limit.parse()) else {
+            let path = path.to_owned();
+            return Err(LimitsError::Line { path, line });
+        };
+        let (name, why) = (name.to_owned(), why.to_owned());
+        limits.push(Limit {
+            name,
+            worst,
+            limit,
+            why,
+        });
+    }
+    Ok(limits)
+}
+
+/// Writes a file.
+///
+/// # Errors
+/// [`LimitsError`].
+pub fn write_limits(path: &Path, limits: &[Limit]) -> Result<(), LimitsError> {
+    let write = || {
+        let mut writer = csv::Writer::from_path(path)?;
+        writer.write_record(COLUMNS)?;
+        for limit in limits {
+            let numbers = [limit.worst, limit.limit].map(|number| number.to_string());
+            writer.write_record([&limit.name, &numbers[0], &numbers[1], &limit.why])?;
+        }
+        Ok(writer.flush()?)
+    };
+    write().map_err(|error| LimitsError::File {
+        path: path.to_owned(),
+        error,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chip::Use;
+    use crate::cycles::{Cycles, Setting};
+    use std::collections::HashMap;
+
+    fn tally(ticks: &[u64]) -> Tally {
+        let row = Row {
+            used: Use::Moving,
+            writing: false,
+            cycles: ticks.to_vec(),
+            sum: Cycles::default(),
+            instructions: 0,
+        };
+        Tally {
+            setting: Setting::NOMINAL,
+            rows: vec![row],
+            places: HashMap::new(),
+        }
+    }
+
+    #[test]
+    fn a_limit_is_the_goal_or_else_the_figure_and_a_tenth() {
+        assert_eq!(limits(&tally(&[600, 620]), 1_000)[0].limit, 620);
+        let grown = limits(&tally(&[600, 700]), 1_000);
+        assert_eq!((grown[0].limit, grown[0].why.as_str()), (770, BY_FIGURE));
+    }
+
+    #[test]
+    fn what_is_over_its_limit_is_named() {
+        let kept = limits(&tally(&[700]), 1_000);
+        assert_eq!(over(&tally(&[770]), &kept), [""; 0]);
+        assert_eq!(
+            over(&tally(&[771]), &kept),
+            ["moving: 771 cycles, its limit is 770"]
+        );
+        assert_eq!(over(&tally(&[]), &kept), ["moving: there was no such tick"]);
+        assert_eq!(over(&tally(&[1]), &[]), ["moving: has no limit"]);
+    }
+
+    #[test]
+    fn a_file_is_read_as_it_was_written() {
+        let path = std::env::temp_dir().join(format!("limits-{}.csv", std::process::id()));
+        let kept = limits(&tally(&[700]), 1_000);
+        write_limits(&path, &kept).expect("a file");
+        assert_eq!(read_limits(&path).expect("limits"), kept);
+        std::fs::write(&path, "use,nominal worst,limit,why\nmoving,many,1,\n").expect("a file");
+        let error = read_limits(&path).unwrap_err();
+        assert!(
+            matches!(error, LimitsError::Line { line: 2, .. }),
+            "{error}"
+        );
+        std::fs::remove_file(&path).expect("it was there");
+    }
+}

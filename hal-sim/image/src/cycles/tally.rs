@@ -1,0 +1,138 @@
+//! Ticks of each use through the model, and what they come to.
+
+use super::core::{Core, Cycles, Ran};
+use super::setting::Setting;
+use crate::chip::{Step, Use, Used, UsedTick};
+use std::collections::HashMap;
+
+/// Cycles of the ticks of one use in one setting.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What the ticks were used for.
+    pub used: Use,
+    /// Whether the data cache was off, as while settings are written.
+    pub writing: bool,
+    /// In ascending order.
+    pub cycles: Vec<u64>,
+    /// Of all together.
+    pub sum: Cycles,
+    /// Instructions of all together.
+    pub instructions: u64,
+}
+
+impl Row {
+    /// Mean, cycles.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.sum.all() as f64 / self.cycles.len().max(1) as f64
+    }
+
+    /// What a share of the ticks stays within.
+    #[must_use]
+    pub fn quantile(&self, share: f64) -> u64 {
+        let last = self.cycles.len().saturating_sub(1);
+        let at = (share * last as f64).ceil() as usize;
+        self.cycles.get(at).copied().unwrap_or(0)
+    }
+
+    /// The worst.
+    #[must_use]
+    pub fn worst(&self) -> u64 {
+        self.quantile(1.0)
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.writing {
+            format!("{}, settings written", self.used)
+        } else {
+            self.used.to_string()
+        }
+    }
+}
+
+/// One setting, all uses.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    /// The setting.
+    pub setting: Setting,
+    /// Uses in their order, those while settings are written last.
+    pub rows: Vec<Row>,
+    /// What instructions cost together, by address, in ticks of the stage in motion.
+    pub places: HashMap<u64, Cycles>,
+}
+
+/// Uses that may go on while settings are written: the rest is refused then, or takes one tick in many thousands.
+const WHILE_WRITING: [Use; 2] = [Use::Holding, Use::Moving];
+
+impl Tally {
+    /// Takes the ticks of all uses through the model.
+    #[must_use]
+    pub fn of(used: &Used, setting: Setting) -> Self {
+        let mut places = HashMap::new();
+        let mut rows: Vec<Row> = Vec::new();
+        for (writing, uses) in [(false, &Use::ALL[..]), (true, &WHILE_WRITING[..])] {
+            let setting = if writing { setting.writing() } else { setting };
+            for doing in uses {
+                let ticks = used.ticks.iter().filter(|tick| tick.used == *doing);
+                let noted = (*doing == Use::Moving && !writing).then_some(&mut places);
+                rows.push(row(used, ticks, setting, (*doing, writing), noted));
+            }
+        }
+        Self {
+            setting,
+            rows,
+            places,
+        }
+    }
+}
+
+fn row<'a>(
+    used: &Used,
+    ticks: impl Iterator<Item = &'a UsedTick>,
+    setting: Setting,
+    (doing, writing): (Use, bool),
+    mut places: Option<&mut HashMap<u64, Cycles>>,
+) -> Row {
+    let mut core = Core::new(setting);
+    let mut row = Row {
+        used: doing,
+        writing,
+        cycles: Vec::new(),
+        sum: Cycles::default(),
+        instructions: 0,
+    };
+    for tick in ticks {
+        let cycles = core.run(ran(used, &tick.steps), |at, cycles| {
+            if let Some(places) = &mut places {
+                places.entry(at).or_default().add(cycles);
+            }
+        });
+        row.cycles.push(cycles.all());
+        row.sum.add(&cycles);
+        row.instructions += tick.steps.len() as u64;
+    }
+    row.cycles.sort_unstable();
+    row
+}
+
+/// Cycles of a tick's instructions by themselves, one behind the other: what another model without a memory is compared with.
+#[must_use]
+pub fn modelled_without_jumps(used: &Used, tick: &UsedTick) -> u64 {
+    let mut core = Core::new(Setting::WITHOUT_WAIT_STATES);
+    let cycles = core.run(ran(used, &tick.steps), |_, _| {});
+    cycles.table + cycles.float
+}
+
+/// The steps of a tick as the model takes them.
+fn ran<'a>(used: &'a Used, steps: &'a [Step]) -> impl Iterator<Item = Ran<'a>> {
+    steps.iter().filter_map(|step| {
+        let instruction = used.program.at(step.at)?;
+        Some(Ran {
+            at: step.at,
+            instruction,
+            bus: step.bus,
+        })
+    })
+}
