@@ -24,6 +24,7 @@
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
 //! | [`image_checksum`] | whether the program in flash is whole |
 //! | [`drivers`] | chips on the board: encoder frames, bridges |
+//! | [`self_test`] | what a board can be asked about itself |
 //! | [`fault`] | kinds of fault, what each does and why |
 //! | [`mode`] | the modes of the controller |
 //! | [`number`] | fixed point and the functions of the tick, the same bits on every machine |
@@ -41,6 +42,7 @@ pub mod mode;
 pub mod parameters;
 pub mod queues;
 pub mod recorder;
+pub mod self_test;
 pub mod settings_store;
 
 /// Plans, and what they are held against; and the planners.

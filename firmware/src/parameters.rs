@@ -44,6 +44,9 @@ pub struct Parameters {
     pub recorder: RecorderParameters,
     /// What targets mean.
     pub targets: Targets,
+    /// Whether zeros and directions of the encoders, and all else that a machine has of its own, are known to be this machine's. If
+    /// not, nothing drives.
+    pub commissioned: bool,
 }
 
 /// What commanded targets mean.
@@ -326,7 +329,7 @@ impl Ripple {
 }
 
 impl Parameters {
-    /// The reference stage.
+    /// The reference stage, commissioned.
     pub const REFERENCE: Self = Self {
         geometry: Geometry::REFERENCE,
         limits: Limits::REFERENCE,
@@ -436,7 +439,21 @@ impl Parameters {
             turn_direction: TurnDirection::AsGiven,
             streamed: false,
         },
+        commissioned: true,
     };
+
+    /// What a controller has by itself, with nothing stored: nobody has said yet how this machine's encoders are mounted.
+    #[must_use]
+    pub const fn uncommissioned(self) -> Self {
+        Self {
+            encoders: [EncoderMounting {
+                zero_counts: 0,
+                reversed: false,
+            }; 3],
+            commissioned: false,
+            ..self
+        }
+    }
 }
 
 impl Default for Parameters {

@@ -39,6 +39,8 @@ pub struct Commander {
     /// Velocities that have been set for single axes, mm/s and deg/s.
     pub(super) velocities: AxisValues,
     pub(super) targets: Targets,
+    /// Whether the machine is commissioned: if not, nothing drives.
+    pub(super) commissioned: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) frames: FrameTree,
@@ -92,6 +94,7 @@ impl Commander {
             tables: Tables::new(),
             velocities: AxisValues::default(),
             targets: parameters.targets,
+            commissioned: parameters.commissioned,
             cycle_ms: DEFAULT_CYCLE_MS,
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,

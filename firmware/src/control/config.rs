@@ -18,6 +18,8 @@ pub(super) const MAX_MEAN_TICKS: usize = 32;
 /// The tick's constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
+    /// Whether the machine is commissioned: if not, the servo never goes on.
+    pub commissioned: bool,
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderConfig; 3],
     /// Setpoint integers to rates.
@@ -91,6 +93,7 @@ impl Config {
         let bearable = supervision.motor_current_a / CURRENT_A_PER_COUNT;
         let fastest = parameters.limits.pivot_rate_rad_s * supervision.overspeed_factor;
         Self {
+            commissioned: parameters.commissioned,
             encoders: parameters
                 .encoders
                 .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),

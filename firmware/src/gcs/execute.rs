@@ -76,6 +76,7 @@ impl Interpreter {
             Action::Stop => self.stop_by_command(Event::Stop, session, queues),
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => self.stop_by_command(Event::Halt, session, queues),
+            Action::Commission(value) => self.commission(value, session, queues),
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
             Action::RestartStatistics => {
                 self.restart_statistics();

@@ -16,6 +16,7 @@ use super::variables::Variables;
 use crate::commander::Commander;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
+use crate::self_test::Board;
 
 /// Who answers `*IDN?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +52,8 @@ pub struct Interpreter {
     pub(super) ownership: Ownership,
     pub(super) recovery_owner: RecoveryOwner,
     pub(super) wants_restart: bool,
+    /// What `TST?` asks, where there is one.
+    pub(super) board: Option<&'static dyn Board>,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
     pub(super) persistence: Persistence,
@@ -79,6 +82,7 @@ impl Interpreter {
             ownership: Ownership::default(),
             recovery_owner: RecoveryOwner::default(),
             wants_restart: false,
+            board: None,
             macros: Macros::default(),
             variables: Variables::default(),
             persistence: Persistence::new(parameters),

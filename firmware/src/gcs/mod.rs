@@ -37,6 +37,7 @@
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
+//! | `self_test` | what the board reads about itself |
 //! | `events`, `statistics`, `heartbeat` | what has happened, how the loop does, whether the host is there |
 //! | `jog`, `ownership` | whose constant velocities are in force; who alone may command |
 //! | `recovery` | the way back of a stage that was found out of its reach |
@@ -73,6 +74,7 @@ mod replies;
 mod reply_writer;
 mod request;
 mod scan;
+mod self_test;
 mod service;
 mod session;
 mod statistics;

@@ -76,6 +76,10 @@ pub enum Query {
     Fault,
     /// `MON?`
     Monitor,
+    /// `CMS?`
+    Commissioned,
+    /// `TST?`
+    SelfTest,
     /// `HBT?`
     Heartbeat,
     /// `JTM?`
@@ -164,6 +168,8 @@ pub enum Action {
     Halt(AxisSet),
     /// `FLC`
     Acknowledge,
+    /// `CMS`: 0 or 1.
+    Commission(f64),
     /// `HBT`, ms.
     Heartbeat(f64),
     /// `JTM`, ms.

@@ -62,6 +62,16 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     ask("CCL?", Query::Level, "get command level"),
     entry(
+        "CMS",
+        Syntax::Number(Action::Commission),
+        "<0|1> set whether the machine is commissioned",
+    ),
+    ask(
+        "CMS?",
+        Query::Commissioned,
+        "get whether the machine is commissioned",
+    ),
+    entry(
         "CST?",
         Syntax::Property(Property::Stage),
         "[{<axis>}] get stage type",
@@ -454,6 +464,11 @@ pub(super) static COMMANDS: &[Entry] = &[
         "TRS?",
         Quantity::ReferenceSwitch,
         "[{<axis>}] get whether there are reference switches",
+    ),
+    ask(
+        "TST?",
+        Query::SelfTest,
+        "get what the board reads about itself",
     ),
     own("TWG?", wave::count, "get number of wave generators"),
     own(

@@ -53,6 +53,7 @@ mod dma;
 mod encoders;
 mod fault_handlers;
 mod flash;
+mod identity;
 mod latch;
 mod panic;
 mod pwm;
@@ -60,6 +61,7 @@ mod reset_cause;
 mod restart;
 mod retained_memory;
 mod self_check;
+mod self_test;
 mod serial;
 mod tick_timing;
 mod trace;
@@ -73,8 +75,9 @@ mod app {
     use crate::{
         board::{Board, Loop},
         flash::SettingsFlash,
-        restart,
+        identity, restart,
         retained_memory::RETAINED_MEMORY,
+        self_test::StageBoard,
         serial::{Receiver, Transmitter},
         tick_timing::TickTiming,
         trace::{self, TRACE, TraceWriter},
@@ -89,11 +92,8 @@ mod app {
     use firmware::queues::{CommandQueues, Queues, TickQueues};
     use firmware::settings_store::SettingsStore;
 
-    const IDENTITY: Identity = Identity {
-        serial: "0",
-        version: env!("CARGO_PKG_VERSION"),
-    };
-    const PARAMETERS: Parameters = Parameters::REFERENCE;
+    /// What is in force until settings have been stored.
+    const PARAMETERS: Parameters = Parameters::REFERENCE.uncommissioned();
 
     #[shared]
     struct Shared {
@@ -122,6 +122,7 @@ mod app {
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
+        serial_place: MaybeUninit<identity::Serial> = MaybeUninit::uninit(),
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
         let Board {
@@ -141,10 +142,15 @@ mod app {
         let mut core = context.core;
         let (tick_queues, command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
+        let identity = Identity {
+            serial: context.local.serial_place.write(identity::serial()),
+            version: env!("CARGO_PKG_VERSION"),
+        };
         let interpreter = context
             .local
             .panel_place
-            .write(Interpreter::new(&PARAMETERS, IDENTITY));
+            .write(Interpreter::new(&PARAMETERS, identity));
+        interpreter.set_board(&StageBoard);
         if let Some(cause) = reset_cause.unasked() {
             interpreter.set_start_cause(cause);
         }

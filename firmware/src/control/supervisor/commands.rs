@@ -62,6 +62,8 @@ impl State {
     /// What the stage may not be ready for; nothing has changed then.
     fn try_apply(&mut self, config: &Config, command: &Command, pivots: &[Angle; 3]) -> bool {
         match command {
+            // The command side refuses it before: this is for the case that it does not.
+            Command::Reference | Command::Servo(_) if !config.commissioned => false,
             Command::Reference if !self.referenced => self.reference(config, pivots),
             Command::Reference | Command::Servo(_) => self.hold(config, pivots),
             Command::Move(plan) => {

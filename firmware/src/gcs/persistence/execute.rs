@@ -107,6 +107,16 @@ impl Interpreter {
         self.macros.all()
     }
 
+    /// Starts with these parameters, as if they had been stored: the settings that a machine comes with. To be called before anything
+    /// else is.
+    pub fn start_with(&mut self, parameters: Parameters) {
+        self.restore_parameters(KeptParameters {
+            parameters,
+            unknown: 0,
+            unusable: Default::default(),
+        });
+    }
+
     /// Values that are not in force and stay stored all the same, as long as nobody asks for others.
     pub(super) fn unusable_to_store(&self) -> &[(u32, f64)] {
         match self.persistence.before {

@@ -29,6 +29,7 @@ const SERVO: Group = group("servo", 1, When::AtRest);
 const WINDOW: Group = group("window", 0, When::AtRest);
 const SUPERVISION: Group = group("supervision", 1, When::AtRest);
 const ENCODER: Group = group("encoder", 1, When::ServoOff);
+const COMMISSIONING: Group = group("commissioning", 1, When::ServoOff);
 const PLATFORM: Group = group("platform", 0, When::AtRest);
 const RECORDER: Group = group("recorder", 0, When::AtRest);
 const DRIVE: Group = group("drive", 1, When::AtRest);
@@ -106,6 +107,9 @@ macro_rules! flag {
 
 /// Largest count of an encoder.
 const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
+
+/// The parameter that `CMS` sets.
+pub(in crate::gcs) const COMMISSIONED: u32 = 0x5450_0C00;
 
 /// Most points that a record of one word has room for.
 const ROWS: f64 = RECORDER_WORDS as f64;
@@ -226,6 +230,8 @@ const AFTER_GAINS: &[Parameter] = &[
     ENCODER.int(0x5450_0610, "whether encoder 1 counts down", [0.0, 1.0], flag!(encoders[0].reversed)),
     ENCODER.int(0x5450_0611, "whether encoder 2 counts down", [0.0, 1.0], flag!(encoders[1].reversed)),
     ENCODER.int(0x5450_0612, "whether encoder 3 counts down", [0.0, 1.0], flag!(encoders[2].reversed)),
+
+    COMMISSIONING.int(COMMISSIONED, "whether all that this machine has of its own is set: if not, nothing drives; CMS sets it", [0.0, 1.0], flag!(commissioned)),
 
     PLATFORM.float(0x5450_0700, "mass of the platform", "kg", [0.1, 50.0], at!(platform.mass_kg)),
     PLATFORM.float(0x5450_0701, "inertia of the platform", "kg m^2", [1e-4, 2.0], at!(platform.inertia_kg_m2)),

@@ -1,5 +1,4 @@
 //! `tripivot serve` as its clients meet it: over TCP and the pseudo-terminal, several at once, some of them badly behaved.
-#![cfg(unix)]
 
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -8,10 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::served::{Client, PATIENCE, Served, connect};
 use desk::serve::Notice;
-use served::{Client, PATIENCE, Served, connect};
-
-mod served;
 
 #[test]
 fn every_client_has_its_own_errors_and_drives_the_same_stage() {
@@ -213,7 +210,9 @@ fn control_c_ends_it_cleanly() {
     out.read_to_string(&mut rest).unwrap();
     assert_eq!(
         rest,
-        format!("Ctrl-C ends it\n{name}: connected\n{name}: error 2 after QQQ\n")
+        format!(
+            "settings: those that the simulated machine comes with; kept until it ends\nCtrl-C ends it\n{name}: connected\n{name}: error 2 after QQQ\n"
+        )
     );
     // Nothing is left of the connection.
     assert_eq!(client.port.read(&mut [0]).unwrap_or(0), 0);
