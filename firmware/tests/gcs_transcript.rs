@@ -53,11 +53,11 @@ fn help_lists_what_is_there() {
         .collect();
     assert_eq!(
         names.join(" "),
-        "#3 #4 #5 #6 #7 #8 #9 #24 *IDN? ADD CCL CCL? CST? CSV? DEL DRC DRC? DRL? DRR? DRT DRT? ERR? EVT? FLC FLR? FLT? FRF FRF? HDR? HBT HBT? HIN? HLT HLP? HPA? \
-         JOG JOG? JON? JRC JTM JTM? KEN KEN? KET? KLN KLN? KLS? KLT? KRM KSD KSF KST KSW LIM? LST LST? \
+        "#3 #4 #5 #6 #7 #8 #9 #24 *IDN? ADD CCL CCL? CMS CMS? CST? CSV? DEL DRC DRC? DRL? DRR? DRT DRT? ERR? EVT? FLC FLR? FLT? FRF FRF? HDR? HBT HBT? HIN? HLT HLP? HPA? \
+         ILC ILC ILC ILC? JOG JOG? JON? JRC JTM JTM? KEN KEN? KET? KLN KLN? KLS? KLT? KRM KSD KSF KST KSW LIM? LST LST? \
          MAC MAC MAC MAC MAC MAC MAC MAC MAC? MEX MON? MOV MOV? MRT MRW MVR NLM NLM? ONT? OWN OWN? \
          PLM PLM? POS? PUN? RBT RCV RCV? RMC? RPA RTR RTR? SAI? SCT SCT? SPA SPA? SPI SPI? SSL SSL? SSN? STE STP SVO SVO? \
-         TMN? TMX? TNR? TPC? TRA? TRS? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
+         TMN? TMX? TNR? TPC? TRA? TRS? TST? TWG? VAR VAR? VEL VEL? VER? VLS VLS? VMO? WAC \
          WAV WAV? WCL WGC WGC? WGO WGO? WPA WSL WSL? WTR WTR?"
     );
     for name in names.iter().filter(|name| !name.starts_with('#')) {

@@ -12,8 +12,8 @@ const HEAD: &str = "# Parameters
 Written by `UPDATE=1 cargo test -p firmware --test parameter_page` from the one table that the controller has
 (`firmware/src/gcs/parameter/table/`); edit that, not this.
 
-`SPA 1 <id> <value>` sets one, `SPA? 1 <id>` asks for it, `HPA?` lists all; ids in decimal or hexadecimal. Values are those of
-the reference stage. A value out of its range, or one that does not go together with the others, is refused with error 17, and
+`SPA 1 <id> <value>` sets one, `SPA? 1 <id>` asks for it, `HPA?` lists all; ids in decimal or hexadecimal. Values are those that a
+controller has before anything is stored. A value out of its range, or one that does not go together with the others, is refused with error 17, and
 nothing of its line is done. Level 1 needs `CCL 1 ADVANCED` on the same connection, or the answer is 60. Setting one in motion
 is refused with 53, one that needs the servo off with 89. Limits of motion over what the stage was set up for need level 1.
 `WPA 100` keeps them over a restart, `RPA` brings back what is kept. Another reading at pivot angle 0 or another direction of
@@ -26,7 +26,7 @@ fn row(parameter: &Parameter) -> String {
         Kind::Float => "number",
         Kind::Char => "text",
     };
-    let value = (parameter.number(&Parameters::REFERENCE))
+    let value = (parameter.number(&Parameters::REFERENCE.uncommissioned()))
         .map_or_else(String::new, |value| value.to_string());
     let range = if parameter.is_read_only() {
         String::new()
@@ -52,7 +52,7 @@ fn page() -> String {
             group = parameter.group;
             write!(
                 page,
-                "\n## {}{}\n\n| id | what | unit | kind | reference | range | level | may be set |\n|---|---|---|---|---|---|---|---|\n",
+                "\n## {}{}\n\n| id | what | unit | kind | value | range | level | may be set |\n|---|---|---|---|---|---|---|---|\n",
                 group[..1].to_uppercase(),
                 &group[1..]
             )

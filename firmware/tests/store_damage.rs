@@ -96,15 +96,18 @@ fn value(found: &Kept, id: u32) -> f64 {
 
 #[test]
 fn the_format_is_the_one_described() {
-    let flash = flash_with(&record(7, &image(1, &[(SPEED, 123.5)])));
-    let (problem, found) = restored(&flash);
-    assert_eq!(problem, None);
-    assert_eq!(value(&found, SPEED), 123.5);
+    // And the version before, which an older firmware has left.
+    for version in [2, 1] {
+        let flash = flash_with(&record(7, &image(version, &[(SPEED, 123.5)])));
+        let (problem, found) = restored(&flash);
+        assert_eq!(problem, None);
+        assert_eq!(value(&found, SPEED), 123.5);
+    }
 }
 
 #[test]
 fn settings_of_a_newer_firmware_are_refused() {
-    let flash = flash_with(&record(7, &image(2, &[(SPEED, 123.5)])));
+    let flash = flash_with(&record(7, &image(3, &[(SPEED, 123.5)])));
     assert_eq!(
         restored(&flash),
         (Some(FaultKind::SettingsNewer), nothing_kept())

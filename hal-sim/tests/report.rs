@@ -166,7 +166,7 @@ fn the_summary_tells_what_happened() {
 #[test]
 fn pictures_document_and_summary_tell_the_conditions() {
     let run = run(1_001, 20);
-    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections of a kind machine but backlash; settings none kept";
+    let line = "made up 1.2; none at all; seed 3; mismatch 60 %; payload 2.5 kg; imperfections of a kind machine but backlash; settings the machine's own";
     for text in [run.picture(), run.motion_picture(), run.document()] {
         assert!(text.contains(line));
     }

@@ -47,6 +47,7 @@ impl Commander {
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
         self.targets = parameters.targets;
+        self.commissioned = parameters.commissioned;
         self.reach_margins = ReachMargins::new(parameters);
         self.set_limits(parameters.limits);
     }
@@ -54,6 +55,16 @@ impl Commander {
     /// Whether the tick has refused the parameters that were set last; asked once.
     pub fn take_configuration_refused(&mut self) -> bool {
         core::mem::take(&mut self.configuration_refused)
+    }
+
+    /// # Errors
+    /// [`CommandError::NotCommissioned`]: nothing may drive.
+    pub(super) const fn check_commissioned(&self) -> Result<(), CommandError> {
+        if self.commissioned {
+            Ok(())
+        } else {
+            Err(CommandError::NotCommissioned)
+        }
     }
 
     /// Whether the servo is on.

@@ -13,6 +13,8 @@ pub enum CommandError {
     Busy,
     /// The stage is not referenced, or its servo is off.
     NotReady,
+    /// Nobody has said yet how this machine is set up, so nothing may drive.
+    NotCommissioned,
     /// A fault is latched, which has to be acknowledged first.
     Faulted,
     /// The stage moves, or is about to.
@@ -93,6 +95,7 @@ impl fmt::Display for CommandError {
             Self::Wave(error) => error.fmt(f),
             Self::Busy => f.write_str("a command is on its way"),
             Self::NotReady => f.write_str("not referenced, or the servo is off"),
+            Self::NotCommissioned => f.write_str("not commissioned"),
             Self::Faulted => f.write_str("a fault is latched"),
             Self::InMotion => f.write_str("in motion"),
             Self::Streaming => f.write_str("targets are being streamed"),

@@ -76,6 +76,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
+        self.check_commissioned()?;
         if self.is_motion_commanded() || self.rest.is_fast {
             return Err(CommandError::InMotion);
         }

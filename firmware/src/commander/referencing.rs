@@ -32,6 +32,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
+        self.check_commissioned()?;
         if self.is_recovering() {
             return Err(CommandError::InMotion);
         }

@@ -12,7 +12,7 @@ impl Commander {
     /// comes about with referencing.
     ///
     /// # Errors
-    /// [`CommandError::Faulted`], and [`CommandError::InMotion`] for a stage that has been let go and has not come to rest: the
+    /// [`CommandError::Faulted`], [`CommandError::NotCommissioned`], and [`CommandError::InMotion`] for a stage that has been let go and has not come to rest: the
     /// servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one that is out of its reach, where the
     /// supervisor would end it at once.
     pub fn set_servo(
@@ -34,6 +34,7 @@ impl Commander {
         }
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
+            (true, _) if !self.commissioned => Err(CommandError::NotCommissioned),
             (true, Mode::Off) if snapshot.referenced && self.rest.is_fast => {
                 Err(CommandError::InMotion)
             }

@@ -12,6 +12,7 @@ use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
+use crate::iterative_learning::Tables;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits, Position};
 use crate::parameters::{Parameters, Targets};
@@ -33,9 +34,13 @@ pub struct Commander {
     pub(super) full_limits: Limits,
     pub(super) soft_limits: SoftLimits,
     pub(super) waves: Waveforms,
+    /// Of moves that are repeated.
+    pub(super) tables: Tables,
     /// Velocities that have been set for single axes, mm/s and deg/s.
     pub(super) velocities: AxisValues,
     pub(super) targets: Targets,
+    /// Whether the machine is commissioned: if not, nothing drives.
+    pub(super) commissioned: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) frames: FrameTree,
@@ -86,8 +91,10 @@ impl Commander {
             full_limits: parameters.limits,
             soft_limits: SoftLimits::new(),
             waves: Waveforms::new(),
+            tables: Tables::new(),
             velocities: AxisValues::default(),
             targets: parameters.targets,
+            commissioned: parameters.commissioned,
             cycle_ms: DEFAULT_CYCLE_MS,
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,

@@ -113,6 +113,8 @@ pub enum ErrorCode {
     ReferenceOutside = 4003,
     /// There is nothing to recover: the pose that the encoders show is in reach, or the servo is on.
     NothingToRecover = 4004,
+    /// Nobody has said yet how this machine is set up (`CMS`): nothing drives.
+    NotCommissioned = 4005,
 }
 
 impl ErrorCode {
@@ -141,6 +143,7 @@ impl From<CommandError> for ErrorCode {
         match error {
             CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
             CommandError::NotReady => Self::NotReady,
+            CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,

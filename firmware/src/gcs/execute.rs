@@ -52,6 +52,7 @@ impl Interpreter {
             Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
+            Action::Repeat(action) => self.change_repeated_moves(&action, queues),
             Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
             Action::SoftLowest(values) => {
                 Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
@@ -65,7 +66,7 @@ impl Interpreter {
             }
             Action::Set(settings) => self.set(&settings, session, queues),
             Action::Store(addresses) => {
-                self.store_parameters(&addresses)?;
+                self.store_parameters(&addresses, queues)?;
                 self.wait(session, Awaited::Stored);
                 Ok(())
             }
@@ -75,6 +76,7 @@ impl Interpreter {
             Action::Stop => self.stop_by_command(Event::Stop, session, queues),
             // Whichever axes are named: the axes of a line cannot stop apart.
             Action::Halt(_) => self.stop_by_command(Event::Halt, session, queues),
+            Action::Commission(value) => self.commission(value, session, queues),
             Action::Heartbeat(ms) => self.set_heartbeat(ms, session),
             Action::RestartStatistics => {
                 self.restart_statistics();

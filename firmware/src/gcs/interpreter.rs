@@ -2,9 +2,10 @@
 
 use super::connections::Connections;
 use super::error::ErrorCode;
-use super::events::EventLog;
+use super::events::{BoardNotice, Crash, Event, EventLog};
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
+use super::learnt::ServoReports;
 use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
@@ -15,6 +16,7 @@ use super::variables::Variables;
 use crate::commander::Commander;
 use crate::motion::Limits;
 use crate::parameters::Parameters;
+use crate::self_test::Board;
 
 /// Who answers `*IDN?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,12 +45,15 @@ pub struct Interpreter {
     pub(super) recorder_state: RecorderState,
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
+    pub(super) servo_reports: ServoReports,
     pub(super) heartbeat: Heartbeat,
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
     pub(super) recovery_owner: RecoveryOwner,
     pub(super) wants_restart: bool,
+    /// What `TST?` asks, where there is one.
+    pub(super) board: Option<&'static dyn Board>,
     pub(super) macros: Macros,
     pub(super) variables: Variables,
     pub(super) persistence: Persistence,
@@ -70,12 +75,14 @@ impl Interpreter {
             recorder_state: RecorderState::new(),
             events: EventLog::new(),
             statistics: Statistics::default(),
+            servo_reports: ServoReports::default(),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),
             ownership: Ownership::default(),
             recovery_owner: RecoveryOwner::default(),
             wants_restart: false,
+            board: None,
             macros: Macros::default(),
             variables: Variables::default(),
             persistence: Persistence::new(parameters),
@@ -89,6 +96,16 @@ impl Interpreter {
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);
+    }
+
+    /// Notes how the program ended before this start, for `EVT?`. To be called before anything is served.
+    pub fn add_crash(&mut self, crash: Crash) {
+        self.events.add(0, Event::Crashed(crash));
+    }
+
+    /// Notes what the board has found out about itself, for `EVT?`. To be called before anything is served.
+    pub fn add_board_notice(&mut self, notice: BoardNotice) {
+        self.events.add(0, Event::BoardNotice(notice));
     }
 
     /// The tick of the latest snapshot taken; 0 before the first.

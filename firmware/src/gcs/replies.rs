@@ -45,6 +45,8 @@ impl Interpreter {
             Query::Velocity => one_line(out, format_args!("{}", self.commander.velocity_mm_s())),
             Query::ParameterHelp => parameter_help(out),
             Query::Level => one_line(out, format_args!("{}", session.level)),
+            Query::Commissioned => self.reply_commissioned(out),
+            Query::SelfTest => self.reply_self_test(session, out),
             Query::Heartbeat => {
                 let own = self.heartbeat.promised_ms(session.number);
                 let ms = own.unwrap_or(self.parameters.supervision.host_silence_ms);
@@ -60,6 +62,7 @@ impl Interpreter {
             Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),
             Query::Statistics => self.reply_statistics(out),
+            Query::RepeatedMoves => self.reply_repeated_moves(out),
             Query::Fault => self.reply_fault(out),
             Query::Monitor => self.reply_monitor(session, out),
             Query::Status => one_line(out, format_args!("{}", self.status())),
@@ -161,6 +164,9 @@ impl Interpreter {
                 None => reply.line(format_args!("0 no fault"))?,
                 Some(cause) => reply.line(format_args!("0 no fault, started by {cause}"))?,
             }
+        }
+        if let Some(reason) = self.not_commissioned() {
+            reply.line(format_args!("{reason}"))?;
         }
         for (pivot, kind) in (1..).zip(snapshot.encoder_faults) {
             if let Some(kind) = kind {

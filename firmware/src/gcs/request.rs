@@ -1,6 +1,7 @@
 //! What a line or a single byte asks for.
 
 use super::frames::FrameQuery;
+use super::iterative_learning::LearnAction;
 use super::macros::MacroRequest;
 use super::parameter::{Addresses, Settings};
 use super::recorder::{RecordAction, RecordQuery};
@@ -75,6 +76,10 @@ pub enum Query {
     Fault,
     /// `MON?`
     Monitor,
+    /// `CMS?`
+    Commissioned,
+    /// `TST?`
+    SelfTest,
     /// `HBT?`
     Heartbeat,
     /// `JTM?`
@@ -91,6 +96,8 @@ pub enum Query {
     Events,
     /// `LST?`
     Statistics,
+    /// `ILC?`
+    RepeatedMoves,
     /// `#4`
     Status,
     /// `#5`
@@ -135,6 +142,8 @@ pub enum Action {
     AxisVelocity(AxisValues),
     /// Tables and generators of waveforms.
     Wave(WaveChange),
+    /// Tables of moves that are repeated.
+    Repeat(LearnAction),
     /// Frames and the centre of rotation.
     Frame(FrameChange),
     /// `NLM`: mm and deg.
@@ -159,6 +168,8 @@ pub enum Action {
     Halt(AxisSet),
     /// `FLC`
     Acknowledge,
+    /// `CMS`: 0 or 1.
+    Commission(f64),
     /// `HBT`, ms.
     Heartbeat(f64),
     /// `JTM`, ms.

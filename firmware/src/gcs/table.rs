@@ -2,6 +2,7 @@
 
 use super::arguments::{axis_identifiers, joysticks};
 use super::frames::parse as frames;
+use super::iterative_learning::parse as learning;
 use super::macros::{MacroRequest, parse as macros};
 use super::ownership::parse as ownership;
 use super::parameter::parse as parameter;
@@ -60,6 +61,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         "<level> [<password>] set command level",
     ),
     ask("CCL?", Query::Level, "get command level"),
+    entry(
+        "CMS",
+        Syntax::Number(Action::Commission),
+        "<0|1> set whether the machine is commissioned",
+    ),
+    ask(
+        "CMS?",
+        Query::Commissioned,
+        "get whether the machine is commissioned",
+    ),
     entry(
         "CST?",
         Syntax::Property(Property::Stage),
@@ -143,6 +154,22 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     ask("HLP?", Query::Help, "get list of commands"),
     ask("HPA?", Query::ParameterHelp, "get list of parameters"),
+    own(
+        "ILC FORGET",
+        learning::forget,
+        "[<move>] forget what was learnt of it",
+    ),
+    own("ILC FREEZE", learning::freeze, "<move> learn no more of it"),
+    own(
+        "ILC LEARN",
+        learning::learn,
+        "<move> learn the next move from rest, and each time it is repeated",
+    ),
+    ask(
+        "ILC?",
+        Query::RepeatedMoves,
+        "get what was learnt of repeated moves",
+    ),
     entry(
         "JOG",
         Syntax::Values(Action::Jog),
@@ -437,6 +464,11 @@ pub(super) static COMMANDS: &[Entry] = &[
         "TRS?",
         Quantity::ReferenceSwitch,
         "[{<axis>}] get whether there are reference switches",
+    ),
+    ask(
+        "TST?",
+        Query::SelfTest,
+        "get what the board reads about itself",
     ),
     own("TWG?", wave::count, "get number of wave generators"),
     own(

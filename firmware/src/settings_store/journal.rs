@@ -44,6 +44,10 @@ impl<F: NorFlash> Journal<F> {
         }
     }
 
+    pub fn into_flash(self) -> F {
+        self.flash
+    }
+
     pub const fn flash(&mut self) -> &mut F {
         &mut self.flash
     }

@@ -66,6 +66,11 @@ impl<F: NorFlash> SettingsStore<F> {
         (self.journal).append(length.bytes(), |writer| settings.write(writer))
     }
 
+    /// The flash, in which nothing is stored any more.
+    pub fn into_flash(self) -> F {
+        self.journal.into_flash()
+    }
+
     /// The flash.
     pub const fn flash(&mut self) -> &mut F {
         self.journal.flash()

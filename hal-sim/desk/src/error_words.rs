@@ -68,6 +68,7 @@ error_words! {
     FlashFailed: "the settings cannot be kept: the flash does not take them",
     OwnedByAnother: "another connection owns the stage: OWN? tells which; only stopping is possible",
     NothingToRecover: "nothing to recover: the measured pose is in reach, or the servo is on",
+    NotCommissioned: "the machine is not commissioned, so nothing drives: CMS? says what is missing",
     ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros (EVT? has the pose), then RCV 1 drives it slowly back in",
 }
 

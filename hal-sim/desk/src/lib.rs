@@ -5,12 +5,14 @@
 //! | `serve` | a controller in this process, for clients over TCP and a pseudo-terminal |
 //! | `web` | the page, in front of any controller |
 //! | `record` | a record of a controller's data recorder |
+//! | `board` | the tests to be repeated on every board |
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
 //! | `reference` | the parameters of the reference stage |
 //! | `assets` | the files of the page, embedded in the program |
 
 mod assets;
+pub mod board;
 pub mod error_words;
 pub mod record;
 mod reference;

@@ -21,7 +21,7 @@ pub struct Conditions {
     pub without: Vec<&'static str>,
     /// Imperfections that were on beyond those of a kind machine.
     pub with: Vec<&'static str>,
-    /// File that the controller kept its settings in, if it kept them.
+    /// File that the controller kept its settings in, if any: without one it had those that the simulated machine comes with.
     pub settings: Option<String>,
 }
 
@@ -37,7 +37,9 @@ impl Conditions {
             ("imperfections", self.imperfections()),
             (
                 "settings",
-                self.settings.clone().unwrap_or_else(|| "none kept".into()),
+                self.settings
+                    .clone()
+                    .unwrap_or_else(|| "the machine's own".into()),
             ),
         ]
     }
@@ -87,7 +89,7 @@ mod tests {
              imperfections of a kind machine but backlash, dead-time and geometry; settings kept.bin"
         );
         assert!((Conditions::default().to_string()).ends_with(
-            "seed 0; mismatch 0 %; payload 0 kg; imperfections of a kind machine; settings none kept"
+            "seed 0; mismatch 0 %; payload 0 kg; imperfections of a kind machine; settings the machine's own"
         ));
     }
 }

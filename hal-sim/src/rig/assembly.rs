@@ -9,6 +9,7 @@
 //!               SettingsFlash
 //! ```
 
+use super::simulated_board::SimulatedBoard;
 use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};
 use embedded_io::Write;
@@ -45,7 +46,8 @@ pub struct Rig<'a, F = Host> {
     pub tick_queues: TickQueues<'a>,
     /// The command side's ends of the queues.
     pub command_queues: CommandQueues<'a>,
-    parameters: Parameters,
+    /// What the controller has by itself.
+    own: Parameters,
 }
 
 impl Default for ControllerMemory {
@@ -77,7 +79,7 @@ impl ControllerMemory {
 }
 
 impl<'a> Rig<'a> {
-    /// A simulated stage whose controller starts with the settings of this flash, and with these parameters where it keeps none.
+    /// A simulated stage whose controller starts with the settings of this flash; where it keeps none, with those of the machine.
     #[must_use]
     pub fn simulated(
         memory: &'a mut ControllerMemory,
@@ -91,8 +93,8 @@ impl<'a> Rig<'a> {
 }
 
 impl<'a, F: Front> Rig<'a, F> {
-    /// A controller that starts with the settings of this flash, and with these parameters where it keeps none. `front` is told with
-    /// which parameters it starts.
+    /// A controller that starts with the settings of this flash. Into one that keeps none go those that a machine of these parameters
+    /// comes with; if the parameters are not commissioned, it stays empty. `front` is told with which parameters it starts.
     #[must_use]
     pub fn new(
         (tick_queues, command_queues): (TickQueues<'a>, CommandQueues<'a>),
@@ -100,8 +102,10 @@ impl<'a, F: Front> Rig<'a, F> {
         flash: SettingsFlash,
         front: impl FnOnce(&Parameters) -> F,
     ) -> Self {
+        let flash = with_machine_settings(flash, parameters);
+        let own = parameters.clone().uncommissioned();
         let mut settings_store = SettingsStore::new(flash);
-        let (interpreter, fault) = started(parameters, &mut settings_store);
+        let (interpreter, fault) = started(&own, &mut settings_store);
         let mut front = front(interpreter.parameters());
         front.restart(interpreter.parameters(), fault, motor_heat(&command_queues));
         Self {
@@ -110,7 +114,7 @@ impl<'a, F: Front> Rig<'a, F> {
             settings_store,
             tick_queues,
             command_queues,
-            parameters: parameters.clone(),
+            own,
         }
     }
 
@@ -164,13 +168,30 @@ impl<'a, F: Front> Rig<'a, F> {
     }
 
     fn start(&mut self) {
-        let (interpreter, fault) = started(&self.parameters, &mut self.settings_store);
+        let (interpreter, fault) = started(&self.own, &mut self.settings_store);
         self.interpreter = interpreter;
         let motor_heat = motor_heat(&self.command_queues);
         (self.front).restart(self.interpreter.parameters(), fault, motor_heat);
         self.tick_queues.clear();
         self.command_queues.clear();
     }
+}
+
+/// What a machine of these parameters comes with is stored in a flash that keeps nothing yet.
+#[must_use]
+pub fn with_machine_settings(flash: SettingsFlash, parameters: &Parameters) -> SettingsFlash {
+    if !parameters.commissioned || !flash.is_erased() {
+        return flash;
+    }
+    let mut interpreter = Box::new(Interpreter::new(
+        &parameters.clone().uncommissioned(),
+        IDENTITY,
+    ));
+    interpreter.start_with(parameters.clone());
+    let mut settings_store = SettingsStore::new(flash);
+    // One that does not take them leaves the controller uncommissioned, or its settings damaged: it says so itself.
+    let _ = settings_store.write(&*interpreter);
+    settings_store.into_flash()
 }
 
 /// How warm the motors are from before the start.
@@ -184,6 +205,7 @@ fn started(
     settings_store: &mut SettingsStore<SettingsFlash>,
 ) -> (Box<Interpreter>, Option<FaultKind>) {
     let mut interpreter = Box::new(Interpreter::new(parameters, IDENTITY));
+    interpreter.set_board(&SimulatedBoard);
     let fault = settings_store.restore(&mut *interpreter);
     (interpreter, fault)
 }

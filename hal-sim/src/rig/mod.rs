@@ -7,6 +7,7 @@
 //! | `conditions` | what a run is made under |
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
+//! | `simulated_board` | what the simulated controller says of its board |
 //! | [`observer`] | looks at every tick for the report |
 
 mod assembly;
@@ -14,7 +15,8 @@ mod conditions;
 pub mod exercise;
 pub mod observer;
 pub mod run;
+mod simulated_board;
 
 pub use ::script::{client, script};
-pub use assembly::{ControllerMemory, IDENTITY, Rig};
+pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use conditions::run_conditions;

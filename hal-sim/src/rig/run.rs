@@ -37,6 +37,8 @@ pub struct RunOptions {
     pub payload_kg: f64,
     /// Imperfections of the simulated stage.
     pub imperfections: Imperfections,
+    /// The controller's flash keeps nothing unless another is given: the machine is not commissioned.
+    pub uncommissioned: bool,
     /// No progress bar.
     pub quiet: bool,
 }
@@ -53,6 +55,7 @@ impl Default for RunOptions {
             mismatch_percent: 20.0,
             payload_kg: 0.0,
             imperfections: Imperfections::CALIBRATED,
+            uncommissioned: false,
             quiet: true,
         }
     }
@@ -130,7 +133,7 @@ pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> 
     run_machine(script, &parameters, &stage, options, flash)
 }
 
-/// The controller's parameters, as the imperfections that are left make them.
+/// The controller's parameters, as the imperfections that are left make them: those that the machine comes with, or none.
 #[must_use]
 pub fn controller_parameters(options: &RunOptions) -> Parameters {
     let mut parameters = Parameters::REFERENCE;
@@ -142,6 +145,9 @@ pub fn controller_parameters(options: &RunOptions) -> Parameters {
         for drive in &mut parameters.drives {
             drive.dead_time_s = 0.0;
         }
+    }
+    if options.uncommissioned {
+        parameters = parameters.uncommissioned();
     }
     parameters
 }

@@ -16,6 +16,7 @@ const COMMANDS: &[&str] = &[
     "view",
     "record",
     "settings",
+    "board",
     "faults",
     "inverse",
     "direct",

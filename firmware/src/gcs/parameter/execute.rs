@@ -4,10 +4,10 @@
 //! the tick computes with is derived from them here and handed over as one command, which the tick takes only at rest.
 //! Nothing that depends on them is decided before the tick has said that it did.
 
-use super::address::Settings;
+use super::address::{Address, Item, Settings};
 use super::descriptor::{Parameter, When};
 use super::looseness::loosened;
-use super::table::PARAMETERS;
+use super::table::{COMMISSIONED, PARAMETERS};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -41,6 +41,23 @@ impl Interpreter {
             );
         }
         Ok(())
+    }
+
+    /// `CMS`: 1 says that all that the machine has of its own is set, 0 that it is not. Anything else is out of range.
+    pub(in crate::gcs) fn commission(
+        &mut self,
+        value: f64,
+        session: &Session,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        let item = Item::System;
+        let address = Address {
+            item,
+            id: COMMISSIONED,
+        };
+        let mut settings = Settings::default();
+        settings[0] = Some((address, value));
+        self.set(&settings, session, queues)
     }
 
     /// Goes over to other parameters, or leaves everything as it is.

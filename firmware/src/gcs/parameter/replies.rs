@@ -5,7 +5,7 @@ use super::descriptor::Parameter;
 use super::table::PARAMETERS;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
-use crate::gcs::reply_writer::ReplyWriter;
+use crate::gcs::reply_writer::{ReplyWriter, one_line};
 
 impl Interpreter {
     /// Answers `SPA?`.
@@ -30,6 +30,27 @@ impl Interpreter {
             }
         }
         reply.end()
+    }
+}
+
+/// Why nothing drives, and the way out.
+const NOT_COMMISSIONED: &str = "not commissioned, nothing drives: set zeros and directions of the encoders and the rest (SPA), then CMS 1 and WPA 100";
+
+impl Interpreter {
+    /// Answers `CMS?`.
+    pub(in crate::gcs) fn reply_commissioned(
+        &self,
+        out: &mut Output<'_>,
+    ) -> Result<(), WriteFailed> {
+        match self.not_commissioned() {
+            None => one_line(out, format_args!("1 commissioned")),
+            Some(reason) => one_line(out, format_args!("0 {reason}")),
+        }
+    }
+
+    /// Why nothing drives, if the machine is not commissioned.
+    pub(in crate::gcs) fn not_commissioned(&self) -> Option<&'static str> {
+        (!self.parameters.commissioned).then_some(NOT_COMMISSIONED)
     }
 }
 

@@ -20,8 +20,9 @@ use crate::parameters::Parameters;
 use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, envelope_bytes};
 use embedded_storage::nor_flash::NorFlash;
 
-/// Version of the table above.
-const VERSION: u16 = 1;
+/// Version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
+/// would take its own for those of a machine whose zeros are 0.
+const VERSION: u16 = 2;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
 

@@ -30,6 +30,8 @@ export class Stage extends EventTarget {
   /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
   mode = "off";
   fault = "";
+  /** Why nothing drives, if the machine is not commissioned. */
+  notCommissioned = "";
   referenced = false;
   servo = false;
   settled = false;
@@ -143,6 +145,8 @@ export class Stage extends EventTarget {
     this.velocity = Number(replies["VLS?"]);
     const fault = replies["FLT?"] ?? "";
     this.fault = fault.startsWith("0 ") ? "" : fault;
+    const commissioned = replies["CMS?"] ?? "";
+    this.notCommissioned = commissioned.startsWith("0 ") ? commissioned.slice(2) : "";
     this.#tell("slow");
   }
 

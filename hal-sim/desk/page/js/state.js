@@ -26,7 +26,7 @@ export function showState(stage) {
     lamp("lamp-referenced", stage.referenced);
     lamp("lamp-servo", stage.servo);
     lamp("lamp-settled", stage.settled);
-    byId("first-step").hidden = stage.referenced;
+    byId("first-step").hidden = stage.referenced || stage.notCommissioned !== "";
     byId("reference-again").hidden = !stage.referenced;
   });
   byId("acknowledge").addEventListener("click", () => report(byId("said"), () => stage.link.ask("FLC"), "fault acknowledged"));
@@ -42,7 +42,8 @@ function showMachine({ connected, simulated, identity, place }) {
 }
 
 function showFault(stage) {
-  const text = stage.connected && stage.fault ? `Fault: ${stage.fault}` : "";
+  const reason = stage.fault ? `Fault: ${stage.fault}` : stage.notCommissioned && `This machine is ${stage.notCommissioned}.`;
+  const text = stage.connected ? reason : "";
   byId("alarm").hidden = !text;
   if (text) setText(byId("alarm-text"), text);
   byId("acknowledge").hidden = stage.mode !== "fault";

@@ -16,7 +16,7 @@ use std::io;
 use std::time::Duration;
 
 use crate::web::Endpoint;
-use desk::Desk;
+pub(crate) use desk::Desk;
 use drawing::Progress;
 pub use table::Record;
 

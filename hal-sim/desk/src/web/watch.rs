@@ -16,6 +16,7 @@ const SLOW: &[&str] = &[
     "FRF? X",
     "VLS?",
     "FLT?",
+    "CMS?",
     "LST?",
     "JOG? X Y W",
     "SPI?",

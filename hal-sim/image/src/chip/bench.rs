@@ -1,11 +1,13 @@
-//! The bench as its callers see it.
+//! The bench as its callers see it. The board comes commissioned: its flash keeps the settings of the simulated machine.
 
 use super::board::{ChipBoard, STAGE_RATE};
 use super::cost::TickCost;
 use super::driver::{Landmarks, StageDriver};
 use super::gaps;
 use super::period::{Period, Reset};
-use hal_sim::machine::devices::Stage;
+use firmware::parameters::Parameters;
+use hal_sim::machine::devices::{SettingsFlash, Stage};
+use hal_sim::rig::with_machine_settings;
 use rigless::emulator::{self, Start, Watch};
 use rigless::image::{self, Image};
 use rigless::session::Session;
@@ -20,6 +22,11 @@ use std::path::{Path, PathBuf};
 pub(super) const TICK_BEGIN: &str = "TIM1_UP_TIM10";
 pub(super) const TICK_END: &str = "stage_tick_end";
 const TRACE: &str = "TRACE";
+/// Where the image keeps its settings: at the beginning of bank 2.
+const SETTINGS_AT: u64 = 0x0810_0000;
+/// The number that the maker burns into a chip, and where: here it says what the chip is.
+const CHIP_NUMBER: &[u8; 12] = b"emulated F42";
+const CHIP_NUMBER_AT: u64 = 0x1FFF_7A10;
 
 /// An image, ready to boot.
 pub struct Bench {
@@ -27,6 +34,10 @@ pub struct Bench {
     symbols: Symbols,
     stage: Stage,
     instructions_per_second: NonZeroU64,
+    has_crystal: bool,
+    flash_kib: Option<u16>,
+    /// What the settings' flash holds at the start.
+    settings: SettingsFlash,
 }
 
 /// What a run leaves behind.
@@ -86,6 +97,9 @@ impl Bench {
             symbols,
             stage,
             instructions_per_second: STAGE_RATE,
+            has_crystal: true,
+            flash_kib: None,
+            settings: with_machine_settings(SettingsFlash::in_memory(), &Parameters::REFERENCE),
         })
     }
 
@@ -94,6 +108,33 @@ impl Bench {
     pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
         Self {
             instructions_per_second,
+            ..self
+        }
+    }
+
+    /// The same with a crystal that does not start.
+    #[must_use]
+    pub fn without_crystal(self) -> Self {
+        Self {
+            has_crystal: false,
+            ..self
+        }
+    }
+
+    /// The same on a chip whose manufacturer says that it has so many KiB of flash.
+    #[must_use]
+    pub fn with_flash_kib(self, flash_kib: u16) -> Self {
+        Self {
+            flash_kib: Some(flash_kib),
+            ..self
+        }
+    }
+
+    /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
+    #[must_use]
+    pub fn commissioned_as(self, parameters: &Parameters) -> Self {
+        Self {
+            settings: with_machine_settings(SettingsFlash::in_memory(), parameters),
             ..self
         }
     }
@@ -114,13 +155,30 @@ impl Bench {
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
-        let board = board.at_rate(self.instructions_per_second);
+        let mut board = board.at_rate(self.instructions_per_second);
+        if !self.has_crystal {
+            board = board.without_crystal();
+        }
+        if let Some(flash_kib) = self.flash_kib {
+            board = board.with_flash_kib(flash_kib);
+        }
         let mut session =
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));
         session.watch(Watch::Instruction(landmarks.tick_end));
         let driver = StageDriver::new(on_period, self.stage, landmarks);
-        let images = [self.image];
+        let settings = self.settings.bytes().to_vec();
+        let settings = Image::new(Path::new("settings"), settings, Some(SETTINGS_AT));
+        let number = Image::new(
+            Path::new("number"),
+            CHIP_NUMBER.to_vec(),
+            Some(CHIP_NUMBER_AT),
+        );
+        let images = [
+            self.image,
+            settings.map_err(BenchError::Image)?,
+            number.map_err(BenchError::Image)?,
+        ];
         let finished =
             emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
         let gaps = gaps::unexpected(&finished.session);

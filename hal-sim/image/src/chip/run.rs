@@ -105,8 +105,17 @@ pub fn run(script: &Script, options: &RunOptions) -> Result<ChipOutcome, ChipErr
     run_image(&path, script, options)
 }
 
+/// What the board's flash keeps the settings of.
+pub(super) fn machine_parameters(options: &RunOptions) -> Parameters {
+    if options.uncommissioned {
+        Parameters::REFERENCE.uncommissioned()
+    } else {
+        Parameters::REFERENCE
+    }
+}
+
 fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipOutcome, ChipError> {
-    let parameters = Parameters::REFERENCE;
+    let parameters = machine_parameters(options);
     let stage = Stage::new(&stage_parameters(options));
     let mut runner = Some(Runner {
         script: script.clone(),
@@ -125,6 +134,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
     let bench = |error| ChipError::Bench(path.to_owned(), error);
     let outcome = Bench::load(path, stage)
         .map_err(bench)?
+        .commissioned_as(&parameters)
         .run(move |period| {
             let Some(now) = &mut runner else {
                 return Break(());

@@ -69,6 +69,12 @@ impl SettingsFlash {
         flash
     }
 
+    /// Whether nothing was ever stored in it.
+    #[must_use]
+    pub fn is_erased(&self) -> bool {
+        self.bytes.iter().all(|&byte| byte == ERASED)
+    }
+
     /// What it holds.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {

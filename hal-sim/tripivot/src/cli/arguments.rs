@@ -4,7 +4,7 @@ use super::number::{whole, within};
 use super::stage::{Machine, SimulatedStage, Simulation};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use controller::{Access, Controller, RecordRun, SettingsCommand, View};
+pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
@@ -69,6 +69,9 @@ pub(super) enum Command {
     /// Write settings of a controller that runs already into a readable file, or bring them back from one.
     #[command(subcommand)]
     Settings(SettingsCommand),
+    /// Run the tests that are to be repeated on every board, over its command line; nothing moves without --move. Exit code 1 if one
+    /// fails.
+    Board(BoardRun),
     /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
     Machine(Machine),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `arguments`, `number`, `usage`, `error` | what is typed, and what is said of it where it is wrong |
 //! | `stage`, `machine`, `simulate`, `serve` | the simulated stage: its options, its numbers, a run, in real time |
-//! | `view`, `record`, `settings` | in front of a controller that runs already |
+//! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
 //! | `rows`, `units`, `json` | numbers in and out |
@@ -15,6 +15,7 @@
 //! | `signal` | Ctrl-C |
 
 mod arguments;
+mod board;
 mod check;
 mod direct;
 mod error;
@@ -80,6 +81,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Serve(arguments)) => serve::run(&arguments),
         Some(Command::View(arguments)) => view::run(&arguments),
         Some(Command::Record(arguments)) => record::run(&arguments),
+        Some(Command::Board(arguments)) => board::run(&arguments),
         Some(Command::Machine(arguments)) => machine::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Settings(command)) => settings::run(&command),

@@ -23,6 +23,7 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
     let is_remote = check_address(&arguments.listen, arguments.access.allow_remote)?;
     let flash = (arguments.settings.as_deref())
         .map_or_else(|| Ok(SettingsFlash::in_memory()), SettingsFlash::open)?;
+    let settings = settings_text(arguments, &flash);
     let mut memory = ControllerMemory::new();
     let mut stage = Simulated::new(&mut memory, &stage_options(&arguments.stage)?, flash);
     let server = Server::bind(ServeOptions {
@@ -39,7 +40,7 @@ pub(super) fn run(arguments: &Serve) -> Result<ExitCode, CliError> {
             Some(page(web, &arguments.access, endpoint)?)
         }
     };
-    announce(&server, page.as_ref(), is_remote).map_err(CliError::output)?;
+    announce(&server, page.as_ref(), is_remote, &settings).map_err(CliError::output)?;
     let mut printer = Printer::start();
     let result = server.run(&mut stage, &stop, &mut |notice| printer.print(&notice));
     printer.finish();
@@ -57,9 +58,29 @@ fn reached_at(address: SocketAddr) -> SocketAddr {
     SocketAddr::new(ip, address.port())
 }
 
-fn announce(server: &Server, page: Option<&Page>, is_remote: bool) -> io::Result<()> {
+/// With which settings the controller starts, and where it keeps them.
+fn settings_text(arguments: &Serve, flash: &SettingsFlash) -> String {
+    let kept = (arguments.settings.as_deref()).map_or_else(
+        || "kept until it ends".to_owned(),
+        |file| format!("kept in {}", file.display()),
+    );
+    let which = match (flash.is_erased(), arguments.stage.uncommissioned) {
+        (false, _) => "those that were kept",
+        (true, false) => "those that the simulated machine comes with",
+        (true, true) => "none, the machine is not commissioned",
+    };
+    format!("settings: {which}; {kept}")
+}
+
+fn announce(
+    server: &Server,
+    page: Option<&Page>,
+    is_remote: bool,
+    settings: &str,
+) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "listening at {}", server.address()?)?;
+    writeln!(out, "{settings}")?;
     if is_remote {
         writeln!(out, "{REMOTE_MEANS}")?;
     }

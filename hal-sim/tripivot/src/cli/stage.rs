@@ -53,6 +53,10 @@ pub struct SimulatedStage {
     /// Imperfections to switch on that a kind machine has not; `all` makes it an unkind one.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
     pub with: Vec<String>,
+    /// Start with a controller that keeps no settings: it knows neither zeros nor directions of the encoders, and nothing drives before
+    /// it is commissioned. Without this, an empty store gets the settings that the simulated machine comes with.
+    #[arg(long)]
+    pub uncommissioned: bool,
     /// The machine itself.
     #[command(flatten)]
     pub machine: Machine,
@@ -174,6 +178,7 @@ pub fn stage_options(arguments: &SimulatedStage) -> Result<RunOptions, StageErro
         imperfections: imperfections(arguments, machine.plant.imperfections),
         machine,
         machine_name: arguments.machine.name(),
+        uncommissioned: arguments.uncommissioned,
         ..RunOptions::default()
     })
 }

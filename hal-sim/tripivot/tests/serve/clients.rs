@@ -210,7 +210,9 @@ fn control_c_ends_it_cleanly() {
     out.read_to_string(&mut rest).unwrap();
     assert_eq!(
         rest,
-        format!("Ctrl-C ends it\n{name}: connected\n{name}: error 2 after QQQ\n")
+        format!(
+            "settings: those that the simulated machine comes with; kept until it ends\nCtrl-C ends it\n{name}: connected\n{name}: error 2 after QQQ\n"
+        )
     );
     // Nothing is left of the connection.
     assert_eq!(client.port.read(&mut [0]).unwrap_or(0), 0);

@@ -12,7 +12,7 @@ use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
-use pivots::{DRIVES, GAINS, RIPPLE, of_pivots};
+use pivots::{DRIVES, GAINS, LEARNT, RIPPLE, of_pivots};
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -29,10 +29,12 @@ const SERVO: Group = group("servo", 1, When::AtRest);
 const WINDOW: Group = group("window", 0, When::AtRest);
 const SUPERVISION: Group = group("supervision", 1, When::AtRest);
 const ENCODER: Group = group("encoder", 1, When::ServoOff);
+const COMMISSIONING: Group = group("commissioning", 1, When::ServoOff);
 const PLATFORM: Group = group("platform", 0, When::AtRest);
 const RECORDER: Group = group("recorder", 0, When::AtRest);
 const DRIVE: Group = group("drive", 1, When::AtRest);
 const RIPPLE_GROUP: Group = group("ripple", 1, When::AtRest);
+const LEARNT_GROUP: Group = group("learnt", 1, When::AtRest);
 
 const fn group(name: &'static str, level: u8, when: When) -> Group {
     Group { name, level, when }
@@ -106,6 +108,9 @@ macro_rules! flag {
 /// Largest count of an encoder.
 const COUNTS: f64 = ((1u32 << POSITION_BITS) - 1) as f64;
 
+/// The parameter that `CMS` sets.
+pub(in crate::gcs) const COMMISSIONED: u32 = 0x5450_0C00;
+
 /// Most points that a record of one word has room for.
 const ROWS: f64 = RECORDER_WORDS as f64;
 /// By their numbers.
@@ -129,12 +134,13 @@ pub static PARAMETERS: &[Parameter] = &join::<COUNT>(&[
     &of_pivots::<{ 4 * DRIVES.len() }>(DRIVES),
     POWER,
     &of_pivots::<{ 4 * RIPPLE.len() }>(RIPPLE),
+    &of_pivots::<{ 4 * LEARNT.len() }>(LEARNT),
 ]);
 
 const COUNT: usize = COMMON.len()
     + AFTER_GAINS.len()
     + POWER.len()
-    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len());
+    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len() + LEARNT.len());
 
 /// Lists one after the other.
 const fn join<const N: usize>(lists: &[&[Parameter]]) -> [Parameter; N] {
@@ -188,6 +194,7 @@ const COMMON: &[Parameter] = &[
     SERVO.float(0x5450_0308, "what rest leaves of the gains' rates, 1: there is no rest mode", "", [0.05, 1.0], at!(servo.rest.stiffness)),
     SERVO.float(0x5450_0309, "time at rest after which they fall", "s", [0.0, 10.0], at!(servo.rest.delay_s)),
     SERVO.float(0x5450_030A, "mean following error that brings the full gains back", "encoder counts", [1.0, 1_000.0], at!(servo.rest.wake_counts)),
+    SERVO.int(0x5450_030B, "what was learnt is kept over a restart: 0 by WPA alone, 1 by itself as well", [0.0, 1.0], flag!(servo.keeps_learnt)),
 ];
 #[rustfmt::skip]
 const AFTER_GAINS: &[Parameter] = &[
@@ -223,6 +230,8 @@ const AFTER_GAINS: &[Parameter] = &[
     ENCODER.int(0x5450_0610, "whether encoder 1 counts down", [0.0, 1.0], flag!(encoders[0].reversed)),
     ENCODER.int(0x5450_0611, "whether encoder 2 counts down", [0.0, 1.0], flag!(encoders[1].reversed)),
     ENCODER.int(0x5450_0612, "whether encoder 3 counts down", [0.0, 1.0], flag!(encoders[2].reversed)),
+
+    COMMISSIONING.int(COMMISSIONED, "whether all that this machine has of its own is set: if not, nothing drives; CMS sets it", [0.0, 1.0], flag!(commissioned)),
 
     PLATFORM.float(0x5450_0700, "mass of the platform", "kg", [0.1, 50.0], at!(platform.mass_kg)),
     PLATFORM.float(0x5450_0701, "inertia of the platform", "kg m^2", [1e-4, 2.0], at!(platform.inertia_kg_m2)),

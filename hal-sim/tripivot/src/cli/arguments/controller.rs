@@ -90,6 +90,22 @@ pub(in super::super) struct RecordRun {
     pub(in super::super) quiet: bool,
 }
 
+/// The tests of a board.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct BoardRun {
+    #[command(flatten)]
+    pub(in super::super) controller: Controller,
+    /// List the tests and what is expected of each; no controller is needed.
+    #[arg(long)]
+    pub(in super::super) list: bool,
+    /// Run the tests that move the stage too, by 10 mm at most: the machine is commissioned, and nobody is near.
+    #[arg(long = "move")]
+    pub(in super::super) moves: bool,
+    /// The controller runs on an emulated chip, whose seconds are not those of this machine.
+    #[arg(long)]
+    pub(in super::super) emulated: bool,
+}
+
 /// What to do with settings.
 #[derive(Subcommand, Clone, Debug)]
 pub(in super::super) enum SettingsCommand {

@@ -1,0 +1,34 @@
+//! What a board can be asked about itself while its bridges sleep.
+//!
+//! The library asks and judges; what a reading is and where it comes from is the board's to know.
+
+use core::ops::RangeInclusive;
+
+/// A board, as it describes itself.
+pub trait Board: Sync {
+    /// What it is, in words.
+    fn name(&self) -> &'static str;
+
+    /// Tells every reading that it can take with the bridges asleep, at once: nothing here waits.
+    fn readings(&self, tell: &mut dyn FnMut(&Reading));
+}
+
+/// Something that a board has read about itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// What it is, one word in capitals.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Unit of the value; empty where it has none.
+    pub unit: &'static str,
+    /// What it has to be.
+    pub good: RangeInclusive<f64>,
+}
+
+impl Reading {
+    /// Whether it is what it has to be.
+    pub fn is_good(&self) -> bool {
+        self.good.contains(&self.value)
+    }
+}

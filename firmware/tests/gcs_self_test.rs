@@ -1,0 +1,67 @@
+//! `TST?`: what a board reads about itself, judged, and nothing of it with the bridges awake.
+
+mod gcs_bench;
+
+use firmware::self_test::{Board, Reading};
+use gcs_bench::{Bench, reference_panel};
+
+struct Fake(f64);
+
+impl Board for Fake {
+    fn name(&self) -> &'static str {
+        "a board of this test"
+    }
+
+    fn readings(&self, tell: &mut dyn FnMut(&Reading)) {
+        tell(&Reading {
+            name: "CORE",
+            value: self.0,
+            unit: "Hz",
+            good: 168e6..=168e6,
+        });
+    }
+}
+
+fn answer(board: &'static Fake) -> String {
+    let mut panel = reference_panel();
+    panel.set_board(board);
+    let mut bench = Bench::with(panel);
+    bench.run(2);
+    bench.say("TST?\n")
+}
+
+#[test]
+fn a_sound_board_is_good_in_every_reading() {
+    let answer = answer(&Fake(168e6));
+    let lines: Vec<&str> = answer.lines().map(str::trim_end).collect();
+    assert_eq!(
+        lines,
+        [
+            "BOARD=a board of this test",
+            "CORE=168000000 Hz, 168000000 to 168000000, ok",
+            "ENCODER1=1, 1 to 1, ok",
+            "ENCODER2=1, 1 to 1, ok",
+            "ENCODER3=1, 1 to 1, ok",
+            "LATE=0 ticks, 0 to 0, ok",
+            "BAD=0",
+        ]
+    );
+}
+
+#[test]
+fn what_is_not_as_it_has_to_be_is_told_and_counted() {
+    let answer = answer(&Fake(16e6));
+    assert!(
+        answer.contains("CORE=16000000 Hz, 168000000 to 168000000, BAD"),
+        "{answer}"
+    );
+    assert!(answer.ends_with("BAD=1\n"), "{answer}");
+}
+
+#[test]
+fn it_is_refused_with_the_servo_on() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("TST?"), "89");
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    assert!(bench.say("TST?\n").starts_with("BOARD=unknown"));
+}

@@ -1,0 +1,76 @@
+//! `tripivot board`: the tests to be repeated on every board, over its command line, with what is expected of each.
+//!
+//! | file | idea |
+//! |---|---|
+//! | here | running the plan |
+//! | `plan` | the tests |
+//! | `controller` | what the tests ask the controller |
+
+mod controller;
+mod plan;
+
+use crate::record::RecordError;
+use crate::web::Endpoint;
+use controller::Controller;
+pub use plan::PLAN;
+
+/// A test of the plan.
+pub struct Test {
+    /// What it is called.
+    pub name: &'static str,
+    /// What has to be found.
+    pub expected: &'static str,
+    /// Whether the stage moves.
+    pub moves: bool,
+    run: fn(&mut Controller) -> Result<Found, RecordError>,
+}
+
+/// What a test has found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// In words and numbers.
+    pub text: String,
+    /// Whether that is what is expected.
+    pub passed: bool,
+}
+
+/// How the plan is run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlanOptions {
+    /// The tests that move the stage too.
+    pub moves: bool,
+    /// The controller runs on an emulated chip: its seconds are not those of this machine.
+    pub emulated: bool,
+}
+
+/// Runs the plan and tells of every test as it ends: `None` for one that was left out. Whether all have passed.
+///
+/// A test that the controller refuses has failed; the rest is run all the same. The servo is off at the end of tests that move.
+///
+/// # Errors
+/// [`RecordError`] when nobody answers, or no longer.
+pub fn run(
+    endpoint: &Endpoint,
+    options: PlanOptions,
+    tell: &mut dyn FnMut(&Test, Option<&Found>),
+) -> Result<bool, RecordError> {
+    let mut controller = Controller::open(endpoint, options.emulated)?;
+    let mut all = true;
+    for test in PLAN {
+        if test.moves && !options.moves {
+            tell(test, None);
+            continue;
+        }
+        let found = match (test.run)(&mut controller) {
+            Ok(found) => found,
+            Err(error @ (RecordError::Refused { .. } | RecordError::Strange { .. })) => Found {
+                text: error.to_string(),
+                passed: false,
+            },
+            Err(error) => return Err(error),
+        };
+        all &= found.passed;
+        tell(test, Some(&found));
+    }
+    Ok(all)
+}
