@@ -79,7 +79,7 @@ pub fn client(address: SocketAddr, moves: bool, done: &AtomicBool) -> Tally {
             break;
         }
         if moves && number % MOVE_EVERY == 50 {
-            let target = if number / MOVE_EVERY % 2 == 0 {
+            let target = if (number / MOVE_EVERY).is_multiple_of(2) {
                 30
             } else {
                 -30
