@@ -255,7 +255,7 @@ fn supervision_has_ceilings() {
 #[test]
 fn looser_supervision_is_told_wherever_somebody_asks() {
     let mut bench = Bench::ready();
-    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500500 0.1 1 0x54500501 30 1 0x54500508 0.05\nERR?\n";
+    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500500 0.04 1 0x54500501 30 1 0x54500508 0.05\nERR?\n";
     assert_eq!(bench.say(lines), "0\n");
     let told = "0 no fault \nlooser than the reference: 0x54500500, largest following error \nlooser than the reference: 0x54500501, lowest supply\n";
     assert_eq!(bench.say("FLT?\n"), told);

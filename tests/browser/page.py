@@ -102,7 +102,8 @@ class OnPage(WithDriver):
         browser.wait(lambda: browser.run("return document.getElementById('vls').placeholder") == str(speed), f"the speed {speed} mm/s")
 
     def pixel(self, browser, x, y):
-        """Where a place, mm, is on the canvas, from its middle."""
+        """Where a place, mm, is on the canvas, from its middle, all of which is brought into view."""
+        browser.run("document.querySelector('main').scrollTo(0, 0)")
         scale = browser.run(
             "const c = document.getElementById('scene'); return Math.min(c.clientWidth, c.clientHeight) / (2 * 100 * 1.72)")
         return x * scale, -y * scale

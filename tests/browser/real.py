@@ -61,6 +61,6 @@ class Real(OnPage):
         self.asked(browser)
         browser.release()
         browser.click("#first-move button[value=move]")
-        browser.wait_text("#said", "press again to jog")
+        browser.wait_text("#said", "press again")
         self.assertNotEqual(browser.text("#mode"), "moving")
         self.assertAlmostEqual(self.shown(browser, "x"), 0, delta=0.1)
