@@ -17,10 +17,12 @@
 //! | [`commander`] | the stage as the command side sees it: plans, what is sent and what is pending; no word of GCS |
 //! | [`queues`] | between the command side and the tick: commands one way, snapshots the other |
 //! | [`control`] | the tick: encoder frames in, duties out; servo, supervisor, referencing, settling |
+//! | [`iterative_learning`] | tables of voltage that go with a move that is repeated, and what they learn |
 //! | [`fault_record`] | what is still there after a reset: events, and the ticks around a fault |
 //! | [`recorder`] | the data recorder, and a running hash of every tick |
 //! | [`parameters`] | every tunable, in physical units |
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
+//! | [`image_checksum`] | whether the program in flash is whole |
 //! | [`drivers`] | chips on the board: encoder frames, bridges |
 //! | [`self_test`] | what a board can be asked about itself |
 //! | [`fault`] | kinds of fault, what each does and why |
@@ -34,11 +36,19 @@ pub mod drivers;
 pub mod fault;
 pub mod fault_record;
 pub mod gcs;
+pub mod image_checksum;
+pub mod iterative_learning;
 pub mod mode;
-pub mod motion;
-pub mod number;
 pub mod parameters;
 pub mod queues;
 pub mod recorder;
 pub mod self_test;
 pub mod settings_store;
+
+/// Plans, and what they are held against; and the planners.
+pub mod motion {
+    pub use ::motion::*;
+    pub use planners::*;
+}
+
+pub use number;

@@ -32,6 +32,8 @@ pub struct Parameters {
     pub drives: [Drive; 3],
     /// Servo.
     pub servo: Servo,
+    /// What the servos have learnt of their drives, as it is kept, pivot by pivot.
+    pub learnt: [Learnt; 3],
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderMounting; 3],
     /// When the stage counts as settled.
@@ -146,6 +148,8 @@ pub struct Servo {
     /// The same for friction, as a share of `learning`: its signal does not vanish at rest, where it adds to the
     /// integral.
     pub friction_learning: f64,
+    /// Whether what was learnt is stored without being asked for: when the servo goes off, and at rest from time to time.
+    pub keeps_learnt: bool,
     /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
     /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
     pub latency_s: f64,
@@ -201,6 +205,19 @@ pub struct Harmonic {
     pub amplitude_n_m: f64,
     /// Phase at pivot angle 0, of a sine.
     pub phase_deg: f64,
+}
+
+/// What a servo has learnt of its drive: volts that feedforward adds to the model's. See `control/servo`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Learnt {
+    /// For each rad/s of the setpoint.
+    pub rate_v_s_rad: f64,
+    /// For each N m.
+    pub torque_v_n_m: f64,
+    /// Against friction.
+    pub friction_v: f64,
+    /// What the motor constant at the ring is more than the model has it, by the measured current.
+    pub motor_constant_v_s_rad: f64,
 }
 
 /// Rest mode: with the setpoint at rest for some time the loop becomes slower, so that it does not answer the noise of the
@@ -315,19 +332,7 @@ impl Parameters {
     /// The reference stage, commissioned.
     pub const REFERENCE: Self = Self {
         geometry: Geometry::REFERENCE,
-        limits: Limits {
-            rate_hz: 20_000.0,
-            speed_mm_s: 200.0,
-            acceleration_mm_s2: 4_000.0,
-            jerk_mm_s3: 400_000.0,
-            turn_speed_deg_s: 360.0,
-            turn_acceleration_deg_s2: 7_200.0,
-            turn_jerk_deg_s3: 720_000.0,
-            pivot_rate_rad_s: 10.0,
-            // At 10 rad/s the motor constant leaves 18 V of 48 for 26 N m, on 0.035 kg m^2 twice this.
-            pivot_acceleration_rad_s2: 300.0,
-            stop_factor: 2.0,
-        },
+        limits: Limits::REFERENCE,
         platform: Platform {
             mass_kg: 3.0,
             inertia_kg_m2: 0.02,
@@ -368,6 +373,7 @@ impl Parameters {
             scheduled_inertia_kg_m2: 0.0,
             learning: 2.0,
             friction_learning: 0.1,
+            keeps_learnt: false,
             latency_s: 65e-6,
             rest: RestMode {
                 stiffness: 0.13,
@@ -375,6 +381,12 @@ impl Parameters {
                 wake_counts: 6.0,
             },
         },
+        learnt: [Learnt {
+            rate_v_s_rad: 0.0,
+            torque_v_n_m: 0.0,
+            friction_v: 0.0,
+            motor_constant_v_s_rad: 0.0,
+        }; 3],
         encoders: [
             EncoderMounting {
                 zero_counts: 12_345_678,

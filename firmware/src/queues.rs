@@ -9,17 +9,19 @@ pub use crate::recorder::QueueFull;
 
 use crate::control::SNAPSHOT_SLOTS;
 use crate::fault_record::RetainedMemory;
+use crate::iterative_learning::{TrialControl, TrialMemory};
 use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Slots of the command queue (one is lost to the ring).
 pub const COMMAND_SLOTS: usize = 5;
 
-/// Storage of both queues, and of the data recorder.
+/// Storage of both queues, of the data recorder, and of a trial of iterative learning.
 pub struct Queues {
     commands: Queue<Command, COMMAND_SLOTS>,
     snapshots: Queue<Snapshot, SNAPSHOT_SLOTS>,
     recorder: Recorder<RECORDER_WORDS>,
+    trial: TrialMemory,
 }
 
 /// The command side's ends.
@@ -28,6 +30,8 @@ pub struct CommandQueues<'a> {
     snapshots: Consumer<'a, Snapshot>,
     /// The data recorder's end outside the tick.
     pub recorder: RecorderReader<'a>,
+    /// The end outside of the tick of a trial of iterative learning.
+    pub trial: TrialControl<'a>,
     /// The memory that outlasts a reset, if there is one.
     pub retained_memory: Option<&'a RetainedMemory>,
 }
@@ -40,6 +44,7 @@ impl Queues {
             commands: Queue::new(),
             snapshots: Queue::new(),
             recorder: Recorder::new(),
+            trial: TrialMemory::new(),
         }
     }
 
@@ -63,17 +68,20 @@ impl Queues {
         let (command_in, command_out) = self.commands.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
         let (recorder_writer, recorder_reader) = self.recorder.split();
+        let (trial_control, trial_table) = self.trial.split();
         (
             TickQueues {
                 commands: command_out,
                 snapshots: snapshot_in,
                 recorder: recorder_writer,
+                trial: trial_table,
                 fault_record: retained_memory.map(RetainedMemory::begin),
             },
             CommandQueues {
                 commands: command_in,
                 snapshots: snapshot_out,
                 recorder: recorder_reader,
+                trial: trial_control,
                 retained_memory,
             },
         )
@@ -83,6 +91,8 @@ impl Queues {
 impl CommandQueues<'_> {
     /// Throws away the snapshots that wait: the controller starts again.
     pub fn clear(&mut self) {
+        self.trial.cancel();
+        self.trial.hold_model(false);
         while self.snapshots.dequeue().is_some() {}
     }
 

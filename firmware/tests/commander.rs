@@ -351,6 +351,25 @@ fn streamed_targets_are_followed() {
     assert_eq!(bench.commander.take_late_error(), None);
 }
 
+/// A stop at rest is over at once: what begins before the next snapshot is not stopped by it.
+#[test]
+fn a_stop_at_rest_does_not_stop_the_stream_after_it() {
+    let mut bench = Bench::with(&streamed()).referenced();
+    bench.move_to(&[(Axis::X, 0.0)]).unwrap();
+    bench.stop(Stop::Smooth);
+    for k in 0..20 {
+        bench.move_to(&[(Axis::X, streamed_x(k))]).unwrap();
+    }
+    bench.run(200);
+    for k in (20..=100).chain([100; 10]) {
+        assert_eq!(bench.move_to(&[(Axis::X, streamed_x(k))]), Ok(()), "{k}");
+        bench.run(200);
+    }
+    bench.run_to_rest();
+    bench.assert_at([0.0, 0.0, 0.0]);
+    assert_eq!(bench.commander.take_late_error(), None);
+}
+
 #[test]
 fn a_stream_that_ends_in_motion_comes_to_rest_and_says_so() {
     let mut bench = Bench::with(&streamed()).referenced();

@@ -3,11 +3,13 @@
 //! Both get the very same inputs: a fixed-point length is a double exactly, and an angle is reduced to its fraction of a turn
 //! before it becomes one, so that doubles are good to 1e-15 here and turns cost them nothing.
 
+mod proptest_settings;
+
 use firmware::motion::RotationCentre;
 use firmware::number::Fixed;
 use kinematics::{Angle, Pose, direct, inverse};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
+use proptest_settings::settings;
 use std::f64::consts::{PI, TAU};
 
 /// A quarter of an encoder LSB: the goal.
@@ -168,28 +170,13 @@ fn pivot_setpoints_are_exact_about_any_centre() {
     assert!(worst < PIVOT_OFF_CENTRE_RAD, "{worst:e} rad");
 }
 
-fn settings() -> Config {
-    let seed = std::env::var("PROPTEST_RNG_SEED")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_260_214);
-    println!("proptest seed {seed}");
-    Config {
-        cases: 20_000,
-        rng_seed: RngSeed::Fixed(seed),
-        rng_algorithm: RngAlgorithm::ChaCha,
-        failure_persistence: None,
-        ..Config::default()
-    }
-}
-
 fn poses() -> impl Strategy<Value = Pose<Fixed>> {
     (0.0..=0.8_f64, -PI..PI, -TURNS << 32..=TURNS << 32)
         .prop_map(|(r, direction, units)| pose_at(r, direction, Angle::from_units(units)))
 }
 
 proptest! {
-    #![proptest_config(settings())]
+    #![proptest_config(settings(20_000))]
 
     #[test]
     fn any_pose_is_exact(pose in poses()) {

@@ -22,7 +22,7 @@ stop is told besides; the first stays latched.
 
 Off lets the motors coast; holding, moving and stopping drive them; a fault brakes them, or lets them coast where its reaction is
 that. `refused`: the command is counted as refused, nothing changes. `if ready`: the encoders answer and are referenced, or the plan
-starts where the motion is; refused if not.
+starts where the motion is, or the fault that is acknowledged is not one that only a restart takes away; refused if not.
 
 ";
 
@@ -54,7 +54,8 @@ const TAIL: &str = "
 | an encoder's warning bit | an event (`EVT?`) when it begins and when it ends; the position is good |
 | no host heard for longer than `HBT` or parameter 0x54500510 allow: one of the connections that have sent `HBT`, or, for the parameter, none at all | the stop of `STP`, error 10, an event: a stage that stands under its servo is safer than one whose motors are off |
 | the command queue is full | the command is refused whole with error 1005, nothing moves; the loop never waits |
-| a restart by the watchdog, a panic or a dip of the supply | found at the next start: `FLT?` and `EVT?` tell it; the motors are off and the reference is gone |
+| a restart by a watchdog, a panic, a processor fault, a dip of the supply or a crystal that stops | the outputs are cut first, whatever hangs: the tick feeds a window watchdog that cuts them half a millisecond after the last one. Found at the next start: `FLT?` tells it, and `EVT?` the place in the program with it; the motors are off and the reference is gone |
+| the board at its start: brown-out level, boot bank, silicon, flash size, an image without a checksum | an event (`EVT?`) |
 ";
 
 fn word(mode: Mode) -> &'static str {

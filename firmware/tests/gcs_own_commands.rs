@@ -155,10 +155,13 @@ fn statistics_add_up_and_start_again() {
     let told: u64 = told.strip_prefix("TICKS=").unwrap().parse().unwrap();
     assert!(told.abs_diff(ticks) <= 1, "{told} of {ticks}");
     let mean = 600.0 / told as f64;
+    let servos: String = (1..=3)
+        .map(|i| format!("LEARNT{i}=0.00000 0.00000 0.00000 0.00000 \nINTEGRAL{i}=0.0000 \nCURRENT{i}=0.0000 \n"))
+        .collect();
     assert_eq!(
         rest,
         format!(
-            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \nLOOSENED=0\n"
+            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \n{servos}LOOSENED=0\n"
         )
     );
     // The peak since it was told; the rest since `LST`.

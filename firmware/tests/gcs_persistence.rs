@@ -2,6 +2,9 @@
 
 mod flash_bench;
 
+use firmware::control::ServoReport;
+use firmware::control::config::Config;
+use firmware::control::servo::Learnt;
 use firmware::fault::FaultKind;
 use flash_bench::gcs_bench::Bench;
 use flash_bench::{Flash, KeptBench};
@@ -238,4 +241,69 @@ fn damage_is_overwritten_by_wpa_alone() {
     assert_eq!(bench.error_after("WPA 100"), "0");
     let mut bench = bench.restart();
     assert_eq!(bench.say("MAC?\n"), "A\n");
+}
+
+/// The tick tells of one servo at a time.
+fn tell_of_servos(bench: &mut KeptBench<SECTOR>, weight: f32) {
+    for pivot in 0..3 {
+        bench.bench.tick.now.servo = ServoReport {
+            pivot,
+            learnt: Learnt {
+                weights: [weight, 0.25, pivot as f32],
+                motor_constant_excess: -0.5,
+            },
+            integral_v: 1.5,
+            current_knees: 100.0,
+        };
+        bench.bench.run(2);
+    }
+}
+
+#[test]
+fn what_was_learnt_is_told_kept_and_what_the_tick_starts_with() {
+    let mut bench = start();
+    tell_of_servos(&mut bench, 0.125);
+    let told = bench.say("LST?\n");
+    // 100 knees of 0.043 A.
+    for line in [
+        "LEARNT3=0.12500 0.25000 2.00000 -0.50000 ",
+        "INTEGRAL3=1.5000 ",
+        "CURRENT3=4.3000 ",
+    ] {
+        assert!(told.lines().any(|one| one == line), "{line} in {told}");
+    }
+    assert_eq!(bench.error_after("WPA 100"), "0");
+    let before = bench.bench.tick.config.clone();
+    let mut bench = bench.restart();
+    let ids = ["0x54500B10", "0x54500B21", "0x54500B32", "0x54500B33"];
+    let kept = ids.map(|id| value(&mut bench, id));
+    assert_eq!(kept, [0.125, 0.25, 2.0, -0.5]);
+    // To the bit what it had.
+    assert_eq!(Config::new(bench.bench.panel().parameters()), before);
+}
+
+/// Parameter 0x5450030B: the servo going off is enough, where it has changed by more than nothing much.
+#[test]
+fn what_was_learnt_is_kept_by_itself_where_that_is_asked_for() {
+    for (asked, weight, kept) in [(1, 0.125, 0.125), (0, 0.125, 0.0), (1, 0.005, 0.0)] {
+        let mut bench = start();
+        let lines = format!("CCL 1 ADVANCED\nSPA 1 0x5450030B {asked}\nWPA 100");
+        assert_eq!(bench.error_after(&lines), "0");
+        // Friction is what it was.
+        for pivot in 0..3 {
+            bench.bench.tick.now.servo = ServoReport {
+                pivot,
+                learnt: Learnt {
+                    weights: [weight, 0.0, 0.0],
+                    motor_constant_excess: 0.0,
+                },
+                ..ServoReport::default()
+            };
+            bench.bench.run(2);
+        }
+        assert_eq!(bench.error_after("SVO X 0"), "0");
+        bench.say("\n");
+        let mut bench = bench.restart();
+        assert_eq!(value(&mut bench, "0x54500B10"), kept, "{asked} {weight}");
+    }
 }

@@ -1,5 +1,7 @@
 //! The servo of one pivot: duties that are right on average, no windup, and a loop that is stable on a simple plant.
 
+mod proptest_settings;
+
 use firmware::control::rest_mode::Stiffness;
 use firmware::control::servo::{
     LoopSetpoint, PivotServo, PivotServoConfig, PivotSetpoint, ServoConfig,
@@ -7,7 +9,7 @@ use firmware::control::servo::{
 use firmware::drivers::bridge::Duty;
 use firmware::parameters::{Drive, Parameters};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
+use proptest_settings::settings;
 
 /// 48 V in ADC counts.
 const SUPPLY_COUNTS: f32 = 2_979.0;
@@ -46,23 +48,8 @@ fn asking(torque_n_m: f32, error_rad: f64) -> PivotSetpoint {
     }
 }
 
-fn settings() -> Config {
-    let seed = std::env::var("PROPTEST_RNG_SEED")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_260_214);
-    println!("proptest seed {seed}");
-    Config {
-        cases: 60,
-        rng_seed: RngSeed::Fixed(seed),
-        rng_algorithm: RngAlgorithm::ChaCha,
-        failure_persistence: None,
-        ..Config::default()
-    }
-}
-
 proptest! {
-    #![proptest_config(settings())]
+    #![proptest_config(settings(60))]
 
     /// Whole counts, but their mean over 10,000 ticks is the voltage that was wanted, to a ten-thousandth of a count.
     #[test]
@@ -237,4 +224,46 @@ fn what_was_learnt_leads_as_the_model_does() {
         torques.push(then);
     }
     assert!(torques[1] > torques[0] + 10, "{torques:?}");
+}
+
+/// The rate and the current's size say that the motor constant is off; servo off and on does not take that away.
+#[test]
+fn a_restart_keeps_what_the_current_has_told() {
+    let config = config();
+    let full = full_loop(SUPPLY_COUNTS);
+    let mut servo = PivotServo::default();
+    for _ in 0..2_000 {
+        let setpoint = PivotSetpoint {
+            rate: 5.0,
+            current_counts: 400,
+            ..asking(2.0, 0.0)
+        };
+        servo.step(&config, &setpoint, &full);
+        servo.learn(&config);
+    }
+    let learnt = *servo.learnt();
+    assert!(learnt.motor_constant_excess.abs() > 0.02, "{learnt:?}");
+    servo.restart();
+    assert_eq!(*servo.learnt(), learnt);
+}
+
+/// What a table of iterative learning holds at its end goes over to the integral: not a count of the duty changes, and nothing is learnt.
+#[test]
+fn what_is_taken_over_is_no_step() {
+    let config = config();
+    let full = full_loop(SUPPLY_COUNTS);
+    let mut servo = PivotServo::default();
+    let with = |learnt_volts| PivotSetpoint {
+        learnt_volts,
+        ..asking(1.0, 0.0)
+    };
+    servo.step(&config, &with(2.0), &full);
+    let Duty(before) = servo.step(&config, &with(2.0), &full);
+    servo.take_over(&config, 2.0);
+    for _ in 0..10 {
+        let Duty(after) = servo.step(&config, &with(0.0), &full);
+        assert!(after.abs_diff(before) <= 1, "{before} {after}");
+        servo.learn(&config);
+    }
+    assert_eq!(servo.learnt().weights, [0.0; 3]);
 }

@@ -1,31 +1,18 @@
 //! What shapes the loop, against independent computations in double precision: filters by their transfer functions, the carried inertia
 //! by the kinetic energy, the ripple's voltage by the winding's equation.
 
+mod proptest_settings;
+
 use firmware::control::servo::{FilterConfig, Filters, RippleConfig, ServoConfig, carried_inertia};
 use firmware::parameters::{
     FeedbackFilters, HARMONICS, Harmonic, Lead, Notch, Parameters, Platform,
 };
 use kinematics::{Angle, Pose, Twist, inverse, pivot_rates};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
+use proptest_settings::settings;
 use std::f64::consts::{PI, TAU};
 
 const RATE_HZ: f64 = 20_000.0;
-
-fn settings() -> Config {
-    let seed = std::env::var("PROPTEST_RNG_SEED")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_260_214);
-    println!("proptest seed {seed}");
-    Config {
-        cases: 200,
-        rng_seed: RngSeed::Fixed(seed),
-        rng_algorithm: RngAlgorithm::ChaCha,
-        failure_persistence: None,
-        ..Config::default()
-    }
-}
 
 /// A complex number.
 type Complex = [f64; 2];
@@ -77,7 +64,7 @@ fn measured(filters: &FeedbackFilters, hz: f64) -> Complex {
 }
 
 proptest! {
-    #![proptest_config(settings())]
+    #![proptest_config(settings(200))]
 
     #[test]
     fn filters_have_their_transfer_functions(
@@ -194,4 +181,17 @@ fn without_filters_nothing_changes() {
     for value in [1.0_f32, -2.5e-7, 47.3, 0.0] {
         assert_eq!(state.step(&config, value).to_bits(), value.to_bits());
     }
+}
+
+/// A share that was in force does not stay when it is switched off.
+#[test]
+fn gains_that_are_not_scheduled_are_those_that_were_set() {
+    let mut parameters = Parameters::REFERENCE;
+    let share = |parameters: &Parameters| {
+        ServoConfig::new(parameters).scheduled_share(&[1.0; 3], &[1.0; 3], 0)
+    };
+    parameters.servo.scheduled_inertia_kg_m2 = 0.1;
+    assert!(share(&parameters) < 0.5);
+    parameters.servo.scheduled_inertia_kg_m2 = 0.0;
+    assert_eq!(share(&parameters), 1.0);
 }

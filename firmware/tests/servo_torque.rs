@@ -1,28 +1,15 @@
 //! Torque feedforward against the Lagrangian of the carried body, built here from its kinetic energy alone.
 
+mod proptest_settings;
+
 use firmware::control::servo::{Presliding, ServoConfig, platform_torques};
 use firmware::parameters::{Parameters, Platform};
 use kinematics::{Acceleration, Pose, Twist, in_platform_axes, inverse};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
+use proptest_settings::settings;
 use std::f64::consts::PI;
 
 const RADIUS_M: f64 = 0.1;
-
-fn settings() -> Config {
-    let seed = std::env::var("PROPTEST_RNG_SEED")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_260_214);
-    println!("proptest seed {seed}");
-    Config {
-        cases: 2_000,
-        rng_seed: RngSeed::Fixed(seed),
-        rng_algorithm: RngAlgorithm::ChaCha,
-        failure_persistence: None,
-        ..Config::default()
-    }
-}
 
 /// Kinetic energy (J) of platform and payload, in SI units: each a mass point at its centre of mass, and an inertia.
 fn energy(platform: &Platform, [_, _, theta]: [f64; 3], [x, y, turning]: [f64; 3]) -> f64 {
@@ -100,7 +87,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(settings())]
+    #![proptest_config(settings(2_000))]
 
     /// Virtual work: for every coordinate the pivots' torques do what the body's force does.
     #[test]

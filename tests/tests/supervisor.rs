@@ -30,7 +30,7 @@ const EXPECTED: [(Event, [Outcome; 5]); 12] = {
         (Event::Centre,      [To(Off),     To(Holding), Refused,      Refused,   Refused]),
         (Event::Constants,   [To(Off),     To(Holding), Refused,      Refused,   To(Fault)]),
         (Event::Mounting,    [To(Off),     Refused,     Refused,      Refused,   To(Fault)]),
-        (Event::Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   To(Off)]),
+        (Event::Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   If(Off)]),
         (Event::AtRest,      [Nothing,     Nothing,     To(Holding),  To(Fault), Nothing]),
         (Event::StopFault,   [To(Fault),   To(Fault),   To(Stopping), Nothing,   Nothing]),
         (Event::BrakeFault,  [To(Fault),   To(Fault),   To(Fault),    To(Fault), Nothing]),

@@ -20,15 +20,11 @@ impl Commander {
         if self.current_snapshot().is_none() {
             return;
         }
+        self.tables.take_result(&mut queues.trial);
         self.switch_off_at_rest(queues);
         self.advance_streaming(queues);
         let result = match (self.mode(), &self.pending) {
-            (
-                Mode::Moving,
-                &(Pending::Stop(stop)
-                | Pending::StopThenGoal(stop, _)
-                | Pending::StopThenStream(stop, _)),
-            ) => {
+            (Mode::Moving, &(Pending::Stop(stop) | Pending::StopThenGoal(stop, _))) => {
                 self.send_stop(stop, queues);
                 return;
             }
@@ -91,6 +87,9 @@ impl Commander {
         let id = self.next_plan_id();
         let sent_plan = SentPlan::from_rest(id, from, goal, &constraints)?;
         if sent_plan.plan.ticks() > 0 {
+            if matches!(goal, Goal::Position(_)) {
+                self.prepare_trial(&sent_plan, queues);
+            }
             self.send_plan(sent_plan, Some(goal), queues)?;
         }
         self.pending.drop_goal();
@@ -237,6 +236,10 @@ impl Commander {
         goal: Option<Goal>,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
+        if sent_plan.takes_over() {
+            // The motion will be another one than the table under way is of.
+            queues.trial.cancel();
+        }
         let command = Command::Move(sent_plan.plan.clone());
         self.send(command, InFlight::Plan(sent_plan, goal), queues)
     }

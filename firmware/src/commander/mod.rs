@@ -30,6 +30,7 @@
 //! | `advance` | from what is pending to the next plan |
 //! | `in_flight` | the command that the tick has not counted yet |
 //! | `sent_plan` | a plan that was sent, with what it takes to leave it |
+//! | `repeated_moves` | the tables of iterative learning, and the moves that they are of |
 //! | `moves` | moves, stops, faults, soft limits |
 //! | `servo_switch` | the servo on and off |
 //! | `rest`, `rest_watch` | whether the stage rests, by what the encoders measure |
@@ -70,6 +71,7 @@ mod queries;
 mod reach;
 mod recovery;
 mod referencing;
+mod repeated_moves;
 mod rest;
 mod rest_watch;
 mod sent_plan;

@@ -132,6 +132,10 @@ impl Commander {
         self.jog_velocities = [0.0; 6];
         self.target_is_rest = true;
         self.pending.request_stop(stop);
+        // At rest, with nothing sent: what was asked for is over, and what is asked for next is not to be stopped by this.
+        if self.mode() == Mode::Holding && !self.is_motion_pending() {
+            self.pending.drop_stop();
+        }
         self.advance_pending(queues);
     }
 

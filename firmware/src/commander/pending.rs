@@ -15,7 +15,6 @@
 //! | `StopThenGoal` | the same, and the goal stays |
 //! | `Stream` | plans of the stream, one after the other, until it is over |
 //! | `GoalThenStream` | a plan from rest to where the waveforms begin |
-//! | `StopThenStream` | a plan of the stream, and then its stop: see there |
 //!
 //! | event | `Nothing` | `Goal` | `Improving` | `GoalInStop` | `GoalFromRest` | `Stop` | `StopThenGoal` | `Stream` |
 //! |---|---|---|---|---|---|---|---|---|
@@ -64,19 +63,13 @@ pub(super) enum Pending {
     Stream(Streaming),
     /// The tick has refused the way to where waveforms begin: once more, then the waveforms.
     GoalThenStream(Goal, Streaming),
-    /// A stop came while the stage held, and stays pending until the next snapshot shows that there is nothing to stop.
-    /// A stream that begins before that snapshot and sends a plan at once is stopped by it. (A goal that is sent then
-    /// is stopped too: its state is `Stop`.)
-    StopThenStream(Stop, Streaming),
 }
 
 impl Pending {
     /// The stop that is pending.
     pub const fn stop(&self) -> Option<Stop> {
         match self {
-            Self::Stop(stop) | Self::StopThenGoal(stop, _) | Self::StopThenStream(stop, _) => {
-                Some(*stop)
-            }
+            Self::Stop(stop) | Self::StopThenGoal(stop, _) => Some(*stop),
             _ => None,
         }
     }
@@ -96,9 +89,7 @@ impl Pending {
     /// The stream that is under way, or about to be.
     pub const fn stream(&self) -> Option<&Streaming> {
         match self {
-            Self::Stream(streaming)
-            | Self::GoalThenStream(_, streaming)
-            | Self::StopThenStream(_, streaming) => Some(streaming),
+            Self::Stream(streaming) | Self::GoalThenStream(_, streaming) => Some(streaming),
             _ => None,
         }
     }
@@ -106,9 +97,7 @@ impl Pending {
     /// The same, to be changed.
     pub const fn stream_mut(&mut self) -> Option<&mut Streaming> {
         match self {
-            Self::Stream(streaming)
-            | Self::GoalThenStream(_, streaming)
-            | Self::StopThenStream(_, streaming) => Some(streaming),
+            Self::Stream(streaming) | Self::GoalThenStream(_, streaming) => Some(streaming),
             _ => None,
         }
     }
@@ -127,15 +116,13 @@ impl Pending {
         *self = Self::Stop(stop);
     }
 
-    /// The stream, if its next plan can be asked for; a stop stays. Waveforms wait until the stage stands where they
-    /// begin.
+    /// The stream, if its next plan can be asked for. Waveforms wait until the stage stands where they begin.
     pub fn take_stream(&mut self) -> Option<Streaming> {
-        if !matches!(self, Self::Stream(_) | Self::StopThenStream(..)) {
+        if !matches!(self, Self::Stream(_)) {
             return None;
         }
-        let stop = self.stop().map_or(Self::Nothing, Self::Stop);
-        match core::mem::replace(self, stop) {
-            Self::Stream(streaming) | Self::StopThenStream(_, streaming) => Some(streaming),
+        match self.take() {
+            Self::Stream(streaming) => Some(streaming),
             _ => None,
         }
     }
@@ -148,14 +135,6 @@ impl Pending {
         }
     }
 
-    /// A stream begins; a stop that is still pending stays.
-    pub fn begin_stream(&mut self, streaming: Streaming) {
-        *self = match self.stop() {
-            None => Self::Stream(streaming),
-            Some(stop) => Self::StopThenStream(stop, streaming),
-        };
-    }
-
     /// The goal is reached, or sent, or given up.
     pub fn drop_goal(&mut self) {
         match self {
@@ -166,11 +145,7 @@ impl Pending {
                     *self = Self::Stream(streaming);
                 }
             }
-            Self::Nothing
-            | Self::Improving(_)
-            | Self::Stop(_)
-            | Self::Stream(_)
-            | Self::StopThenStream(..) => {}
+            Self::Nothing | Self::Improving(_) | Self::Stop(_) | Self::Stream(_) => {}
         }
     }
 
@@ -179,11 +154,6 @@ impl Pending {
         match self {
             Self::Stop(_) => *self = Self::Nothing,
             Self::StopThenGoal(_, goal) => *self = Self::Goal(*goal),
-            Self::StopThenStream(..) => {
-                if let Self::StopThenStream(_, streaming) = self.take() {
-                    *self = Self::Stream(streaming);
-                }
-            }
             _ => {}
         }
     }

@@ -12,6 +12,7 @@ use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
+use crate::iterative_learning::Tables;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits, Position};
 use crate::parameters::{Parameters, Targets};
@@ -33,6 +34,8 @@ pub struct Commander {
     pub(super) full_limits: Limits,
     pub(super) soft_limits: SoftLimits,
     pub(super) waves: Waveforms,
+    /// Of moves that are repeated.
+    pub(super) tables: Tables,
     /// Velocities that have been set for single axes, mm/s and deg/s.
     pub(super) velocities: AxisValues,
     pub(super) targets: Targets,
@@ -88,6 +91,7 @@ impl Commander {
             full_limits: parameters.limits,
             soft_limits: SoftLimits::new(),
             waves: Waveforms::new(),
+            tables: Tables::new(),
             velocities: AxisValues::default(),
             targets: parameters.targets,
             commissioned: parameters.commissioned,

@@ -56,7 +56,7 @@ impl Commander {
             }
             let period = self.period(self.cycle_ms);
             let stream = Stream::new(self.setpoint(), period, Clock::Sender);
-            self.pending.begin_stream(Streaming {
+            self.pending = Pending::Stream(Streaming {
                 stream: Some(stream.ok_or(CommandError::PeriodOutOfRange)?),
                 run: None,
                 last: (to, 0),
@@ -99,7 +99,7 @@ impl Commander {
         let start = self.position_of(&run.start(&self.waves))?;
         self.request_goal(Goal::Position(start), queues)?;
         self.target_is_rest = true;
-        self.pending.begin_stream(Streaming {
+        self.pending = Pending::Stream(Streaming {
             stream: None,
             run: Some(run),
             last: (start, 0),
@@ -114,12 +114,12 @@ impl Commander {
             return;
         };
         match self.next_step(&mut streaming) {
-            Ok(StreamStep::Wait) => self.pending.begin_stream(streaming),
+            Ok(StreamStep::Wait) => self.pending = Pending::Stream(streaming),
             Ok(StreamStep::Send(plan, start)) => {
                 match self.send_plan(SentPlan::streamed(plan, start), None, queues) {
                     Ok(()) => {
                         streaming.started = true;
-                        self.pending.begin_stream(streaming);
+                        self.pending = Pending::Stream(streaming);
                     }
                     // The plan is lost.
                     Err(error) => self.report_stream_lost(error),

@@ -6,13 +6,14 @@ use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::oscillation::MEMORY_S;
 use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
-use crate::control::settling::MAX_MEAN_TICKS;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
 /// Share of the limits of a pivot's motion under which its setpoint hardly moves.
 const SLOW: f64 = 0.1;
+/// Most ticks of the settling window's mean.
+pub(super) const MAX_MEAN_TICKS: usize = 32;
 
 /// The tick's constants.
 #[derive(Clone, Debug, PartialEq)]

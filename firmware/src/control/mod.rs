@@ -11,6 +11,7 @@
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
+//! | `trial` | trials of iterative learning |
 //! | `rest_mode` | slower loops while the setpoint rests |
 //! | `settling` | whether the stage has settled |
 //! | `supervisor/` | which commands are taken in which state, and what is a fault |
@@ -39,10 +40,11 @@ mod state;
 mod supervisor;
 mod tick;
 mod tick_queues;
+mod trial;
 pub mod units;
 
 pub use command::Command;
-pub use snapshot::{SNAPSHOT_SLOTS, Snapshot};
+pub use snapshot::{SNAPSHOT_SLOTS, ServoReport, Snapshot};
 pub use state::{Inputs, Outputs, State};
 pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
 pub use tick::tick;

@@ -2,7 +2,7 @@
 
 use super::encoder::Encoder;
 use super::loop_counters::LoopCounters;
-use super::snapshot::Snapshot;
+use super::snapshot::{ServoReport, Snapshot};
 use super::state::State;
 use super::tick_queues::TickQueues;
 use crate::drivers::bridge::Duty;
@@ -25,6 +25,11 @@ impl State {
             let snapshot = self.snapshot(setpoint, pivots, target, duty);
             let _ = queues.snapshots.enqueue(snapshot);
             self.loop_counters = LoopCounters::default();
+            self.reported_servo = if self.reported_servo < 2 {
+                self.reported_servo + 1
+            } else {
+                0
+            };
         }
     }
 
@@ -59,6 +64,18 @@ impl State {
             refused: self.refused,
             peak_following_error_rad: self.settling.peak_error_rad(),
             loop_counters: self.loop_counters,
+            servo: self.servo_report(),
         }
+    }
+
+    #[inline]
+    fn servo_report(&self) -> ServoReport {
+        let pivot = self.reported_servo;
+        (self.servo.get(pivot)).map_or(ServoReport::default(), |servo| ServoReport {
+            pivot,
+            learnt: *servo.learnt(),
+            integral_v: servo.integral_volts(),
+            current_knees: servo.current_knees(),
+        })
     }
 }

@@ -1,10 +1,8 @@
 //! Whether the stage has settled, and how far its pivots have been off.
 
-use crate::control::config::SupervisionConfig;
+use crate::control::config::{MAX_MEAN_TICKS, SupervisionConfig};
 use crate::control::units::UNITS_PER_RAD;
 
-/// Most ticks of the mean.
-pub(super) const MAX_MEAN_TICKS: usize = 32;
 /// Errors count as no more than this, 2^-32 turns (0.05 rad), so that the sums fit.
 const MOST: i32 = 1 << 25;
 

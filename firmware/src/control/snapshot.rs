@@ -1,6 +1,7 @@
 //! What the tick reports to the command side.
 
 use super::loop_counters::LoopCounters;
+use super::servo::Learnt;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
 use crate::mode::Mode;
@@ -9,6 +10,19 @@ use kinematics::Angle;
 
 /// Slots of the snapshot queue: one snapshot waiting.
 pub const SNAPSHOT_SLOTS: usize = 2;
+
+/// What is known of one pivot's servo at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ServoReport {
+    /// Which pivot, 0 to 2.
+    pub pivot: usize,
+    /// What it has learnt.
+    pub learnt: Learnt,
+    /// What its feedback has collected, V.
+    pub integral_v: f32,
+    /// Its motor's current by the model, over the dead time's knee.
+    pub current_knees: f32,
+}
 
 /// What is known at a tick.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,4 +67,6 @@ pub struct Snapshot {
     pub peak_following_error_rad: f32,
     /// What the loop has counted since the snapshot before.
     pub loop_counters: LoopCounters,
+    /// One servo, another one in each snapshot.
+    pub servo: ServoReport,
 }

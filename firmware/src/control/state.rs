@@ -1,5 +1,6 @@
 //! What a tick is given, what it gives, and what the loop remembers between ticks.
 
+use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
@@ -9,6 +10,7 @@ use super::settling::Settling;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
+use crate::iterative_learning::Trial;
 use crate::mode::Mode;
 use crate::motion::PlanFollower;
 
@@ -56,6 +58,7 @@ pub struct State {
     pub(super) encoders: [Encoder; 3],
     pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
+    pub(super) trial: Trial,
     pub(super) settling: Settling,
     pub(super) rest_mode: RestMode,
     pub(super) supply: f32,
@@ -66,6 +69,8 @@ pub struct State {
     pub(super) last_mode_and_commands: (Mode, u32),
     pub(super) report_due: bool,
     pub(super) loop_counters: LoopCounters,
+    /// The pivot whose servo is told of in the next snapshot.
+    pub(super) reported_servo: usize,
     /// Late ticks, a hundred each, less those forgiven.
     pub(super) lateness: u32,
     /// Ticks in a row with a low supply.
@@ -105,6 +110,15 @@ impl State {
     pub fn with_motor_heat(mut self, motor_heat: [f32; 3]) -> Self {
         for (watch, heat) in self.pivot_watches.iter_mut().zip(motor_heat) {
             watch.mean_square_current = heat;
+        }
+        self
+    }
+
+    /// The same with what the servos have learnt before, as the constants have it.
+    #[must_use]
+    pub fn with_learnt(mut self, config: &Config) -> Self {
+        for (servo, config) in self.servo.iter_mut().zip(&config.servo.pivots) {
+            servo.restore(&config.learnt);
         }
         self
     }

@@ -60,6 +60,7 @@ pub fn tick(
     state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);
+    state.advance_trial(config, queues.trial);
     let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
         state.drive(config, &setpoint, &mut pivots, &inputs.current_counts)
@@ -67,6 +68,9 @@ pub fn tick(
         None
     };
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
+    if let Some((target, ..)) = &driven {
+        state.record_trial(config, queues.trial, &pivots, target);
+    }
     let (target, rates, duty) =
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
     let slot = state.inspection_slot;
@@ -237,14 +241,17 @@ impl State {
                 platform_torque: wanted.torques[i],
                 angle: wanted.angles[i],
                 current_counts: current_counts[i],
+                learnt_volts: self.trial.volts(i),
             };
             let (servo, config) = (&mut self.servo[i], &servos.pivots[i]);
             duty[i] = servo.step(config, &setpoint, &common);
             if i == self.inspection_slot {
-                servo.learn(config);
-                if let Some(share) = servos.scheduled_share(&wanted.lengths, &wanted.cosines, i) {
-                    servo.schedule(share);
+                if self.trial.holds_model() {
+                    servo.skip_learning();
+                } else {
+                    servo.learn(config);
                 }
+                servo.schedule(servos.scheduled_share(&wanted.lengths, &wanted.cosines, i));
             }
             sum += servo.requested_counts();
         }

@@ -3,6 +3,7 @@
 use super::command::Command;
 use super::snapshot::{SNAPSHOT_SLOTS, Snapshot};
 use crate::fault_record::FaultRecordWriter;
+use crate::iterative_learning::TrialTable;
 use crate::recorder::RecorderWriter;
 use heapless::spsc::{Consumer, Producer};
 
@@ -14,6 +15,8 @@ pub struct TickQueues<'a> {
     pub snapshots: Producer<'a, Snapshot>,
     /// The data recorder's end in the tick.
     pub recorder: RecorderWriter<'a>,
+    /// The table of a move that is repeated.
+    pub trial: TrialTable<'a>,
     /// The fault record's end in the tick, where there is memory for one.
     pub fault_record: Option<FaultRecordWriter<'a>>,
 }

@@ -147,4 +147,16 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         thresholds: &[0x5450_0511],
         reason: "the loop that would lead a stop along the path is the one that oscillates",
     },
+    FaultDescription {
+        kind: FaultKind::CrystalFailed,
+        detection: "the crystal is not ready 0.3 s after it was switched on; at the start, before anything drives. One that stops later cuts the outputs by itself and ends in a restart",
+        thresholds: &[],
+        reason: "nothing has moved yet; the internal oscillator is 1 % off, and were it to stop nothing would notice: `FLC` does not take the fault away",
+    },
+    FaultDescription {
+        kind: FaultKind::ImageDamaged,
+        detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it; at the start, before anything drives. An image that was not sealed is not checked, which `EVT?` tells",
+        thresholds: &[],
+        reason: "nothing has moved yet; what a damaged program does nobody knows: `FLC` does not take the fault away",
+    },
 ];

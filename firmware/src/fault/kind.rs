@@ -45,6 +45,10 @@ pub enum FaultKind {
     SettingsNewer,
     /// A servo oscillates; value and limit are swings of its voltage, V.
     Oscillation,
+    /// The crystal did not start: the controller runs on a clock that nothing watches.
+    CrystalFailed,
+    /// The program in flash does not have its checksum.
+    ImageDamaged,
 }
 
 /// What a fault does to the motors.
@@ -80,9 +84,18 @@ impl FaultKind {
             | Self::Stalled
             | Self::Oscillation
             | Self::NotFinite => Reaction::Brake,
-            // Nothing has moved yet when settings cannot be used.
-            Self::BridgeFault | Self::SettingsDamaged | Self::SettingsNewer => Reaction::Coast,
+            // Nothing has moved yet at the start.
+            Self::BridgeFault
+            | Self::SettingsDamaged
+            | Self::SettingsNewer
+            | Self::CrystalFailed
+            | Self::ImageDamaged => Reaction::Coast,
         }
+    }
+
+    /// Whether no acknowledgement takes it away, only a restart that does not find it again.
+    pub const fn lasts_until_restart(self) -> bool {
+        matches!(self, Self::CrystalFailed | Self::ImageDamaged)
     }
 
     /// Whether it is one of an encoder, which can not be used any more.
@@ -118,6 +131,8 @@ impl FaultKind {
             Self::MotorHot => "motor too hot",
             Self::LoopLate => "control loop late too often",
             Self::Oscillation => "servo oscillates",
+            Self::CrystalFailed => "crystal does not start, only a restart takes this away",
+            Self::ImageDamaged => "the program in flash is damaged: flash it again",
             Self::NotFinite => "a computed value is not a number",
             Self::SettingsDamaged => {
                 "kept settings are damaged, the controller's own are in force (WPA 100 keeps those)"

@@ -52,6 +52,7 @@ impl Interpreter {
             Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
+            Action::Repeat(action) => self.change_repeated_moves(&action, queues),
             Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
             Action::SoftLowest(values) => {
                 Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
@@ -65,7 +66,7 @@ impl Interpreter {
             }
             Action::Set(settings) => self.set(&settings, session, queues),
             Action::Store(addresses) => {
-                self.store_parameters(&addresses)?;
+                self.store_parameters(&addresses, queues)?;
                 self.wait(session, Awaited::Stored);
                 Ok(())
             }

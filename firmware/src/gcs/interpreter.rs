@@ -2,9 +2,10 @@
 
 use super::connections::Connections;
 use super::error::ErrorCode;
-use super::events::EventLog;
+use super::events::{BoardNotice, Crash, Event, EventLog};
 use super::heartbeat::Heartbeat;
 use super::jog::Jogs;
+use super::learnt::ServoReports;
 use super::macros::Macros;
 use super::ownership::Ownership;
 use super::persistence::Persistence;
@@ -44,6 +45,7 @@ pub struct Interpreter {
     pub(super) recorder_state: RecorderState,
     pub(super) events: EventLog,
     pub(super) statistics: Statistics,
+    pub(super) servo_reports: ServoReports,
     pub(super) heartbeat: Heartbeat,
     pub(super) connections: Connections,
     pub(super) jogs: Jogs,
@@ -73,6 +75,7 @@ impl Interpreter {
             recorder_state: RecorderState::new(),
             events: EventLog::new(),
             statistics: Statistics::default(),
+            servo_reports: ServoReports::default(),
             heartbeat: Heartbeat::default(),
             connections: Connections::default(),
             jogs: Jogs::default(),
@@ -93,6 +96,16 @@ impl Interpreter {
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);
+    }
+
+    /// Notes how the program ended before this start, for `EVT?`. To be called before anything is served.
+    pub fn add_crash(&mut self, crash: Crash) {
+        self.events.add(0, Event::Crashed(crash));
+    }
+
+    /// Notes what the board has found out about itself, for `EVT?`. To be called before anything is served.
+    pub fn add_board_notice(&mut self, notice: BoardNotice) {
+        self.events.add(0, Event::BoardNotice(notice));
     }
 
     /// The tick of the latest snapshot taken; 0 before the first.

@@ -26,12 +26,14 @@
 //! | `output`, `reply_writer` | where replies go, and their form |
 //! | `error` | error numbers, and the table from the commander's errors to them |
 //! | `text` | names and short texts |
+//! | `learnt` | what the servos have learnt, told and kept |
 //! | `streaming` | the time between streamed targets |
 //!
 //! | folder | commands |
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
+//! | `iterative_learning` | `ILC`: moves that are repeated |
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
 //! | `monitor` | `MON?`, for clients that draw the stage while it moves |
@@ -56,7 +58,9 @@ mod execute;
 mod frames;
 mod heartbeat;
 mod interpreter;
+mod iterative_learning;
 mod jog;
+mod learnt;
 mod macros;
 mod monitor;
 mod output;
@@ -84,7 +88,7 @@ mod wave;
 
 pub use arguments::ParseError;
 pub use error::ErrorCode;
-pub use events::START_CAUSES;
+pub use events::{BoardNotice, CRASH_FILE_BYTES, Crash, CrashCause, START_CAUSES};
 pub use frames::{FrameQuery, ListItem};
 pub use interpreter::{Identity, Interpreter};
 pub use macros::{LINES_PER_TICK, MACRO_BYTES, MAX_CALL_DEPTH, MAX_MACROS, MacroRequest};

@@ -1,6 +1,7 @@
 //! What a line or a single byte asks for.
 
 use super::frames::FrameQuery;
+use super::iterative_learning::LearnAction;
 use super::macros::MacroRequest;
 use super::parameter::{Addresses, Settings};
 use super::recorder::{RecordAction, RecordQuery};
@@ -95,6 +96,8 @@ pub enum Query {
     Events,
     /// `LST?`
     Statistics,
+    /// `ILC?`
+    RepeatedMoves,
     /// `#4`
     Status,
     /// `#5`
@@ -139,6 +142,8 @@ pub enum Action {
     AxisVelocity(AxisValues),
     /// Tables and generators of waveforms.
     Wave(WaveChange),
+    /// Tables of moves that are repeated.
+    Repeat(LearnAction),
     /// Frames and the centre of rotation.
     Frame(FrameChange),
     /// `NLM`: mm and deg.

@@ -53,6 +53,7 @@ impl Interpreter {
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
+            self.servo_reports.update(&snapshot);
             if let Some(retained_memory) = queues.retained_memory {
                 retained_memory.keep_motor_heat(&snapshot.motor_heat);
             }
@@ -63,6 +64,7 @@ impl Interpreter {
         }
         self.revert_if_refused();
         self.commander.advance_pending(queues);
+        self.keep_learnt(queues);
         self.watch_heartbeat(queues);
         self.end_jogs(queues);
         self.advance_recovery(queues);

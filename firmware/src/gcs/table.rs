@@ -2,6 +2,7 @@
 
 use super::arguments::{axis_identifiers, joysticks};
 use super::frames::parse as frames;
+use super::iterative_learning::parse as learning;
 use super::macros::{MacroRequest, parse as macros};
 use super::ownership::parse as ownership;
 use super::parameter::parse as parameter;
@@ -153,6 +154,22 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     ask("HLP?", Query::Help, "get list of commands"),
     ask("HPA?", Query::ParameterHelp, "get list of parameters"),
+    own(
+        "ILC FORGET",
+        learning::forget,
+        "[<move>] forget what was learnt of it",
+    ),
+    own("ILC FREEZE", learning::freeze, "<move> learn no more of it"),
+    own(
+        "ILC LEARN",
+        learning::learn,
+        "<move> learn the next move from rest, and each time it is repeated",
+    ),
+    ask(
+        "ILC?",
+        Query::RepeatedMoves,
+        "get what was learnt of repeated moves",
+    ),
     entry(
         "JOG",
         Syntax::Values(Action::Jog),

@@ -1,5 +1,9 @@
 //! What the motion tests share: random positions and moves, and the limits that every tick is held against.
-#![allow(dead_code, reason = "every test file uses its own part")]
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "every test file uses its own part"
+)]
 
 pub mod constraints;
 pub mod exact;
@@ -8,11 +12,14 @@ pub mod reference;
 pub mod setting;
 pub mod streaming;
 
+#[path = "../proptest_settings/mod.rs"]
+mod proptest_settings;
+pub use proptest_settings::settings;
+
 use firmware::motion::{AxisState, Constraints, Limits, Plan, Position, plan_line};
 use firmware::parameters::Parameters;
 use kinematics::Geometry;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
 use std::f64::consts::PI;
 
 /// 2^32: units of a position in a track radius or a turn.
@@ -25,22 +32,6 @@ pub const SLACK: f64 = 1.0 + 1e-6;
 pub const GEOMETRY: Geometry = Geometry::REFERENCE;
 pub const LIMITS: Limits = Parameters::REFERENCE.limits;
 pub const CONSTRAINTS: Constraints = Constraints::new(LIMITS, GEOMETRY);
-
-/// Fixed seed, so that every run tests the same. Another seed: PROPTEST_RNG_SEED in the environment.
-pub fn settings(cases: u32) -> Config {
-    let seed = std::env::var("PROPTEST_RNG_SEED")
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_260_214);
-    println!("proptest seed {seed}");
-    Config {
-        cases,
-        rng_seed: RngSeed::Fixed(seed),
-        rng_algorithm: RngAlgorithm::ChaCha,
-        failure_persistence: None,
-        ..Config::default()
-    }
-}
 
 /// Position of a pose in mm and turns.
 pub fn at(x_mm: f64, y_mm: f64, turns: f64) -> Position {

@@ -3,7 +3,7 @@
 //! asks for. Its twin, just under the threshold, is no fault, and the stage drives on.
 //!
 //! What the bench does not model, and what therefore is not here: flash (its contents do not change, so nothing can be damaged
-//! in it), a dip of the chip's own supply (brown-out), a broken crystal, single bits that flip in memory, bus errors of the
+//! in it), a dip of the chip's own supply (brown-out), a crystal that stops, single bits that flip in memory, bus errors of the
 //! peripherals, and a program that runs wild. What nothing at the chip's pins can bring about is tested on the host, where the
 //! same code runs: setpoints out of the disk or of a guide (the planner gives none), numbers that are none (frames and ADC
 //! counts are whole numbers, and a parameter that would make one is out of its range), pivots too close (a following error
@@ -382,6 +382,41 @@ fn a_host_that_falls_silent_has_the_stage_stopped() {
         let last = lines[lines.len() - 2..].join("\n");
         assert_eq!(last, ends, "{told}");
     }
+}
+
+/// Counts of the latch's timer in 8 us: the bytes of a late frame are still under way when its tick comes, and when the next
+/// latch does in time.
+const LATE_LATCH: i32 = 8 * 84;
+
+/// One latch comes late, as after a tick that took too long. Its frames are missing; the next ones are good again.
+#[test]
+fn a_late_latch_costs_its_own_frames_and_no_more() {
+    let (send, receive) = mpsc::channel();
+    run(FULL_SPEED, move |period| {
+        match period.tick {
+            READY => period.send(b"FRF X\n"),
+            // In the first half of a period, well before its latch; back in time for the next.
+            400 | 500 | 600 => {
+                let before = period.tick_at_ns() - 40_000;
+                period.at(before + 50_000, Action::DelayLatch(LATE_LATCH));
+                period.at(before + 100_000, Action::DelayLatch(-LATE_LATCH));
+            }
+            800 => period.send(b"FLT?\nSVO?\n"),
+            900 => {
+                let told = String::from_utf8_lossy(&period.received()).into_owned();
+                send.send(told).expect("the test waits");
+                return Break(());
+            }
+            _ => {}
+        }
+        Continue(())
+    });
+    let told = receive.recv().expect("the last period");
+    println!("{told}");
+    assert!(
+        told.contains("0 no fault") && told.contains("X=1"),
+        "{told}"
+    );
 }
 
 /// What a chip that is slower than it should be says of its loop and of the fault, and how often it was reset meanwhile.

@@ -4,6 +4,7 @@
 use image::chip::{elf_file, load};
 use image::proof::{
     Code, Depths, Edge, Engine, Function, LEVELS, NESTING, ProofError, Stack, Step, faults,
+    vector_faults,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroU64;
@@ -11,6 +12,7 @@ use std::num::NonZeroU64;
 const HANDLER: &str = "TIM3";
 /// The handler's address in a made-up image; the functions after it follow in steps of 2.
 const START: u64 = 0x1000;
+const LAST: &str = LEVELS[2].handlers[0];
 const PANIC: &str = "core::panicking::panic_fmt";
 
 /// A made-up image: names, frames, and numbers of the functions that each calls.
@@ -62,6 +64,30 @@ fn image_code() -> Code {
 #[test]
 fn the_control_loop_of_the_image_cannot_fail() {
     assert_eq!(faults(&image_code(), LEVELS[1].handlers), []);
+}
+
+#[test]
+fn every_exception_of_the_image_ends_in_a_handler_of_its_own_and_the_last_one_uses_no_stack() {
+    assert_eq!(vector_faults(&image_code()), []);
+}
+
+#[test]
+fn a_vector_of_nobody_and_a_last_handler_with_a_frame_are_found() {
+    let mut code = made_up(&[("DefaultHandler_", 0, &[]), (LAST, 8, &[])]);
+    let told: Vec<_> = vector_faults(&code)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        told,
+        [
+            "a vector of nobody: DefaultHandler_".to_owned(),
+            format!("a stack is used by: {LAST}")
+        ]
+    );
+    function(&mut code, 1).frame = 0;
+    code.handlers.clear();
+    assert_eq!(vector_faults(&code), []);
 }
 
 #[test]

@@ -33,10 +33,11 @@ impl ControlLoop {
     /// Freshly started, with nothing connected.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
+        let config = Config::new(parameters);
         Self {
             inputs: NO_INPUTS,
-            config: Config::new(parameters),
-            state: State::new(),
+            state: State::new().with_learnt(&config),
+            config,
         }
     }
 
@@ -67,6 +68,6 @@ impl Front for ControlLoop {
     fn restart(&mut self, parameters: &Parameters, fault: Option<FaultKind>, motor_heat: [f32; 3]) {
         self.config = Config::new(parameters);
         let state = fault.map_or_else(State::new, State::with_fault);
-        self.state = state.with_motor_heat(motor_heat);
+        self.state = state.with_motor_heat(motor_heat).with_learnt(&self.config);
     }
 }

@@ -2,22 +2,38 @@
 
 use crate::{
     analog::Analog,
-    clocks, dma,
+    clocks::{self, Clocks},
+    crash, debug, dma,
     encoders::Encoders,
     flash::SettingsFlash,
     latch::LatchTimer,
     pwm::{self, PwmChannel, PwmTimer},
     reset_cause::ResetCause,
+    self_check::SelfCheck,
     serial::{self, Receiver, Transmitter},
+    watchdog::Watchdogs,
 };
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
 use firmware::drivers::bridge::{Bridge, BridgeError, Duty};
+use firmware::gcs::Crash;
 use stm32f4xx_hal::{
     gpio::{Input, Output, Pin, Pull, Speed},
     pac,
     prelude::*,
+    rcc::Rcc,
 };
+
+/// Where the sleep pins of all three bridges are set low, and by which word: `GPIOD_BSRR`, for whoever has nothing else
+/// left.
+pub const SLEEP_PINS_LOW: (u32, u32) = (0x4002_0C18, 0b111 << (16 + 4));
+
+/// Lets all motors coast, from wherever the program has failed.
+pub fn let_motors_coast() {
+    // SAFETY: for use when nothing else runs any more; the word clears three pins.
+    let port = unsafe { &*pac::GPIOD::ptr() };
+    port.bsrr().write(|w| unsafe { w.bits(SLEEP_PINS_LOW.1) });
+}
 
 /// What the latch and the tick work on.
 pub struct Loop {
@@ -43,10 +59,18 @@ pub struct Board {
     pub transmitter: Transmitter,
     /// Where settings are kept.
     pub flash: SettingsFlash,
-    /// The watchdog, which does not run yet.
-    pub watchdog: pac::IWDG,
+    /// The watchdogs, with the time-out of the start-up.
+    pub watchdogs: Watchdogs,
     /// Why the chip started.
     pub reset_cause: ResetCause,
+    /// How the program ended before.
+    pub crash: [Option<Crash>; 2],
+    /// The crystal did not start.
+    pub without_crystal: bool,
+    /// What the chip says of itself.
+    pub self_check: SelfCheck,
+    /// Clocks of what is switched on later.
+    pub rcc: Rcc,
 }
 
 type Axis<const CHANNEL: u8, const DIRECTION: u8, const SLEEP: u8, const FAULT: u8> = Bridge<
@@ -106,8 +130,15 @@ fn set_axis<const N: u8, D, S, F>(
 impl Board {
     /// Brings the board up. The timers stand still until [`LatchTimer::start_with`].
     pub fn new(mut peripherals: pac::Peripherals) -> Self {
-        let reset_cause = ResetCause::take(&mut peripherals.RCC);
-        let mut rcc = clocks::start(peripherals.RCC);
+        let watchdogs = Watchdogs::new(peripherals.IWDG, peripherals.WWDG);
+        let crash = crash::take();
+        let reset_cause = ResetCause::take(&mut peripherals.RCC, crash[0]);
+        let Clocks {
+            mut rcc,
+            without_crystal,
+        } = clocks::start(peripherals.RCC);
+        debug::halt_stops_the_motors(&peripherals.DBGMCU);
+        let self_check = SelfCheck::new(&peripherals.DBGMCU, &peripherals.FLASH);
         let streams = dma::split(peripherals.DMA1, peripherals.DMA2, &mut rcc);
 
         let port_a = peripherals.GPIOA.split(&mut rcc);
@@ -116,12 +147,8 @@ impl Board {
         let port_d = peripherals.GPIOD.split(&mut rcc);
         let port_e = peripherals.GPIOE.split(&mut rcc);
 
-        port_a.pa5.into_alternate::<5>().set_speed(Speed::High);
-        port_a.pa6.into_alternate::<5>();
-        port_b.pb13.into_alternate::<5>().set_speed(Speed::High);
-        port_b.pb14.into_alternate::<5>();
-        port_c.pc10.into_alternate::<6>().set_speed(Speed::High);
-        port_c.pc11.into_alternate::<6>();
+        // Bank 2 of the flash is read wrongly while this pin floats, on silicon before revision 3 (erratum 2.2.14).
+        port_a.pa12.into_push_pull_output();
         let encoders = Encoders::new(
             (peripherals.SPI1, peripherals.SPI2, peripherals.SPI3),
             [
@@ -131,6 +158,21 @@ impl Board {
             ],
             &mut rcc,
         );
+        // The ports are set up and hold their clocks high: no edge reaches an encoder. The fastest slope: with a slower one
+        // the last bit of a byte may be lost (erratum 2.12.4).
+        let fastest = Speed::VeryHigh;
+        port_a.pa6.into_alternate::<5>();
+        let mut clock = port_a.pa5.into_alternate::<5>();
+        clock.set_speed(fastest);
+        clock.internal_pull_up(true);
+        port_b.pb14.into_alternate::<5>();
+        let mut clock = port_b.pb13.into_alternate::<5>();
+        clock.set_speed(fastest);
+        clock.internal_pull_up(true);
+        port_c.pc11.into_alternate::<6>();
+        let mut clock = port_c.pc10.into_alternate::<6>();
+        clock.set_speed(fastest);
+        clock.internal_pull_up(true);
 
         port_c.pc0.into_analog();
         port_c.pc1.into_analog();
@@ -172,9 +214,13 @@ impl Board {
             },
             receiver,
             transmitter,
-            flash: SettingsFlash::new(peripherals.FLASH),
-            watchdog: peripherals.IWDG,
+            flash: SettingsFlash::new(peripherals.FLASH, peripherals.PWR, &self_check, &mut rcc),
+            watchdogs,
             reset_cause,
+            crash,
+            without_crystal,
+            self_check,
+            rcc,
         }
     }
 }

@@ -25,13 +25,50 @@ pub const APB1_HZ: u32 = 42_000_000;
 
 const CRYSTAL: Hertz = Hertz::MHz(8);
 
-/// Starts the crystal and the PLL and switches over to them.
-pub fn start(rcc: pac::RCC) -> Rcc {
-    rcc.freeze(
+/// How long a crystal may take to start, turns of the loop that waits for it: some 0.3 s of the 16 MHz oscillator. A good
+/// one takes 2 ms.
+const MAX_CRYSTAL_LOOKS: u32 = 500_000;
+
+/// The clock tree, and where it comes from.
+pub struct Clocks {
+    /// For those who switch their own clocks on.
+    pub rcc: Rcc,
+    /// The crystal did not start: all rates are those of the internal oscillator, 1 % off and more. Good enough to say
+    /// so, not to drive with: nothing would watch it.
+    pub without_crystal: bool,
+}
+
+/// Starts the crystal and the PLL, switches over to them, and has the crystal watched: when it stops, the timers' break
+/// cuts the outputs, and the processor takes the non-maskable interrupt.
+pub fn start(rcc: pac::RCC) -> Clocks {
+    let has_crystal = start_crystal(&rcc);
+    let source = if has_crystal {
         Config::hse(CRYSTAL)
+    } else {
+        Config::hsi()
+    };
+    let rcc = rcc.freeze(
+        source
             .sysclk(Hertz::Hz(TIM1_HZ))
             .hclk(Hertz::Hz(TIM1_HZ))
             .pclk1(Hertz::Hz(APB1_HZ))
             .pclk2(Hertz::Hz(APB2_HZ)),
-    )
+    );
+    if has_crystal {
+        rcc.cr().modify(|_, w| w.csson().on());
+    }
+    Clocks {
+        rcc,
+        without_crystal: !has_crystal,
+    }
+}
+
+/// Whether the crystal has started. One that has not is switched off again.
+fn start_crystal(rcc: &pac::RCC) -> bool {
+    rcc.cr().modify(|_, w| w.hseon().on());
+    let starts = (0..MAX_CRYSTAL_LOOKS).any(|_| rcc.cr().read().hserdy().is_ready());
+    if !starts {
+        rcc.cr().modify(|_, w| w.hseon().off());
+    }
+    starts
 }

@@ -20,7 +20,9 @@ pub enum Mode {
 pub struct Stream {
     controller: &'static pac::dma2::RegisterBlock,
     registers: &'static pac::dma2::ST,
-    number: usize,
+    /// Its flags lie in the higher of the two flag registers, and from this bit on.
+    has_high_flags: bool,
+    flag_shift: u32,
     channel: u8,
 }
 
@@ -47,10 +49,11 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
     // SAFETY: the controllers were handed over, and each stream's registers go to one owner. The flag registers, which
     // streams share, are only read, and written with ones that clear the stream's own flags.
     let (one, two) = unsafe { (&*pac::DMA1::ptr(), &*pac::DMA2::ptr()) };
-    let stream = |controller: &'static pac::dma2::RegisterBlock, number, channel| Stream {
+    let stream = |controller: &'static pac::dma2::RegisterBlock, number: usize, channel| Stream {
         controller,
         registers: controller.st(number),
-        number,
+        has_high_flags: number >= 4,
+        flag_shift: [0, 6, 16, 22][number % 4],
         channel,
     };
     Streams {
@@ -75,7 +78,8 @@ impl Stream {
             registers.cr().write(|w| {
                 w.chsel().bits(self.channel).minc().incremented();
                 match mode {
-                    Mode::Receive => w.dir().peripheral_to_memory(),
+                    // Nothing else may hold a frame's bytes up.
+                    Mode::Receive => w.dir().peripheral_to_memory().pl().very_high(),
                     Mode::ReceiveCircular => w.dir().peripheral_to_memory().circ().enabled(),
                     Mode::Transmit => w.dir().memory_to_peripheral(),
                 }
@@ -121,40 +125,34 @@ impl Stream {
 
     /// Whether the stream has passed the middle of its buffer, and its end, since it was asked last.
     pub fn take_marks(&mut self) -> [bool; 2] {
-        let flags = if self.number < 4 {
-            self.controller.lisr().read().bits()
-        } else {
+        let flags = if self.has_high_flags {
             self.controller.hisr().read().bits()
+        } else {
+            self.controller.lisr().read().bits()
         };
-        let seen = flags & ((HALF | COMPLETE) << self.flag_shift());
+        let seen = flags & ((HALF | COMPLETE) << self.flag_shift);
         // Only what was seen is cleared: the next mark may be passed at any moment.
         self.clear(seen);
-        let is_set = |flag: u32| seen & (flag << self.flag_shift()) != 0;
+        let is_set = |flag: u32| seen & (flag << self.flag_shift) != 0;
         [is_set(HALF), is_set(COMPLETE)]
     }
 
     /// Clears the stream's flags.
     #[inline(always)]
     pub fn clear_flags(&mut self) {
-        self.clear(ALL_FLAGS << self.flag_shift());
+        self.clear(ALL_FLAGS << self.flag_shift);
     }
 
     #[inline(always)]
     fn clear(&mut self, bits: u32) {
         // SAFETY: ones clear the flags of this stream, zeros leave the others alone.
         unsafe {
-            if self.number < 4 {
-                self.controller.lifcr().write(|w| w.bits(bits));
-            } else {
+            if self.has_high_flags {
                 self.controller.hifcr().write(|w| w.bits(bits));
+            } else {
+                self.controller.lifcr().write(|w| w.bits(bits));
             }
         }
-    }
-
-    #[inline(always)]
-    fn flag_shift(&self) -> u32 {
-        const SHIFTS: [u32; 4] = [0, 6, 16, 22];
-        SHIFTS[self.number % 4]
     }
 }
 

@@ -7,13 +7,16 @@
 //! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a
 //! sector is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
 
-use crate::watchdog;
+use crate::{self_check::SelfCheck, watchdog};
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
 use firmware::gcs::STORED_BYTES;
-use stm32f4xx_hal::pac;
+use stm32f4xx_hal::{
+    pac,
+    rcc::{Enable, Rcc},
+};
 
 /// Where it begins, after the code's memory.
 const BEGIN: usize = 0x0810_0000;
@@ -28,12 +31,43 @@ const ERRORS: u32 = 0b1_1111_0010;
 const _: () = assert!(STORED_BYTES <= SECTOR_BYTES);
 
 /// See the module.
-pub struct SettingsFlash(pac::FLASH);
+pub struct SettingsFlash {
+    flash: pac::FLASH,
+    power: pac::PWR,
+    has_second_bank: bool,
+}
+
+/// Code of the detector's highest threshold, some 2.9 V: words of 32 bits are programmed from 2.7 V on.
+const LOW_SUPPLY: u8 = 0b111;
 
 impl SettingsFlash {
-    /// In bank 2.
-    pub const fn new(flash: pac::FLASH) -> Self {
-        Self(flash)
+    /// In bank 2, if there is one. Without, every access is refused: reading there is a processor fault.
+    pub fn new(flash: pac::FLASH, power: pac::PWR, chip: &SelfCheck, rcc: &mut Rcc) -> Self {
+        pac::PWR::enable(rcc);
+        // SAFETY: every code is a threshold.
+        (power.cr()).modify(|_, w| unsafe { w.pls().bits(LOW_SUPPLY).pvde().set_bit() });
+        Self {
+            flash,
+            power,
+            has_second_bank: chip.has_second_bank,
+        }
+    }
+
+    /// Whether flash can be changed now: with the chip's supply going down, what is written might not be what is read.
+    fn check_supply(&self) -> Result<(), FlashError> {
+        if self.power.csr().read().pvdo().bit_is_set() {
+            Err(FlashError::SupplyLow)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn check_bank(&self) -> Result<(), FlashError> {
+        if self.has_second_bank {
+            Ok(())
+        } else {
+            Err(FlashError::Absent)
+        }
     }
 
     /// Lets `change` do what it does to the flash.
@@ -41,28 +75,29 @@ impl SettingsFlash {
         &mut self,
         change: impl FnOnce(&mut Self) -> Result<(), FlashError>,
     ) -> Result<(), FlashError> {
-        self.0.acr().modify(|_, w| w.dcen().disabled());
+        self.check_bank()?;
+        self.flash.acr().modify(|_, w| w.dcen().disabled());
         for key in KEYS {
             // SAFETY: the two keys in this order are what unlocks the control register.
-            self.0.keyr().write(|w| unsafe { w.bits(key) });
+            self.flash.keyr().write(|w| unsafe { w.bits(key) });
         }
         // SAFETY: writing ones clears flags, and these are flags.
-        self.0.sr().write(|w| unsafe { w.bits(ERRORS) });
+        self.flash.sr().write(|w| unsafe { w.bits(ERRORS) });
         let result = change(self);
-        self.0.cr().write(|w| w.lock().locked());
+        self.flash.cr().write(|w| w.lock().locked());
         // Can be written only while the cache is off.
-        self.0.acr().modify(|_, w| w.dcrst().reset());
-        self.0.acr().modify(|_, w| w.dcrst().no_reset());
-        self.0.acr().modify(|_, w| w.dcen().enabled());
+        self.flash.acr().modify(|_, w| w.dcrst().reset());
+        self.flash.acr().modify(|_, w| w.dcrst().no_reset());
+        self.flash.acr().modify(|_, w| w.dcen().enabled());
         result
     }
 
     /// Waits for the end of what was begun.
     fn finish(&mut self) -> Result<(), FlashError> {
-        while self.0.sr().read().bsy().is_busy() {
+        while self.flash.sr().read().bsy().is_busy() {
             watchdog::feed();
         }
-        if self.0.sr().read().bits() & ERRORS == 0 {
+        if self.flash.sr().read().bits() & ERRORS == 0 {
             Ok(())
         } else {
             Err(FlashError::Refused)
@@ -77,13 +112,17 @@ pub enum FlashError {
     Place(NorFlashErrorKind),
     /// Its controller has refused it.
     Refused,
+    /// The chip's supply is too low.
+    SupplyLow,
+    /// The chip has no second bank.
+    Absent,
 }
 
 impl NorFlashError for FlashError {
     fn kind(&self) -> NorFlashErrorKind {
         match self {
             Self::Place(kind) => *kind,
-            Self::Refused => NorFlashErrorKind::Other,
+            Self::Refused | Self::SupplyLow | Self::Absent => NorFlashErrorKind::Other,
         }
     }
 }
@@ -97,6 +136,7 @@ impl ReadNorFlash for SettingsFlash {
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         check_read(self, offset, bytes.len()).map_err(FlashError::Place)?;
+        self.check_bank()?;
         for (at, byte) in (BEGIN + offset as usize..).zip(bytes) {
             // SAFETY: in the flash, which can be read at any address. Volatile: the compiler does not know who writes
             // it.
@@ -119,12 +159,15 @@ impl NorFlash for SettingsFlash {
         let sectors = from as usize / SECTOR_BYTES..to as usize / SECTOR_BYTES;
         self.unlocked(|flash| {
             for sector in sectors {
+                flash.check_supply()?;
                 let number = FIRST_SECTOR + sector as u8;
                 // SAFETY: the number of a sector of bank 2, in which there is no code.
-                (flash.0.cr()).write(|w| unsafe {
+                (flash.flash.cr()).write(|w| unsafe {
                     w.psize().psize32().ser().sector_erase();
-                    w.snb().bits(number).strt().start()
+                    w.snb().bits(number)
                 });
+                // In a store of its own (RM0090, 3.6.3).
+                flash.flash.cr().modify(|_, w| w.strt().start());
                 flash.finish()?;
             }
             Ok(())
@@ -134,15 +177,21 @@ impl NorFlash for SettingsFlash {
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         check_write(self, offset, bytes.len()).map_err(FlashError::Place)?;
         self.unlocked(|flash| {
-            flash.0.cr().write(|w| w.psize().psize32().pg().program());
+            flash
+                .flash
+                .cr()
+                .write(|w| w.psize().psize32().pg().program());
             let words = bytes.chunks_exact(4).map(|word| {
                 let mut bytes = [0; 4];
                 bytes.copy_from_slice(word);
                 u32::from_le_bytes(bytes)
             });
             for (place, word) in (BEGIN + offset as usize..).step_by(4).zip(words) {
+                flash.check_supply()?;
                 // SAFETY: a word of bank 2, in which there is no code; the controller is ready to program it.
                 unsafe { (place as *mut u32).write_volatile(word) };
+                // The word has arrived before the controller is asked whether it is busy.
+                cortex_m::asm::dsb();
                 flash.finish()?;
             }
             Ok(())

@@ -35,18 +35,23 @@
 //!
 //! # Priorities
 //!
-//! Latch and tick share the highest priority, 0 in the hardware, which no BASEPRI mask holds back; they never meet. All
-//! the rest, command interface, settings, watchdog and log, is the idle task. There is no third. Between the two sides
+//! Latch and tick share a priority, 1 in the hardware; they never meet. Above them, at 0, are only the exceptions that end
+//! the program (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
+//! All the rest, command interface, settings, independent watchdog and log, is the idle task. Between the two sides
 //! are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a
-//! full buffer, is dropped instead. The watchdog is fed by the idle task, and only while the tick counter moves.
+//! full buffer, is dropped instead. The independent
+//! watchdog is fed by the idle task, and only while the tick counter moves.
 #![no_std]
 #![no_main]
 
 mod analog;
 mod board;
 mod clocks;
+mod crash;
+mod debug;
 mod dma;
 mod encoders;
+mod fault_handlers;
 mod flash;
 mod identity;
 mod latch;
@@ -55,6 +60,7 @@ mod pwm;
 mod reset_cause;
 mod restart;
 mod retained_memory;
+mod self_check;
 mod self_test;
 mod serial;
 mod tick_timing;
@@ -80,6 +86,7 @@ mod app {
     use core::mem::MaybeUninit;
     use firmware::control::config::Config;
     use firmware::control::{Inputs, State, tick};
+    use firmware::fault::FaultKind;
     use firmware::gcs::{Identity, Interpreter, Session};
     use firmware::parameters::Parameters;
     use firmware::queues::{CommandQueues, Queues, TickQueues};
@@ -123,8 +130,12 @@ mod app {
             receiver,
             transmitter,
             flash,
-            watchdog,
+            watchdogs,
             reset_cause,
+            crash,
+            without_crystal,
+            self_check,
+            mut rcc,
         } = Board::new(context.device);
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
@@ -143,15 +154,28 @@ mod app {
         if let Some(cause) = reset_cause.unasked() {
             interpreter.set_start_cause(cause);
         }
+        for crash in crash.into_iter().flatten() {
+            defmt::error!("{}", defmt::Display2Format(&crash));
+            interpreter.add_crash(crash);
+        }
+        self_check
+            .notices()
+            .for_each(|notice| interpreter.add_board_notice(notice));
         // Before anything can move.
         let mut settings_store = SettingsStore::new(flash);
-        let state = match settings_store.restore(interpreter) {
+        let unusable_settings = settings_store.restore(interpreter);
+        let damaged = self_check.image_damaged.then_some(FaultKind::ImageDamaged);
+        let no_crystal = without_crystal.then_some(FaultKind::CrystalFailed);
+        let config = Config::new(interpreter.parameters());
+        // The one that stays first.
+        let state = match damaged.or(no_crystal).or(unusable_settings) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
         }
-        .with_motor_heat(RETAINED_MEMORY.motor_heat());
+        .with_motor_heat(RETAINED_MEMORY.motor_heat())
+        .with_learnt(&config);
         let local = Local {
-            config: Config::new(interpreter.parameters()),
+            config,
             state: context.local.state_place.write(state),
             trace_writer: TraceWriter::default(),
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
@@ -163,25 +187,27 @@ mod app {
             receiver,
             transmitter,
         };
-        watchdog::start(watchdog);
+        watchdogs.start(&mut rcc);
         // Last: everything that takes time is done, the first tick comes 50 us from here.
         control.latch_timer.start_with(&mut control.pwm);
         (Shared { control }, local)
     }
 
     /// Latches the encoders, starts the conversions, arms the tick.
-    #[task(binds = TIM3, priority = 16, shared = [control])]
+    #[task(binds = TIM3, priority = 15, shared = [control])]
     fn latch(context: latch::Context) {
         let control = context.shared.control;
         control.latch_timer.acknowledge();
         control.encoders.latch();
         control.analog.start();
         control.pwm.arm_tick();
+        // The acknowledgement has arrived before the core looks for further interrupts (erratum 838869).
+        cortex_m::asm::dsb();
     }
 
     /// The control task, every 50 us. If it takes longer than 35 us, the next latch and with it the next frames are
     /// late, and the library takes them for missing; if it never ends, the watchdog resets the chip.
-    #[task(binds = TIM1_UP_TIM10, priority = 16, shared = [control], local = [config, state, tick_queues, trace_writer, tick_timing])]
+    #[task(binds = TIM1_UP_TIM10, priority = 15, shared = [control], local = [config, state, tick_queues, trace_writer, tick_timing])]
     fn control(context: control::Context) {
         let control = context.shared.control;
         control.pwm.disarm_tick();
@@ -206,6 +232,9 @@ mod app {
         control.bridges.set(outputs.duty, outputs.awake);
         control.pwm.connect(outputs.awake);
         context.local.tick_timing.end();
+        watchdog::feed_window();
+        // The interrupt's acknowledgement has arrived before the core looks whether there is one (erratum 838869).
+        cortex_m::asm::dsb();
         trace::mark_end_of_tick();
     }
 

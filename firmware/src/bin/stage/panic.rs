@@ -1,18 +1,12 @@
-//! What happens when the program fails: the motors brake and the chip starts again, which the next reset cause tells.
+//! A panic: the motors coast, its place is kept, and the chip starts again.
 
-use crate::pwm;
+use crate::{board, crash, pwm};
 use cortex_m::peripheral::SCB;
-use cortex_m_rt::{ExceptionFrame, exception};
 
 #[panic_handler]
-fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
     pwm::cut();
-    SCB::sys_reset()
-}
-
-/// Also where bus, usage and memory faults end up, a stack overflow among them.
-#[exception]
-unsafe fn HardFault(_: &ExceptionFrame) -> ! {
-    pwm::cut();
+    board::let_motors_coast();
+    crash::keep_panic(info.location());
     SCB::sys_reset()
 }

@@ -1,7 +1,7 @@
 //! Why the chip started.
 
 use crate::restart;
-use firmware::gcs::START_CAUSES;
+use firmware::gcs::{Crash, CrashCause, START_CAUSES};
 use stm32f4xx_hal::pac;
 
 /// Why the chip started.
@@ -22,6 +22,8 @@ pub enum ResetCause {
     Other = 6,
     /// `RBT`.
     Command = 7,
+    /// The crystal stopped.
+    ClockFailure = 8,
 }
 
 impl ResetCause {
@@ -31,20 +33,22 @@ impl ResetCause {
             Self::Watchdog => Some(START_CAUSES[0]),
             Self::Software => Some(START_CAUSES[1]),
             Self::BrownOut => Some(START_CAUSES[2]),
+            Self::ClockFailure => Some(START_CAUSES[3]),
             _ => None,
         }
     }
 
     /// Reads the flags and clears them for the next time. Every reset also sets the pin's flag, so that one comes last.
-    pub fn take(rcc: &mut pac::RCC) -> Self {
+    /// Whoever ends the program asks for a reset; how it ended says why.
+    pub fn take(rcc: &mut pac::RCC, crash: Option<Crash>) -> Self {
         let flags = rcc.csr().read();
-        let cause = if flags.wdgrstf().bit_is_set() {
+        let cause = if flags.wdgrstf().bit_is_set() || flags.wwdgrstf().bit_is_set() {
             Self::Watchdog
         } else if flags.sftrstf().bit_is_set() {
             if restart::was_asked_for() {
                 Self::Command
             } else {
-                Self::Software
+                Self::of_crash(crash)
             }
         } else if flags.porrstf().bit_is_set() {
             Self::PowerOn
@@ -57,5 +61,16 @@ impl ResetCause {
         };
         rcc.csr().modify(|_, w| w.rmvf().set_bit());
         cause
+    }
+
+    const fn of_crash(crash: Option<Crash>) -> Self {
+        match crash {
+            Some(Crash::Exception { cause, .. }) => match cause {
+                CrashCause::ClockFailure => Self::ClockFailure,
+                CrashCause::LoopStoodStill => Self::Watchdog,
+                CrashCause::ProcessorFault | CrashCause::UnexpectedInterrupt => Self::Software,
+            },
+            _ => Self::Software,
+        }
     }
 }

@@ -1,23 +1,104 @@
-//! The independent watchdog, fed only while the control loop ticks.
+//! Two watchdogs. The window watchdog is fed by the tick: when one does not end, the outputs are cut half a millisecond
+//! later. The independent one, with an oscillator of its own, is fed by the command side while ticks come: it also bites
+//! when the crystal is gone, or the command side hangs.
+//!
+//! | | time | what it does |
+//! |---|---|---|
+//! | window watchdog, early warning | 0.39 to 0.49 ms after the last tick | interrupt above the tick: `fault_handlers` cut the outputs, keep where the program was, and reset |
+//! | window watchdog itself | 0.1 ms later | reset, where even that interrupt was held back |
+//! | independent watchdog | 20 ms nominal; 10.9 to 37.6 ms, its oscillator has 17 to 47 kHz | reset |
+//! | the same during start-up | 8.2 s nominal; 5.6 to 15.4 s | reset |
 
 use crate::trace::TRACE;
 use core::sync::atomic::{AtomicU32, Ordering};
-use stm32f4xx_hal::{pac, prelude::*, watchdog::IndependentWatchdog};
-
-/// How long the loop may stand still, ms. The oscillator behind it is good to -30 and +50 %.
-const TIMEOUT_MS: u32 = 20;
+use stm32f4xx_hal::{
+    pac::{self, Interrupt, NVIC},
+    rcc::Rcc,
+};
 
 /// The tick at which the watchdog was last fed.
 static FED_AT: AtomicU32 = AtomicU32::new(0);
 
+const UNLOCK: u16 = 0x5555;
 const RELOAD: u16 = 0xAAAA;
+const START: u16 = 0xCCCC;
 
-/// Starts the watchdog; nothing but a reset stops it again.
-pub fn start(iwdg: pac::IWDG) {
-    IndependentWatchdog::new(iwdg).start(TIMEOUT_MS.millis());
+/// Prescaler and reload of the independent watchdog: 32 kHz nominal over 128, five counts.
+const RUNNING: (u8, u16) = (0b101, 4);
+/// The same over 64, all counts.
+const STARTING: (u8, u16) = (0b100, 0xFFF);
+/// How often to look whether they have arrived: five cycles of a clock of 17 kHz are 50,000 of the core.
+const MAX_LOOKS: u32 = 100_000;
+
+/// What feeds the window watchdog: it runs (bit 7), and five counts of 97.5 us to its early warning at 0x40.
+const FED: u16 = 0x80 | 0x45;
+
+/// Both.
+pub struct Watchdogs {
+    independent: pac::IWDG,
+    window: pac::WWDG,
 }
 
-/// Feeds the watchdog if the tick has run since the last time. Only the command side calls this, so both have to live.
+impl Watchdogs {
+    /// Starts the independent watchdog, with time for the start-up; nothing but a reset stops it again. The first thing the
+    /// chip does.
+    pub fn new(independent: pac::IWDG, window: pac::WWDG) -> Self {
+        write_key(&independent, START);
+        let watchdogs = Self {
+            independent,
+            window,
+        };
+        watchdogs.set_timeout(STARTING);
+        watchdogs
+    }
+
+    /// From now on the loop has to tick: the window watchdog runs, and the independent one's short time-out is in force.
+    pub fn start(self, rcc: &mut Rcc) {
+        self.set_timeout(RUNNING);
+        rcc.apb1enr().modify(|_, w| w.wwdgen().enabled());
+        // The clock is there before the first access (erratum 2.2.7).
+        cortex_m::asm::dsb();
+        // No window: the whole count is one. The early warning interrupts.
+        self.window
+            .cfr()
+            .write(|w| w.ewi().enable().wdgtb().div1().w().set(0x7F));
+        feed_window();
+        // SAFETY: the handler needs nothing that is not there yet. Its priority stays 0, above the tick's.
+        unsafe { NVIC::unmask(Interrupt::WWDG) };
+    }
+
+    /// Sets prescaler and reload, waits until the watchdog has them, and begins the count anew: until then it counts what
+    /// it had, after its start up to half a minute.
+    fn set_timeout(&self, (prescaler, reload): (u8, u16)) {
+        let registers = &self.independent;
+        write_key(registers, UNLOCK);
+        // SAFETY: a prescaler's code.
+        (registers.pr()).write(|w| unsafe { w.pr().bits(prescaler) });
+        registers.rlr().write(|w| w.rl().set(reload));
+        // Without an oscillator there is no watchdog to wait for either.
+        for _ in 0..MAX_LOOKS {
+            if registers.sr().read().bits() == 0 {
+                break;
+            }
+        }
+        write_key(registers, RELOAD);
+    }
+}
+
+fn write_key(iwdg: &pac::iwdg::RegisterBlock, key: u16) {
+    // SAFETY: the three keys are all that is ever written.
+    iwdg.kr().write(|w| unsafe { w.key().bits(key) });
+}
+
+/// Feeds the window watchdog: called at the end of every tick.
+#[inline(always)]
+pub fn feed_window() {
+    // SAFETY: one store, of a value that only reloads the counter.
+    unsafe { (*pac::WWDG::ptr()).cr().write(|w| w.bits(FED)) };
+}
+
+/// Feeds the independent watchdog if the tick has run since the last time. Only the command side calls this, so both have
+/// to live.
 pub fn feed() {
     let ticks = TRACE.ticks();
     if ticks == FED_AT.load(Ordering::Relaxed) {
@@ -25,5 +106,5 @@ pub fn feed() {
     }
     FED_AT.store(ticks, Ordering::Relaxed);
     // SAFETY: the key register is only written, and this key only reloads the counter.
-    unsafe { (*pac::IWDG::ptr()).kr().write(|w| w.key().bits(RELOAD)) };
+    write_key(unsafe { &*pac::IWDG::ptr() }, RELOAD);
 }

@@ -2,9 +2,11 @@
 
 use super::filter::FilterConfig;
 use super::inertia::carried_inertia;
+use super::learnt::Learnt;
 use super::platform_torque::Body;
 use super::ripple::RippleConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::iterative_learning::InversePlant;
 use crate::parameters::Parameters;
 
 /// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
@@ -76,6 +78,10 @@ pub struct PivotServoConfig {
     /// Anti-windup: largest size of the integral, V.
     pub(super) integral_limit: f32,
     pub(super) learnt_weight_limit: [f32; FEATURES],
+    /// What it starts with, and goes on with when this changes.
+    pub(in crate::control) learnt: Learnt,
+    /// What it moves in the middle of the disk, kg m^2.
+    middle_inertia: f32,
 }
 
 impl ServoConfig {
@@ -92,17 +98,15 @@ impl ServoConfig {
     }
 
     /// The share of a pivot's velocity gain and integral gain for what it moves with its guides so long and at such angles;
-    /// `None` where the gains are the same everywhere.
+    /// 1 where the gains are the same everywhere.
     #[inline]
-    pub fn scheduled_share(
-        &self,
-        lengths: &[f32; 3],
-        cosines: &[f32; 3],
-        pivot: usize,
-    ) -> Option<f32> {
-        let per_inertia = self.gains_per_inertia?;
-        let ring = self.pivots.get(pivot)?.inertia;
-        Some(per_inertia * (ring + carried_inertia(&self.body, lengths, cosines, pivot)))
+    pub fn scheduled_share(&self, lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> f32 {
+        match (self.gains_per_inertia, self.pivots.get(pivot)) {
+            (Some(per_inertia), Some(PivotServoConfig { inertia, .. })) => {
+                per_inertia * (inertia + carried_inertia(&self.body, lengths, cosines, pivot))
+            }
+            _ => 1.0,
+        }
     }
 
     /// PWM counts per volt at a measured supply (ADC counts). A supply that reads as nothing gives no drive.
@@ -117,6 +121,18 @@ impl ServoConfig {
 }
 
 impl PivotServoConfig {
+    /// From errors to the volts that they are worth, for iterative learning.
+    #[inline]
+    pub fn inverse_plant(&self) -> InversePlant {
+        const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
+        let [volt_per_rate, volt_per_torque, _] = self.model_weights;
+        InversePlant {
+            volt_s2: RAD * volt_per_torque * self.middle_inertia,
+            volt_s: RAD * (self.volt_per_rate + volt_per_rate),
+            lead_ticks: self.lead_ticks,
+        }
+    }
+
     fn new(parameters: &Parameters, pivot: usize) -> Self {
         let Parameters {
             servo,
@@ -138,6 +154,9 @@ impl PivotServoConfig {
         let rad_per_unit = 1.0 / UNITS_PER_RAD;
         let full = f64::from(power.pwm_counts);
         let limit_share = MAX_DUTY.min(power.voltage_limit_v / power.supply_v);
+        // In the middle of the disk; a pivot alone.
+        let carried = carried_inertia(&Body::new(parameters), &[1.0; 3], &[1.0; 3], pivot);
+        let middle_inertia = drive.inertia_kg_m2 + f64::from(carried);
         // What a change of one count in a tick is worth grows with the gain, and the thresholds with it.
         let filters = FilterConfig::new(&servo.filters[pivot], limits.rate_hz);
         let volt_per_count =
@@ -175,6 +194,8 @@ impl PivotServoConfig {
             oscillation_swing: oscillation_v as f32,
             integral_limit: (limit_share.min(0.5) * power.supply_v) as f32,
             learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
+            learnt: Learnt::new(&parameters.learnt[pivot]),
+            middle_inertia: middle_inertia as f32,
         }
     }
 }

@@ -53,7 +53,7 @@ impl Section {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FilterConfig {
     sections: [Section; SECTIONS],
-    count: usize,
+    count: u8,
 }
 
 impl FilterConfig {
@@ -75,7 +75,7 @@ impl FilterConfig {
 
     /// Gain at half the tick's rate: what the filters make of the encoders' noise. At least 1.
     pub fn noise_gain(&self) -> f32 {
-        let sections = self.sections.iter().take(self.count);
+        let sections = self.sections.iter().take(self.count.into());
         let gain: f32 = (sections)
             .map(
                 |Section {
@@ -96,8 +96,16 @@ impl Filters {
     /// The filtered value; without filters the value itself.
     #[inline]
     pub fn step(&mut self, config: &FilterConfig, value: f32) -> f32 {
+        if config.count == 0 {
+            return value;
+        }
         let mut value = value;
-        for (section, state) in config.sections.iter().zip(&mut self.0).take(config.count) {
+        for (section, state) in config
+            .sections
+            .iter()
+            .zip(&mut self.0)
+            .take(config.count.into())
+        {
             let ([b0, b1, b2], [a1, a2]) = (section.b, section.a);
             // Transposed direct form II.
             let filtered = b0 * value + state[0];

@@ -22,6 +22,7 @@
 //! | `filter` | notches and lead of the feedback |
 //! | `inertia` | what a pivot moves, for the gains' schedule |
 //! | `ripple` | compensation of torque ripple |
+//! | `learnt` | what is learnt, as it is told and kept |
 //! | `dead_time` | compensation of the bridges' dead time |
 //! | `presliding` | friction before a ring slides |
 //! | `platform_torque` | torque that platform and payload ask of the pivots |
@@ -30,6 +31,7 @@ mod config;
 mod dead_time;
 mod filter;
 mod inertia;
+mod learnt;
 mod pivot;
 mod platform_torque;
 mod presliding;
@@ -38,6 +40,7 @@ mod ripple;
 pub use config::{PivotServoConfig, ServoConfig};
 pub use filter::{FilterConfig, Filters};
 pub use inertia::carried_inertia;
+pub use learnt::Learnt;
 pub use pivot::{LoopSetpoint, PivotServo, PivotSetpoint};
 pub use platform_torque::{Body, platform_torques};
 pub use presliding::Presliding;

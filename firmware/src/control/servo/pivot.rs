@@ -3,6 +3,7 @@
 use super::config::{FEATURES, PivotServoConfig};
 use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::filter::Filters;
+use super::learnt::Learnt;
 use super::presliding::Presliding;
 use crate::control::rest_mode::Stiffness;
 use crate::drivers::bridge::Duty;
@@ -27,6 +28,8 @@ pub struct PivotSetpoint {
     pub angle: Angle,
     /// Size of the motor's current as it was measured, ADC counts.
     pub current_counts: u16,
+    /// What iterative learning adds, V.
+    pub learnt_volts: f32,
 }
 
 /// What the three loops have in common at a tick.
@@ -47,13 +50,11 @@ pub struct PivotServo {
     /// The signals at the last tick, as far ahead as the drive takes to follow.
     signals: [f32; FEATURES],
     friction: Presliding,
-    /// Weights of the signals, volts per unit, and the integral when they were learnt last.
-    learnt_weights: [f32; FEATURES],
+    learnt: Learnt,
+    /// The integral when it learnt last.
     integral_when_learnt: f32,
     /// Motor current over the dead time's knee, by the model.
     current: f32,
-    /// What the motor constant is more than the model has it, by the measured current, V s/rad.
-    motor_constant_excess: f32,
     rounding_residue: f32,
     /// Velocity error with a share of the position error, smoothed at rest.
     smoothed: f32,
@@ -71,7 +72,7 @@ impl PivotServo {
     /// setpoint.
     pub fn restart(&mut self) {
         *self = Self {
-            learnt_weights: self.learnt_weights,
+            learnt: self.learnt,
             ..Self::default()
         };
     }
@@ -79,6 +80,29 @@ impl PivotServo {
     /// From here on the setpoint is given as what is measured: feedforward and what was learnt drive alone.
     pub fn run_open_loop(&mut self) {
         self.last_error = 0.0;
+    }
+
+    /// What it has learnt.
+    #[inline]
+    pub fn learnt(&self) -> &Learnt {
+        &self.learnt
+    }
+
+    /// Has learnt this, from now on.
+    pub fn restore(&mut self, learnt: &Learnt) {
+        self.learnt = *learnt;
+    }
+
+    /// What feedback has collected, V.
+    #[inline]
+    pub fn integral_volts(&self) -> f32 {
+        self.integral
+    }
+
+    /// Its motor's current by the model, over the dead time's knee.
+    #[inline]
+    pub fn current_knees(&self) -> f32 {
+        self.current
     }
 
     /// Volts that the feedback asked for last.
@@ -136,9 +160,10 @@ impl PivotServo {
         let friction = contact + config.lead_ticks * (contact - last_contact);
         self.last_inertial = inertial;
         self.signals = [rate, torque, friction];
-        let feedforward = (config.model_weights[0] + self.learnt_weights[0]) * rate
-            + (config.model_weights[1] + self.learnt_weights[1]) * torque
-            + (config.model_weights[2] + self.learnt_weights[2]) * friction;
+        let feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
+            + (config.model_weights[1] + self.learnt.weights[1]) * torque
+            + (config.model_weights[2] + self.learnt.weights[2]) * friction
+            + setpoint.learnt_volts;
 
         let r = r + self.scheduled_excess * r;
         let feedback = self.filters.step(
@@ -153,11 +178,12 @@ impl PivotServo {
         let measured = f32::from(setpoint.current_counts) * config.knee_currents_per_count;
         if measured > LEAST_MEASURED {
             let missing = measured.copysign(self.current) - self.current;
-            let excess = self.motor_constant_excess
+            let excess = self.learnt.motor_constant_excess
                 - config.motor_constant_step * missing * rate / (1.0 + rate * rate);
-            self.motor_constant_excess = clamp_symmetric(excess, config.motor_constant_limit);
+            self.learnt.motor_constant_excess =
+                clamp_symmetric(excess, config.motor_constant_limit);
         }
-        let over_emf = feedforward + feedback + ripple - self.motor_constant_excess * rate;
+        let over_emf = feedforward + feedback + ripple - self.learnt.motor_constant_excess * rate;
         self.current +=
             (over_emf * config.knee_currents_per_volt - self.current) * config.current_step;
         let lost = dead_time_share(self.current);
@@ -179,6 +205,19 @@ impl PivotServo {
         self.quantise(limited)
     }
 
+    /// Volts that somebody else has given until now: the integral's from now on. Nothing is learnt from that.
+    pub fn take_over(&mut self, config: &PivotServoConfig, volts: f32) {
+        let before = self.integral;
+        self.integral = clamp_symmetric(before + volts, config.integral_limit);
+        self.integral_when_learnt += self.integral - before;
+    }
+
+    /// Learns nothing from what the integral has collected since it did last.
+    #[inline]
+    pub fn skip_learning(&mut self) {
+        self.integral_when_learnt = self.integral;
+    }
+
     /// Learns from what the integral has collected since it did last. The signals hardly change from tick to tick, so
     /// that the pivots can take turns.
     #[inline]
@@ -186,8 +225,8 @@ impl PivotServo {
         let collected = self.integral - self.integral_when_learnt;
         self.integral_when_learnt = self.integral;
         for (k, signal) in self.signals.into_iter().enumerate() {
-            let weight = self.learnt_weights[k] + config.learning_gains[k] * collected * signal;
-            self.learnt_weights[k] = clamp_symmetric(weight, config.learnt_weight_limit[k]);
+            let weight = self.learnt.weights[k] + config.learning_gains[k] * collected * signal;
+            self.learnt.weights[k] = clamp_symmetric(weight, config.learnt_weight_limit[k]);
         }
     }
 

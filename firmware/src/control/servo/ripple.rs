@@ -29,7 +29,7 @@ struct Sine {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RippleConfig {
     sines: [Sine; HARMONICS],
-    count: usize,
+    count: u8,
     /// 2^-32 turns that a pivot goes on until a voltage acts, for a rate of 1 rad/s.
     lead: f32,
 }
@@ -67,7 +67,7 @@ impl RippleConfig {
         }
         let angle = setpoint.units() + i64::from((rate * self.lead) as i32);
         let mut volts = 0.0;
-        for sine in self.sines.iter().take(self.count) {
+        for sine in self.sines.iter().take(self.count.into()) {
             // All turns count, so that a gear without a whole ratio keeps its phase.
             let turned = (angle.wrapping_mul(i64::from(sine.periods)) >> PERIOD_PLACES) as u32;
             let phase = Angle::from_units(i64::from(turned.wrapping_add(sine.phase)));

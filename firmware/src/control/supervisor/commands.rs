@@ -6,6 +6,7 @@ use crate::control::config::Config;
 use crate::control::encoder::Encoder;
 use crate::control::referencing;
 use crate::control::state::State;
+use crate::fault::Fault;
 use crate::mode::Mode;
 use crate::motion::Position;
 use crate::number::Fixed;
@@ -44,11 +45,6 @@ impl State {
     /// What can not fail.
     fn apply(&mut self, config: &mut Config, command: &Command) {
         match command {
-            Command::Acknowledge => {
-                self.fault = None;
-                self.stop_ended_by = None;
-                self.lost_pivot = None;
-            }
             Command::Configure(wanted) => self.configure(config, wanted),
             Command::Centre(centre) => {
                 // Servo off in mid-motion leaves the motion as it was: there is nothing under way then.
@@ -59,7 +55,7 @@ impl State {
                 let _ = self.motion.set_centre(*centre);
             }
             // The servo is on already, or goes off, which is all there is to it.
-            Command::Reference | Command::Servo(_) | Command::Move(_) => {}
+            Command::Reference | Command::Servo(_) | Command::Move(_) | Command::Acknowledge => {}
         }
     }
 
@@ -77,7 +73,17 @@ impl State {
                 }
                 taken
             }
-            Command::Centre(_) | Command::Configure(_) | Command::Acknowledge => false,
+            Command::Acknowledge => {
+                let lasts = |fault: Fault| fault.kind.lasts_until_restart();
+                if self.fault.is_some_and(lasts) {
+                    return false;
+                }
+                self.fault = None;
+                self.stop_ended_by = None;
+                self.lost_pivot = None;
+                true
+            }
+            Command::Centre(_) | Command::Configure(_) => false,
         }
     }
 
@@ -124,6 +130,13 @@ impl State {
     /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that sends no snapshot.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
         let moved = [0, 1, 2].map(|i| !config.encoders[i].has_same_mounting(&wanted.encoders[i]));
+        for (i, servo) in self.servo.iter_mut().enumerate() {
+            // Other ones than were set last: what has been learnt since then stays otherwise.
+            let learnt = &wanted.servo.pivots[i].learnt;
+            if config.servo.pivots[i].learnt != *learnt {
+                servo.restore(learnt);
+            }
+        }
         config.clone_from(wanted);
         for (encoder, moved) in self.encoders.iter_mut().zip(moved) {
             if moved {

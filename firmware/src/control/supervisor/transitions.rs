@@ -69,7 +69,7 @@ pub const TRANSITIONS: [(Event, [Outcome; 5]); 12] = {
         (Centre,      [To(Off),     To(Holding), Refused,      Refused,   Refused]),
         (Constants,   [To(Off),     To(Holding), Refused,      Refused,   To(Fault)]),
         (Mounting,    [To(Off),     Refused,     Refused,      Refused,   To(Fault)]),
-        (Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   To(Off)]),
+        (Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   If(Off)]),
         (AtRest,      [Nothing,     Nothing,     To(Holding),  To(Fault), Nothing]),
         (StopFault,   [To(Fault),   To(Fault),   To(Stopping), Nothing,   Nothing]),
         (BrakeFault,  [To(Fault),   To(Fault),   To(Fault),    To(Fault), Nothing]),

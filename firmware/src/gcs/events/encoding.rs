@@ -1,5 +1,7 @@
 //! Events as words, for the retained memory: number, tick (two), what, three of its own, and the check.
 
+use super::board_notice::BoardNotice;
+use super::crash::{CRASH_FILE_BYTES, Crash, CrashCause};
 use super::event::{Event, START_CAUSES};
 use crate::fault::{FAULT_DESCRIPTIONS, Fault};
 
@@ -50,6 +52,15 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         Event::UnknownParameters(count) => (16, [0; 2], [u32::from(*count), 0, 0]),
         Event::ServoBeforeReference => bare(17),
         Event::SupervisionLoosened(count) => (19, [0; 2], [u32::from(*count), 0, 0]),
+        Event::Crashed(Crash::Panic { file, line }) => (24, line.to_be_bytes(), file_words(*file)),
+        Event::Crashed(Crash::Exception {
+            cause,
+            program_counter,
+            link,
+            status,
+        }) => (25, [*cause as u8, 0], [*program_counter, *link, *status]),
+        Event::Crashed(Crash::NoAccess(address)) => (26, [0; 2], [*address, 0, 0]),
+        Event::BoardNotice(notice) => (27, [*notice as u8, 0], [0; 3]),
         Event::PoseOutside(pose) => (18, [0; 2], pose.map(f32::to_bits)),
         Event::Recovery(pose) => (20, [0; 2], pose.map(f32::to_bits)),
         Event::UnusableParameter(id, value) => {
@@ -93,6 +104,18 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         16 => Event::UnknownParameters(a as u16),
         17 => Event::ServoBeforeReference,
         19 => Event::SupervisionLoosened(a as u16),
+        24 => Event::Crashed(Crash::Panic {
+            file: file_bytes([a, b, c]),
+            line: u16::from_be_bytes([first, second]),
+        }),
+        25 => Event::Crashed(Crash::Exception {
+            cause: *CrashCause::ALL.get(usize::from(first))?,
+            program_counter: a,
+            link: b,
+            status: c,
+        }),
+        26 => Event::Crashed(Crash::NoAccess(a)),
+        27 => Event::BoardNotice(*BoardNotice::ALL.get(usize::from(first))?),
         18 => Event::PoseOutside([a, b, c].map(f32::from_bits)),
         20 => Event::Recovery([a, b, c].map(f32::from_bits)),
         23 => Event::UnusableParameter(a, number),
@@ -101,4 +124,19 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         _ => return None,
     };
     Some((tick, event))
+}
+
+fn file_words(file: [u8; CRASH_FILE_BYTES]) -> [u32; 3] {
+    core::array::from_fn(|i| {
+        u32::from_be_bytes([
+            file[4 * i],
+            file[4 * i + 1],
+            file[4 * i + 2],
+            file[4 * i + 3],
+        ])
+    })
+}
+
+fn file_bytes(words: [u32; 3]) -> [u8; CRASH_FILE_BYTES] {
+    core::array::from_fn(|i| words[i / 4].to_be_bytes()[i % 4])
 }

@@ -1,13 +1,16 @@
 //! Something that happened.
 
+use super::board_notice::BoardNotice;
+use super::crash::Crash;
 use crate::fault::Fault;
 use core::fmt;
 
-/// What may start a controller unasked: the watchdog, the program, the supply.
-pub const START_CAUSES: [&str; 3] = [
+/// What may start a controller unasked: the watchdog, the program, the supply, the clock.
+pub const START_CAUSES: [&str; 4] = [
     "the watchdog: the control loop stood still",
     "a panic or a processor fault",
     "a dip of the supply",
+    "a failure of the crystal",
 ];
 
 /// Something that happened.
@@ -15,6 +18,10 @@ pub const START_CAUSES: [&str; 3] = [
 pub(in crate::gcs) enum Event {
     /// The controller started; by what, if that is worth telling.
     Start(Option<&'static str>),
+    /// How the program had ended before it.
+    Crashed(Crash),
+    /// What the board found at its start.
+    BoardNotice(BoardNotice),
     Fault(Fault),
     Acknowledged,
     Referenced,
@@ -62,6 +69,8 @@ impl fmt::Display for Event {
         match self {
             Self::Start(None) => f.write_str("start"),
             Self::Start(Some(cause)) => write!(f, "start by {cause}"),
+            Self::BoardNotice(notice) => f.write_str(notice.text()),
+            Self::Crashed(crash) => crash.fmt(f),
             Self::Fault(fault) => write!(f, "fault: {fault}"),
             Self::Acknowledged => f.write_str("fault acknowledged"),
             Self::Referenced => f.write_str("referenced"),

@@ -6,16 +6,22 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `board_notice` | what a board finds out about itself |
+//! | `crash` | how a program ended before this start |
 //! | `event` | something that happened |
 //! | `log` | the latest events |
 //! | `encoding` | events as words, for the retained memory |
 //! | `replies` | `EVT?` |
 
+mod board_notice;
+mod crash;
 mod encoding;
 mod event;
 mod log;
 mod replies;
 
+pub use board_notice::BoardNotice;
+pub use crash::{CRASH_FILE_BYTES, Crash, CrashCause};
 pub(super) use event::Event;
 pub use event::START_CAUSES;
 pub(super) use log::EventLog;

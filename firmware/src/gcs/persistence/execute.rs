@@ -11,15 +11,17 @@ use crate::queues::CommandQueues;
 use crate::settings_store::StoreError;
 
 impl Interpreter {
-    /// `WPA`: those named, or all parameters, as they are now, and the macros.
+    /// `WPA`: those named, or all parameters, as they are now, what the servos have learnt among them, and the macros.
     pub(in crate::gcs) fn store_parameters(
         &mut self,
         addresses: &Addresses,
+        queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_store()?;
         if self.persistence.before.is_some() {
             return Err(ErrorCode::Busy);
         }
+        self.take_over_learnt(queues)?;
         let wanted = replaced(&self.persistence.stored, &self.parameters, addresses)?;
         let before = core::mem::replace(&mut self.persistence.stored, wanted);
         self.persistence.before = Some(before);
@@ -38,6 +40,19 @@ impl Interpreter {
         self.apply_parameters(wanted, queues)?;
         self.events.add(self.commander.tick(), Event::Recalled);
         Ok(())
+    }
+
+    /// Whether something may be stored that nobody has asked for.
+    pub(in crate::gcs) fn may_store_by_itself(&self) -> bool {
+        let persistence = &self.persistence;
+        !persistence.stored_is_invalid && persistence.before.is_none() && self.check_store().is_ok()
+    }
+
+    /// What was learnt, beside what is stored as it is.
+    pub(in crate::gcs) fn store_learnt(&mut self) {
+        let before = self.persistence.stored.clone();
+        self.persistence.stored.learnt = self.parameters.learnt;
+        self.persistence.before = Some(before);
     }
 
     fn check_store(&self) -> Result<(), ErrorCode> {

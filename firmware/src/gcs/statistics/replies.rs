@@ -31,6 +31,7 @@ impl Interpreter {
         reply.line(format_args!("PEAK_ERROR_RAD={peak_rad:e}"))?;
         reply.line(format_args!("COMMANDS={}", s.commands))?;
         reply.line(format_args!("REFUSED={}", s.refused))?;
+        self.reply_learnt(&mut reply)?;
         reply.line(format_args!("LOOSENED={}", self.loosened))?;
         reply.end()
     }

@@ -4,6 +4,10 @@ import { byId, make, report } from "./dom.js";
 import { fields, shown } from "./gcs.js";
 import { facts } from "./table.js";
 
+/** What pivot it is of, at the end of a name. */
+const OF_PIVOT = /^([A-Z_]+)([123])$/;
+const LEARNT_UNITS = ["V s/rad", "V/(N m)", "V", "V s/rad"];
+
 /** Cycles of the processor in a microsecond. */
 const CYCLES_PER_US = 168;
 
@@ -18,6 +22,18 @@ const NAMES = {
   COMMANDS: ["commands taken by the loop", String],
   REFUSED: ["of them refused", String],
 };
+const PIVOT_NAMES = {
+  LEARNT: ["has learnt: rate, torque, friction, motor constant", (value) =>
+    value.split(" ").map((part, i) => `${part} ${LEARNT_UNITS[i]}`).join(", ")],
+  INTEGRAL: ["integral", (value) => `${value} V`],
+  CURRENT: ["motor current by the model", (value) => `${value} A`],
+};
+
+function named(name) {
+  const [, kind, pivot] = OF_PIVOT.exec(name) ?? [];
+  const [text, show] = NAMES[name] ?? PIVOT_NAMES[kind] ?? [name, String];
+  return [PIVOT_NAMES[kind] ? `pivot ${pivot}: ${text}` : text, show];
+}
 
 export function statistics(stage) {
   const [box, body] = [byId("statistics"), byId("statistics-body")];
@@ -31,7 +47,7 @@ export function statistics(stage) {
     const reply = stage.replies["LST?"];
     if (!box.open || !reply) return;
     const rows = Object.entries(fields(reply)).map(([name, value]) => {
-      const [text, show] = NAMES[name] ?? [name, String];
+      const [text, show] = named(name);
       return [text, show(value)];
     });
     numbers.replaceChildren(facts(rows));

@@ -36,6 +36,8 @@ pub struct Bench {
     instructions_per_second: NonZeroU64,
     /// What the settings' flash holds at the start.
     settings: SettingsFlash,
+    has_crystal: bool,
+    flash_kib: Option<u16>,
 }
 
 /// What a run leaves behind.
@@ -96,6 +98,8 @@ impl Bench {
             stage,
             instructions_per_second: STAGE_RATE,
             settings: with_machine_settings(SettingsFlash::in_memory(), &Parameters::REFERENCE),
+            has_crystal: true,
+            flash_kib: None,
         })
     }
 
@@ -117,6 +121,24 @@ impl Bench {
         }
     }
 
+    /// The same with a crystal that does not start.
+    #[must_use]
+    pub fn without_crystal(self) -> Self {
+        Self {
+            has_crystal: false,
+            ..self
+        }
+    }
+
+    /// The same on a chip whose manufacturer says that it has so many KiB of flash.
+    #[must_use]
+    pub fn with_flash_kib(self, flash_kib: u16) -> Self {
+        Self {
+            flash_kib: Some(flash_kib),
+            ..self
+        }
+    }
+
     /// Address of a symbol of the image, for [`Period::word`].
     pub fn symbol(&self, name: &str) -> Result<u64, BenchError> {
         self.symbols.get(name).map_err(BenchError::Symbols)
@@ -133,7 +155,13 @@ impl Bench {
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
-        let board = board.at_rate(self.instructions_per_second);
+        let mut board = board.at_rate(self.instructions_per_second);
+        if !self.has_crystal {
+            board = board.without_crystal();
+        }
+        if let Some(flash_kib) = self.flash_kib {
+            board = board.with_flash_kib(flash_kib);
+        }
         let mut session =
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));

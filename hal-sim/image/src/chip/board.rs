@@ -5,6 +5,7 @@ use super::line::HostLine;
 use hal_sim::machine::devices::{BridgeState, MAX_DUTY};
 use rigless::cpu::armv7m;
 use rigless::device::Level;
+use rigless::image::Image;
 use rigless::machine::armv7m::{Core, Fpu, MpuRegions, Variant};
 use rigless::machine::{Board, Target};
 use rigless::mcu::{Mcu, Operate};
@@ -16,6 +17,7 @@ use rigless::soc::stm32f427::peripherals::tim::Channel as TimerChannel;
 use rigless::soc::{Error, Fault, Width};
 use rigless::time::VirtualNanos;
 use std::num::{NonZeroU32, NonZeroU64};
+use std::path::Path;
 
 const CRYSTAL_HZ: u64 = 8_000_000;
 const SUPPLY_MV: u32 = 3300;
@@ -37,6 +39,14 @@ const BRIDGE_FAULT: [u8; 3] = [8, 9, 10];
 /// Pin of port E.
 const EMERGENCY_STOP: u8 = 15;
 const TIM3_CR1: u64 = 0x4000_0400;
+const TIM3_CNT: u64 = 0x4000_0424;
+const LATCH_PERIOD_COUNTS: i64 = 4_200;
+/// Clock control, and its bit that switches the crystal on.
+pub const RCC_CR: u64 = 0x4002_3800;
+pub const HSE_ON: u32 = 1 << 16;
+/// Of the chip on the board; and where it says so.
+const FLASH_KIB: u16 = 2048;
+const FLASH_KIB_AT: u64 = 0x1FFF_7A22;
 const FIRST_ADC_CHANNEL: u8 = 10;
 /// With as many millivolts of reference as there are counts, an input in millivolts is an input in counts.
 const ADC_REFERENCE: u32 = 4095;
@@ -47,6 +57,8 @@ pub struct ChipBoard {
     mcu: Stm32f427,
     emergency_stop: Level,
     instructions_per_second: NonZeroU64,
+    has_crystal: bool,
+    flash_kib: u16,
 }
 
 impl ChipBoard {
@@ -64,6 +76,8 @@ impl ChipBoard {
             mcu,
             emergency_stop: Level::High,
             instructions_per_second: STAGE_RATE,
+            has_crystal: true,
+            flash_kib: FLASH_KIB,
         };
         board.drive_again(VirtualNanos(0), [false; 3]);
         Ok(board)
@@ -74,6 +88,35 @@ impl ChipBoard {
         Self {
             instructions_per_second,
             ..self
+        }
+    }
+
+    /// The same, its crystal broken: it never gets ready.
+    pub fn without_crystal(self) -> Self {
+        Self {
+            has_crystal: false,
+            ..self
+        }
+    }
+
+    /// The same with a chip of which the manufacturer says that it has so much flash.
+    pub fn with_flash_kib(self, flash_kib: u16) -> Self {
+        Self { flash_kib, ..self }
+    }
+
+    /// Sets the supply of the chip itself, mV.
+    pub fn set_chip_supply(&mut self, millivolts: u32) {
+        self.mcu.set_supply(millivolts);
+    }
+
+    /// The program has switched the crystal on.
+    pub fn crystal_switched_on(&mut self, now: VirtualNanos) {
+        if !self.has_crystal
+            && let Some(control) = self.register(now, RCC_CR)
+        {
+            // Switched off before it could get ready. The register exists: the program has written to it.
+            let off = u64::from(control & !HSE_ON);
+            drop(self.mcu.write(now, RCC_CR, Width::W32, off));
         }
     }
 
@@ -152,6 +195,24 @@ impl ChipBoard {
         self.mcu.write(now, TIM3_CR1, Width::W32, 0)
     }
 
+    /// A register of a peripheral.
+    pub fn register(&mut self, now: VirtualNanos, address: u64) -> Option<u32> {
+        self.mcu
+            .read(now, address, Width::W32)
+            .ok()
+            .map(|word| word as u32)
+    }
+
+    /// Sets the timer that starts every control period back by so many counts, or forward.
+    ///
+    /// # Errors
+    /// None, unless the emulator's part has no such register.
+    pub fn delay_latch(&mut self, now: VirtualNanos, counts: i32) -> Result<(), Fault> {
+        let count = self.mcu.read(now, TIM3_CNT, Width::W32)? as i64;
+        let moved = (count - i64::from(counts)).rem_euclid(LATCH_PERIOD_COUNTS);
+        self.mcu.write(now, TIM3_CNT, Width::W32, moved as u64)
+    }
+
     /// The host's end of the command interface.
     pub fn line(&mut self) -> Option<&mut HostLine> {
         self.mcu.usart[USART1].chip_mut::<HostLine>()
@@ -202,7 +263,13 @@ impl Board for ChipBoard {
             boot: "flash",
         };
         let windows = armv7m::windows(Mcu::bus(&self.mcu));
-        let core = core.spec_with_parts(&windows, Fpu::FpV4Sp, MpuRegions::Eight);
+        let mut core = core.spec_with_parts(&windows, Fpu::FpV4Sp, MpuRegions::Eight);
+        let factory_bytes = self.flash_kib.to_le_bytes().to_vec();
+        core.factory_images.extend(Image::new(
+            Path::new("factory"),
+            factory_bytes,
+            Some(FLASH_KIB_AT),
+        ));
         vec![Target::new("stm32f427", &mut self.mcu, core)]
     }
 }

@@ -1,6 +1,6 @@
 //! The run's clock: stops the emulator once a control period and moves everything outside the chip.
 
-use super::board::ChipBoard;
+use super::board::{ChipBoard, HSE_ON, RCC_CR};
 use super::cost::TickCost;
 use super::follow::Following;
 use super::period::{Action, Period, Reset};
@@ -149,6 +149,7 @@ impl<F> StageDriver<F> {
                 Action::EmergencyStop(pressed) => board.set_emergency_stop(now, pressed),
                 // The register exists: the image wrote to it before.
                 Action::HaltLoop => drop(board.stop_latch_timer(now)),
+                Action::DelayLatch(counts) => drop(board.delay_latch(now, counts)),
                 Action::Probe => self
                     .probes
                     .push((now.0, board.bridges(now, self.bridge_faults))),
@@ -235,6 +236,12 @@ where
             }
             Settled::Hit(hit) if hit.kind == HitKind::Instruction => self.note_hit(hit, host),
             Settled::Access { access, .. } => {
+                let switches_crystal_on = access.address == RCC_CR
+                    && access.kind == AccessKind::Write
+                    && access.value & u64::from(HSE_ON) != 0;
+                if switches_crystal_on {
+                    session.board_mut().crystal_switched_on(now);
+                }
                 if let Some(following) = &mut self.following {
                     following.access(&access);
                 }

@@ -6,8 +6,8 @@ use super::follow::{Following, Step};
 use super::timeline::{EARLY_NS, LATCH_NS};
 use crate::cycles::Program;
 use hal_sim::machine::devices::{BridgeState, Stage};
-use rigless::device::ResetCause;
-use rigless::emulator::{Host, Watch};
+use rigless::device::{Level, ResetCause};
+use rigless::emulator::{Host, InterruptLine, Watch};
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub enum Action {
     EmergencyStop(bool),
     /// Stop the timer that starts every control period: the loop halts.
     HaltLoop,
+    /// Move the latches to come by so many counts of TIM3 (84 MHz): later, or, less than 0, earlier again.
+    DelayLatch(i32),
     /// Keep what the bridges' pins say, for [`Period::probes`].
     Probe,
 }
@@ -157,6 +159,24 @@ impl Period<'_> {
     #[must_use]
     pub fn steps(&self) -> Option<&[Step]> {
         self.following.as_ref().and_then(Following::steps)
+    }
+
+    /// The register of a peripheral at an address, as the program last left it, or `None` where there is none. The registers of
+    /// the processor itself are not among them.
+    pub fn register(&mut self, address: u64) -> Option<u32> {
+        self.board.register(self.at, address)
+    }
+
+    /// Raises an interrupt of the chip by its number, as its peripheral would.
+    pub fn interrupt(&mut self, number: u16) {
+        if let Some(line) = InterruptLine::new(number) {
+            self.host.set_interrupt(line, Level::High);
+        }
+    }
+
+    /// Sets the supply of the chip itself, mV.
+    pub fn set_chip_supply(&mut self, millivolts: u32) {
+        self.board.set_chip_supply(millivolts);
     }
 
     /// The image's record.

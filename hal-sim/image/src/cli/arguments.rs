@@ -35,6 +35,8 @@ pub(super) enum Command {
     /// Prove of the chip's image that its control loop cannot panic and how deep its stack gets; print what it takes of flash and
     /// RAM. Exit code 1 if the proof fails.
     ImageCheck,
+    /// Give the chip's image its checksum, which it checks at every start. To be done after `cargo stage`, before flashing.
+    Seal,
 }
 
 /// A run on the emulated chip.

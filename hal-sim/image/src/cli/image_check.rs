@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use super::error::CliError;
 use crate::chip::elf_file;
 use crate::cost::{Sizes, print_sizes};
-use crate::proof::{Code, LEVELS, NESTING, Stack, faults, print_proof, print_stack};
+use crate::proof::{Code, LEVELS, NESTING, Stack, faults, print_proof, print_stack, vector_faults};
 
 /// Share of the stack's memory that has to be left, so that a change or two still fit.
 const LEFT: f64 = 0.25;
@@ -15,14 +15,18 @@ pub(super) fn run() -> Result<ExitCode, CliError> {
     let path = path.ok_or_else(|| CliError::Value("no image: `cargo stage` builds it".into()))?;
     let code = Code::read(&path)?;
     let handlers = LEVELS[1].handlers;
-    let faults = faults(&code, handlers);
+    let mut faults = faults(&code, handlers);
+    faults.extend(vector_faults(&code));
     println!("{}", print_proof(&code, handlers, &faults));
     let stack = Stack::of(&code, NESTING)?;
     println!("{}", print_stack(&code, &stack));
     let sizes = Sizes::read(&path).map_err(CliError::Value)?;
     print!("{}", print_sizes(&sizes));
     if !faults.is_empty() {
-        let what = format!("the control loop can fail in {} ways", faults.len());
+        let what = format!(
+            "{} faults in the control loop and the vectors",
+            faults.len()
+        );
         return Err(CliError::Grown(what));
     }
     if (stack.left() as f64) < LEFT * stack.memory as f64 {

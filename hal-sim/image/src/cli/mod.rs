@@ -14,6 +14,7 @@ mod exercise;
 mod image_check;
 mod period;
 mod place;
+mod seal;
 
 use std::process::ExitCode;
 
@@ -48,5 +49,6 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Command::ChipCycles(arguments) => chip_cycles::run(&arguments),
         Command::ChipTick(arguments) => chip_tick::run(&arguments),
         Command::ImageCheck => image_check::run(),
+        Command::Seal => seal::run(),
     }
 }

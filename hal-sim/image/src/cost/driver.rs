@@ -144,29 +144,6 @@ impl Driver<ChipBoard> for CostDriver {
             return None;
         }
         self.progress.update(0, stop.at.0 as f64 * 1e-9);
-        if std::env::var("PCS").is_ok() {
-            if let Ok(bytes) = host.save_state() {
-                let mut v = Vec::new();
-                let mut i = 0;
-                while v.len() < 60 && i < bytes.len() {
-                    let mut x = 0u64;
-                    let mut sh = 0;
-                    loop {
-                        let b = bytes[i];
-                        i += 1;
-                        x |= u64::from(b & 127) << sh.min(63);
-                        sh += 7;
-                        if b & 128 == 0 || i >= bytes.len() {
-                            break;
-                        }
-                    }
-                    v.push(x);
-                }
-                let l: Vec<String> = v.iter().map(|x| format!("{x:x}")).collect();
-                println!("PC {}", l.join(" "));
-            }
-            return Some(VirtualNanos(stop.at.0 + 125 * 4999));
-        }
         Some(VirtualNanos(stop.at.0 + LOOK_NS))
     }
 }

@@ -27,8 +27,8 @@ pub struct Sizes {
     pub compiler: String,
 }
 
-/// The motion generator's part.
-pub const GENERATOR: &str = "firmware::motion";
+/// The motion generator's parts.
+pub const GENERATOR: [&str; 2] = ["motion", "planners"];
 const NAMELESS: &str = "constants and fill";
 const RUNTIME: &str = "compiler's runtime";
 
@@ -52,7 +52,8 @@ impl Sizes {
 
     /// Code of the motion generator, with the constants that have a name.
     pub fn generator(&self) -> u64 {
-        self.parts.get(GENERATOR).map_or(0, |bytes| bytes.flash)
+        let bytes = |part| self.parts.get(part).map_or(0, |bytes: &Bytes| bytes.flash);
+        GENERATOR.into_iter().map(bytes).sum()
     }
 }
 

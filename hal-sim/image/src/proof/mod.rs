@@ -11,6 +11,8 @@
 //! - **Stack.** The frame of a function is everything it ever pushes, summed, as if it did so at once; its depth that of its
 //!   deepest callee on top ([`Depths`]). A call through a pointer may reach every function whose address stands anywhere in
 //!   the image; such calls nest [`NESTING`] deep at most.
+//! - **Vectors.** Every exception ends in a handler of the image's own, and the one for what nobody expects touches no stack
+//!   ([`vector_faults`]).
 //! - **Masks.** Where interrupts are held back ([`Code::masks`]).
 //!
 //! | file | idea |
@@ -18,6 +20,7 @@
 //! | `elf`, `code`, `listing`, `step` | the file; functions and calls; instructions; what one of them means |
 //! | `safe` | nothing in the control loop can fail |
 //! | `stack` | the deepest stack |
+//! | `vectors` | where exceptions end |
 //! | `print` | the proofs as they are printed |
 
 mod code;
@@ -28,6 +31,7 @@ mod print;
 mod safe;
 mod stack;
 mod step;
+mod vectors;
 
 pub use code::{Code, Edge, Function};
 pub use error::ProofError;
@@ -36,3 +40,4 @@ pub use print::{print_proof, print_stack};
 pub use safe::{Fault, faults};
 pub use stack::{Depth, Depths, LEVELS, Level, NESTING, Stack};
 pub use step::{Decoded, Engine, Step};
+pub use vectors::vector_faults;

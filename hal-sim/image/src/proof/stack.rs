@@ -33,7 +33,7 @@ pub const LEVELS: [Level; 3] = [
     },
     Level {
         name: "processor faults",
-        handlers: &["HardFault", "DefaultHandler_"],
+        handlers: &["DefaultHandler"],
     },
 ];
 

@@ -12,7 +12,7 @@ use crate::drivers::biss::POSITION_BITS;
 use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
-use pivots::{DRIVES, GAINS, RIPPLE, of_pivots};
+use pivots::{DRIVES, GAINS, LEARNT, RIPPLE, of_pivots};
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -34,6 +34,7 @@ const PLATFORM: Group = group("platform", 0, When::AtRest);
 const RECORDER: Group = group("recorder", 0, When::AtRest);
 const DRIVE: Group = group("drive", 1, When::AtRest);
 const RIPPLE_GROUP: Group = group("ripple", 1, When::AtRest);
+const LEARNT_GROUP: Group = group("learnt", 1, When::AtRest);
 
 const fn group(name: &'static str, level: u8, when: When) -> Group {
     Group { name, level, when }
@@ -133,12 +134,13 @@ pub static PARAMETERS: &[Parameter] = &join::<COUNT>(&[
     &of_pivots::<{ 4 * DRIVES.len() }>(DRIVES),
     POWER,
     &of_pivots::<{ 4 * RIPPLE.len() }>(RIPPLE),
+    &of_pivots::<{ 4 * LEARNT.len() }>(LEARNT),
 ]);
 
 const COUNT: usize = COMMON.len()
     + AFTER_GAINS.len()
     + POWER.len()
-    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len());
+    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len() + LEARNT.len());
 
 /// Lists one after the other.
 const fn join<const N: usize>(lists: &[&[Parameter]]) -> [Parameter; N] {
@@ -192,6 +194,7 @@ const COMMON: &[Parameter] = &[
     SERVO.float(0x5450_0308, "what rest leaves of the gains' rates, 1: there is no rest mode", "", [0.05, 1.0], at!(servo.rest.stiffness)),
     SERVO.float(0x5450_0309, "time at rest after which they fall", "s", [0.0, 10.0], at!(servo.rest.delay_s)),
     SERVO.float(0x5450_030A, "mean following error that brings the full gains back", "encoder counts", [1.0, 1_000.0], at!(servo.rest.wake_counts)),
+    SERVO.int(0x5450_030B, "what was learnt is kept over a restart: 0 by WPA alone, 1 by itself as well", [0.0, 1.0], flag!(servo.keeps_learnt)),
 ];
 #[rustfmt::skip]
 const AFTER_GAINS: &[Parameter] = &[

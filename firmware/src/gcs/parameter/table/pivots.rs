@@ -1,8 +1,8 @@
 //! Parameters that each pivot has of its own. One identifier means all three, and one each means one: the second digit from the right.
 
 use super::super::descriptor::{GetOfPivot, Kind, Parameter, SetOfPivot, ValueSource};
-use super::{DRIVE, Group, RIPPLE_GROUP, SERVO};
-use crate::parameters::{Drive, FeedbackFilters, Gains, Ripple};
+use super::{DRIVE, Group, LEARNT_GROUP, RIPPLE_GROUP, SERVO};
+use crate::parameters::{Drive, FeedbackFilters, Gains, Learnt, Ripple};
 
 /// What a pivot has.
 pub(super) struct OfPivot {
@@ -126,4 +126,12 @@ pub(super) const RIPPLE: &[OfPivot] = &[
     of_pivot(RIPPLE_GROUP, 0x5450_0A09, "periods of ripple 4 in a turn of the ring", "", [0.0, 100_000.0], at!(servo.ripple[Ripple] harmonics[3].periods)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0A, "amplitude of ripple 4, 0 for none", "N m", [0.0, 5.0], at!(servo.ripple[Ripple] harmonics[3].amplitude_n_m)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0B, "phase of ripple 4 at pivot angle 0, of a sine", "deg", [-360.0, 360.0], at!(servo.ripple[Ripple] harmonics[3].phase_deg)),
+];
+
+#[rustfmt::skip]
+pub(super) const LEARNT: &[OfPivot] = &[
+    of_pivot(LEARNT_GROUP, 0x5450_0B00, "learnt voltage for the rate, besides the model's", "V s/rad", [-20.0, 20.0], at!(learnt[Learnt] rate_v_s_rad)),
+    of_pivot(LEARNT_GROUP, 0x5450_0B01, "learnt voltage for the torque, besides the model's", "V/(N m)", [-20.0, 20.0], at!(learnt[Learnt] torque_v_n_m)),
+    of_pivot(LEARNT_GROUP, 0x5450_0B02, "learnt voltage against friction, besides the model's", "V", [-30.0, 30.0], at!(learnt[Learnt] friction_v)),
+    of_pivot(LEARNT_GROUP, 0x5450_0B03, "what the motor constant at the ring is more than the model has it, by the measured current", "V s/rad", [-50.0, 50.0], at!(learnt[Learnt] motor_constant_v_s_rad)),
 ];

@@ -1,0 +1,44 @@
+//! Whether a plan keeps to the workspace and to the limits that couple the axes, at every tick.
+//!
+//! A plan is looked at in intervals. Between the two ends of one, a quantity rises above the greater of its ends by no
+//! more than an eighth of the square of the duration times its second derivative: for position that is the
+//! acceleration, for velocity the jerk (acceleration is greatest at an end). The pivots' rates and accelerations are
+//! first bounded for any orientation; where that is not enough they are computed at both ends, and rise by what the
+//! platform's motion can make of their third and fourth derivatives in between. An interval that fails is taken in shorter
+//! ones, unless a limit is broken at one of its ends.
+//!
+//! A plan of retarget, a jog in motion and a stop are held against all of it. A line from rest is planned inside the limits
+//! at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation (`pivot_bounds`),
+//! streamed targets instant by instant (`instant`).
+//!
+//! | checked | for |
+//! |---|---|
+//! | speed, acceleration, jerk | translation along the path and rotation; not of a stop, which has its own |
+//! | rate and acceleration of each pivot | the platform's motion about the centre of rotation |
+//! | disk | the platform's centre, and where a stop from here would end |
+//! | bounds | x, y and theta of the moved point, and where a stop from here would end |
+//!
+//! | file | idea |
+//! |---|---|
+//! | `plan_check` | the pieces of a plan against every limit, interval by interval |
+//! | `interval` | an interval: its ends, and how large everything is in between |
+//! | `violation` | which limit is broken, and by how much |
+//! | `platform` | the platform at an instant: its centre's motion and the pivots' |
+//! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
+//! | `workspace` | disk and bounds, on the way and for a stop |
+//! | `target` | whether a target can be moved to |
+//! | `instant` | one instant against every limit: for streams |
+
+pub mod instant;
+mod interval;
+pub mod pivot_bounds;
+mod plan_check;
+pub mod platform;
+pub mod target;
+pub mod violation;
+mod workspace;
+
+#[cfg(test)]
+mod tests;
+
+pub use plan_check::{Budget, PlanCheck, is_over};

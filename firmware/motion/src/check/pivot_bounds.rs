@@ -1,0 +1,216 @@
+//! What a motion asks of the pivots at worst, at any orientation: for motions without an end, which cannot be checked
+//! piece by piece.
+//!
+//! With the platform's centre `r` from the track's (`k = 1 / sqrt(1 - r^2)`, lengths in track radii,
+//! a point moved that lies `p` from the platform's centre, so that `|C'| <= |P'| + |theta'| p`):
+//!
+//! ```text
+//! |phi'|  <= k |C'| + |theta'| (1 + r)
+//! |phi''| <= k (|C''| + 2 |theta'| |C'| + theta'^2 r + (k |C'| + |theta'| r)^2 r) + |theta''| (1 + r)
+//! ```
+//!
+//! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
+
+use crate::constraints::Constraints;
+use crate::speeds::Speeds;
+use number::float::hypot;
+use number::sqrt_f32;
+
+/// The bounds of the module's head, for a platform's centre within a radius.
+#[derive(Clone, Copy, Debug)]
+pub struct PivotGain {
+    /// The radius, track radii.
+    pub radius: f32,
+    /// How much faster than the platform a pivot is at most.
+    pub k: f32,
+}
+
+impl PivotGain {
+    /// For a radius inside the track.
+    pub fn new(radius: f32) -> Self {
+        Self {
+            radius,
+            k: 1.0 / sqrt_f32((1.0 - radius) * (1.0 + radius)),
+        }
+    }
+
+    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot,
+    /// likewise.
+    pub fn rate(&self, speeds: Speeds) -> f32 {
+        self.k * speeds.linear + speeds.angular * (1.0 + self.radius)
+    }
+
+    /// Acceleration of a pivot when the platform's centre moves at `speeds` and is not accelerated.
+    pub fn bias_acceleration(&self, speeds: Speeds) -> f32 {
+        let Speeds { linear, angular } = speeds;
+        let relative_rate = self.k * linear + angular * self.radius;
+        self.k
+            * (angular * (2.0 * linear + angular * self.radius)
+                + relative_rate * relative_rate * self.radius)
+    }
+}
+
+/// The pivots' limits, and how far the moved point lies from the platform's centre.
+pub struct PivotBound {
+    rate: f32,
+    acceleration: f32,
+    arm: f32,
+}
+
+impl PivotBound {
+    /// Of what plans keep to.
+    pub fn new(constraints: &Constraints) -> Self {
+        Self {
+            rate: constraints.limits.pivot_rate_rad_s as f32,
+            acceleration: constraints.limits.pivot_acceleration_rad_s2 as f32,
+            arm: hypot(
+                constraints.rotation_centre[0] as f32,
+                constraints.rotation_centre[1] as f32,
+            ),
+        }
+    }
+
+    /// How far the moved point lies from the platform's centre, track radii.
+    pub fn arm(&self) -> f32 {
+        self.arm
+    }
+
+    /// Whether the pivots' rate holds at `speeds` anywhere within `radius`.
+    pub fn rate_is_within(&self, radius: f32, speeds: Speeds) -> bool {
+        PivotGain::new(radius).rate(self.platform_speeds(speeds)) <= self.rate
+    }
+
+    /// What is left of the pivots' acceleration when the platform moves at `speeds` within `radius`.
+    #[inline(never)]
+    pub fn acceleration_margin(&self, radius: f32, speeds: Speeds) -> f32 {
+        let bound = PivotGain::new(radius);
+        // Turning alone accelerates the centre towards the point.
+        let inward = bound.k * speeds.angular * speeds.angular * self.arm;
+        self.acceleration - bound.bias_acceleration(self.platform_speeds(speeds)) - inward
+    }
+
+    /// What accelerations of the moved point and of theta ask of the pivots.
+    pub fn acceleration_demand(&self, radius: f32, accelerations: Speeds) -> f32 {
+        PivotGain::new(radius).rate(self.platform_speeds(accelerations))
+    }
+
+    /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to
+    /// spare; `None` where they can nowhere.
+    pub fn max_radius(&self, speeds: Speeds, most: f32) -> Option<f32> {
+        let follows = |radius: f32| {
+            self.rate_is_within(radius, speeds)
+                && self.acceleration_margin(radius, speeds) >= self.acceleration / 2.0
+        };
+        if follows(most) {
+            return Some(most);
+        }
+        let (mut low, mut high) = (0.0, most);
+        if !follows(low) {
+            return None;
+        }
+        // To a millionth of a track radius.
+        for _ in 0..20 {
+            let middle = (low + high) / 2.0;
+            if follows(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(low)
+    }
+
+    /// Speeds, or accelerations, of the platform's centre at most.
+    fn platform_speeds(&self, speeds: Speeds) -> Speeds {
+        Speeds {
+            linear: speeds.linear + speeds.angular * self.arm,
+            ..speeds
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::check::pivot_bounds::*;
+    use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
+    use number::random::Random;
+    use std::f64::consts::TAU;
+
+    /// States all over the disk of 0.8, about points up to 0.8 from the platform's centre: what the bounds say, and
+    /// what the worst of the pivots does.
+    #[test]
+    fn no_pivot_is_asked_for_more_than_the_bounds_say() {
+        let mut random = Random::new(1);
+        let mut next = move || random.within_one();
+        let (mut rates, mut largest) = (0.0_f64, 0.0_f64);
+        for round in 0..40_000 {
+            let arm = if round % 2 == 0 {
+                0.0
+            } else {
+                next().abs() * 0.8
+            };
+            let pivot_bound = PivotBound {
+                rate: 0.0,
+                acceleration: 0.0,
+                arm: arm as f32,
+            };
+            let (r, direction, theta) = (next().abs() * 0.8, next() * TAU, next() * TAU);
+            let (v, turn) = ([next() * 2.0, next() * 2.0], next() * 6.0);
+            let (a, turn_acceleration) = ([next() * 40.0, next() * 40.0], next() * 120.0);
+            let to_point = next() * TAU;
+            let (e, n) = (arm * to_point.cos(), arm * to_point.sin());
+            let pose = Pose {
+                x: r * direction.cos(),
+                y: r * direction.sin(),
+                theta,
+            };
+            let twist = Twist {
+                x: v[0] + turn * n,
+                y: v[1] - turn * e,
+                theta: turn,
+            };
+            let acceleration = Acceleration {
+                x: a[0] + turn_acceleration * n + turn * turn * e,
+                y: a[1] - turn_acceleration * e + turn * turn * n,
+                theta: turn_acceleration,
+            };
+            let guides = inverse(&pose).expect("inside").guides;
+            let exact = pivot_motion(&guides, &twist, &acceleration);
+            let worst = |all: [f64; 3]| all.iter().fold(0.0_f64, |worst, x| worst.max(x.abs()));
+            let speeds = |v: [f64; 2], turn: f64| Speeds {
+                linear: v[0].hypot(v[1]) as f32,
+                angular: turn.abs() as f32,
+            };
+            let (speeds, accelerations) = (speeds(v, turn), speeds(a, turn_acceleration));
+            let r = r as f32;
+            let rate = f64::from(PivotGain::new(r).rate(pivot_bound.platform_speeds(speeds)));
+            let asked = f64::from(
+                pivot_bound.acceleration_demand(r, accelerations)
+                    - pivot_bound.acceleration_margin(r, speeds),
+            );
+            rates = rates.max(worst(exact.rates) / rate);
+            largest = largest.max(worst(exact.accelerations) / asked);
+        }
+        println!("largest share of the bounds: rate {rates:.3}, acceleration {largest:.3}");
+        assert!((0.95..=1.000_01).contains(&rates), "{rates}");
+        assert!((0.8..=1.000_01).contains(&largest), "{largest}");
+    }
+
+    /// Without an acceleration of its own the platform asks for some.
+    #[test]
+    fn a_steady_motion_leaves_less_room() {
+        let pivot_bound = PivotBound {
+            rate: 10.0,
+            acceleration: 300.0,
+            arm: 0.0,
+        };
+        let speeds = Speeds {
+            linear: 0.0,
+            angular: 5.0,
+        };
+        assert_eq!(pivot_bound.acceleration_margin(0.0, speeds), 300.0);
+        // Half a radius out, guide across: theta'^2 d / c.
+        let least = 25.0 * 0.5 / 0.75_f32.sqrt();
+        assert!(pivot_bound.acceleration_margin(0.5, speeds) <= 300.0 - least);
+    }
+}

@@ -1,0 +1,74 @@
+//! Motion: what a plan is, the profiles that plans are made of, and the check that a plan is inside every limit. Plans are made
+//! outside the tick, by the package `planners`, and followed exactly inside it.
+//!
+//! # What a plan is
+//!
+//! A [`Plan`] is a list of pieces of constant jerk for the three axes together. The tick integrates it in integers
+//! ([`AxisState`]), so setpoints are continuous by construction and the end is exact. Every plan ends at rest: whatever
+//! becomes of the next one, the motion can stop. Planning needs divisions and roots and runs at low priority; a plan
+//! reaches the tick through the command queue and is taken only if it starts where the motion is.
+//!
+//! # Where what is
+//!
+//! A line uses only what stands in lines above it.
+//!
+//! | file or folder | idea |
+//! |---|---|
+//! | `limits`, `refusal`, `turn_direction`, `tolerances` | limits as a user states them; why a move is refused; which way round to an orientation; what is granted over a limit |
+//! | `constraints` | what every plan keeps to: limits, mechanism, workspace, and the point that is moved |
+//! | `plan` | the plan, the integers it is made of, sums of plans, and how the tick follows it |
+//! | `speeds` | translation and rotation as one pair |
+//! | `profile` | the two profiles |
+//! | `check` | whether a plan is inside every limit |
+#![cfg_attr(not(test), no_std)]
+
+/// The same for x, y and theta, written out: compiled for size, an array's `map` stays a loop over closures, at four times the
+/// instructions.
+#[macro_export]
+macro_rules! each {
+    ($i:ident => $value:expr) => {
+        [
+            $crate::each!($i, 0 => $value),
+            $crate::each!($i, 1 => $value),
+            $crate::each!($i, 2 => $value),
+        ]
+    };
+    ($i:ident, $number:literal => $value:expr) => {{
+        let $i = $number;
+        $value
+    }};
+}
+
+/// The same for x and y, or for translation and rotation.
+#[macro_export]
+macro_rules! both {
+    ($i:ident => $value:expr) => {
+        [$crate::each!($i, 0 => $value), $crate::each!($i, 1 => $value)]
+    };
+}
+
+pub mod profile;
+
+pub mod check;
+pub mod constraints;
+pub mod limits;
+pub mod plan;
+pub mod refusal;
+pub mod speeds;
+pub mod tolerances;
+pub mod turn_direction;
+
+pub use check::target::check_target;
+pub use constraints::{Bounds, Constraints};
+pub use limits::{Limits, PathLimits};
+pub use plan::axis_state::{AxisState, JERK_STEP, SUB_BITS};
+pub use plan::follower::{PlanFollower, Stale};
+pub use plan::rotation_centre::{MAX_CENTRE_OFFSET, RotationCentre};
+pub use plan::setpoint::{Setpoint, SetpointScale};
+pub use plan::time_scaling::FaultStop;
+pub use plan::{MAX_PIECES, Piece, Plan, PlanStart, Position};
+pub use profile::rest_to_rest::RestToRestProfile;
+pub use refusal::Refusal;
+pub use refusal::RetargetError;
+pub use tolerances::JERK_TOLERANCE;
+pub use turn_direction::TurnDirection;

@@ -1,0 +1,199 @@
+//! Following a plan tick by tick, and taking the next one.
+
+use super::axis_state::{AxisState, TickIncrement};
+use super::rotation_centre::RotationCentre;
+use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::{Plan, PlanStart, Position};
+use core::borrow::Borrow;
+use kinematics::{Acceleration, Twist};
+
+/// The motion of the setpoint: at rest, or following a plan.
+///
+/// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
+#[derive(Clone, Debug, Default)]
+pub struct PlanFollower {
+    pub(super) axes: [AxisState; 3],
+    /// The point that is moved.
+    pub(super) centre: RotationCentre,
+    pub(super) slots: [Plan; 2],
+    /// Slot of the plan under way, or of the last one.
+    pub(super) current: usize,
+    pub(super) moving: bool,
+    /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
+    pub(super) splice: Option<u64>,
+    pub(super) piece: usize,
+    /// Ticks of the piece that are left, and what drives the axes in it.
+    pub(super) left: u64,
+    pub(super) increments: [TickIncrement; 3],
+    pub(super) done: u64,
+    pub(super) time_scaling: super::time_scaling::TimeScaling,
+}
+
+/// A plan does not start where the motion is (any more); nothing has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stale;
+
+impl PlanFollower {
+    /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
+    pub fn rest_at(&mut self, position: Position) {
+        self.axes = position.map(AxisState::at_rest);
+        self.moving = false;
+        self.splice = None;
+        self.done = 0;
+    }
+
+    /// The point of the platform that is moved.
+    #[inline]
+    pub fn centre(&self) -> RotationCentre {
+        self.centre
+    }
+
+    /// Moves another point of the platform from now on. Only at rest: the setpoint is then where that point is, and the
+    /// platform stays where it is to the unit.
+    pub fn set_centre(&mut self, centre: RotationCentre) -> Result<(), Stale> {
+        if self.moving {
+            return Err(Stale);
+        }
+        let platform = self.centre.to_platform(&self.position());
+        self.centre = centre;
+        self.rest_at(centre.from_platform(&platform));
+        Ok(())
+    }
+
+    /// Whether a plan is under way.
+    #[inline]
+    pub fn is_moving(&self) -> bool {
+        self.moving
+    }
+
+    /// Identity of the plan under way or last ended, and its ticks done.
+    #[inline]
+    pub fn progress(&self) -> (u32, u64) {
+        (self.slots[self.current & 1].id, self.done)
+    }
+
+    /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
+    pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
+        let plan = plan.borrow();
+        match plan.start {
+            PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
+                self.keep(plan);
+                self.begin();
+            }
+            PlanStart::Splice { plan: id, tick }
+                if self.moving && self.progress().0 == id && tick >= self.done =>
+            {
+                self.keep(plan);
+                self.splice = Some(tick);
+            }
+            _ => return Err(Stale),
+        }
+        Ok(())
+    }
+
+    /// One tick on. Bounded: at most one change of piece or plan.
+    #[inline]
+    pub fn advance(&mut self) {
+        if !self.moving {
+            return;
+        }
+        if self.splice == Some(self.done) {
+            self.begin();
+        }
+        // None are left where a plan has no pieces.
+        if self.left > 0 {
+            for (axis, increment) in self.axes.iter_mut().zip(&self.increments) {
+                axis.advance_by(increment);
+            }
+            self.done += 1;
+            self.left -= 1;
+        }
+        if self.left == 0 {
+            self.piece += 1;
+            self.enter();
+            if self.left == 0 {
+                self.finish();
+            }
+        }
+    }
+
+    /// Enters a piece, if there is one.
+    fn enter(&mut self) {
+        let plan = &self.slots[self.current & 1];
+        let Some(piece) = plan.pieces.get(self.piece) else {
+            return;
+        };
+        self.left = piece.ticks;
+        self.increments = each!(i => TickIncrement::new(piece.jerk[i], plan.nudge[i]));
+    }
+
+    /// The setpoint now.
+    #[inline]
+    pub fn setpoint(&self, scale: &SetpointScale) -> Setpoint {
+        let velocity = self
+            .axes
+            .map(|axis| (axis.velocity >> VELOCITY_CUT) as i32 as f32);
+        let acceleration = self
+            .axes
+            .map(|axis| (axis.acceleration >> ACCELERATION_CUT) as i32 as f32);
+        Setpoint {
+            position: self.position(),
+            twist: Twist {
+                x: velocity[0] * scale.velocity,
+                y: velocity[1] * scale.velocity,
+                theta: velocity[2] * scale.turn_velocity,
+            },
+            acceleration: Acceleration {
+                x: acceleration[0] * scale.acceleration,
+                y: acceleration[1] * scale.acceleration,
+                theta: acceleration[2] * scale.turn_acceleration,
+            },
+        }
+    }
+
+    /// The pose now.
+    #[inline]
+    pub fn position(&self) -> Position {
+        [
+            self.axes[0].rounded(),
+            self.axes[1].rounded(),
+            self.axes[2].rounded(),
+        ]
+    }
+
+    /// Copies a plan into the free slot.
+    fn keep(&mut self, plan: &Plan) {
+        let slot = &mut self.slots[(self.current + 1) & 1];
+        slot.id = plan.id;
+        slot.pieces.clear();
+        for piece in &plan.pieces {
+            // As many fit as come.
+            let _ = slot.pieces.push(*piece);
+        }
+        slot.nudge = plan.nudge;
+        slot.end = plan.end;
+    }
+
+    /// Starts the plan in the other slot.
+    fn begin(&mut self) {
+        self.current = (self.current + 1) & 1;
+        self.moving = true;
+        self.splice = None;
+        self.piece = 0;
+        self.left = 0;
+        self.done = 0;
+        self.enter();
+    }
+
+    /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
+    fn finish(&mut self) {
+        self.axes = self.slots[self.current & 1].end.map(AxisState::at_rest);
+        self.moving = false;
+        self.splice = None;
+    }
+}
+
+/// Equality, word by word: that of arrays is a call that compares bytes.
+fn same(a: &Position, b: &Position) -> bool {
+    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
+}

@@ -1,0 +1,195 @@
+//! Whether a line stays inside the usable disk on its way.
+//!
+//! The platform centre goes `C = P - R(theta) p`. With p = 0 it goes straight, and nowhere is it further out than at an
+//! end. In general `f = |C|^2 = |P|^2 + |p|^2 - 2 P.R p` is at most `(|P| + |p|)^2`: only the parts of the line with P
+//! further out than the disk's radius less |p| need a look, one at each end. A part with a whole turn leaves the disk,
+//! because at some orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f
+//! is below the limit by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
+
+use super::path::Path;
+use core::f32::consts::TAU;
+use kinematics::Angle;
+use motion::check::target::check_target;
+use motion::constraints::Constraints;
+use motion::plan::Position;
+use motion::plan::units::POSITION_UNITS;
+use motion::refusal::Refusal;
+use motion::tolerances::LINE_SQUARED_RADII;
+use number::float::{FloatMinMax, hypot};
+use number::{sin_cos_f32, sqrt_f32};
+
+/// Where a line is furthest out of the disk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Exit {
+    /// Distance from the track's centre, track radii.
+    pub radius: f32,
+    /// Share of the way.
+    pub fraction: f32,
+}
+
+/// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
+const MOST_STEPS: usize = 150;
+/// Places looked at for how far a line gets that leaves the disk.
+const SAMPLES: usize = 48;
+
+/// Whether the straight line between two positions can be moved along: the same answer as that of
+/// [`plan_line`](crate::plan_line).
+#[inline(never)]
+pub fn check_line(
+    from: &Position,
+    to: &Position,
+    constraints: &Constraints,
+) -> Result<(), Refusal> {
+    check_target(to, constraints)?;
+    if !constraints.limits.all_positive() {
+        return Err(Refusal::InvalidLimits);
+    }
+    match exit(from, to, constraints) {
+        Some(exit) => Err(Refusal::LeavesDisk {
+            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
+            fraction: f64::from(exit.fraction),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
+pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
+    let usable = constraints.usable_radius as f32;
+    // A line of no length has no bend to walk along.
+    if constraints.rotation_centre == [0.0; 2] || from == to {
+        return None;
+    }
+    let path = Path::new(from, to, constraints);
+    let there = Walk::new(&path, from[2], constraints, false);
+    let back = Walk::new(&path, to[2], constraints, true);
+    let start = there.square(0.0).0;
+    let limit = start.fmax(usable * usable) + LINE_SQUARED_RADII;
+    let [first, second] = near_ends(&path, usable - there.arm + LINE_SQUARED_RADII / 2.0)?;
+    let ends = [(there, first), (back, second)];
+    ends.into_iter()
+        .find_map(|(walk, way)| walk.exit(way, limit))
+}
+
+/// The parts of the way, from the start and from the end, on which P is further out than `radius`; `None` without any.
+fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
+    let [x, y] = path.from;
+    let [way_x, way_y] = path.displacement;
+    let a = way_x * way_x + way_y * way_y;
+    let b = x * way_x + y * way_y;
+    let c = x * x + y * y - radius * radius.fmax(0.0);
+    let root = b * b - a * c;
+    // Never inside: one part, the whole.
+    if radius <= 0.0 || root <= 0.0 || a == 0.0 {
+        return (c > 0.0 || radius <= 0.0).then_some([1.0, 0.0]);
+    }
+    let root = sqrt_f32(root);
+    let parts = [(-b - root) / a, 1.0 - (root - b) / a].map(|part| part.clamp(0.0, 1.0));
+    parts.iter().any(|&part| part > 0.0).then_some(parts)
+}
+
+/// A walk from one end of a line.
+struct Walk {
+    from: [f32; 2],
+    displacement: [f32; 2],
+    /// theta at this end, 2^-32 turns.
+    theta: i64,
+    /// rad.
+    turn: f32,
+    /// p, and its length.
+    centre: [f32; 2],
+    arm: f32,
+    /// B.
+    second_derivative: f32,
+    backwards: bool,
+}
+
+impl Walk {
+    fn new(path: &Path, theta: i64, constraints: &Constraints, backwards: bool) -> Self {
+        let centre = constraints.rotation_centre.map(|part| part as f32);
+        let arm = hypot(centre[0], centre[1]);
+        let furthest = [path.from, path.point(1.0)]
+            .into_iter()
+            .fold(0.0_f32, |most, [x, y]| most.fmax(hypot(x, y)));
+        let turn = path.turn.abs();
+        let (from, sign) = if backwards {
+            (path.point(1.0), -1.0)
+        } else {
+            (path.from, 1.0)
+        };
+        Self {
+            from,
+            displacement: path.displacement.map(|way| way * sign),
+            theta,
+            turn: path.turn * sign,
+            centre,
+            arm,
+            second_derivative: 2.0 * path.length * path.length
+                + 2.0 * arm * turn * (2.0 * path.length + turn * furthest),
+            backwards,
+        }
+    }
+
+    /// f, and f'.
+    fn square(&self, s: f32) -> (f32, f32) {
+        let turned = (self.turn * s * (POSITION_UNITS / TAU)) as i64;
+        let (sin, cos) = sin_cos_f32(Angle::from_units(self.theta.wrapping_add(turned)));
+        let [p, q] = self.centre;
+        let (arm_x, arm_y) = (cos * p - sin * q, sin * p + cos * q);
+        let x = self.from[0] + self.displacement[0] * s - arm_x;
+        let y = self.from[1] + self.displacement[1] * s - arm_y;
+        let rate_x = self.displacement[0] + self.turn * arm_y;
+        let rate_y = self.displacement[1] - self.turn * arm_x;
+        (x * x + y * y, 2.0 * (x * rate_x + y * rate_y))
+    }
+
+    /// The exit within a part of the way.
+    #[inline(never)]
+    fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
+        // A little more than a turn, so that every orientation is met in spite of roundings.
+        let turn = 1.01 * TAU / self.turn.abs();
+        let part = part.fmin(turn);
+        if part <= 0.0 || (part < turn && !self.leaves(part, limit)) {
+            return None;
+        }
+        let mut worst = Exit {
+            radius: 0.0,
+            fraction: 0.0,
+        };
+        for k in 0..=SAMPLES {
+            let s = part * k as f32 / SAMPLES as f32;
+            let radius = sqrt_f32(self.square(s).0);
+            if radius > worst.radius {
+                let fraction = if self.backwards { 1.0 - s } else { s };
+                worst = Exit { radius, fraction };
+            }
+        }
+        Some(worst)
+    }
+
+    fn leaves(&self, part: f32, limit: f32) -> bool {
+        let mut s = 0.0;
+        for _ in 0..MOST_STEPS {
+            let (square, slope) = self.square(s);
+            let room = limit - square;
+            if room < 0.0 {
+                return true;
+            }
+            if s >= part {
+                return false;
+            }
+            let root = sqrt_f32(slope * slope + 2.0 * self.second_derivative * room);
+            let step = if slope > 0.0 {
+                2.0 * room / (root + slope)
+            } else {
+                (root - slope) / self.second_derivative
+            };
+            s = (s + step.fmax(LEAST_STEP)).fmin(part);
+        }
+        true
+    }
+}
+
+/// Least step of a walk, so that it gets on in spite of roundings.
+const LEAST_STEP: f32 = 1e-6;

@@ -1,0 +1,162 @@
+//! How the motion under way comes to rest.
+
+use heapless::Vec;
+use motion::check::is_over;
+use motion::constraints::Constraints;
+use motion::plan::axis_state::AxisState;
+use motion::plan::cubic_segment::{CubicSegment, MotionState};
+use motion::plan::quantise::velocity_pieces;
+use motion::plan::{
+    MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
+};
+use motion::profile::velocity::{AccelerationLimits, VelocityProfile};
+use motion::speeds::Speeds;
+use number::float::ticks_to_f32;
+
+/// How the motion under way comes to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ending {
+    /// As it is planned.
+    Followed,
+    /// By a stop with these shares of the limits.
+    Stop { acceleration: f32, jerk: f32 },
+}
+
+/// What is left, and when.
+pub(super) struct Leaving<'a> {
+    of: &'a Plan,
+    at: u64,
+    to: Position,
+    /// The axes where it is left.
+    pub state: [AxisState; 3],
+    pub now: MotionState,
+    pub speed: Speeds,
+    pub limits: AccelerationLimits,
+    pub hz: f32,
+}
+
+/// Where a motion's jerk changes: the state there, track radii, rad and seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corner {
+    pub at_s: f32,
+    pub v: [f32; 3],
+    pub a: [f32; 3],
+    pub j: [f32; 3],
+}
+
+impl Corner {
+    /// The state at a later time.
+    fn next(&self, at_s: f32) -> Self {
+        let seconds = at_s - self.at_s;
+        let half = seconds / 2.0;
+        Self {
+            at_s,
+            v: each!(i => self.v[i] + seconds * (self.a[i] + half * self.j[i])),
+            a: each!(i => self.a[i] + seconds * self.j[i]),
+            j: [0.0; 3],
+        }
+    }
+}
+
+/// An ending: its pieces, its corners, of which the last is rest, and how long it takes.
+#[derive(Default)]
+pub(super) struct Ended {
+    /// What these are of; nothing where the pieces have become another motion's.
+    pub of: Option<Ending>,
+    pub pieces: Pieces,
+    pub corners: Vec<Corner, { MAX_PIECES + 1 }>,
+    pub ticks: u64,
+    /// Where it comes to rest, and the way from there to the target, track radii and rad.
+    pub rest: Position,
+    pub left: [f32; 3],
+}
+
+impl<'a> Leaving<'a> {
+    pub fn new(
+        of: &'a Plan,
+        from: &'a [AxisState; 3],
+        at: u64,
+        to: Position,
+        constraints: &Constraints,
+    ) -> Self {
+        let state = of.state_after(from, at);
+        let limits = &constraints.limits;
+        let hz = limits.rate_hz as f32;
+        Self {
+            of,
+            at,
+            to,
+            state,
+            now: MotionState::new(&state, hz),
+            speed: constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s),
+            limits: AccelerationLimits::new(constraints),
+            hz,
+        }
+    }
+
+    /// Whether the motion is over the limits: in an urgent stop, or since a limit has been lowered.
+    pub fn is_outside(&self) -> bool {
+        is_over(Speeds::of(&self.now.a), self.limits.acceleration)
+            || is_over(Speeds::of(&self.now.v), self.speed)
+    }
+
+    /// Whether an ending is over the limits by itself: a stop at an edge, or the end of a stream.
+    pub fn is_over(&self, ended: &Ended) -> bool {
+        let AccelerationLimits { acceleration, jerk } = self.limits;
+        (ended.corners.iter()).any(|corner| {
+            is_over(Speeds::of(&corner.a), acceleration) || is_over(Speeds::of(&corner.j), jerk)
+        })
+    }
+
+    /// Writes an ending; `None` where there is none.
+    #[inline(never)]
+    pub fn write(&self, ending: Ending, ended: &mut Ended) -> Option<()> {
+        if ended.of == Some(ending) {
+            return Some(());
+        }
+        ended.of = None;
+        let Ended {
+            pieces, corners, ..
+        } = ended;
+        pieces.clear();
+        match ending {
+            Ending::Followed => pieces_after(&self.of.pieces, self.at)
+                .try_for_each(|piece| push_piece(pieces, piece))?,
+            Ending::Stop { acceleration, jerk } => {
+                let limits = self.limits.scaled(acceleration, jerk);
+                let profile = VelocityProfile::new(&self.now, &[0.0; 3], &limits);
+                velocity_pieces(&self.state, &[0; 3], profile.ticks(self.hz))
+                    .into_iter()
+                    .try_for_each(|piece| push_piece(pieces, piece))?;
+            }
+        }
+        let mut now = Corner {
+            v: self.now.v,
+            a: self.now.a,
+            ..Corner::default()
+        };
+        corners.clear();
+        ended.ticks = 0;
+        for piece in &*pieces {
+            now.j = CubicSegment::jerk(piece, self.hz);
+            // There is room for all.
+            let _ = corners.push(now);
+            ended.ticks += piece.ticks;
+            now = now.next(ticks_to_f32(ended.ticks) / self.hz);
+        }
+        let _ = corners.push(now);
+        ended.rest = match ending {
+            // The nudge of the motion that is left is not in the pieces.
+            Ending::Followed => each!(i => {
+                AxisState::at_rest(self.of.end[i]).rest_position(ended.ticks, -self.of.nudge[i])
+            }),
+            Ending::Stop { .. } => {
+                state_after_pieces(&self.state, pieces, &[0; 3]).map(|axis| axis.rounded())
+            }
+        };
+        // In whole numbers: of a long way a float does not hold a small correction.
+        ended.left = MotionState::between(&ended.rest.map(AxisState::at_rest), &self.to);
+        ended.of = Some(ending);
+        Some(())
+    }
+}

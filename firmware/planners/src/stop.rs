@@ -1,0 +1,229 @@
+//! Planning a stop from any tick of any plan: all axes brake together (see `profile/velocity`).
+//!
+//! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
+//! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
+//! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
+//! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
+
+use motion::check::violation::Violation;
+use motion::check::{Budget, PlanCheck, is_over};
+use motion::constraints::Constraints;
+use motion::plan::axis_state::AxisState;
+use motion::plan::cubic_segment::{CubicSegment, MotionState};
+use motion::plan::quantise::velocity_pieces;
+use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
+use motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
+use motion::speeds::Speeds;
+use motion::tolerances::PIVOT_PART_FOR_BRAKING;
+use number::float::{FloatMinMax, ticks_to_f32};
+
+/// How a stop brakes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// Within the limits of ordinary motion.
+    Smooth,
+    /// As hard as the pivots can follow; jerk within the limits times the square of
+    /// [`Limits::stop_factor`](motion::Limits::stop_factor).
+    Urgent,
+}
+
+/// How often a stop is planned again, as what was broken asks for.
+const ATTEMPTS: usize = 6;
+/// Hardest brake, in limits of acceleration: jerk alone ends at less.
+const HARDEST: f32 = 30.0;
+/// Gentlest.
+const GENTLEST: f32 = 0.1;
+
+/// Plans the stop that leaves plan `of`, which started from `axes`, at its tick `at`. `None` where the plan itself
+/// comes to rest no later: at its end, in its last segment, in a deceleration that is as hard as the stop would be.
+///
+/// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
+/// workspace asks for.
+pub fn plan_stop(
+    id: u32,
+    of: &Plan,
+    axes: &[AxisState; 3],
+    at: u64,
+    constraints: &Constraints,
+    stop: Stop,
+) -> Option<Plan> {
+    let whole = of.ticks();
+    let last = of.pieces.last().map_or(0, |piece| piece.ticks);
+    if at + last >= whole {
+        return None;
+    }
+    let state = of.state_after(axes, at);
+    let mut plan = Plan {
+        id,
+        start: PlanStart::Splice {
+            plan: of.id,
+            tick: at,
+        },
+        nudge: of.nudge,
+        ..Plan::default()
+    };
+    write_stop(&mut plan, &state, whole - at, constraints, stop)?;
+    Some(plan)
+}
+
+/// How hard a stop brakes, in limits of acceleration and of jerk.
+#[derive(Clone, Copy, PartialEq)]
+struct Hardness {
+    acceleration: f32,
+    jerk: f32,
+}
+
+impl Hardness {
+    const PLAIN: Self = Self {
+        acceleration: 1.0,
+        jerk: 1.0,
+    };
+}
+
+/// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
+/// plan.
+#[inline(never)]
+fn write_stop(
+    plan: &mut Plan,
+    state: &[AxisState; 3],
+    left: u64,
+    constraints: &Constraints,
+    stop: Stop,
+) -> Option<()> {
+    let plan_check = PlanCheck::for_stop(constraints);
+    let hz = constraints.limits.rate_hz as f32;
+    let limits = AccelerationLimits::new(constraints);
+    let segment = CubicSegment::new(state, hz);
+    let now = segment.start;
+    let urgent_jerk = || constraints.limits.urgent_jerk();
+    let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);
+    let plain_s = plain.times_s();
+    let most = hardest_brake(&segment, plain.direction(&limits, plain_s[0]), &plan_check);
+    let mut hardness = match stop {
+        Stop::Smooth => Hardness {
+            acceleration: most.fmin(1.0),
+            ..Hardness::PLAIN
+        },
+        Stop::Urgent => Hardness {
+            acceleration: most,
+            jerk: urgent_jerk(),
+        },
+    };
+    let mut apart = false;
+    for _ in 0..ATTEMPTS {
+        let limits = limits.scaled(hardness.acceleration, hardness.jerk);
+        let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
+        let times_s = if hardness == Hardness::PLAIN {
+            plain_s
+        } else {
+            profile.times_s()
+        };
+        let ticks = profile.whole_ticks(times_s, hz);
+        // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
+        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
+        if apart {
+            write_apart(&mut plan.pieces, state, &now, &limits, hz);
+        } else {
+            write_together(&mut plan.pieces, state, ticks);
+        }
+        // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
+        // it. So may one that had to be made softer.
+        if plan.ticks() >= left {
+            return None;
+        }
+        match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
+            Ok(()) => break,
+            // Translation is not kept waiting for rotation then, nor the other way round.
+            Err(Violation::Workspace) if !apart => apart = true,
+            Err(Violation::Workspace) => {
+                hardness.acceleration *= 1.3;
+                hardness.jerk = urgent_jerk();
+            }
+            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+                // What the motion asks of the pivots already, no brake takes from them.
+                if over <= plan_check.pivot_part(&segment) {
+                    break;
+                }
+                let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
+                let used = hardness.acceleration * profile.peak_size(times_s);
+                hardness.acceleration =
+                    (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
+            }
+            // A stop has no limits of its own, and needs no room for another.
+            Err(Violation::Speed(_) | Violation::Acceleration(_) | Violation::NoRoomToStop) => {
+                break;
+            }
+        }
+    }
+    // A stop has to be found: what is still broken after the last attempt can not be helped.
+    let end = state_after_pieces(state, &plan.pieces, &[0; 3]);
+    let ticks = plan.ticks();
+    plan.end = each!(i => end[i].rest_position(ticks, plan.nudge[i]));
+    Some(())
+}
+
+/// Whether the speed rises over its limit before the stop brakes.
+fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, constraints: &Constraints) -> bool {
+    let limits = &constraints.limits;
+    let limit = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
+    let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
+    is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
+}
+
+/// Writes the pieces that bring all axes to rest in so many ticks.
+pub(super) fn write_together(pieces: &mut Pieces, state: &[AxisState; 3], ticks: [u64; 3]) {
+    pieces.clear();
+    for piece in velocity_pieces(state, &[0; 3], ticks) {
+        // Four of many.
+        let _ = push_piece(pieces, piece);
+    }
+}
+
+/// The same where translation and rotation each brake as soon as they can.
+fn write_apart(
+    pieces: &mut Pieces,
+    state: &[AxisState; 3],
+    now: &MotionState,
+    limits: &AccelerationLimits,
+    hz: f32,
+) {
+    let part = |axes: [usize; 3]| {
+        let still = AxisState::default();
+        let state = axes.map(|i| state.get(i).copied().unwrap_or(still));
+        let each = |vector: &[f32; 3]| axes.map(|i| vector.get(i).copied().unwrap_or(0.0));
+        let now = MotionState {
+            v: each(&now.v),
+            a: each(&now.a),
+            ..*now
+        };
+        let ticks = VelocityProfile::new(&now, &[0.0; 3], limits).ticks(hz);
+        velocity_pieces(&state, &[0; 3], ticks)
+    };
+    const NONE: usize = 3;
+    let (translation, rotation): ([Piece; 4], [Piece; 4]) =
+        (part([0, 1, NONE]), part([NONE, NONE, 2]));
+    // Eight of many.
+    let _ = write_sum(&translation, &rotation, 0, pieces);
+}
+
+/// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
+/// comes of the motion itself is taken off.
+fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], plan_check: &PlanCheck) -> f32 {
+    let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
+    let accelerations = |a: [f32; 3]| {
+        let motion = MotionState { a, ..segment.start };
+        let [_, accelerations] = plan_check.pivots(segment, &motion);
+        accelerations
+    };
+    let drift = accelerations([0.0; 3]);
+    let braked = accelerations(brake);
+    let mut hardest = HARDEST;
+    for i in 0..3 {
+        let part = (braked[i] - drift[i]).abs();
+        let left = most - drift[i].abs();
+        if part != 0.0 && left < hardest * part {
+            hardest = left / part;
+        }
+    }
+    hardest.fmax(GENTLEST)
+}

@@ -1,0 +1,346 @@
+//! The tables by their names, and what they learn.
+
+use super::memory::{TRIAL_POINTS, TrialControl, TrialResult};
+use core::fmt;
+use heapless::{String, Vec};
+
+/// Name of a table.
+pub type TableName = String<16>;
+
+/// Most tables.
+const TABLES: usize = 8;
+/// Points of all of them together: each has two of them for a point of its motion, the best one and the one that is tried next.
+const POOL_POINTS: usize = 2 * TRIAL_POINTS;
+/// Ticks from point to point are a multiple of this.
+const SPACING_TICKS: u32 = 10;
+/// Ticks for which a table goes on behind the end of its motion: less than a stage takes to settle.
+const TAIL_TICKS: u64 = 40;
+/// Error of a trial over the best one from which on it was worse: what noise makes of the same again.
+const WORSE: f32 = 1.02;
+/// Trials worse than the best, in a row, after which the best is what stays.
+const MOST_WORSE: u8 = 3;
+/// What is learnt at a time is never less than this power of a half.
+const MOST_HALVINGS: u8 = 4;
+
+/// Points of the pool: volts in the memory's unit, of each pivot.
+type Point = [i16; 3];
+
+/// What makes a motion the same: its plan, from where, about which point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repeated {
+    /// Of all that makes it: as good as that.
+    pub key: u64,
+    /// Its duration.
+    pub ticks: u64,
+}
+
+/// What becomes of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableState {
+    /// The next move that has none gets it.
+    Waiting,
+    /// It gets better with every trial.
+    Learning,
+    /// It is followed as it is.
+    Frozen,
+    /// It became worse and not better: the best of it is followed.
+    Stopped,
+}
+
+/// What is told of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableReport {
+    /// Its name.
+    pub name: TableName,
+    /// What becomes of it.
+    pub state: TableState,
+    /// Trials that it has learnt from.
+    pub trials: u32,
+    /// Root mean square of the pivots' errors, encoder counts: of the first trial, without it; the best; the last.
+    pub error_counts: [f32; 3],
+    /// Points, and ticks from one to the next.
+    pub points: usize,
+    /// See there.
+    pub spacing_ticks: u32,
+}
+
+/// Why a table can not be had; nothing has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LearningError {
+    /// There are as many as there can be.
+    TooMany,
+    /// There is none of that name.
+    Unknown,
+    /// Another one waits for its move.
+    OtherWaits,
+}
+
+#[derive(Clone, Debug)]
+struct Table {
+    report: TableReport,
+    key: u64,
+    ticks: u64,
+    /// Where its points begin in the pool: the best, and behind them those that are tried next.
+    first: usize,
+    /// Trials worse than the best, in a row; and all of them: each halves what is learnt at a time.
+    worse: u8,
+    halvings: u8,
+    /// The best one is followed once more: was it so good, or was the start another one?
+    checks_best: bool,
+}
+
+/// All tables.
+#[derive(Debug)]
+pub struct Tables {
+    tables: Vec<Table, TABLES>,
+    pool: [Point; POOL_POINTS],
+    /// The one that the trial under way is of.
+    tried: Option<usize>,
+}
+
+impl Default for Tables {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Tables {
+    /// None.
+    pub const fn new() -> Self {
+        Self {
+            tables: Vec::new(),
+            pool: [[0; 3]; POOL_POINTS],
+            tried: None,
+        }
+    }
+
+    /// A table of this name learns: from the next move that has none, or goes on.
+    ///
+    /// # Errors
+    /// [`LearningError::TooMany`], [`LearningError::OtherWaits`].
+    pub fn learn(&mut self, name: TableName) -> Result<(), LearningError> {
+        if let Some(i) = self.place(&name) {
+            let table = &mut self.tables[i];
+            if table.report.state != TableState::Waiting {
+                table.report.state = TableState::Learning;
+                table.worse = 0;
+            }
+            return Ok(());
+        }
+        if (self.tables.iter()).any(|table| table.report.state == TableState::Waiting) {
+            return Err(LearningError::OtherWaits);
+        }
+        let table = Table {
+            report: TableReport {
+                name,
+                state: TableState::Waiting,
+                trials: 0,
+                error_counts: [0.0; 3],
+                points: 0,
+                spacing_ticks: 0,
+            },
+            key: 0,
+            ticks: 0,
+            first: self.used(),
+            worse: 0,
+            halvings: 0,
+            checks_best: false,
+        };
+        self.tables.push(table).map_err(|_| LearningError::TooMany)
+    }
+
+    /// A table stays as it is at its best.
+    ///
+    /// # Errors
+    /// [`LearningError::Unknown`], also for one that waits for its move.
+    pub fn freeze(&mut self, name: &TableName) -> Result<(), LearningError> {
+        let i = self.place(name).ok_or(LearningError::Unknown)?;
+        let report = &mut self.tables[i].report;
+        if report.state == TableState::Waiting {
+            return Err(LearningError::Unknown);
+        }
+        report.state = TableState::Frozen;
+        Ok(())
+    }
+
+    /// Forgets a table, or all.
+    ///
+    /// # Errors
+    /// [`LearningError::Unknown`].
+    pub fn forget(&mut self, name: Option<&TableName>) -> Result<(), LearningError> {
+        self.tried = None;
+        let Some(name) = name else {
+            self.tables.clear();
+            return Ok(());
+        };
+        let i = self.place(name).ok_or(LearningError::Unknown)?;
+        let gone = self.tables.remove(i);
+        let points = 2 * gone.report.points;
+        self.pool.copy_within(gone.first + points.., gone.first);
+        for table in &mut self.tables[i..] {
+            table.first -= points;
+        }
+        Ok(())
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.tables.is_empty()
+    }
+
+    /// What is told of each.
+    pub fn reports(&self) -> impl Iterator<Item = &TableReport> {
+        self.tables.iter().map(|table| &table.report)
+    }
+
+    /// A move is about to be sent as the plan of this number: opens its table, if it has one.
+    pub fn prepare(&mut self, plan: u32, motion: &Repeated, trial: &mut TrialControl<'_>) {
+        // The one before may not be through with its tail.
+        self.finish(trial);
+        let Some(i) = self.table_of(motion) else {
+            return;
+        };
+        let Table {
+            report,
+            first,
+            checks_best,
+            ..
+        } = &self.tables[i];
+        let next = match report.state {
+            TableState::Learning if !checks_best => first + report.points,
+            _ => *first,
+        };
+        let volts = self.pool[next..next + report.points].iter().copied();
+        trial.open(plan, report.spacing_ticks, volts);
+        self.tried = Some(i);
+    }
+
+    /// The table of a motion; one that waits becomes it, if there is room.
+    fn table_of(&mut self, motion: &Repeated) -> Option<usize> {
+        let same = |table: &Table| {
+            table.report.state != TableState::Waiting
+                && (table.key, table.ticks) == (motion.key, motion.ticks)
+        };
+        if let Some(i) = self.tables.iter().position(same) {
+            return Some(i);
+        }
+        let used = self.used();
+        let waits = |table: &Table| table.report.state == TableState::Waiting;
+        let i = self.tables.iter().position(waits)?;
+        let most = ((POOL_POINTS - used) / 2).min(TRIAL_POINTS) as u64;
+        let ticks = motion.ticks + TAIL_TICKS;
+        // The finest that there is room for.
+        let spacing = ticks.checked_div(most)? / u64::from(SPACING_TICKS) + 1;
+        let spacing_ticks = u32::try_from(spacing).ok()?.checked_mul(SPACING_TICKS)?;
+        let points = ticks.div_ceil(u64::from(spacing_ticks)) as usize;
+        let table = &mut self.tables[i];
+        (table.key, table.ticks, table.first) = (motion.key, motion.ticks, used);
+        table.report.state = TableState::Learning;
+        (table.report.points, table.report.spacing_ticks) = (points, spacing_ticks);
+        self.pool[used..used + 2 * points].fill([0; 3]);
+        Some(i)
+    }
+
+    /// Learns from a trial that is over. To be called after every snapshot.
+    pub fn take_result(&mut self, trial: &mut TrialControl<'_>) {
+        if trial.is_done() {
+            self.finish(trial);
+        }
+    }
+
+    /// Learns from the trial under way, if it is over as far as its motion goes.
+    fn finish(&mut self, trial: &mut TrialControl<'_>) {
+        let (result, tried) = (trial.finish(), self.tried.take());
+        if let (Some(result), Some(i)) = (result, tried) {
+            let Table { report, ticks, .. } = &self.tables[i];
+            if result.points as u64 * u64::from(report.spacing_ticks) >= *ticks {
+                self.learn_from(i, &result, trial);
+            }
+        }
+    }
+
+    fn learn_from(&mut self, i: usize, result: &TrialResult, trial: &TrialControl<'_>) {
+        let Table {
+            report,
+            first,
+            worse,
+            halvings,
+            checks_best,
+            ..
+        } = &mut self.tables[i];
+        let [without, best, last] = &mut report.error_counts;
+        *last = result.error_counts;
+        if report.state != TableState::Learning {
+            return;
+        }
+        if report.trials == 0 {
+            (*without, *best) = (*last, *last);
+        }
+        report.trials += 1;
+        if core::mem::take(checks_best) {
+            *best = *last;
+            return;
+        }
+        let points = report.points;
+        let (best_points, rest) = self.pool[*first..].split_at_mut(points);
+        let tried = &mut rest[..points];
+        if *last > WORSE * *best {
+            *worse += 1;
+            *halvings = (*halvings + 1).min(MOST_HALVINGS);
+            *checks_best = true;
+            if *worse >= MOST_WORSE {
+                report.state = TableState::Stopped;
+            }
+            for (tried, best) in tried.iter_mut().zip(best_points) {
+                *tried = [0, 1, 2].map(|i| halfway(best[i], tried[i]));
+            }
+            return;
+        }
+        *worse = 0;
+        *best = best.min(*last);
+        best_points.copy_from_slice(tried);
+        for (point, volts) in tried.iter_mut().enumerate() {
+            let correction = smoothed(trial, point, result.points);
+            *volts = [0, 1, 2].map(|i| volts[i].saturating_add(correction[i] >> *halvings));
+        }
+    }
+
+    fn place(&self, name: &TableName) -> Option<usize> {
+        self.tables
+            .iter()
+            .position(|table| table.report.name == *name)
+    }
+
+    /// Points of the pool that are taken.
+    fn used(&self) -> usize {
+        self.tables
+            .iter()
+            .map(|table| 2 * table.report.points)
+            .sum()
+    }
+}
+
+/// What the feedback had to add about a point: what lies over the points' own frequency is not followed. The last two points know nothing.
+fn smoothed(trial: &TrialControl<'_>, point: usize, points: usize) -> Point {
+    let at = |point: usize| trial.correction(point.min(points.saturating_sub(3)));
+    let [before, now, after] = [at(point.saturating_sub(1)), at(point), at(point + 1)];
+    [0, 1, 2].map(|i| {
+        let sum = i32::from(before[i]) + 2 * i32::from(now[i]) + i32::from(after[i]);
+        (sum / 4) as i16
+    })
+}
+
+fn halfway(a: i16, b: i16) -> i16 {
+    ((i32::from(a) + i32::from(b)) / 2) as i16
+}
+
+impl fmt::Display for TableState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Waiting => "waiting",
+            Self::Learning => "learning",
+            Self::Frozen => "frozen",
+            Self::Stopped => "stopped",
+        })
+    }
+}

@@ -1,0 +1,215 @@
+//! How the unmodified image ends when its program goes wrong, and what it tells afterwards. The program is made to go wrong by a
+//! few bytes put into a function of the image. Needs `cargo stage` first, then `cargo chip-test`.
+
+use hal_sim::machine::devices::{Stage, StageParameters};
+use image::chip::{Bench, Outcome, elf_file};
+use image::proof::Code;
+use image::seal::seal;
+use object::{Object, ObjectSegment};
+use std::ops::ControlFlow::{Break, Continue};
+use std::sync::mpsc;
+
+/// `WCL 1` comes by here.
+const ON_COMMAND: &str = "firmware::gcs::wave::parse::clear";
+/// Every tick with the servo on does.
+const IN_TICK: &str =
+    "firmware::control::tick::<impl firmware::control::state::State>::step_servos";
+
+/// `udf #0`: no instruction.
+const UNDEFINED: &[u8] = &[0x00, 0xDE];
+/// `movs r0, #0; mov sp, r0; udf #0`: the same without a stack.
+const WITHOUT_STACK: &[u8] = &[0x00, 0x20, 0x85, 0x46, 0x00, 0xDE];
+/// `b .`: an endless loop.
+const HANGS: &[u8] = &[0xFE, 0xE7];
+
+const WINDOW_WATCHDOG: u16 = 0;
+
+/// The image with these bytes at the beginning of a function, and where that is.
+fn broken(function: &str, bytes: &[u8]) -> (Vec<u8>, u64) {
+    let path = elf_file::find().expect("the image: build it with `cargo stage`");
+    let code = Code::read(&path).expect("an image that can be taken apart");
+    let at = code.named(function).expect("the function");
+    (with_bytes_at(at, bytes), at)
+}
+
+fn with_bytes_at(at: u64, bytes: &[u8]) -> Vec<u8> {
+    let path = elf_file::find().expect("the image: build it with `cargo stage`");
+    let mut image = std::fs::read(path).expect("the image");
+    let place = {
+        let file = object::File::parse(&*image).expect("an image");
+        let segment = file
+            .segments()
+            .find(|segment| (segment.address()..segment.address() + segment.size()).contains(&at));
+        let segment = segment.expect("it is loaded");
+        (segment.file_range().0 + at - segment.address()) as usize
+    };
+    image[place..place + bytes.len()].copy_from_slice(bytes);
+    image
+}
+
+fn bench(image: Vec<u8>) -> Bench {
+    let stage = Stage::new(&StageParameters::REFERENCE);
+    Bench::from_elf(image, stage).expect("an image with its symbols")
+}
+
+/// What the chip answers to `EVT?` and `FLT?` after its first reset, and the run.
+fn after_reset(
+    image: Vec<u8>,
+    trigger: &'static [u8],
+    interrupts: Option<u16>,
+) -> (String, Outcome) {
+    let (send, receive) = mpsc::channel();
+    let outcome = bench(image)
+        .run(move |period| {
+            match (period.resets.len(), period.tick) {
+                (0, 20) => period.send(trigger),
+                (0, 200) => {
+                    if let Some(number) = interrupts {
+                        period.interrupt(number);
+                    }
+                }
+                (0, 2_000) => return Break(()),
+                (1.., 50) => {
+                    drop(period.received());
+                    period.send(b"EVT?\nFLT?\n");
+                }
+                (1.., 400) => {
+                    let told = String::from_utf8_lossy(&period.received()).into_owned();
+                    send.send(told).expect("the test waits");
+                    return Break(());
+                }
+                _ => {}
+            }
+            Continue(())
+        })
+        .expect("a run");
+    (
+        receive.try_recv().expect("a reset, and an answer after it"),
+        outcome,
+    )
+}
+
+#[test]
+fn a_processor_fault_is_told_with_its_place() {
+    let (image, at) = broken(ON_COMMAND, UNDEFINED);
+    let (told, outcome) = after_reset(image, b"WCL 1\n", None);
+    println!("{told}");
+    assert_eq!(outcome.resets.len(), 1);
+    let place = format!("before the start: processor fault at {at:#010x}, called from 0x080");
+    assert!(told.contains(&place), "{told}");
+    // An undefined instruction, in CFSR.
+    assert!(told.contains("status 0x00010000"), "{told}");
+    assert!(
+        told.contains("start by a panic or a processor fault"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_processor_fault_without_a_stack_ends_in_a_reset_too() {
+    let (image, _) = broken(ON_COMMAND, WITHOUT_STACK);
+    let (told, outcome) = after_reset(image, b"WCL 1\n", None);
+    println!("{told}");
+    assert_eq!(outcome.resets.len(), 1);
+    assert!(
+        told.contains("before the start: processor fault, its stack lost"),
+        "{told}"
+    );
+}
+
+/// The window watchdog does not bite on this bench; its interrupt is raised for it.
+#[test]
+fn a_tick_that_hangs_is_ended_by_the_window_watchdogs_interrupt_and_told() {
+    let (image, at) = broken(IN_TICK, HANGS);
+    let (told, outcome) = after_reset(image, b"FRF X\n", Some(WINDOW_WATCHDOG));
+    println!("{told}");
+    assert_eq!(outcome.resets.len(), 1);
+    let place = format!("before the start: the control loop stood still at {at:#010x}");
+    assert!(told.contains(&place), "{told}");
+    assert!(told.contains("start by the watchdog"), "{told}");
+}
+
+/// What the chip answers to some lines.
+fn answers(bench: Bench, lines: &'static [u8]) -> String {
+    let (send, receive) = mpsc::channel();
+    let outcome = bench
+        .run(move |period| {
+            match period.tick {
+                20 => period.send(lines),
+                600 => {
+                    let told = String::from_utf8_lossy(&period.received()).into_owned();
+                    send.send(told).expect("the test waits");
+                    return Break(());
+                }
+                _ => {}
+            }
+            Continue(())
+        })
+        .expect("a run");
+    assert_eq!(outcome.gaps, Vec::<String>::new());
+    receive.recv().expect("the last period")
+}
+
+fn whole() -> Vec<u8> {
+    let path = elf_file::find().expect("the image: build it with `cargo stage`");
+    std::fs::read(path).expect("the image")
+}
+
+#[test]
+fn a_sealed_image_is_whole_and_one_with_a_flipped_bit_never_drives() {
+    let sealed = seal(whole()).expect("an image that can be sealed");
+    let told = answers(bench(sealed.clone()), b"EVT?\nFLT?\n");
+    assert!(
+        !told.contains("has no checksum") && told.contains("0 no fault"),
+        "{told}"
+    );
+
+    // A function that nothing calls here.
+    let path = elf_file::find().expect("the image");
+    let code = Code::read(&path).expect("an image that can be taken apart");
+    let at = code.named(ON_COMMAND).expect("the function");
+    let offset = sealed_offset(&sealed, at);
+    let mut damaged = sealed;
+    damaged[offset] ^= 1;
+    let told = answers(bench(damaged), b"FLC\nFRF X\nFLT?\nSVO?\n");
+    assert!(told.contains("the program in flash is damaged"), "{told}");
+    assert!(told.contains("X=0"), "{told}");
+}
+
+fn sealed_offset(image: &[u8], at: u64) -> usize {
+    let file = object::File::parse(image).expect("an image");
+    let segment = file
+        .segments()
+        .find(|segment| (segment.address()..segment.address() + segment.size()).contains(&at))
+        .expect("it is loaded");
+    (segment.file_range().0 + at - segment.address()) as usize
+}
+
+#[test]
+fn an_image_that_nobody_has_sealed_says_so() {
+    let told = answers(bench(whole()), b"EVT?\n");
+    assert!(told.contains("the image has no checksum"), "{told}");
+}
+
+#[test]
+fn without_a_crystal_the_chip_answers_and_never_drives() {
+    let told = answers(
+        bench(whole()).without_crystal(),
+        b"FLC\nFRF X\nFLT?\nSVO?\n",
+    );
+    println!("{told}");
+    assert!(told.contains("crystal does not start"), "{told}");
+    assert!(told.contains("X=0"), "{told}");
+}
+
+#[test]
+fn a_chip_with_half_the_flash_starts_and_keeps_nothing() {
+    let told = answers(
+        bench(whole()).with_flash_kib(1024),
+        b"EVT?\nFLC\nWPA 100\nERR?\n",
+    );
+    println!("{told}");
+    assert!(told.contains("less than 2 MB of flash"), "{told}");
+    let error = told.lines().last().map(str::trim);
+    assert!(error.is_some_and(|error| error != "0"), "{told}");
+}
