@@ -360,6 +360,7 @@ fn a_stop_at_rest_does_not_stop_the_stream_after_it() {
     for k in 0..20 {
         bench.move_to(&[(Axis::X, streamed_x(k))]).unwrap();
     }
+    bench.commander.advance_pending(&mut bench.queues);
     bench.run(200);
     for k in (20..=100).chain([100; 10]) {
         assert_eq!(bench.move_to(&[(Axis::X, streamed_x(k))]), Ok(()), "{k}");

@@ -267,7 +267,8 @@ fn the_mechanism_is_the_same_all_round() {
             Ok(())
         });
     result.unwrap();
-    // Of a hundred lines one may round to another motion, of new targets some: to one that is not much different.
+    // Of a hundred lines one may round to another motion, of new targets some: to one that is not much different. The bounds of the
+    // worst are those of forty seeds.
     let [lines, targets] = differences.take();
     let ([ticks, places], [ticks_new, places_new]) =
         (spread("lines", &lines), spread("new targets", &targets));
@@ -277,8 +278,9 @@ fn the_mechanism_is_the_same_all_round() {
     );
     assert!(lines.len() > 1_400 && targets.len() > 1_000);
     assert!(ticks[0] == 0.0 && ticks[1] < 2e-3 && places[0] < 1e-6 && places[1] < 1e-3);
-    assert!(ticks_new[0] == 0.0 && ticks_new[1] < 1.1e-4 && places_new[1] < 3.6e-5);
-    assert!(only_one.get() <= 6);
+    assert!(ticks_new[0] == 0.0 && places_new[0] < 1e-6);
+    assert!(ticks_new[1] < 6e-3 && places_new[1] < 6e-3);
+    assert!(only_one.get() <= 16);
 }
 
 /// 99 % and the worst of the differences of duration and of place.

@@ -2,22 +2,14 @@
 
 import time
 
-from page import SIZES, OnPage
+from page import SIZES, SOFT_SERVO, OnServed
 from served import Served
 from settings import ARGUMENTS
 from webdriver import ENTER, ESCAPE, RIGHT, UP
 
 
-class Live(OnPage):
-    """The page that `tripivot serve` serves."""
-
-    def setUp(self):
-        self.served = Served(ARGUMENTS.program)
-        self.addCleanup(lambda: self.served.close())
-
-    @property
-    def url(self):
-        return self.served.url
+class Live(OnServed):
+    """What everybody does."""
 
     def test_loads_and_complains_of_nothing(self):
         browser = self.page()
@@ -135,9 +127,7 @@ class Live(OnPage):
 
     def test_shows_a_fault_in_words_and_has_it_acknowledged(self):
         browser = self.ready()
-        # A fault that is a real one: a servo too soft for the following error that is allowed.
-        for line in ("CCL 1 ADVANCED", "SVO X 0", "SPA 1 0x54500500 0.00002", "SPA 1 0x54500300 1", "SPA 1 0x54500301 1",
-                     "SPA 1 0x54500302 0", "SVO X 1", "MOV X 60 Y 0 W 180"):
+        for line in (*SOFT_SERVO, "MOV X 60 Y 0 W 180"):
             self.say(browser, line)
         browser.wait_text("#alarm-text", "Fault: following error too large, pivot ")
         self.assertIn("rad, limit", browser.text("#alarm-text"))

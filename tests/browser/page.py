@@ -3,6 +3,7 @@
 import pathlib
 import unittest
 
+from served import Served
 from settings import ARGUMENTS
 from webdriver import Browser, Driver
 
@@ -10,6 +11,10 @@ SIZES = {"desk": (1280, 900), "phone": (390, 844), "large": (1600, 1000), "wide"
 README = (1360, 1480)
 PLACE = 2e-3
 """How near a settled stage is to its target, mm or deg, in the decimals that the page shows."""
+
+
+SOFT_SERVO = ("CCL 1 ADVANCED", "SVO X 0", "SPA 1 0x54500500 0.00002", "SPA 1 0x54500300 1", "SPA 1 0x54500301 1", "SPA 1 0x54500302 0", "SVO X 1")
+"""What makes the next fast move a fault that is a real one: a servo too soft for the following error that is allowed."""
 
 
 class WithDriver(unittest.TestCase):
@@ -107,3 +112,15 @@ class OnPage(WithDriver):
         browser.run("document.getElementById('console').open = true")
         browser.type("#console-line", line + "\n")
         browser.wait_text("#console-log", f"> {line}")
+
+
+class OnServed(OnPage):
+    """The page that `tripivot serve` serves: each test has a stage of its own."""
+
+    def setUp(self):
+        self.served = Served(ARGUMENTS.program)
+        self.addCleanup(lambda: self.served.close())
+
+    @property
+    def url(self):
+        return self.served.url

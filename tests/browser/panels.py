@@ -2,21 +2,15 @@
 
 import time
 
-from page import OnPage
-from served import Served
+from page import SOFT_SERVO, OnServed
 from settings import ARGUMENTS
 from webdriver import ENTER, RIGHT
 
 OPEN = "document.getElementById(arguments[0]).open = true"
 
 
-class Panels(OnPage):
-    """The page that `tripivot serve` serves."""
-
-    def setUp(self):
-        self.served = Served(ARGUMENTS.program)
-        self.addCleanup(lambda: self.served.close())
-        self.url = self.served.url
+class Panels(OnServed):
+    """Panel by panel."""
 
     def shows(self, browser, panel):
         browser.run(OPEN, panel)
@@ -134,8 +128,7 @@ class Panels(OnPage):
         browser.wait_text("#events-count", "no fault")
         browser.click("#events-record")
         browser.wait_text("#events-said", "there is no fault record")
-        for line in ("CCL 1 ADVANCED", "SVO X 0", "SPA 1 0x54500500 0.00002", "SPA 1 0x54500300 1", "SPA 1 0x54500301 1",
-                     "SPA 1 0x54500302 0", "SVO X 1", "MOV X 60 Y 0 W 180"):
+        for line in (*SOFT_SERVO, "MOV X 60 Y 0 W 180"):
             self.say(browser, line)
         browser.wait_text("#mode", "fault")
         browser.wait_text("#events-list", "following error too large")

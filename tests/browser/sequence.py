@@ -3,21 +3,14 @@
 import os
 import signal
 
-from page import OnPage
-from served import Served
-from settings import ARGUMENTS
+from page import SOFT_SERVO, OnServed
 
 STEADY = "FRF\nWAC ONT? W = 1\n# A comment.\nVLS 20\nMOV X 20\nWAC ONT? X = 1\nDEL 100\nPOS? X\nMOV X 0\nWAC ONT? X = 1\n"
 ENDLESS = "FRF\nVLS 5\n" + "MOV X 10\nWAC ONT? X = 1\nMOV X -10\nWAC ONT? X = 1\n" * 50
 
 
-class Sequence(OnPage):
-    """The page that `tripivot serve` serves."""
-
-    def setUp(self):
-        self.served = Served(ARGUMENTS.program)
-        self.addCleanup(lambda: self.served.close())
-        self.url = self.served.url
+class Sequence(OnServed):
+    """Scripts in the server."""
 
     def load(self, browser, text):
         browser.run("document.getElementById('sequence').open = true")
@@ -125,8 +118,7 @@ class Sequence(OnPage):
 
     def test_a_fault_ends_it(self):
         browser = self.page()
-        self.load(browser, "FRF\nWAC ONT? W = 1\nSVO X 0\nCCL 1 ADVANCED\nSPA 1 0x54500500 0.00002\nSPA 1 0x54500300 1\n"
-                           "SPA 1 0x54500301 1\nSPA 1 0x54500302 0\nSVO X 1\nMOV X 60 W 180\nWAC ONT? X = 1\n")
+        self.load(browser, "\n".join(("FRF", "WAC ONT? W = 1", *SOFT_SERVO, "MOV X 60 W 180", "WAC ONT? X = 1\n")))
         browser.click("#sequence-run")
         browser.wait_text("#sequence-said", "fault: ")
         browser.wait_text("#alarm-text", "following error too large")

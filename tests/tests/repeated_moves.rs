@@ -55,6 +55,17 @@ fn told(bench: &mut Bench, name: &str) -> String {
         .to_owned()
 }
 
+/// Of the last trial, as it is told: mean over each point's time.
+fn last_counts(told: &str) -> f64 {
+    let mut words = told
+        .split(' ')
+        .filter_map(|word| word.strip_prefix("LAST="));
+    words
+        .next()
+        .and_then(|word| word.parse().ok())
+        .expect("a number")
+}
+
 /// What a controller knows of a machine changes where it begins, not where it ends.
 #[test]
 fn after_five_trials_little_is_left() {
@@ -130,5 +141,39 @@ fn a_table_is_of_its_move_alone() {
     assert_eq!(bench.error_after("ILC FREEZE BACK"), "17");
     assert_eq!(bench.error_after("ILC FORGET OUT"), "0");
     assert_eq!(bench.say("ILC?\n"), "\n");
+    assert_eq!(bench.fault(), None);
+}
+
+/// A circle of 4 mm: half a second and the ways in and out of it.
+#[test]
+fn waves_learn_as_moves_do() {
+    let mut bench = machine(20.0, "");
+    bench.say("WAV 1 X SIN_P 500 4 -2 500 0 250\nWAV 2 X SIN_P 500 4 -2 500 125 250\n");
+    bench.say("WSL 1 1 2 2\nWGC 1 1 2 1\nWTR 1 20 1\n");
+    // To where it begins: the next motion is the wave itself.
+    let run = |bench: &mut Bench| {
+        bench.say("WGO 1 1 2 1\n");
+        bench.settle();
+    };
+    run(&mut bench);
+    bench.say("MOV X -2 Y 0\n");
+    bench.settle();
+    assert_eq!(bench.error_after("ILC LEARN CIRCLE"), "0");
+    let mut errors = Vec::new();
+    for _ in 0..6 {
+        run(&mut bench);
+        errors.push(last_counts(&told(&mut bench, "CIRCLE")));
+        bench.say("MOV X -2 Y 0\n");
+        bench.settle();
+    }
+    println!("{errors:.3?}, {}", told(&mut bench, "CIRCLE"));
+    // 8.37 and 0.50.
+    assert!(errors[0] > 5.0 && errors[5] < 0.55, "{errors:?}");
+    // Stopped in the middle it teaches nothing.
+    bench.say("WGO 1 1 2 1\n");
+    bench.run(4_000);
+    bench.say("HLT\nERR?\n");
+    bench.settle();
+    assert!(told(&mut bench, "CIRCLE").contains("TRIALS=6 "));
     assert_eq!(bench.fault(), None);
 }

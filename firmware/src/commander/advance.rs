@@ -87,8 +87,9 @@ impl Commander {
         let id = self.next_plan_id();
         let sent_plan = SentPlan::from_rest(id, from, goal, &constraints)?;
         if sent_plan.plan.ticks() > 0 {
-            if matches!(goal, Goal::Position(_)) {
-                self.prepare_trial(&sent_plan, queues);
+            match goal {
+                Goal::Position(_) => self.prepare_move(&sent_plan, queues),
+                _ => self.end_trial(queues),
             }
             self.send_plan(sent_plan, Some(goal), queues)?;
         }
@@ -236,7 +237,8 @@ impl Commander {
         goal: Option<Goal>,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
-        if sent_plan.takes_over() {
+        let goes_on = sent_plan.goal == Goal::Stream && sent_plan.stop.is_none();
+        if sent_plan.takes_over() && !goes_on {
             // The motion will be another one than the table under way is of.
             queues.trial.cancel();
         }

@@ -2,8 +2,9 @@
 
 use super::sent_plan::SentPlan;
 use super::state::Commander;
+use super::wave::GeneratorRun;
 use crate::iterative_learning::{LearningError, Repeated, TableName, TableReport};
-use crate::motion::{PlanStart, RotationCentre};
+use crate::motion::{Plan, PlanStart};
 use crate::queues::CommandQueues;
 
 /// Fowler, Noll and Vo's hash, 64 bits, 1a.
@@ -54,31 +55,71 @@ impl Commander {
     }
 
     /// A move from rest is about to be sent: opens its table, if it has one.
-    pub(super) fn prepare_trial(&mut self, sent_plan: &SentPlan, queues: &mut CommandQueues<'_>) {
+    pub(super) fn prepare_move(&mut self, sent_plan: &SentPlan, queues: &mut CommandQueues<'_>) {
         let plan = &sent_plan.plan;
-        let motion = Repeated {
-            key: key(sent_plan, self.snapshot().map(|snapshot| snapshot.centre)),
-            ticks: plan.ticks(),
+        let mut hash = self.start_hash(&plan.start);
+        for piece in &plan.pieces {
+            hash.add(piece.ticks as i64);
+            piece.jerk.into_iter().for_each(|jerk| hash.add(jerk));
+        }
+        plan.nudge.into_iter().for_each(|nudge| hash.add(nudge));
+        self.prepare(plan.id, hash, plan.ticks(), queues);
+    }
+
+    /// The first plan of waves is about to be sent: opens their table, if they have one. Waves without end have none.
+    pub(super) fn prepare_waves(
+        &mut self,
+        run: &GeneratorRun,
+        plan: &Plan,
+        queues: &mut CommandQueues<'_>,
+    ) {
+        let Some(samples) = run.samples().filter(|_| !self.tables.is_empty()) else {
+            return self.end_trial(queues);
         };
-        self.tables.prepare(plan.id, &motion, &mut queues.trial);
+        let mut hash = self.start_hash(&plan.start);
+        for (axis, table) in (0..).zip(run.tables()) {
+            let length = table.map_or(0, |table| self.waves.length(table));
+            hash.add(axis);
+            hash.add(length.into());
+            for point in 0..length {
+                let value = table.map_or(0.0, |table| self.waves.value(table, point));
+                hash.add(value.to_bits() as i64);
+            }
+        }
+        hash.add(self.waves.ticks.into());
+        let ticks = samples * u64::from(self.waves.ticks);
+        self.prepare(plan.id, hash, ticks, queues);
+    }
+
+    /// Another motion is about to be sent: a table that is still followed is not for it.
+    pub(super) fn end_trial(&mut self, queues: &mut CommandQueues<'_>) {
+        self.tables.finish(&mut queues.trial);
+    }
+
+    fn prepare(&mut self, plan: u32, hash: Hash, ticks: u64, queues: &mut CommandQueues<'_>) {
+        let motion = Repeated { key: hash.0, ticks };
+        self.tables.prepare(plan, &motion, &mut queues.trial);
+    }
+
+    /// From where, and about which point.
+    fn start_hash(&self, start: &PlanStart) -> Hash {
+        let mut hash = Hash(HASH_START);
+        if let PlanStart::Rest(from) = start {
+            from.iter().for_each(|part| hash.add(*part));
+        }
+        let centre = self.snapshot().map(|snapshot| snapshot.centre);
+        for part in centre.map_or([0.0; 2], |centre| centre.point()) {
+            hash.add(part.to_bits() as i64);
+        }
+        hash
     }
 }
 
-/// Of where a plan starts, all that it does, and about which point.
-fn key(sent_plan: &SentPlan, centre: Option<RotationCentre>) -> u64 {
-    let plan = &sent_plan.plan;
-    let mut hash = HASH_START;
-    let mut add = |word: i64| hash = (hash ^ word as u64).wrapping_mul(HASH_FACTOR);
-    if let PlanStart::Rest(from) = plan.start {
-        from.into_iter().for_each(&mut add);
+/// Of what makes a motion.
+struct Hash(u64);
+
+impl Hash {
+    fn add(&mut self, word: i64) {
+        self.0 = (self.0 ^ word as u64).wrapping_mul(HASH_FACTOR);
     }
-    for piece in &plan.pieces {
-        add(piece.ticks as i64);
-        piece.jerk.into_iter().for_each(&mut add);
-    }
-    plan.nudge.into_iter().for_each(&mut add);
-    for part in centre.map_or([0.0; 2], |centre| centre.point()) {
-        add(part.to_bits() as i64);
-    }
-    hash
 }

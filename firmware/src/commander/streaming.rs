@@ -116,6 +116,11 @@ impl Commander {
         match self.next_step(&mut streaming) {
             Ok(StreamStep::Wait) => self.pending = Pending::Stream(streaming),
             Ok(StreamStep::Send(plan, start)) => {
+                match (&streaming.run, streaming.started) {
+                    (Some(run), false) => self.prepare_waves(run, &plan, queues),
+                    (None, false) => self.end_trial(queues),
+                    (_, true) => {}
+                }
                 match self.send_plan(SentPlan::streamed(plan, start), None, queues) {
                     Ok(()) => {
                         streaming.started = true;

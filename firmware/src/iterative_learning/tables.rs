@@ -248,8 +248,8 @@ impl Tables {
         }
     }
 
-    /// Learns from the trial under way, if it is over as far as its motion goes.
-    fn finish(&mut self, trial: &mut TrialControl<'_>) {
+    /// Ends the trial under way, and learns from it if it is over as far as its motion goes.
+    pub fn finish(&mut self, trial: &mut TrialControl<'_>) {
         let (result, tried) = (trial.finish(), self.tried.take());
         if let (Some(result), Some(i)) = (result, tried) {
             let Table { report, ticks, .. } = &self.tables[i];

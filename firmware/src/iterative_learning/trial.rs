@@ -114,7 +114,8 @@ impl Trial {
         left
     }
 
-    /// Ends at the end of the table, with another plan, and when the command side has closed it or opened another one.
+    /// Ends at the end of the table, with the servo, and when the command side has closed it or opened another one: that knows which plans
+    /// belong to a motion.
     fn end_if_over(
         &mut self,
         table: TrialTable<'_>,
@@ -124,7 +125,7 @@ impl Trial {
         self.plan?;
         let is_open = open == self.plan;
         let is_over = self.pivots.iter().all(|pivot| pivot.point >= self.points);
-        if is_open && !is_over && motion.map(|(plan, _)| plan) == self.plan {
+        if is_open && !is_over && motion.is_some() {
             return None;
         }
         if is_open {

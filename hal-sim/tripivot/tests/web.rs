@@ -55,12 +55,20 @@ impl Stage {
     }
 
     fn page(&self) -> Page {
-        Page::start(
-            &PageOptions::local("127.0.0.1:0"),
-            Endpoint::Tcp(self.address.to_string()),
-        )
-        .unwrap()
+        page_at(Endpoint::Tcp(self.address.to_string()))
     }
+
+    /// The same over its terminal, which all viewers share.
+    fn page_on_line(&self) -> Page {
+        page_at(Endpoint::Serial {
+            device: self.terminal.clone().unwrap(),
+            baud: 115_200,
+        })
+    }
+}
+
+fn page_at(endpoint: Endpoint) -> Page {
+    Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap()
 }
 
 impl Drop for Stage {
@@ -393,12 +401,7 @@ fn a_page_that_nobody_looks_at_is_no_host_that_is_heard() {
 #[test]
 fn a_serial_line_serves_as_well() {
     let stage = Stage::start("127.0.0.1:0");
-    let device = stage.terminal.clone().unwrap();
-    let endpoint = Endpoint::Serial {
-        device,
-        baud: 115_200,
-    };
-    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let page = stage.page_on_line();
     let mut viewer = Viewer::ready(&page);
     viewer.reply("FRF");
     viewer.reply("MOV X 1");
@@ -548,14 +551,7 @@ fn behind_a_port_for_one_client_pages_share_its_line() {
 #[test]
 fn a_page_may_own_the_stage_as_long_as_it_is_there() {
     let stage = Stage::start("127.0.0.1:0");
-    for endpoint in [
-        Endpoint::Tcp(stage.address.to_string()),
-        Endpoint::Serial {
-            device: stage.terminal.clone().unwrap(),
-            baud: 115_200,
-        },
-    ] {
-        let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    for page in [stage.page(), stage.page_on_line()] {
         let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
         one.reply("FRF");
         one.reply("OWN 1");
@@ -587,14 +583,7 @@ fn a_page_may_own_the_stage_as_long_as_it_is_there() {
 #[test]
 fn a_jog_of_a_page_ends_without_it() {
     let stage = Stage::start("127.0.0.1:0");
-    for endpoint in [
-        Endpoint::Tcp(stage.address.to_string()),
-        Endpoint::Serial {
-            device: stage.terminal.clone().unwrap(),
-            baud: 115_200,
-        },
-    ] {
-        let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    for page in [stage.page(), stage.page_on_line()] {
         let mut looker = Viewer::ready(&page);
         looker.reply("FRF");
         // Killed: its connection ends.
@@ -625,12 +614,7 @@ fn a_jog_of_a_page_ends_without_it() {
 #[test]
 fn over_a_line_that_pages_share_none_changes_what_another_says() {
     let stage = Stage::start("127.0.0.1:0");
-    let device = stage.terminal.clone().unwrap();
-    let endpoint = Endpoint::Serial {
-        device,
-        baud: 115_200,
-    };
-    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let page = stage.page_on_line();
     let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
     for line in [
         "VAR Q MAC",
@@ -659,8 +643,7 @@ fn over_a_line_that_pages_share_none_changes_what_another_says() {
 #[test]
 fn what_was_asked_for_before_a_stop_does_not_follow_it() {
     let (slow, lines) = SlowController::start();
-    let endpoint = Endpoint::Tcp(slow.to_string());
-    let page = Page::start(&PageOptions::local("127.0.0.1:0"), endpoint).unwrap();
+    let page = page_at(Endpoint::Tcp(slow.to_string()));
     let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
     // The line is busy with the first for longer than the rest takes.
     let first = one.post("MOV X 1");

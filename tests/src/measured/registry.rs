@@ -427,6 +427,18 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "soak",
+        title: "Everybody at once",
+        group: Group::Host,
+        about: "`tripivot serve` under 20 clients and a page that ask 50 times a second and move the stage, beside four floods, dying pages and \
+                readers that hardly read: how long answers take. Nothing is lost or refused, and the memory of the process does not grow.",
+        command: "SECONDS=600 cargo bench -p tripivot --bench soak",
+        short: Some("cargo bench -p tripivot --bench soak"),
+        kind: Kind::HostTime,
+        seconds: 620,
+        without: &[],
+    },
+    Section {
         name: "clients",
         title: "Clients that ask without pause",
         group: Group::Host,

@@ -9,7 +9,9 @@
 //!
 //! A plan of retarget, a jog in motion and a stop are held against all of it. A line from rest is planned inside the limits
 //! at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation (`pivot_bounds`),
-//! streamed targets instant by instant (`instant`).
+//! streamed targets instant by instant (`instant`). This check would cost more than their planning: of a line 16,400 instructions in
+//! the mean and 76,800 at most, of a jog from rest 12,100 and 45,100 (300 random states on the chip); and it knows no places, so
+//! that it refuses what they have been found to keep.
 //!
 //! | checked | for |
 //! |---|---|

@@ -201,7 +201,6 @@ impl PlanCheck {
     }
 
     /// Rates and accelerations of the pivots at a state of a segment.
-    #[inline(never)]
     pub fn pivots(&self, segment: &CubicSegment, sample: &MotionState) -> [[f32; 3]; 2] {
         segment.platform(sample, self.workspace.centre).pivots()
     }

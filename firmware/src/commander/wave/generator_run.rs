@@ -65,6 +65,16 @@ impl GeneratorRun {
         self.axes.map(|axis| axis.is_some())
     }
 
+    /// Of each axis that takes part: its table.
+    pub fn tables(&self) -> [Option<usize>; 6] {
+        self.axes.map(|axis| axis.map(|(table, _)| table.into()))
+    }
+
+    /// Samples from the first to the last; `None` without end.
+    pub fn samples(&self) -> Option<u64> {
+        self.last.map(|last| last + self.ramp)
+    }
+
     /// The next sample; `None` behind the last.
     pub fn next(&mut self, waves: &Waveforms) -> Option<Coordinates> {
         let place = self.place(self.sample)?;

@@ -53,6 +53,8 @@ pub(super) async fn serve(listener: TcpListener, router: Router) {
 
 /// Serves a connection until its end, or until it is a viewer's, which goes on by itself.
 async fn connection(stream: TcpStream, peer: Peer, router: Router) -> Result<(), hyper::Error> {
+    // An answer does not wait until the status before it has been acknowledged; where the system cannot do that, it does.
+    let _ = stream.set_nodelay(true);
     let answer = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(peer);
         let router = router.clone();

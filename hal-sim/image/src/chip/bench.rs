@@ -34,10 +34,10 @@ pub struct Bench {
     symbols: Symbols,
     stage: Stage,
     instructions_per_second: NonZeroU64,
-    /// What the settings' flash holds at the start.
-    settings: SettingsFlash,
     has_crystal: bool,
     flash_kib: Option<u16>,
+    /// What the settings' flash holds at the start.
+    settings: SettingsFlash,
 }
 
 /// What a run leaves behind.
@@ -97,9 +97,9 @@ impl Bench {
             symbols,
             stage,
             instructions_per_second: STAGE_RATE,
-            settings: with_machine_settings(SettingsFlash::in_memory(), &Parameters::REFERENCE),
             has_crystal: true,
             flash_kib: None,
+            settings: with_machine_settings(SettingsFlash::in_memory(), &Parameters::REFERENCE),
         })
     }
 
@@ -108,15 +108,6 @@ impl Bench {
     pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
         Self {
             instructions_per_second,
-            ..self
-        }
-    }
-
-    /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
-    #[must_use]
-    pub fn commissioned_as(self, parameters: &Parameters) -> Self {
-        Self {
-            settings: with_machine_settings(SettingsFlash::in_memory(), parameters),
             ..self
         }
     }
@@ -135,6 +126,15 @@ impl Bench {
     pub fn with_flash_kib(self, flash_kib: u16) -> Self {
         Self {
             flash_kib: Some(flash_kib),
+            ..self
+        }
+    }
+
+    /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
+    #[must_use]
+    pub fn commissioned_as(self, parameters: &Parameters) -> Self {
+        Self {
+            settings: with_machine_settings(SettingsFlash::in_memory(), parameters),
             ..self
         }
     }

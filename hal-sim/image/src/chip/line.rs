@@ -11,6 +11,7 @@ use std::collections::VecDeque;
 pub struct HostLine {
     to_chip: VecDeque<u8>,
     from_chip: Vec<u8>,
+    sent: Vec<(u64, u8)>,
 }
 
 impl HostLine {
@@ -22,6 +23,11 @@ impl HostLine {
     /// How many bytes have not gone out yet.
     pub fn waiting(&self) -> usize {
         self.to_chip.len()
+    }
+
+    /// The bytes that have gone out to the chip since the last call, each with the instant at which it began.
+    pub fn take_sent(&mut self) -> Vec<(u64, u8)> {
+        std::mem::take(&mut self.sent)
     }
 
     /// What the chip has sent since the last call.
@@ -37,7 +43,9 @@ impl Peer for HostLine {
         self.from_chip.push(word.to_le_bytes()[0]);
     }
 
-    fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {
-        self.to_chip.pop_front().map(u16::from)
+    fn transmit(&mut self, now: VirtualNanos) -> Option<u16> {
+        let byte = self.to_chip.pop_front()?;
+        self.sent.push((now.0, byte));
+        Some(u16::from(byte))
     }
 }

@@ -21,6 +21,7 @@
 //! | `board`, `encoder`, `line` | what lies around the chip |
 //! | `run`, `serve`, `exercise/` | a script; clients over TCP; motion from a seed |
 //! | `uses` | everything that the tick is used for, followed |
+//! | `pins` | what goes over the pins, tick by tick, for another emulator |
 //! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
 //! | `load` | the tick under all the load there is |
@@ -43,6 +44,7 @@ pub(crate) mod gaps;
 mod line;
 mod load;
 mod period;
+mod pins;
 mod run;
 mod serve;
 mod timeline;
@@ -58,6 +60,7 @@ pub use follow::Step;
 pub use gaps::{Allowed, GAPS};
 pub use load::{Load, load};
 pub use period::{Action, Period, Reset, Service, Trace};
+pub use pins::pins;
 pub use rigless::device::ResetCause;
 pub use run::{ChipError, ChipOutcome, run};
 pub use serve::{LineNotice, LineServer};

@@ -3,7 +3,7 @@
 use super::board::ChipBoard;
 use super::cost::TickCost;
 use super::follow::{Following, Step};
-use super::timeline::{EARLY_NS, LATCH_NS};
+use super::timeline::{EARLY_NS, FIRST_TICK_NS, LATCH_NS, PERIOD_NS};
 use crate::cycles::Program;
 use hal_sim::machine::devices::{BridgeState, Stage};
 use rigless::device::{Level, ResetCause};
@@ -112,6 +112,22 @@ impl Period<'_> {
     /// How many bytes have not gone out to it yet.
     pub fn unsent(&mut self) -> usize {
         self.board.line().map_or(0, |line| line.waiting())
+    }
+
+    /// The bytes that have gone out to it since the last call, each with the instant at which it began, ns since power on.
+    pub fn sent(&mut self) -> Vec<(u64, u8)> {
+        (self.board.line()).map_or_else(Vec::new, |line| line.take_sent())
+    }
+
+    /// When the timers were started, ns since power on.
+    #[must_use]
+    pub fn started_at_ns(&self) -> u64 {
+        self.tick_at_ns() - FIRST_TICK_NS - self.tick * PERIOD_NS
+    }
+
+    /// Counts of the PWM pulses of the period under way, or `None` while the outputs are cut.
+    pub fn duty(&mut self) -> Option<[u16; 3]> {
+        self.board.duty(self.at)
     }
 
     /// What the command interface has answered since the last call.

@@ -27,6 +27,8 @@ pub(super) enum Command {
     Cost(CostRun),
     /// Let the control loop run on the emulated chip while the serial line is full, and tell when its ticks start.
     ChipLoad(ChipLoad),
+    /// Write what goes over the chip's pins in the demonstration, tick by tick, both ways: for another emulator to be held against.
+    ChipPins(ChipPins),
     /// Follow one tick of a move on the emulated chip, instruction by instruction, and tell what they are spent on.
     ChipTick(ChipTick),
     /// What ticks take in cycles of the real core and its flash, by what they are used for: a model of both over the instructions that
@@ -81,6 +83,16 @@ pub(super) struct ChipLoad {
     /// Ticks.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = value_parser!(u64).range(1_000..=10_000_000))]
     pub(super) ticks: u64,
+}
+
+/// What goes over the pins.
+#[derive(Args, Clone, Debug)]
+pub(super) struct ChipPins {
+    /// Ticks.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = value_parser!(u64).range(1..=2_000_000))]
+    pub(super) ticks: u64,
+    /// The file.
+    pub(super) file: PathBuf,
 }
 
 /// Cycles of ticks.

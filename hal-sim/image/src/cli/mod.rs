@@ -6,6 +6,7 @@ mod arguments;
 mod chip;
 mod chip_cycles;
 mod chip_load;
+mod chip_pins;
 mod chip_serve;
 mod chip_tick;
 mod cost;
@@ -43,6 +44,7 @@ pub fn main() -> ExitCode {
 fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
     match arguments.command {
         Command::Chip(chip) => chip::run(&chip),
+        Command::ChipPins(arguments) => chip_pins::run(&arguments),
         Command::ChipServe(arguments) => chip_serve::run(&arguments),
         Command::Cost(arguments) => cost::run(&arguments),
         Command::ChipLoad(arguments) => chip_load::run(&arguments),

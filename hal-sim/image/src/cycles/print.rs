@@ -90,7 +90,10 @@ pub fn print_cycles(tallies: &Tallies, deadline: u64) -> String {
     text
 }
 
-const KINDS: [(&str, fn(&Cycles) -> u64); 7] = [
+/// A kind of cycles by name.
+type Kind = (&'static str, fn(&Cycles) -> u64);
+
+const KINDS: [Kind; 7] = [
     ("ARM's table", |it| it.table),
     ("floating-point results waited for", |it| it.float),
     ("refills after jumps", |it| it.refill),

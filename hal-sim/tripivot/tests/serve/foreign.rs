@@ -1,13 +1,9 @@
 //! Whoever is no client of the command language does nothing at its port: a page of somebody else's, a browser, TLS.
-#![cfg(unix)]
 
 use std::io::{Read, Write};
 
+use crate::served::Served;
 use desk::serve::Notice;
-use served::Served;
-
-#[allow(dead_code)]
-mod served;
 
 /// What a page of another origin has a browser send without asking: `fetch` with `no-cors`, a form, an image.
 const FOREIGN: [&str; 6] = [

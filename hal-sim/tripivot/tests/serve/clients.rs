@@ -1,5 +1,4 @@
 //! `tripivot serve` as its clients meet it: over TCP and the pseudo-terminal, several at once, some of them badly behaved.
-#![cfg(unix)]
 
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -8,10 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::served::{Client, PATIENCE, Served, connect};
 use desk::serve::Notice;
-use served::{Client, PATIENCE, Served, connect};
-
-mod served;
 
 #[test]
 fn every_client_has_its_own_errors_and_drives_the_same_stage() {

@@ -1,15 +1,11 @@
 //! Files that are written or read: whole or not at all, and what cannot be written is found out before the work, not after it.
-#![cfg(unix)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use served::Served;
-
-#[allow(dead_code)]
-mod served;
+use crate::served::Served;
 
 struct Folder(PathBuf);
 

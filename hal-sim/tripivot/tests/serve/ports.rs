@@ -1,5 +1,4 @@
 //! Dead, flooding and half-open clients: none takes another's place, the stage's time or the disk.
-#![cfg(unix)]
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -9,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::served::{PATIENCE, Served, connect};
 use desk::serve::{Controller, Notice, ServeOptions, Server};
 use desk::web::{Endpoint, Page, PageOptions};
 use firmware::fault::Fault;
@@ -16,11 +16,7 @@ use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::ControllerMemory;
 use hal_sim::rig::run::RunOptions;
-use served::{PATIENCE, Served, connect};
 use tripivot::simulated::Simulated;
-
-#[allow(dead_code)]
-mod served;
 
 /// A script that waits for what never comes, with so many lines behind it that nothing more is read, and then dies.
 fn die_behind_a_wait(served: &Served) {
