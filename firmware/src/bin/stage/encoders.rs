@@ -9,8 +9,7 @@
 //!
 //! BiSS-C point to point with 26 bits of position, one error and one warning bit, CRC-6: 36 clocks with start bit and
 //! "zero" bit, so that idle and acknowledge may have 28 of the 64: 5.3 us of processing. The line has to be high again,
-//! time-out over, when the next latch comes, 37.8 us after the last clock. Renishaw RESOLUTE and Netzer VLP types are made
-//! with such frames; their data sheets say what they take.
+//! time-out over, when the next latch comes, 37.8 us after the last clock. An encoder's data sheet gives both times.
 //!
 //! # One instant
 //!
