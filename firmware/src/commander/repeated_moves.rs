@@ -43,7 +43,7 @@ impl Commander {
         name: Option<&TableName>,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), LearningError> {
-        self.tables.forget(name)?;
+        self.tables.forget(name, &mut queues.trial)?;
         queues.trial.cancel();
         queues.trial.hold_model(!self.tables.is_empty());
         Ok(())

@@ -3,6 +3,7 @@
 //! The command side fills the table and opens it for a plan; the tick follows it when that plan starts, leaves what the feedback had to
 //! add in its place, and closes it. Each writes only while it is its turn, which `state` says.
 
+use core::ops::Range;
 use core::sync::atomic::{AtomicBool, AtomicI16, AtomicU8, AtomicU32, Ordering};
 
 /// Points of a trial.
@@ -21,8 +22,21 @@ const OPEN: u8 = 1;
 /// It was followed, and what it brought lies there: the command side's turn.
 const DONE: u8 = 2;
 
-/// The memory of a trial. All zero at first: as a static it costs no flash.
+/// Points of all tables together: each has two of them for a point of its motion, the best one and the one that is tried next.
+pub(super) const POOL_POINTS: usize = 2 * TRIAL_POINTS;
+
+/// A point: volts in the memory's unit, of each pivot.
+pub(super) type Point = [i16; 3];
+
+/// The memory of iterative learning. All zero at first: as a static it costs no flash. What is kept of the tables stands here too:
+/// among the rest of the command side it would stand on the stack when that is made.
 pub struct TrialMemory {
+    trial: SharedTrial,
+    pool: [Point; POOL_POINTS],
+}
+
+/// The memory of a trial.
+struct SharedTrial {
     state: AtomicU8,
     /// There are tables: what they hold is what the model lacks as it is now, so the servos learn nothing of it meanwhile.
     holds_model: AtomicBool,
@@ -40,12 +54,15 @@ pub struct TrialMemory {
     square_sum: AtomicU32,
 }
 
-/// The end outside of the tick.
-pub struct TrialControl<'a>(&'a TrialMemory);
+/// The end outside of the tick, and the points of the tables, which are its own.
+pub struct TrialControl<'a> {
+    trial: &'a SharedTrial,
+    pub(super) pool: &'a mut [Point; POOL_POINTS],
+}
 
 /// The end in the tick.
 #[derive(Clone, Copy)]
-pub struct TrialTable<'a>(&'a TrialMemory);
+pub struct TrialTable<'a>(&'a SharedTrial);
 
 /// What a trial left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +75,23 @@ pub struct TrialResult {
 
 impl TrialMemory {
     /// Empty.
-    #[allow(clippy::new_without_default)] // A default of 10 KB is nothing to be made in passing.
+    #[allow(clippy::new_without_default)] // A default of 20 KB is nothing to be made in passing.
     pub const fn new() -> Self {
+        Self {
+            trial: SharedTrial::new(),
+            pool: [[0; 3]; POOL_POINTS],
+        }
+    }
+
+    /// The end outside of the tick, and the one in it.
+    pub fn split(&mut self) -> (TrialControl<'_>, TrialTable<'_>) {
+        let Self { trial, pool } = self;
+        (TrialControl { trial, pool }, TrialTable(trial))
+    }
+}
+
+impl SharedTrial {
+    const fn new() -> Self {
         Self {
             state: AtomicU8::new(CLOSED),
             holds_model: AtomicBool::new(false),
@@ -72,22 +104,17 @@ impl TrialMemory {
             square_sum: AtomicU32::new(0),
         }
     }
-
-    /// The end outside of the tick, and the one in it.
-    pub fn split(&mut self) -> (TrialControl<'_>, TrialTable<'_>) {
-        (TrialControl(self), TrialTable(self))
-    }
 }
 
 impl TrialControl<'_> {
-    /// Opens a table for the plan of this number, its points in volts. What was open before is no more.
-    pub fn open(&mut self, plan: u32, spacing_ticks: u32, volts: impl Iterator<Item = [i16; 3]>) {
-        let memory = self.0;
+    /// Opens these points of the pool as a table for the plan of this number. What was open before is no more.
+    pub(super) fn open(&mut self, plan: u32, spacing_ticks: u32, table: Range<usize>) {
+        let memory = self.trial;
         memory.state.store(CLOSED, Ordering::Release);
         let mut points = 0;
-        for (point, volts) in memory.volts.iter().zip(volts) {
+        for (point, volts) in memory.volts.iter().zip(&self.pool[table]) {
             for (point, volts) in point.iter().zip(volts) {
-                point.store(volts, Ordering::Relaxed);
+                point.store(*volts, Ordering::Relaxed);
             }
             points += 1;
         }
@@ -100,17 +127,17 @@ impl TrialControl<'_> {
 
     /// The motion will not be what the table is for, or there will be none: the tick lets go of it without a step.
     pub fn cancel(&mut self) {
-        self.0.state.store(CLOSED, Ordering::Release);
+        self.trial.state.store(CLOSED, Ordering::Release);
     }
 
     /// Whether the tick is through with a table.
     pub fn is_done(&self) -> bool {
-        self.0.state.load(Ordering::Acquire) == DONE
+        self.trial.state.load(Ordering::Acquire) == DONE
     }
 
     /// What a trial has left so far. It is over, whether the tick is through with it or not.
     pub fn finish(&mut self) -> Option<TrialResult> {
-        let memory = self.0;
+        let memory = self.trial;
         if memory.state.swap(CLOSED, Ordering::AcqRel) == CLOSED {
             return None;
         }
@@ -124,12 +151,12 @@ impl TrialControl<'_> {
 
     /// Whether the servos are to learn nothing of their own.
     pub fn hold_model(&mut self, holds: bool) {
-        self.0.holds_model.store(holds, Ordering::Relaxed);
+        self.trial.holds_model.store(holds, Ordering::Relaxed);
     }
 
     /// A point of what the feedback had to add in the last trial.
     pub fn correction(&self, point: usize) -> [i16; 3] {
-        (self.0.corrections.get(point)).map_or([0; 3], |point| {
+        (self.trial.corrections.get(point)).map_or([0; 3], |point| {
             [0, 1, 2].map(|i| point[i].load(Ordering::Relaxed))
         })
     }

@@ -1,6 +1,6 @@
 //! The tables by their names, and what they learn.
 
-use super::memory::{TRIAL_POINTS, TrialControl, TrialResult};
+use super::memory::{POOL_POINTS, Point, TRIAL_POINTS, TrialControl, TrialResult};
 use core::fmt;
 use heapless::{String, Vec};
 
@@ -9,8 +9,6 @@ pub type TableName = String<16>;
 
 /// Most tables.
 const TABLES: usize = 8;
-/// Points of all of them together: each has two of them for a point of its motion, the best one and the one that is tried next.
-const POOL_POINTS: usize = 2 * TRIAL_POINTS;
 /// Ticks from point to point are a multiple of this.
 const SPACING_TICKS: u32 = 10;
 /// Ticks for which a table goes on behind the end of its motion: less than a stage takes to settle.
@@ -21,9 +19,6 @@ const WORSE: f32 = 1.02;
 const MOST_WORSE: u8 = 3;
 /// What is learnt at a time is never less than this power of a half.
 const MOST_HALVINGS: u8 = 4;
-
-/// Points of the pool: volts in the memory's unit, of each pivot.
-type Point = [i16; 3];
 
 /// What makes a motion the same: its plan, from where, about which point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,11 +84,10 @@ struct Table {
     checks_best: bool,
 }
 
-/// All tables.
+/// All tables; their points are in the pool of [`TrialControl`].
 #[derive(Debug)]
 pub struct Tables {
     tables: Vec<Table, TABLES>,
-    pool: [Point; POOL_POINTS],
     /// The one that the trial under way is of.
     tried: Option<usize>,
 }
@@ -109,7 +103,6 @@ impl Tables {
     pub const fn new() -> Self {
         Self {
             tables: Vec::new(),
-            pool: [[0; 3]; POOL_POINTS],
             tried: None,
         }
     }
@@ -167,7 +160,11 @@ impl Tables {
     ///
     /// # Errors
     /// [`LearningError::Unknown`].
-    pub fn forget(&mut self, name: Option<&TableName>) -> Result<(), LearningError> {
+    pub fn forget(
+        &mut self,
+        name: Option<&TableName>,
+        trial: &mut TrialControl<'_>,
+    ) -> Result<(), LearningError> {
         self.tried = None;
         let Some(name) = name else {
             self.tables.clear();
@@ -176,7 +173,7 @@ impl Tables {
         let i = self.place(name).ok_or(LearningError::Unknown)?;
         let gone = self.tables.remove(i);
         let points = 2 * gone.report.points;
-        self.pool.copy_within(gone.first + points.., gone.first);
+        (trial.pool).copy_within(gone.first + points.., gone.first);
         for table in &mut self.tables[i..] {
             table.first -= points;
         }
@@ -197,7 +194,7 @@ impl Tables {
     pub fn prepare(&mut self, plan: u32, motion: &Repeated, trial: &mut TrialControl<'_>) {
         // The one before may not be through with its tail.
         self.finish(trial);
-        let Some(i) = self.table_of(motion) else {
+        let Some(i) = self.table_of(motion, trial) else {
             return;
         };
         let Table {
@@ -210,13 +207,12 @@ impl Tables {
             TableState::Learning if !checks_best => first + report.points,
             _ => *first,
         };
-        let volts = self.pool[next..next + report.points].iter().copied();
-        trial.open(plan, report.spacing_ticks, volts);
+        trial.open(plan, report.spacing_ticks, next..next + report.points);
         self.tried = Some(i);
     }
 
     /// The table of a motion; one that waits becomes it, if there is room.
-    fn table_of(&mut self, motion: &Repeated) -> Option<usize> {
+    fn table_of(&mut self, motion: &Repeated, trial: &mut TrialControl<'_>) -> Option<usize> {
         let same = |table: &Table| {
             table.report.state != TableState::Waiting
                 && (table.key, table.ticks) == (motion.key, motion.ticks)
@@ -237,7 +233,7 @@ impl Tables {
         (table.key, table.ticks, table.first) = (motion.key, motion.ticks, used);
         table.report.state = TableState::Learning;
         (table.report.points, table.report.spacing_ticks) = (points, spacing_ticks);
-        self.pool[used..used + 2 * points].fill([0; 3]);
+        trial.pool[used..used + 2 * points].fill([0; 3]);
         Some(i)
     }
 
@@ -259,7 +255,7 @@ impl Tables {
         }
     }
 
-    fn learn_from(&mut self, i: usize, result: &TrialResult, trial: &TrialControl<'_>) {
+    fn learn_from(&mut self, i: usize, result: &TrialResult, trial: &mut TrialControl<'_>) {
         let Table {
             report,
             first,
@@ -268,39 +264,43 @@ impl Tables {
             checks_best,
             ..
         } = &mut self.tables[i];
-        let [without, best, last] = &mut report.error_counts;
+        let [without, best_counts, last] = &mut report.error_counts;
         *last = result.error_counts;
         if report.state != TableState::Learning {
             return;
         }
         if report.trials == 0 {
-            (*without, *best) = (*last, *last);
+            (*without, *best_counts) = (*last, *last);
         }
         report.trials += 1;
         if core::mem::take(checks_best) {
-            *best = *last;
+            *best_counts = *last;
             return;
         }
         let points = report.points;
-        let (best_points, rest) = self.pool[*first..].split_at_mut(points);
-        let tried = &mut rest[..points];
-        if *last > WORSE * *best {
+        let (best, tried) = (
+            *first..*first + points,
+            *first + points..*first + 2 * points,
+        );
+        if *last > WORSE * *best_counts {
             *worse += 1;
             *halvings = (*halvings + 1).min(MOST_HALVINGS);
             *checks_best = true;
             if *worse >= MOST_WORSE {
                 report.state = TableState::Stopped;
             }
-            for (tried, best) in tried.iter_mut().zip(best_points) {
-                *tried = [0, 1, 2].map(|i| halfway(best[i], tried[i]));
+            for (best, tried) in best.zip(tried) {
+                let [best, last] = [trial.pool[best], trial.pool[tried]];
+                trial.pool[tried] = [0, 1, 2].map(|i| halfway(best[i], last[i]));
             }
             return;
         }
         *worse = 0;
-        *best = best.min(*last);
-        best_points.copy_from_slice(tried);
-        for (point, volts) in tried.iter_mut().enumerate() {
+        *best_counts = best_counts.min(*last);
+        (trial.pool).copy_within(tried.clone(), best.start);
+        for (point, place) in tried.enumerate() {
             let correction = smoothed(trial, point, result.points);
+            let volts = &mut trial.pool[place];
             *volts = [0, 1, 2].map(|i| volts[i].saturating_add(correction[i] >> *halvings));
         }
     }
