@@ -3,6 +3,7 @@
 
 use firmware::control::config::Config;
 use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
+use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::motion::{
     AxisState, Constraints, Plan, PlanStart, RotationCentre, Stop, plan_line, plan_stop,
@@ -229,6 +230,15 @@ fn what_needs_something_is_refused_without_it() {
         run.plan = None;
         refuses(run, Event::Move);
     }
+    // What only another start can find gone.
+    let mut damaged = Run::new();
+    (damaged.host).restart(
+        &Parameters::REFERENCE,
+        Some(FaultKind::ImageDamaged),
+        [0.0; 3],
+    );
+    damaged.ticks(SOON);
+    refuses(damaged, Event::Acknowledge);
     let conditional: Vec<_> = (EXPECTED.into_iter())
         .flat_map(|(event, outcomes)| {
             let columns = COLUMNS.into_iter().zip(outcomes);

@@ -17,6 +17,7 @@ const COMMANDS: &[&str] = &[
     "record",
     "settings",
     "board",
+    "machine",
     "faults",
     "inverse",
     "direct",
@@ -28,6 +29,7 @@ const COMMANDS: &[&str] = &[
 #[cfg(not(unix))]
 const COMMANDS: &[&str] = &[
     "run",
+    "machine",
     "faults",
     "inverse",
     "direct",

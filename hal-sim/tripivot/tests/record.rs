@@ -23,9 +23,13 @@ impl Served {
             .unwrap();
         let mut out = BufReader::new(child.stdout.take().unwrap());
         let mut place = |prefix: &str| {
-            let mut line = String::new();
-            out.read_line(&mut line).unwrap();
-            line.trim().strip_prefix(prefix).unwrap().to_owned()
+            loop {
+                let mut line = String::new();
+                assert_ne!(out.read_line(&mut line).unwrap(), 0, "{prefix}");
+                if let Some(place) = line.trim().strip_prefix(prefix) {
+                    break place.to_owned();
+                }
+            }
         };
         let (address, terminal) = (place("listening at "), place("terminal at "));
         // Read on, so that its notices find somebody.
