@@ -80,7 +80,6 @@ fn announce(
 ) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "listening at {}", server.address()?)?;
-    writeln!(out, "{settings}")?;
     if is_remote {
         writeln!(out, "{REMOTE_MEANS}")?;
     }
@@ -90,5 +89,6 @@ fn announce(
     if let Some(path) = server.terminal() {
         writeln!(out, "terminal at {}", path.display())?;
     }
+    writeln!(out, "{settings}")?;
     writeln!(out, "Ctrl-C ends it")
 }
