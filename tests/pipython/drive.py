@@ -82,7 +82,8 @@ class Drive(Programs):
 
     def test_every_command_that_is_listed_is_known_to_the_client(self):
         # `WAV` has a function for each of its types.
-        own = {"FLC", "HBT", "JRC", "JTM", "LST", "OWN", "WAC", "WAV", "qEVT", "qFLR", "qFLT", "qHBT", "qJTM", "qMON", "qOWN"}
+        own = {"CMS", "FLC", "HBT", "ILC", "JRC", "JTM", "LST", "OWN", "RCV", "WAC", "WAV"}
+        own |= {"qCMS", "qEVT", "qFLR", "qFLT", "qHBT", "qILC", "qJTM", "qMON", "qOWN", "qRCV", "qTST"}
         missing = [name for name in self.stage.funcs if not hasattr(self.stage, name)]
         self.assertEqual(set(missing), own)
 

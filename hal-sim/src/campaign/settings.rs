@@ -10,7 +10,7 @@ use crate::random::Random;
 use crate::rig::{ControllerMemory, Rig};
 
 /// What an operator keeps, and the ticks in which it is kept.
-const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nWPA 100\nERR?\n";
+const LINES: &[u8] = b"VLS 100\nCCL 1 ADVANCED\nSPA 1 0x54500300 260\nCMS 1\nWPA 100\nERR?\n";
 const TICKS: u32 = 100;
 /// Bytes of a record before what is kept: its head, twice, of which one may be damaged. Its CRC and its end stand behind.
 const FRONT: usize = 32;
@@ -34,7 +34,8 @@ pub(super) fn damaged(random: &mut Random) -> SettingsFlash {
 }
 
 fn kept() -> Vec<u8> {
-    let parameters = Parameters::REFERENCE;
+    // The machine comes with none, so that these are the only ones.
+    let parameters = Parameters::REFERENCE.uncommissioned();
     let mut memory = ControllerMemory::new();
     let (stage, flash) = (StageParameters::REFERENCE, SettingsFlash::in_memory());
     let mut rig = Rig::simulated(&mut memory, &stage, &parameters, flash);
