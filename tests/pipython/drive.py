@@ -437,7 +437,8 @@ class OverTerminal(Drive, unittest.TestCase):
 class OverChip(Drive, unittest.TestCase):
     """Over the serial line of the emulated chip, which is several times slower than the real one."""
 
-    SERIAL = "0"
+    # What the emulator gives as the identity of the chip: "emulated F42".
+    SERIAL = "656D756C6174656420463432"
     KEEPS_TIME = False
     # The emulator has no model of what is in flash.
     KEEPS_SETTINGS = False
