@@ -1,6 +1,6 @@
 //! The checksum in an image: worked out over what will lie in flash, and written into its file.
 
-use firmware::image_checksum::image_checksum;
+use firmware::image_checksum::{NO_CHECKSUM, image_checksum};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol, elf};
 
@@ -14,8 +14,21 @@ const CHECKSUM_BYTES: usize = 4;
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn seal(mut image: Vec<u8>) -> Result<Vec<u8>, String> {
+pub fn seal(image: Vec<u8>) -> Result<Vec<u8>, String> {
     let (at, checksum) = checksum(&image)?;
+    with_checksum(image, at, checksum)
+}
+
+/// The image as it was linked, whether it was given its checksum or not.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn unseal(image: Vec<u8>) -> Result<Vec<u8>, String> {
+    let (at, _) = checksum(&image)?;
+    with_checksum(image, at, NO_CHECKSUM)
+}
+
+fn with_checksum(mut image: Vec<u8>, at: usize, checksum: u32) -> Result<Vec<u8>, String> {
     let place = image.get_mut(at..at + CHECKSUM_BYTES);
     place
         .ok_or("the checksum lies behind the end of the file")?

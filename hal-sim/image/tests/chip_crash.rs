@@ -4,7 +4,7 @@
 use hal_sim::machine::devices::{Stage, StageParameters};
 use image::chip::{Bench, Outcome, elf_file};
 use image::proof::Code;
-use image::seal::seal;
+use image::seal::{seal, unseal};
 use object::{Object, ObjectSegment};
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::mpsc;
@@ -33,8 +33,7 @@ fn broken(function: &str, bytes: &[u8]) -> (Vec<u8>, u64) {
 }
 
 fn with_bytes_at(at: u64, bytes: &[u8]) -> Vec<u8> {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let mut image = std::fs::read(path).expect("the image");
+    let mut image = whole();
     let place = {
         let file = object::File::parse(&*image).expect("an image");
         let segment = file
@@ -150,9 +149,10 @@ fn answers(bench: Bench, lines: &'static [u8]) -> String {
     receive.recv().expect("the last period")
 }
 
+/// The image as it was linked: `cargo seal` may have been there before.
 fn whole() -> Vec<u8> {
     let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    std::fs::read(path).expect("the image")
+    unseal(std::fs::read(path).expect("the image")).expect("an image with a place for its checksum")
 }
 
 #[test]
