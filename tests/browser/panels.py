@@ -165,6 +165,21 @@ class Panels(OnServed):
         self.picture(browser, "soft-limits")
         self.aim(browser, 60, 0, "beyond the soft limits of x")
 
+    def test_a_geometry_that_was_changed_is_drawn(self):
+        browser = self.page()
+        for line in ("CCL 1 ADVANCED", "SPA 1 0x54500202 1.5"):
+            self.say(browser, line)
+        browser.run("document.getElementById('console').open = false")
+        # Guides that end 170 mm out leave a disk of 70 mm. The page asks for that every few seconds.
+        browser.wait(lambda: self.aims_beyond(browser, 75, "70.0 mm is the limit"), "the smaller disk")
+
+    def aims_beyond(self, browser, x, words):
+        """Points there anew; whether the page says so soon."""
+        browser.point("#scene", *self.pixel(browser, x - 5, 0))
+        browser.point("#scene", *self.pixel(browser, x, 0))
+        time.sleep(0.3)
+        return words in browser.text("#aim")
+
     def test_what_was_chosen_survives_a_reload(self):
         browser = self.ready()
         browser.type("#step-mm", "2.5\t")
