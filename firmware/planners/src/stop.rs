@@ -5,15 +5,15 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use motion::check::violation::Violation;
+use motion::check::Violation;
 use motion::check::{Budget, PlanCheck, is_over};
 use motion::constraints::Constraints;
+use motion::constraints::Speeds;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::velocity_pieces;
 use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
 use motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
-use motion::speeds::Speeds;
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
 

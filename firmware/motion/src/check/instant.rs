@@ -2,11 +2,11 @@
 
 use super::platform::{Platform, greatest};
 use crate::constraints::Constraints;
+use crate::constraints::Speeds;
 use crate::plan::axis_state::AxisState;
+use crate::plan::axis_state::{PER_AXIS_UNIT, PER_POSITION_UNIT};
 use crate::plan::setpoint::{ACCELERATION_CUT, VELOCITY_CUT};
-use crate::plan::units::{PER_AXIS_UNIT, PER_POSITION_UNIT};
 use crate::refusal::Refusal;
-use crate::speeds::Speeds;
 use crate::tolerances::{STREAM_SLACK, WORKSPACE_RADII};
 use kinematics::Angle;
 use number::float::FloatMinMax;

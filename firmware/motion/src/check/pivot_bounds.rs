@@ -12,7 +12,7 @@
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
 use crate::constraints::Constraints;
-use crate::speeds::Speeds;
+use crate::constraints::Speeds;
 use number::float::hypot;
 use number::sqrt_f32;
 

@@ -1,16 +1,16 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
+use super::interval::Violation;
 use super::interval::{IntervalBounds, IntervalEnd};
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
-use super::violation::Violation;
 use super::workspace::{StopLimits, Workspace};
 use crate::constraints::Constraints;
+use crate::constraints::Speeds;
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::profile::velocity::AccelerationLimits;
-use crate::speeds::Speeds;
 use crate::tolerances::PLAN_SLACK;
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;

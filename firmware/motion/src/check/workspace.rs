@@ -1,11 +1,11 @@
 //! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
 
 use super::interval::IntervalEnd;
-use super::violation::Violation;
+use super::interval::Violation;
 use crate::constraints::{Bounds, Constraints};
 use crate::plan::axis_state::AxisState;
+use crate::plan::axis_state::PER_POSITION_UNIT;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::plan::units::PER_POSITION_UNIT;
 use crate::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
 use crate::tolerances::WORKSPACE_RADII;
 use core::f32::consts::TAU;

@@ -9,7 +9,7 @@
 
 use super::axis_state::{AxisState, JERK_STEP, SUB_BITS};
 use super::motion_plan::Plan;
-use super::piece::{MAX_PIECES, Piece, Position};
+use super::motion_plan::{MAX_PIECES, Piece, Position};
 use heapless::Vec;
 use number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
 use number::round_ties_even;

@@ -20,8 +20,8 @@
 //! that a velocity that is kept for years is kept.
 
 use crate::constraints::Constraints;
+use crate::constraints::Speeds;
 use crate::plan::cubic_segment::MotionState;
-use crate::speeds::Speeds;
 use crate::tolerances::{ROUNDED_TIMES, WHOLE_TICKS};
 use number::float::{FloatMinMax, ceil, ceil_ticks, floor, hypot};
 use number::sqrt_f32;
@@ -312,9 +312,9 @@ fn size(vector: &[f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::axis_state::AXIS_UNITS;
     use crate::plan::axis_state::AxisState;
     use crate::plan::quantise::velocity_pieces;
-    use crate::plan::units::AXIS_UNITS;
     use number::random::Random;
 
     const HZ: f32 = 20_000.0;

@@ -4,12 +4,12 @@ use super::travel_time::SteadyMotion;
 use motion::check::pivot_bounds::PivotBound;
 use motion::check::target::MAX_TURNS;
 use motion::constraints::Constraints;
+use motion::constraints::Speeds;
+use motion::plan::axis_state::{AXIS_UNITS, PER_POSITION_UNIT};
 use motion::plan::axis_state::{AxisState, SUB_BITS};
 use motion::plan::cubic_segment::MotionState;
-use motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
 use motion::profile::velocity::AccelerationLimits;
 use motion::refusal::{Refusal, RetargetError};
-use motion::speeds::Speeds;
 use motion::tolerances::JOG_RADII;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 

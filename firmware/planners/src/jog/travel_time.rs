@@ -7,7 +7,7 @@
 
 use kinematics::Angle;
 use motion::constraints::Bounds;
-use motion::plan::units::{PER_POSITION_UNIT, POSITION_UNITS};
+use motion::plan::axis_state::{PER_POSITION_UNIT, POSITION_UNITS};
 use motion::tolerances::JOG_RADII;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use number::{sin_cos_f32, sqrt_f32};

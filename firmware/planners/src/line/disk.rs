@@ -12,7 +12,7 @@ use kinematics::Angle;
 use motion::check::target::check_target;
 use motion::constraints::Constraints;
 use motion::plan::Position;
-use motion::plan::units::POSITION_UNITS;
+use motion::plan::axis_state::POSITION_UNITS;
 use motion::refusal::Refusal;
 use motion::tolerances::LINE_SQUARED_RADII;
 use number::float::{FloatMinMax, hypot};

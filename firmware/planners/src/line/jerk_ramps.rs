@@ -17,7 +17,7 @@
 
 use super::rounded_ramps::{JerkRamp, JerkRamps, RoundedRamps};
 use super::segments::Corners;
-use motion::limits::PathLimits;
+use motion::constraints::PathLimits;
 use motion::plan::quantise::PathProfile;
 use motion::tolerances::WHOLE_DURATION;
 use number::float::{FloatMinMax, ceil_i32};

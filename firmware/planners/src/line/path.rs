@@ -22,7 +22,7 @@
 use kinematics::{Angle, Scalar};
 use motion::constraints::Constraints;
 use motion::plan::Position;
-use motion::plan::units::PER_POSITION_UNIT;
+use motion::plan::axis_state::PER_POSITION_UNIT;
 use number::float::{FloatMinMax, i64_to_f32_fast};
 use number::{sin_cos_f32, sqrt_f32};
 

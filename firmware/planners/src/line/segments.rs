@@ -7,7 +7,7 @@
 
 use super::topp::SquaredSpeeds;
 use heapless::Vec;
-use motion::limits::PathLimits;
+use motion::constraints::PathLimits;
 use number::float::FloatMinMax;
 use number::sqrt_f32;
 

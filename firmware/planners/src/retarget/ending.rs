@@ -3,6 +3,7 @@
 use heapless::Vec;
 use motion::check::is_over;
 use motion::constraints::Constraints;
+use motion::constraints::Speeds;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::velocity_pieces;
@@ -10,7 +11,6 @@ use motion::plan::{
     MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
 };
 use motion::profile::velocity::{AccelerationLimits, VelocityProfile};
-use motion::speeds::Speeds;
 use number::float::ticks_to_f32;
 
 /// How the motion under way comes to rest.

@@ -23,19 +23,17 @@
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
 //! | `ending` | how the motion under way comes to rest |
-//! | `line` | the plain line from there |
-//! | `overlap` | translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
+//! | `overlap` | the plain line from there; translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
 //! | `candidate` | for each part an ending, a line, and the least delay between them |
 
 mod candidate;
 mod ending;
-mod line;
 mod overlap;
 
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
+use motion::check::Violation;
 use motion::check::target::check_target;
-use motion::check::violation::Violation;
 use motion::check::{Budget, PlanCheck};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;

@@ -92,7 +92,7 @@ mod tests {
     use kinematics::Geometry;
     use motion::Constraints;
     use motion::Limits;
-    use motion::plan::units::AXIS_UNITS;
+    use motion::plan::axis_state::AXIS_UNITS;
 
     const CONSTRAINTS: Constraints = Constraints::new(Limits::REFERENCE, Geometry::REFERENCE);
 

@@ -6,10 +6,11 @@ use super::state::{PART_BITS, SentPlan, Stream};
 use heapless::Vec;
 use motion::check::instant::{InstantCheck, InstantState};
 use motion::constraints::Constraints;
+use motion::constraints::Speeds;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
+use motion::plan::cubic_segment::per_second;
 use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use motion::refusal::Refusal;
-use motion::speeds::{Speeds, per_second};
 use motion::tolerances::JERK_TOLERANCE;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
