@@ -8,6 +8,7 @@
 
 use super::axis_state::{AxisState, SUB_BITS};
 use heapless::Vec;
+use number::wide_integer::divide;
 
 /// x and y in 2^-32 track radii, theta in 2^-32 turns (multi-turn).
 pub type Position = [i64; 3];
@@ -133,8 +134,7 @@ pub fn nudge_to(end: &[AxisState; 3], to: &Position, ticks: u64) -> Option<[i64;
     let mut nudge = [0; 3];
     for (nudge, (axis, to)) in nudge.iter_mut().zip(end.iter().zip(to)) {
         let rest = (i128::from(*to) << SUB_BITS) - axis.position;
-        // In 64 bits a division is a tenth of one in 128.
-        *nudge = i64::try_from(rest).ok()? / ticks.max(1) as i64;
+        *nudge = divide(i64::try_from(rest).ok()?, ticks as i64);
     }
     Some(nudge)
 }
