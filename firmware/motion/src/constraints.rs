@@ -35,13 +35,25 @@ impl Constraints {
         }
     }
 
-    /// Rates of translation (mm) and of rotation (deg) in the units of planning.
+    /// The limits of ordinary motion in the units of planning.
     #[inline(never)]
-    pub fn speeds(&self, mm: f64, deg: f64) -> Speeds {
-        Speeds {
-            linear: mm as f32 / self.geometry.radius_mm as f32,
-            angular: deg as f32 * (core::f32::consts::PI / 180.0),
+    pub fn motion_limits(&self) -> MotionLimits {
+        let limits = &self.limits;
+        let mm = self.geometry.radius_mm as f32;
+        let speeds = |mm_s: f64, deg_s: f64| Speeds {
+            linear: mm_s as f32 / mm,
+            angular: deg_s as f32 * (core::f32::consts::PI / 180.0),
+        };
+        MotionLimits {
+            speed: speeds(limits.speed_mm_s, limits.turn_speed_deg_s),
+            acceleration: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
+            jerk: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
         }
+    }
+
+    /// The centre of rotation in single precision.
+    pub fn centre(&self) -> [f32; 2] {
+        self.rotation_centre.map(|radii| radii as f32)
     }
 }
 
@@ -184,6 +196,28 @@ impl Speeds {
         Self {
             linear: self.linear.fmax(other.linear),
             angular: self.angular.fmax(other.angular),
+        }
+    }
+}
+
+/// Limits of translation (track radii) and of rotation (rad), per second, squared and cubed.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionLimits {
+    /// Of speed.
+    pub speed: Speeds,
+    /// Of acceleration.
+    pub acceleration: Speeds,
+    /// Of jerk.
+    pub jerk: Speeds,
+}
+
+impl MotionLimits {
+    /// With acceleration and jerk times these.
+    pub fn scaled(&self, acceleration: f32, jerk: f32) -> Self {
+        Self {
+            speed: self.speed,
+            acceleration: self.acceleration.scaled(acceleration),
+            jerk: self.jerk.scaled(jerk),
         }
     }
 }

@@ -7,13 +7,12 @@
 
 use motion::check::Violation;
 use motion::check::{Budget, PlanCheck, is_over};
-use motion::constraints::Constraints;
-use motion::constraints::Speeds;
+use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::velocity_pieces;
 use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
-use motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
+use motion::profile::velocity::{VelocityProfile, stop_speeds};
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
 
@@ -92,13 +91,17 @@ fn write_stop(
 ) -> Option<()> {
     let plan_check = PlanCheck::for_stop(constraints);
     let hz = constraints.limits.rate_hz as f32;
-    let limits = AccelerationLimits::new(constraints);
+    let ordinary = constraints.motion_limits();
     let segment = CubicSegment::new(state, hz);
     let now = segment.start;
     let urgent_jerk = || constraints.limits.urgent_jerk();
-    let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);
+    let plain = VelocityProfile::new(&now, &[0.0; 3], &ordinary);
     let plain_s = plain.times_s();
-    let most = hardest_brake(&segment, plain.direction(&limits, plain_s[0]), &plan_check);
+    let most = hardest_brake(
+        &segment,
+        plain.direction(&ordinary, plain_s[0]),
+        &plan_check,
+    );
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
@@ -111,7 +114,7 @@ fn write_stop(
     };
     let mut apart = false;
     for _ in 0..ATTEMPTS {
-        let limits = limits.scaled(hardness.acceleration, hardness.jerk);
+        let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
         let times_s = if hardness == Hardness::PLAIN {
             plain_s
@@ -120,7 +123,7 @@ fn write_stop(
         };
         let ticks = profile.whole_ticks(times_s, hz);
         // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
-        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
+        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, ordinary.speed);
         if apart {
             write_apart(&mut plan.pieces, state, &now, &limits, hz);
         } else {
@@ -163,9 +166,7 @@ fn write_stop(
 }
 
 /// Whether the speed rises over its limit before the stop brakes.
-fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, constraints: &Constraints) -> bool {
-    let limits = &constraints.limits;
-    let limit = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
+fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, limit: Speeds) -> bool {
     let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
     is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
 }
@@ -184,7 +185,7 @@ fn write_apart(
     pieces: &mut Pieces,
     state: &[AxisState; 3],
     now: &MotionState,
-    limits: &AccelerationLimits,
+    limits: &MotionLimits,
     hz: f32,
 ) {
     let part = |axes: [usize; 3]| {

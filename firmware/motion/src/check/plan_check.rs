@@ -5,12 +5,10 @@ use super::interval::{IntervalBounds, IntervalEnd};
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
 use super::workspace::{StopLimits, Workspace};
-use crate::constraints::Constraints;
-use crate::constraints::Speeds;
+use crate::constraints::{Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::profile::velocity::AccelerationLimits;
 use crate::tolerances::PLAN_SLACK;
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;
@@ -18,7 +16,7 @@ use number::sqrt_f32;
 /// What a plan is held against.
 pub struct PlanCheck {
     /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
-    motion_limits: Option<MotionLimits>,
+    motion_limits: Option<Limits>,
     /// Rate and acceleration, rad/s and rad/s^2.
     pivots: [f32; 2],
     workspace: Workspace,
@@ -26,12 +24,10 @@ pub struct PlanCheck {
 }
 
 /// Limits of translation and rotation.
-struct MotionLimits {
-    speed: Speeds,
-    acceleration: Speeds,
-    jerk: Speeds,
+struct Limits {
+    motion: MotionLimits,
     /// With which a stop brakes, and the same for a bound of its way.
-    stop: AccelerationLimits,
+    stop: MotionLimits,
     braking: StopLimits,
 }
 
@@ -79,16 +75,16 @@ impl PlanCheck {
     /// The check of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
     pub fn new(constraints: &Constraints, start: &[AxisState; 3]) -> Self {
-        let limits = &constraints.limits;
-        let stop = AccelerationLimits::new(constraints);
-        let speed = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
-        let now = MotionState::new(start, limits.rate_hz as f32);
+        let stop = constraints.motion_limits();
+        let now = MotionState::new(start, constraints.limits.rate_hz as f32);
         // What is granted over a limit is not granted over a state again: it would add up from plan to plan.
         let kept = |state: &[f32; 3]| Speeds::of(state).scaled(1.0 / PLAN_SLACK);
-        let motion_limits = MotionLimits {
-            speed: speed.max(kept(&now.v)),
-            acceleration: stop.acceleration.max(kept(&now.a)),
-            jerk: stop.jerk,
+        let motion_limits = Limits {
+            motion: MotionLimits {
+                speed: stop.speed.max(kept(&now.v)),
+                acceleration: stop.acceleration.max(kept(&now.a)),
+                jerk: stop.jerk,
+            },
             stop,
             braking: StopLimits::new(&stop),
         };
@@ -244,7 +240,7 @@ impl PlanCheck {
             return Ok(());
         };
         within(
-            part(linear, angular, &motion_limits.jerk),
+            part(linear, angular, &motion_limits.motion.jerk),
             Violation::Acceleration,
         )
     }
@@ -278,12 +274,12 @@ impl PlanCheck {
         if let Some(motion_limits) = &self.motion_limits {
             let [linear, angular] = sizes.v;
             within(
-                part(linear, angular, &motion_limits.speed),
+                part(linear, angular, &motion_limits.motion.speed),
                 Violation::Speed,
             )?;
             let [linear, angular] = sizes.a;
             within(
-                part(linear, angular, &motion_limits.acceleration),
+                part(linear, angular, &motion_limits.motion.acceleration),
                 Violation::Acceleration,
             )?;
         }
@@ -303,7 +299,7 @@ impl PlanCheck {
         &self,
         interval: &Interval<'_>,
         at: &IntervalEnd,
-        motion_limits: &MotionLimits,
+        motion_limits: &Limits,
     ) -> Result<(), Violation> {
         if self.workspace.stop_is_clear_of_edges(
             interval.bound_distances,

@@ -2,11 +2,11 @@
 
 use super::interval::IntervalEnd;
 use super::interval::Violation;
-use crate::constraints::{Bounds, Constraints};
+use crate::constraints::{Bounds, Constraints, MotionLimits};
 use crate::plan::axis_state::AxisState;
 use crate::plan::axis_state::PER_POSITION_UNIT;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
+use crate::profile::velocity::{VelocityProfile, stop_displacements};
 use crate::tolerances::WORKSPACE_RADII;
 use core::f32::consts::TAU;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
@@ -30,7 +30,7 @@ pub struct StopLimits {
 }
 
 impl StopLimits {
-    pub fn new(limits: &AccelerationLimits) -> Self {
+    pub fn new(limits: &MotionLimits) -> Self {
         let most = [limits.acceleration.linear, limits.acceleration.angular];
         let jerk = [limits.jerk.linear, limits.jerk.angular];
         Self {
@@ -43,7 +43,7 @@ impl StopLimits {
 
 impl Workspace {
     pub fn new(constraints: &Constraints) -> Self {
-        let centre = constraints.rotation_centre.map(|value| value as f32);
+        let centre = constraints.centre();
         Self {
             radius: constraints.usable_radius as f32,
             bounds: constraints.bounds,
@@ -134,7 +134,7 @@ impl Workspace {
         segment: &CubicSegment,
         bound_distances: &[[f32; 2]; 3],
         at: &MotionState,
-        limits: &AccelerationLimits,
+        limits: &MotionLimits,
     ) -> Result<(), Violation> {
         let stop = VelocityProfile::new(at, &[0.0; 3], limits);
         for displacement in stop_displacements(at, stop.rough_times_s()) {

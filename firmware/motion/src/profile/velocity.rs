@@ -19,8 +19,7 @@
 //! ([`quantise`](crate::plan::quantise)). One more tick closes what rounding leaves of the acceleration, so
 //! that a velocity that is kept for years is kept.
 
-use crate::constraints::Constraints;
-use crate::constraints::Speeds;
+use crate::constraints::{MotionLimits, Speeds};
 use crate::plan::cubic_segment::MotionState;
 use crate::tolerances::{ROUNDED_TIMES, WHOLE_TICKS};
 use number::float::{FloatMinMax, ceil, ceil_ticks, floor, hypot};
@@ -34,36 +33,6 @@ const SETTLED_S: f32 = 5e-8;
 const NEARLY_SETTLED_S: f32 = 1e-5;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
-
-/// Limits of acceleration and jerk in units per second.
-#[derive(Clone, Copy, Debug)]
-pub struct AccelerationLimits {
-    /// Of translation and rotation, per second squared.
-    pub acceleration: Speeds,
-    /// The same per second cubed.
-    pub jerk: Speeds,
-}
-
-impl AccelerationLimits {
-    /// Those of ordinary motion.
-    #[inline(never)]
-    pub fn new(constraints: &Constraints) -> Self {
-        let limits = &constraints.limits;
-        let speeds = |mm_s: f64, deg_s: f64| constraints.speeds(mm_s, deg_s);
-        Self {
-            acceleration: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
-            jerk: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
-        }
-    }
-
-    /// With acceleration and jerk times these.
-    pub fn scaled(&self, acceleration: f32, jerk: f32) -> Self {
-        Self {
-            acceleration: self.acceleration.scaled(acceleration),
-            jerk: self.jerk.scaled(jerk),
-        }
-    }
-}
 
 /// A change of velocity, with everything over the limits of acceleration.
 pub struct VelocityProfile {
@@ -80,7 +49,7 @@ pub struct VelocityProfile {
 impl VelocityProfile {
     /// From a state to a velocity, track radii and rad per second.
     #[inline(never)]
-    pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &AccelerationLimits) -> Self {
+    pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &MotionLimits) -> Self {
         let over = [
             1.0 / limits.acceleration.linear,
             1.0 / limits.acceleration.angular,
@@ -245,7 +214,7 @@ impl VelocityProfile {
 
     /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
     /// first segment lasts this long.
-    pub fn direction(&self, limits: &AccelerationLimits, first_s: f32) -> [f32; 3] {
+    pub fn direction(&self, limits: &MotionLimits, first_s: f32) -> [f32; 3] {
         let w = self.left_after(first_s / 2.0);
         let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
         let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
@@ -319,7 +288,11 @@ mod tests {
 
     const HZ: f32 = 20_000.0;
     /// 40 track radii and 126 rad per second squared; a hundred times as much per second cubed.
-    const LIMITS: AccelerationLimits = AccelerationLimits {
+    const LIMITS: MotionLimits = MotionLimits {
+        speed: Speeds {
+            linear: 2.0,
+            angular: 6.3,
+        },
         acceleration: Speeds {
             linear: 40.0,
             angular: 126.0,

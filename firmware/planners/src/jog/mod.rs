@@ -20,13 +20,11 @@
 //! |---|---|
 //! | here | velocities tried until one can be reached and given up again |
 //! | `request` | the velocity wanted, the limits, the state that is left |
-//! | `travel_time` | how long a steady motion can go before the edge or a bound |
 //! | `trajectory` | the way to the velocity, the velocity held, the way to rest |
 //! | `hold_time` | how long it is held, and how much slower it has to be |
 
 mod request;
 mod trajectory;
-mod travel_time;
 
 use motion::check::{Budget, PlanCheck, is_over};
 use motion::constraints::Constraints;
@@ -76,7 +74,7 @@ fn write(
     let from_rest = matches!(plan.start, PlanStart::Rest(_));
     // Out of an urgent stop only once it is over: its acceleration is more than a jog may have.
     let acceleration = Speeds::of(&now.motion.a);
-    if is_over(acceleration, request.acceleration_limits.acceleration) {
+    if is_over(acceleration, request.limits.acceleration) {
         return Err(RetargetError::NeedsStop);
     }
     let mut wanted = request.velocity;

@@ -3,12 +3,13 @@
 
 use super::request::{InitialState, JogRequest};
 use heapless::Vec;
+use motion::constraints::MotionLimits;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::MotionState;
 use motion::plan::cubic_segment::per_second;
 use motion::plan::quantise::velocity_pieces;
 use motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
-use motion::profile::velocity::{AccelerationLimits, VelocityProfile};
+use motion::profile::velocity::VelocityProfile;
 use motion::refusal::RetargetError;
 use number::float::{FloatMinMax, ticks_to_f32, truncate};
 
@@ -23,7 +24,7 @@ pub(super) struct Jog {
     /// Ticks that bring the velocity back to zero.
     pub(super) brake: [u64; 3],
     from_rest: bool,
-    pub(super) acceleration_limits: AccelerationLimits,
+    pub(super) limits: MotionLimits,
     pub(super) radius: f32,
 }
 
@@ -59,7 +60,7 @@ impl Jog {
                 change(&target, &limits).ticks(hz)
             },
             from_rest,
-            acceleration_limits: limits,
+            limits,
             radius,
         })
     }
@@ -127,7 +128,7 @@ impl Jog {
 }
 
 /// The change of velocity by `velocity`, to it or back.
-pub(super) fn change(velocity: &[f32; 3], limits: &AccelerationLimits) -> VelocityProfile {
+pub(super) fn change(velocity: &[f32; 3], limits: &MotionLimits) -> VelocityProfile {
     VelocityProfile::new(&MotionState::default(), velocity, limits)
 }
 
@@ -206,7 +207,7 @@ impl Jog {
         for _ in 0..10 {
             let share = (low + high) / 2.0;
             let velocity = per_second(&slower(share), request.hz);
-            let brake = change(&velocity, &self.acceleration_limits);
+            let brake = change(&velocity, &self.limits);
             if share * brake.times_s().iter().sum::<f32>() <= short.seconds {
                 low = share;
             } else {

@@ -26,7 +26,6 @@ pub(crate) mod segments;
 pub(super) mod topp;
 
 use disk::check_line;
-use heapless::Vec;
 use jerk_ramps::write_path_profile;
 use motion::constraints::Constraints;
 use motion::constraints::PathLimits;
@@ -54,9 +53,8 @@ pub fn plan_line(
     let mut plan = Plan {
         id,
         start: PlanStart::Rest(from),
-        pieces: Vec::new(),
-        nudge: [0; 3],
         end: to,
+        ..Plan::default()
     };
     if from == to {
         return Ok(plan);

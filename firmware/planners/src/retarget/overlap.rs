@@ -2,10 +2,8 @@
 //! and rotation, in floats: what the pivots and the workspace ask for is left to the check.
 
 use super::ending::{Corner, Leaving};
-use motion::constraints::PathLimits;
-use motion::constraints::Speeds;
+use motion::constraints::{MotionLimits, PathLimits, Speeds};
 use motion::profile::rest_to_rest::RestToRestProfile;
-use motion::profile::velocity::AccelerationLimits;
 use motion::tolerances::OVERLAP;
 use number::float::{FloatMinMax, hypot, ticks_to_f32};
 
@@ -33,12 +31,11 @@ impl Line {
             return None;
         }
         let (length, turn) = (hypot(way[0], way[1]), way[2].abs());
-        let AccelerationLimits { acceleration, jerk } = &leaving.limits;
         let least = |limit: &Speeds| (limit.linear / length).fmin(limit.angular / turn);
         let limits = PathLimits {
-            rate: least(&leaving.speed),
-            acceleration: least(acceleration) * share,
-            jerk: least(jerk) * share,
+            rate: least(&leaving.limits.speed),
+            acceleration: least(&leaving.limits.acceleration) * share,
+            jerk: least(&leaving.limits.jerk) * share,
         };
         let profile = RestToRestProfile::new(&limits, leaving.hz)?;
         Some(Self { way, profile })
@@ -118,9 +115,7 @@ impl Part {
 
 /// What the sum keeps to.
 pub(super) struct Overlap {
-    speed: Speeds,
-    acceleration: Speeds,
-    jerk: Speeds,
+    limits: MotionLimits,
     hz: f32,
 }
 
@@ -129,11 +124,10 @@ const HALVINGS: usize = 3;
 
 impl Overlap {
     pub fn new(leaving: &Leaving<'_>) -> Self {
-        let AccelerationLimits { acceleration, jerk } = leaving.limits;
+        let mut limits = leaving.limits.scaled(OVERLAP, OVERLAP);
+        limits.speed = limits.speed.scaled(OVERLAP);
         Self {
-            speed: leaving.speed.scaled(OVERLAP),
-            acceleration: acceleration.scaled(OVERLAP),
-            jerk: jerk.scaled(OVERLAP),
+            limits,
             hz: leaving.hz,
         }
     }
@@ -219,10 +213,10 @@ impl Overlap {
             let kept = |vector: &[f32; 3], times: f32, limit: &Speeds| {
                 part.is_within(vector, way, times, limit)
             };
-            if !(kept(&a.j, b.jerk, &self.jerk)
-                && kept(&acc, acceleration, &self.acceleration)
-                && kept(&v, rate, &self.speed)
-                && kept(&v_middle, rate_middle, &self.speed))
+            if !(kept(&a.j, b.jerk, &self.limits.jerk)
+                && kept(&acc, acceleration, &self.limits.acceleration)
+                && kept(&v, rate, &self.limits.speed)
+                && kept(&v_middle, rate_middle, &self.limits.speed))
             {
                 return false;
             }

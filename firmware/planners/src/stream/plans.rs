@@ -3,7 +3,6 @@
 use super::final_stop::final_stop;
 use super::spline::curve_point;
 use super::state::{PART_BITS, SentPlan, Stream};
-use heapless::Vec;
 use motion::check::instant::{InstantCheck, InstantState};
 use motion::constraints::Constraints;
 use motion::constraints::Speeds;
@@ -36,9 +35,8 @@ impl Stream {
         let mut plan = Plan {
             id,
             start,
-            pieces: Vec::new(),
-            nudge: [0; 3],
             end: rest,
+            ..Plan::default()
         };
         let (state, now) = self.knots(&mut plan, from, &instant_check)?;
         let splice = plan.ticks();
@@ -75,9 +73,8 @@ impl Stream {
             for piece in self.pieces(&state) {
                 let jerk = per_second(&piece.jerk, instant_check.hz);
                 let jerk = Speeds::of(&each!(i => jerk[i] * instant_check.hz * instant_check.hz));
-                if jerk.linear > instant_check.jerk_limit.linear * JERK_TOLERANCE
-                    || jerk.angular > instant_check.jerk_limit.angular * JERK_TOLERANCE
-                {
+                let most = instant_check.limits.jerk.scaled(JERK_TOLERANCE);
+                if jerk.linear > most.linear || jerk.angular > most.angular {
                     return Err(Refusal::Jerk);
                 }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
