@@ -11,7 +11,7 @@ use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::velocity_pieces;
-use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
+use motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
 use motion::profile::velocity::{VelocityProfile, stop_speeds};
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
@@ -52,15 +52,8 @@ pub fn plan_stop(
         return None;
     }
     let state = of.state_after(axes, at);
-    let mut plan = Plan {
-        id,
-        start: PlanStart::Splice {
-            plan: of.id,
-            tick: at,
-        },
-        nudge: of.nudge,
-        ..Plan::default()
-    };
+    let mut plan = Plan::new(id, of.left_at(at), of.end);
+    plan.nudge = of.nudge;
     write_stop(&mut plan, &state, whole - at, constraints, stop)?;
     Some(plan)
 }

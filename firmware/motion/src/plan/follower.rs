@@ -2,6 +2,7 @@
 
 use super::axis_state::{AxisState, TickIncrement};
 use super::fault_stop::{FaultStop, TimeScaling};
+use super::motion_plan::same;
 use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
 use super::{Plan, PlanStart, Position};
 use core::borrow::Borrow;
@@ -217,9 +218,4 @@ impl PlanFollower {
         self.moving = false;
         self.splice = None;
     }
-}
-
-/// Equality, word by word: that of arrays is a call that compares bytes.
-fn same(a: &Position, b: &Position) -> bool {
-    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
 }

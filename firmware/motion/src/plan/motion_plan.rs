@@ -97,17 +97,30 @@ pub struct Plan {
 impl Default for Plan {
     /// Nothing to do, at the origin.
     fn default() -> Self {
-        Self {
-            id: 0,
-            start: PlanStart::Rest([0; 3]),
-            pieces: Vec::new(),
-            nudge: [0; 3],
-            end: [0; 3],
-        }
+        Self::new(0, PlanStart::Rest([0; 3]), [0; 3])
     }
 }
 
 impl Plan {
+    /// Without pieces yet.
+    // Written where it stays: a plan has more than a thousand bytes, which would be copied.
+    #[inline]
+    pub const fn new(id: u32, start: PlanStart, end: Position) -> Self {
+        Self {
+            id,
+            start,
+            pieces: Vec::new(),
+            nudge: [0; 3],
+            end,
+        }
+    }
+
+    /// The start of a plan that leaves this one at a tick.
+    pub fn left_at(&self, tick: u64) -> PlanStart {
+        let plan = self.id;
+        PlanStart::Splice { plan, tick }
+    }
+
     /// Duration in ticks.
     pub fn ticks(&self) -> u64 {
         self.pieces.iter().map(|piece| piece.ticks).sum()
@@ -163,12 +176,18 @@ pub fn write_sum(first: &[Piece], second: &[Piece], delay: u64, pieces: &mut Pie
 pub fn push_piece(pieces: &mut Pieces, piece: Piece) -> Option<()> {
     match pieces.last_mut() {
         _ if piece.ticks == 0 => Some(()),
-        Some(last) if last.jerk == piece.jerk => {
+        Some(last) if same(&last.jerk, &piece.jerk) => {
             last.ticks += piece.ticks;
             Some(())
         }
         _ => pieces.push(piece).ok(),
     }
+}
+
+/// Equality, word by word: that of arrays is a call that compares bytes.
+#[inline]
+pub(super) fn same(a: &[i64; 3], b: &[i64; 3]) -> bool {
+    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
 }
 
 /// Where one of the motions is.

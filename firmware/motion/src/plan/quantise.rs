@@ -9,6 +9,7 @@
 
 use super::axis_state::{AxisState, JERK_STEP, SUB_BITS};
 use super::motion_plan::Plan;
+use super::motion_plan::same;
 use super::motion_plan::{MAX_PIECES, Piece, Position};
 use heapless::Vec;
 use number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
@@ -39,7 +40,7 @@ pub fn velocity_pieces(
         pieces[2].jerk[i] = last;
         pieces[3].jerk[i] = axis.acceleration.wrapping_add(ramps).wrapping_neg();
     }
-    if pieces[3].jerk == [0; 3] {
+    if same(&pieces[3].jerk, &[0; 3]) {
         pieces[3].ticks = 0;
     }
     pieces

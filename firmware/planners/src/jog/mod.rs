@@ -50,11 +50,7 @@ pub fn plan_jog(
     constraints: &Constraints,
 ) -> Result<Plan, RetargetError> {
     // Written where it stays: a plan has a thousand bytes.
-    let mut planned = Ok(Plan {
-        id,
-        start,
-        ..Plan::default()
-    });
+    let mut planned = Ok(Plan::new(id, start, [0; 3]));
     if let Ok(plan) = &mut planned
         && let Err(no) = write(plan, state, velocity, constraints)
     {

@@ -9,7 +9,7 @@ use motion::plan::axis_state::{AxisState, SUB_BITS};
 use motion::plan::cubic_segment::MotionState;
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::JOG_RADII;
-use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
+use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate_f64};
 
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
@@ -58,7 +58,7 @@ impl<'a> JogRequest<'a> {
             hz: limits.rate_hz as f32,
             pivot_bound: PivotBound::new(constraints),
             usable: constraints.usable_radius as f32,
-            velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
+            velocity: [x * per_mm, y * per_mm, turning * per_deg].map(truncate_f64),
             limits: constraints.motion_limits(),
         })
     }

@@ -28,8 +28,8 @@ pub(super) struct Jog {
     pub(super) radius: f32,
 }
 
-/// A velocity held, and the three pieces and the tick that end it.
-type HoldThenStop = Vec<Piece, 5>;
+/// The four pieces of the way to a velocity, and the five in which it is held and given up.
+type JogPieces = Vec<Piece, { 4 + 5 }>;
 
 impl Jog {
     /// Writes the pieces of the way there, too.
@@ -69,19 +69,16 @@ impl Jog {
     pub(super) fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
         // What rounding leaves of a velocity is not given up: the nudge takes it.
         let moves = self.wanted.map(|velocity| velocity != 0);
-        let translating = self.hold_then_stop(&plan.pieces, [moves[0], moves[1], false], point);
-        let turning = self.hold_then_stop(&plan.pieces, [false, false, moves[2]], turn);
-        let mut way: Vec<Piece, { 4 + 5 }> = Vec::new();
-        // Four, and five.
+        let (mut way, mut turning) = (JogPieces::new(), JogPieces::new());
+        // Four.
         let _ = way.extend_from_slice(&plan.pieces);
-        let _ = way.extend_from_slice(&translating);
+        self.hold_then_stop(&plan.pieces, [moves[0], moves[1], false], point, &mut way);
+        self.hold_then_stop(&plan.pieces, [false, false, moves[2]], turn, &mut turning);
+        let translating = way.get(plan.pieces.len()..).unwrap_or_default();
         // Twice five, and four.
         let _ = write_sum(&way, &turning, self.ramp, &mut plan.pieces);
         let ticks = plan.ticks();
-        for (i, pieces) in [&translating, &translating, &turning]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, pieces) in [translating, translating, &turning].into_iter().enumerate() {
             let rest = self.rest(i, pieces, ticks - self.ramp);
             plan.nudge[i] = -rest.velocity;
             plan.end[i] = rest.rest_position(ticks, -rest.velocity);
@@ -101,11 +98,16 @@ impl Jog {
         axis.after(ticks, 0, 0)
     }
 
-    /// Of the axes that `are_meant`, after the pieces of the way there.
-    fn hold_then_stop(&self, ramp: &[Piece], are_meant: [bool; 3], hold: u64) -> HoldThenStop {
-        let mut pieces = HoldThenStop::new();
+    /// Adds the pieces of the axes that `are_meant`, after the pieces of the way there.
+    fn hold_then_stop(
+        &self,
+        ramp: &[Piece],
+        are_meant: [bool; 3],
+        hold: u64,
+        pieces: &mut JogPieces,
+    ) {
         if are_meant == [false; 3] {
-            return pieces;
+            return;
         }
         // Five of five.
         let _ = pieces.push(Piece {
@@ -123,7 +125,6 @@ impl Jog {
             let axes = each!(i => if are_meant[i] { self.steady[i] } else { still });
             let _ = pieces.extend_from_slice(&velocity_pieces(&axes, &[0; 3], self.brake));
         }
-        pieces
     }
 }
 

@@ -50,12 +50,7 @@ pub fn plan_line(
     constraints: &Constraints,
 ) -> Result<Plan, Refusal> {
     check_line(&from, &to, constraints)?;
-    let mut plan = Plan {
-        id,
-        start: PlanStart::Rest(from),
-        end: to,
-        ..Plan::default()
-    };
+    let mut plan = Plan::new(id, PlanStart::Rest(from), to);
     if from == to {
         return Ok(plan);
     }

@@ -37,7 +37,7 @@ use motion::check::target::check_target;
 use motion::check::{Budget, PlanCheck};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
-use motion::plan::{Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use motion::plan::{Plan, Position, nudge_to, state_after_pieces};
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::SLOWER_FOR_PIVOTS;
 use number::sqrt_f32;
@@ -127,15 +127,7 @@ pub fn plan_retarget(
     }
     let mut ended = Ended::default();
     let mut candidate = soonest(&leaving, &search, &mut ended).ok_or(RetargetError::NeedsStop)?;
-    let mut plan = Plan {
-        id,
-        start: PlanStart::Splice {
-            plan: of.id,
-            tick: at,
-        },
-        end: to,
-        ..Plan::default()
-    };
+    let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
     let mut budget = Budget {
         intervals: search.intervals,

@@ -32,12 +32,7 @@ impl Stream {
             }
             None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
-        let mut plan = Plan {
-            id,
-            start,
-            end: rest,
-            ..Plan::default()
-        };
+        let mut plan = Plan::new(id, start, rest);
         let (state, now) = self.knots(&mut plan, from, &instant_check)?;
         let splice = plan.ticks();
         if self.complete {
