@@ -56,7 +56,7 @@ impl<'a> InstantCheck<'a> {
     /// Looks at a state; an error where the platform's centre is not inside the track or the point out of its bounds.
     pub fn evaluate(&self, axes: &[AxisState; 3]) -> Result<InstantState, Refusal> {
         for (axis, (at, [low, high])) in axes.iter().zip(&self.constraints.bounds).enumerate() {
-            if !(low..=high).contains(&&at.rounded()) {
+            if !(*low..=*high).contains(&at.rounded()) {
                 return Err(Refusal::OutOfBounds { axis });
             }
         }

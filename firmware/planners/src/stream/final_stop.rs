@@ -75,7 +75,7 @@ fn walk(
                 continue;
             }
             let now = instant_check.evaluate(&axes).ok()?;
-            if !instant_check.is_inside(&before, &now, ticks as f32 / instant_check.hz) {
+            if !instant_check.is_inside(&before, &now, ticks_to_f32(ticks) / instant_check.hz) {
                 return None;
             }
             worst = worst.fmax(now.pivots[0]).fmax(now.pivots[1]);

@@ -11,6 +11,7 @@ use motion::plan::cubic_segment::per_second;
 use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use motion::refusal::Refusal;
 use motion::tolerances::JERK_TOLERANCE;
+use number::float::ticks_to_f32;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
 pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
@@ -74,7 +75,7 @@ impl Stream {
                 }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
                 let now = instant_check.evaluate(&state)?;
-                instant_check.check(&before, &now, piece.ticks as f32 / instant_check.hz)?;
+                instant_check.check(&before, &now, ticks_to_f32(piece.ticks) / instant_check.hz)?;
                 before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
@@ -130,12 +131,11 @@ impl Stream {
     #[inline(never)]
     fn target(&self, place: usize) -> Position {
         let last = self.targets.len() - 1;
-        // There is one always: the start, or the last.
-        self.targets
-            .iter()
-            .nth(place.min(last))
-            .copied()
-            .unwrap_or_default()
+        match self.targets.get(place.min(last)) {
+            Some(target) => each!(i => target[i]),
+            // There is one always: the start, or the last.
+            None => Position::default(),
+        }
     }
 
     fn is_at_the_end(&self) -> bool {
