@@ -23,12 +23,10 @@ pub struct PlanCheck {
     hz: f32,
 }
 
-/// Limits of translation and rotation.
+/// Limits of translation and rotation, and those with which a stop brakes.
 struct Limits {
     motion: MotionLimits,
-    /// With which a stop brakes, and the same for a bound of its way.
-    stop: MotionLimits,
-    braking: StopLimits,
+    stop: StopLimits,
 }
 
 /// An interval of a piece.
@@ -85,8 +83,7 @@ impl PlanCheck {
                 acceleration: stop.acceleration.max(kept(&now.a)),
                 jerk: stop.jerk,
             },
-            stop,
-            braking: StopLimits::new(&stop),
+            stop: StopLimits::new(stop),
         };
         Self {
             motion_limits: Some(motion_limits),
@@ -129,7 +126,9 @@ impl PlanCheck {
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
-            self.check_jerk(jerk)?;
+            if let Some(limits) = &self.motion_limits {
+                within_limit(jerk, &limits.motion.jerk, Violation::Acceleration)?;
+            }
             if piece.ticks == 1 {
                 // What a tick changes does not show, nor what some of them do, one after the other.
                 self.evaluate(&segment, piece.ticks, to);
@@ -235,16 +234,6 @@ impl PlanCheck {
         within(rate / rate_limit, Violation::PivotRate)
     }
 
-    fn check_jerk(&self, [linear, angular]: [f32; 2]) -> Result<(), Violation> {
-        let Some(motion_limits) = &self.motion_limits else {
-            return Ok(());
-        };
-        within(
-            part(linear, angular, &motion_limits.motion.jerk),
-            Violation::Acceleration,
-        )
-    }
-
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
     /// try: zero where it is broken at an end.
     fn check_interval(
@@ -271,51 +260,21 @@ impl PlanCheck {
         [from, to]: [&IntervalEnd; 2],
         [sizes, moving]: [&IntervalBounds; 2],
     ) -> Result<f32, Violation> {
-        if let Some(motion_limits) = &self.motion_limits {
-            let [linear, angular] = sizes.v;
-            within(
-                part(linear, angular, &motion_limits.motion.speed),
-                Violation::Speed,
-            )?;
-            let [linear, angular] = sizes.a;
-            within(
-                part(linear, angular, &motion_limits.motion.acceleration),
-                Violation::Acceleration,
-            )?;
+        if let Some(Limits { motion, .. }) = &self.motion_limits {
+            within_limit(sizes.v, &motion.speed, Violation::Speed)?;
+            within_limit(sizes.a, &motion.acceleration, Violation::Acceleration)?;
         }
         let eighth = interval.seconds * interval.seconds / 8.0;
         let rise = both!(k => sizes.a[k] * eighth);
         (self.workspace).check_bounds(interval.bound_distances, &from.sample, &to.sample, rise)?;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
         let radius = self.workspace.check_disk(furthest)?;
-        if let Some(motion_limits) = &self.motion_limits {
-            self.check_stop(interval, to, motion_limits)?;
+        if let Some(Limits { stop, .. }) = &self.motion_limits {
+            (self.workspace)
+                .check_stop(interval.segment, interval.bound_distances, to, stop)
+                .map_err(|_| Violation::NoRoomToStop)?;
         }
         Ok(radius)
-    }
-
-    /// A stop from here.
-    fn check_stop(
-        &self,
-        interval: &Interval<'_>,
-        at: &IntervalEnd,
-        motion_limits: &Limits,
-    ) -> Result<(), Violation> {
-        if self.workspace.stop_is_clear_of_edges(
-            interval.bound_distances,
-            at,
-            &motion_limits.braking,
-        ) {
-            return Ok(());
-        }
-        (self.workspace)
-            .check_stop(
-                interval.segment,
-                interval.bound_distances,
-                &at.sample,
-                &motion_limits.stop,
-            )
-            .map_err(|_| Violation::NoRoomToStop)
     }
 
     fn check_pivots(
@@ -387,6 +346,15 @@ fn part(linear: f32, angular: f32, limit: &Speeds) -> f32 {
 pub fn is_over(value: Speeds, limit: Speeds) -> bool {
     const MORE: f32 = 1.0 + 2.0 * (PLAN_SLACK - 1.0);
     part(value.linear, value.angular, &limit) > MORE
+}
+
+/// The same of translation and rotation.
+fn within_limit(
+    [linear, angular]: [f32; 2],
+    limit: &Speeds,
+    broken: fn(f32) -> Violation,
+) -> Result<(), Violation> {
+    within(part(linear, angular, limit), broken)
 }
 
 /// The part of a limit that is used is not over one.

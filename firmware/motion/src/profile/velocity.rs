@@ -183,10 +183,8 @@ impl VelocityProfile {
     /// P over the limits in so much time.
     fn peak(&self, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
         let scale = 1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
-        {
-            let w = self.left_after(t1 / 2.0);
-            each!(i => w[i] * scale)
-        }
+        let w = self.left_after(t1 / 2.0);
+        each!(i => w[i] * scale)
     }
 
     /// The part of the limit that P comes to in so much time: jerk alone may end at less than all of it.
