@@ -10,8 +10,8 @@ use motion::check::{Budget, PlanCheck, is_over};
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::velocity_pieces;
-use motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
+use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
+use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::{VelocityProfile, stop_speeds};
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
@@ -120,7 +120,7 @@ fn write_stop(
         if apart {
             write_apart(&mut plan.pieces, state, &now, &limits, hz);
         } else {
-            write_together(&mut plan.pieces, state, ticks);
+            write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
@@ -162,15 +162,6 @@ fn write_stop(
 fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, limit: Speeds) -> bool {
     let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
     is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
-}
-
-/// Writes the pieces that bring all axes to rest in so many ticks.
-pub(super) fn write_together(pieces: &mut Pieces, state: &[AxisState; 3], ticks: [u64; 3]) {
-    pieces.clear();
-    for piece in velocity_pieces(state, &[0; 3], ticks) {
-        // Four of many.
-        let _ = push_piece(pieces, piece);
-    }
 }
 
 /// The same where translation and rotation each brake as soon as they can.

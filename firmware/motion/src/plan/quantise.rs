@@ -8,9 +8,7 @@
 //! as the plan's nudge.
 
 use super::axis_state::{AxisState, JERK_STEP, SUB_BITS};
-use super::motion_plan::Plan;
-use super::motion_plan::same;
-use super::motion_plan::{MAX_PIECES, Piece, Position};
+use super::motion_plan::{MAX_PIECES, Piece, Pieces, Plan, Position, push_piece, same};
 use heapless::Vec;
 use number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
 use number::round_ties_even;
@@ -44,6 +42,20 @@ pub fn velocity_pieces(
         pieces[3].ticks = 0;
     }
     pieces
+}
+
+/// Writes them in place of what there is.
+pub fn write_velocity_pieces(
+    pieces: &mut Pieces,
+    state: &[AxisState; 3],
+    wanted: &[i64; 3],
+    ticks: [u64; 3],
+) {
+    pieces.clear();
+    for piece in velocity_pieces(state, wanted, ticks) {
+        // Four of many.
+        let _ = push_piece(pieces, piece);
+    }
 }
 
 /// Jerks of the first and the last segment.

@@ -49,22 +49,7 @@ pub fn plan_jog(
     velocity: &[f64; 3],
     constraints: &Constraints,
 ) -> Result<Plan, RetargetError> {
-    // Written where it stays: a plan has a thousand bytes.
-    let mut planned = Ok(Plan::new(id, start, [0; 3]));
-    if let Ok(plan) = &mut planned
-        && let Err(no) = write(plan, state, velocity, constraints)
-    {
-        planned = Err(no);
-    }
-    planned
-}
-
-fn write(
-    plan: &mut Plan,
-    state: &[AxisState; 3],
-    velocity: &[f64; 3],
-    constraints: &Constraints,
-) -> Result<(), RetargetError> {
+    let mut plan = Plan::new(id, start, [0; 3]);
     let request = JogRequest::new(velocity, constraints).map_err(RetargetError::Refused)?;
     let now = InitialState::new(state, &request);
     let from_rest = matches!(plan.start, PlanStart::Rest(_));
@@ -88,8 +73,8 @@ fn write(
                         .check(&plan.pieces, state, &mut { Budget::FOR_ANSWER })
                         .map_err(|_| RetargetError::NeedsStop)?;
                 }
-                jog.finish(plan, hold);
-                return Ok(());
+                jog.finish(&mut plan, hold);
+                return Ok(plan);
             }
             Err(_) if !from_rest => return Err(RetargetError::NeedsStop),
             Err(short) => wanted = jog.slower(&short, &request),

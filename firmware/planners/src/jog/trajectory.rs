@@ -7,8 +7,8 @@ use motion::constraints::MotionLimits;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::MotionState;
 use motion::plan::cubic_segment::per_second;
-use motion::plan::quantise::velocity_pieces;
-use motion::plan::{Piece, Pieces, Plan, push_piece, state_after_pieces, write_sum};
+use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
+use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::VelocityProfile;
 use motion::refusal::RetargetError;
 use number::float::{FloatMinMax, ticks_to_f32, truncate};
@@ -45,11 +45,7 @@ impl Jog {
         let (radius, limits) = request.limits_towards(now, &target)?;
         let ramp = VelocityProfile::new(&now.motion, &target, &limits).ticks(hz);
         let from_rest = now.motion.is_at_rest();
-        pieces.clear();
-        for piece in velocity_pieces(state, &wanted, ramp) {
-            // Four of many.
-            let _ = push_piece(pieces, piece);
-        }
+        write_velocity_pieces(pieces, state, &wanted, ramp);
         Ok(Self {
             wanted,
             steady: state_after_pieces(state, pieces, &[0; 3]),

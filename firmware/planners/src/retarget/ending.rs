@@ -5,7 +5,7 @@ use motion::check::is_over;
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::velocity_pieces;
+use motion::plan::quantise::write_velocity_pieces;
 use motion::plan::{
     MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
 };
@@ -121,9 +121,8 @@ impl<'a> Leaving<'a> {
             Ending::Stop { acceleration, jerk } => {
                 let limits = self.limits.scaled(acceleration, jerk);
                 let profile = VelocityProfile::new(&self.now, &[0.0; 3], &limits);
-                velocity_pieces(&self.state, &[0; 3], profile.ticks(self.hz))
-                    .into_iter()
-                    .try_for_each(|piece| push_piece(pieces, piece))?;
+                let ticks = profile.ticks(self.hz);
+                write_velocity_pieces(pieces, &self.state, &[0; 3], ticks);
             }
         }
         let mut now = Corner {

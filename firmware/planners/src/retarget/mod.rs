@@ -77,26 +77,21 @@ struct Search {
     intervals: usize,
 }
 
-impl Effort {
-    const fn search(self) -> Search {
-        match self {
-            Self::First => Search {
-                parts: &[Part::Whole],
-                endings: 2,
-                shares: 1,
-                checks: 1,
-                intervals: 5,
-            },
-            Self::All => Search {
-                parts: &[Part::Translation, Part::Rotation],
-                endings: ENDINGS.len(),
-                shares: 2,
-                checks: 4,
-                intervals: 60,
-            },
-        }
-    }
-}
+const FIRST: Search = Search {
+    parts: &[Part::Whole],
+    endings: 2,
+    shares: 1,
+    checks: 1,
+    intervals: 5,
+};
+
+const ALL: Search = Search {
+    parts: &[Part::Translation, Part::Rotation],
+    endings: ENDINGS.len(),
+    shares: 2,
+    checks: 4,
+    intervals: 60,
+};
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
 ///
@@ -113,7 +108,10 @@ pub fn plan_retarget(
     constraints: &Constraints,
     effort: Effort,
 ) -> Result<Plan, RetargetError> {
-    let search = effort.search();
+    let search = match effort {
+        Effort::First => &FIRST,
+        Effort::All => &ALL,
+    };
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
@@ -126,7 +124,7 @@ pub fn plan_retarget(
         return Err(RetargetError::NeedsStop);
     }
     let mut ended = Ended::default();
-    let mut candidate = soonest(&leaving, &search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut candidate = soonest(&leaving, search, &mut ended).ok_or(RetargetError::NeedsStop)?;
     let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
     let mut budget = Budget {
