@@ -75,6 +75,12 @@ impl Bench {
         self.session = Session::new();
     }
 
+    /// Ends the connection, and makes another one.
+    pub fn reconnect(&mut self) {
+        self.rig.disconnect(&mut self.session);
+        self.session = Session::new();
+    }
+
     /// Referenced, holding and settled.
     ///
     /// # Panics
