@@ -178,6 +178,17 @@ class Panels(OnServed):
             return "70.0 mm is the limit" in browser.text("#aim")
         browser.wait(told, lambda: f"the smaller disk; the page says {browser.text('#aim')}")
 
+    def test_looser_supervision_is_shown_as_long_as_it_lasts(self):
+        browser = self.page()
+        hidden = "return document.getElementById('notices').hidden"
+        self.assertTrue(browser.run(hidden))
+        for line in ("CCL 1 ADVANCED", "SPA 1 0x54500500 0.004"):
+            self.say(browser, line)
+        browser.wait_text("#notices", "looser than the reference: 0x54500500")
+        self.picture(browser, "looser")
+        self.say(browser, "RPA 1 0x54500500")
+        browser.wait(lambda: browser.run(hidden), "supervision as before")
+
     def test_what_was_chosen_survives_a_reload(self):
         browser = self.ready()
         browser.type("#step-mm", "2.5\t")

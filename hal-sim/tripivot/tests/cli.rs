@@ -175,6 +175,14 @@ fn impossible_values_are_refused() {
     assert_refused(&tripivot(&["check", "inf", "0", "0"]), "not finite");
     assert_refused(&tripivot(&["check", "0", "0", "nan"]), "not finite");
     assert_refused(&tripivot(&["inverse", "0", "inf", "0"]), "not finite");
+    assert_refused(
+        &tripivot(&["inverse", "0", "0", "1e300"]),
+        "not from -1000000000 to 1000000000",
+    );
+    assert_refused(
+        &tripivot(&["check", "0", "0", "-1e300"]),
+        "not from -1000000000 to 1000000000",
+    );
     assert_refused(&tripivot(&["direct", "0", "0", "0"]), "pivot");
     assert_refused(&tripivot(&["direct", "0", "240", "120"]), "pivot");
     let map = ["map", "rate", "--theta", "NaN", "--out", "x.svg"];

@@ -580,6 +580,38 @@ fn a_page_may_own_the_stage_as_long_as_it_is_there() {
     }
 }
 
+/// A computer that sleeps closes nothing: it answers no ping.
+#[test]
+fn a_page_that_is_silent_is_gone() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let (mut asleep, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    assert_eq!(asleep.ask("OWN 1 Ada")["error"], 0);
+    assert_eq!(owned(&mut other, "OWNER"), "Ada");
+    let end = Instant::now() + Duration::from_secs(5);
+    while owned(&mut other, "OWNER") != "(nobody)" {
+        assert!(Instant::now() < end, "it still owns the stage");
+    }
+    drop(asleep);
+}
+
+#[test]
+fn so_many_pages_are_served_and_no_more() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = stage.page();
+    let origin = format!("http://{}", page.address());
+    let pages: Vec<_> = (0..128)
+        .map(|_| connect(&page, Some(&origin)).unwrap())
+        .collect();
+    assert_eq!(connect(&page, Some(&origin)).err(), Some(503));
+    drop(pages);
+    let end = Instant::now() + PATIENCE;
+    while connect(&page, Some(&origin)).is_err() {
+        assert!(Instant::now() < end, "no place is free again");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
 #[test]
 fn a_jog_of_a_page_ends_without_it() {
     let stage = Stage::start("127.0.0.1:0");

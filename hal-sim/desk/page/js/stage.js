@@ -32,6 +32,8 @@ export class Stage extends EventTarget {
   /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
   mode = "off";
   fault = "";
+  /** What `FLT?` tells besides: supervision that is looser than the reference, kept values that are not in force. */
+  notices = [];
   /** Why nothing drives, if the machine is not commissioned. */
   notCommissioned = "";
   referenced = false;
@@ -151,7 +153,8 @@ export class Stage extends EventTarget {
     this.servo = fields(replies["SVO? X"]).X === "1";
     this.referenced = fields(replies["FRF? X"]).X === "1";
     this.velocity = Number(replies["VLS?"]);
-    const fault = replies["FLT?"] ?? "";
+    const [fault = "", ...notices] = (replies["FLT?"] ?? "").split("\n").map((line) => line.trim());
+    this.notices = notices.filter(Boolean);
     this.fault = fault.startsWith("0 ") ? "" : fault;
     const commissioned = replies["CMS?"] ?? "";
     this.notCommissioned = commissioned.startsWith("0 ") ? commissioned.slice(2) : "";

@@ -28,6 +28,7 @@ export function showState(stage) {
     lamp("lamp-settled", stage.settled);
     byId("first-step").hidden = stage.referenced || stage.notCommissioned !== "";
     byId("reference-again").hidden = !stage.referenced;
+    showNotices(stage);
   });
   byId("acknowledge").addEventListener("click", () => report(byId("said"), () => stage.link.ask("FLC"), "fault acknowledged"));
 }
@@ -47,6 +48,12 @@ function showFault(stage) {
   byId("alarm").hidden = !text;
   if (text) setText(byId("alarm-text"), text);
   byId("acknowledge").hidden = stage.mode !== "fault";
+}
+
+/** What stays until somebody changes it. */
+function showNotices({ notices }) {
+  byId("notices").hidden = notices.length === 0;
+  setText(byId("notices"), notices.join("; "));
 }
 
 function showPose({ measured, target, referenced }) {

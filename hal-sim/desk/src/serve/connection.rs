@@ -123,6 +123,11 @@ impl Connection {
         flags
     }
 
+    /// Whether nothing but a stop is taken from it.
+    pub fn is_stop_only(&self) -> bool {
+        self.kind == ConnectionKind::StopOnly
+    }
+
     /// Whether its end has been seen.
     pub const fn has_ended(&self) -> bool {
         self.ended.is_some()

@@ -49,7 +49,7 @@ pub use notice::Notice;
 pub use pace::Pacing;
 pub use printer::Printer;
 pub use protocol_check::ProtocolCheck;
-pub use remote::{REMOTE_MEANS, check_address, is_remote};
+pub use remote::{REMOTE_MEANS, REMOTE_PAGE_MEANS, check_address, is_remote};
 pub use server::Server;
 
 /// What to serve, and where.
@@ -75,7 +75,9 @@ pub enum ServeError {
         error: io::Error,
     },
     /// Other machines can reach the address, and nobody has allowed that.
-    #[error("{0}: {REMOTE_MEANS}; if that is meant, say --allow-remote")]
+    #[error(
+        "{0}: other machines can reach this address, and the command language knows no password; if that is meant, say --allow-remote"
+    )]
     Remote(String),
     /// There is no pseudo-terminal to be had.
     #[error("cannot open a pseudo-terminal: {0}")]

@@ -7,6 +7,9 @@ use super::ServeError;
 /// What listening at an address that others reach means.
 pub const REMOTE_MEANS: &str = "anybody who reaches this address can drive the stage: the command language knows no password and is not encrypted";
 
+/// What a page at such an address means.
+pub const REMOTE_PAGE_MEANS: &str = "other machines can reach the page, which asks them for its password; nothing is encrypted unless a proxy with TLS stands in front (--public-url)";
+
 /// Whether other machines can reach it. An address that names nothing is for whoever listens there to refuse.
 #[must_use]
 pub fn is_remote(address: &str) -> bool {

@@ -18,7 +18,7 @@ use super::{Controller, Notice, ServeError, ServeOptions};
 
 /// Clients at once.
 const CLIENTS: usize = 64;
-/// Connections besides, from which nothing but a stop is taken.
+/// Connections besides, from which nothing but a stop is taken: the next one takes the place of the oldest.
 const STOP_PLACES: usize = 4;
 /// How long no connection is accepted after one could not be.
 const ACCEPT_PAUSE: Duration = Duration::from_secs(1);
@@ -207,7 +207,7 @@ impl<C: Controller> Service<'_, C> {
                 PollFd::from_borrowed_fd(connection.port(), flags)
             })
             .collect();
-        if Instant::now() >= self.accept_from && self.has_place() {
+        if Instant::now() >= self.accept_from {
             ports.push(PollFd::new(&self.listener, PollFlags::IN));
         }
         if ports.is_empty() {
@@ -225,11 +225,6 @@ impl<C: Controller> Service<'_, C> {
             .take(self.connections.len())
             .filter(|(_, come)| !come.is_empty())
             .collect())
-    }
-
-    /// Whether one more can be accepted.
-    fn has_place(&self) -> bool {
-        self.connections.len() < CLIENTS + STOP_PLACES
     }
 
     /// Reads, carries out and writes what can be.
@@ -251,7 +246,7 @@ impl<C: Controller> Service<'_, C> {
         }
         let (say, controller) = (&mut *self.say, &mut *self.controller);
         (self.connections).retain_mut(|connection| connection.stays(now, controller, say));
-        if now >= self.accept_from && self.has_place() {
+        if now >= self.accept_from {
             self.accept(now);
         }
     }
@@ -262,6 +257,11 @@ impl<C: Controller> Service<'_, C> {
         match accepted {
             Ok((port, from)) => {
                 let name = from.to_string();
+                if self.connections.len() >= CLIENTS + STOP_PLACES {
+                    // What it has sent has been carried out.
+                    let oldest = self.connections.iter_mut().find(|one| one.is_stop_only());
+                    oldest.into_iter().for_each(Connection::break_off);
+                }
                 let kind = if self.connections.len() < CLIENTS {
                     (self.say)(Notice::Connected(name.clone()));
                     ConnectionKind::Client

@@ -36,6 +36,7 @@ mod bridge;
 mod guard;
 mod http;
 mod lesson;
+mod life;
 mod line;
 mod login;
 mod operator;

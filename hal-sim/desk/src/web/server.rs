@@ -14,7 +14,7 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use tokio::runtime;
-use tokio::sync::oneshot;
+use tokio::sync::{Semaphore, oneshot};
 
 use super::bridge::Bridge;
 use super::guard::Guard;
@@ -33,8 +33,13 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// What a handler of a WebSocket gets.
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
+/// WebSockets at once; a page has two.
+const SOCKETS: usize = 128;
+
 /// To pages of others.
 const ONLY_OWN: &str = "only the page of this server may connect\n";
+/// To one page too many.
+const TOO_MANY: &str = "there are as many pages of this stage as it serves at once\n";
 
 /// A page that is served until it is dropped.
 pub struct Page {
@@ -95,6 +100,7 @@ impl Page {
                 Operator::start(bridge.clone())
             },
             bridge,
+            sockets: Arc::new(Semaphore::new(SOCKETS)),
         };
         let (stop, stopped) = oneshot::channel::<()>();
         let thread = thread::Builder::new().name("http".into()).spawn(move || {
@@ -217,6 +223,13 @@ fn upgraded<F: Future<Output = ()> + Send + 'static>(
     if !shared.guard.allows_origin(headers) {
         return (StatusCode::FORBIDDEN, ONLY_OWN).into_response();
     }
+    let Ok(place) = Arc::clone(&shared.sockets).try_acquire_owned() else {
+        return (StatusCode::SERVICE_UNAVAILABLE, TOO_MANY).into_response();
+    };
+    let serve = async move |socket| {
+        serve(socket).await;
+        drop(place);
+    };
     match upgrade {
         Ok(upgrade) => upgrade.max_message_size(message_bytes).on_upgrade(serve),
         Err(rejection) => rejection.into_response(),

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use tokio::sync::Semaphore;
+
 use super::bridge::Bridge;
 use super::guard::Guard;
 use super::operator::Operator;
@@ -14,4 +16,6 @@ pub(super) struct Shared {
     pub guard: Arc<Guard>,
     pub password: Option<Arc<Password>>,
     pub operator: Operator,
+    /// Places for WebSockets: each may have a thread and a connection to the controller.
+    pub sockets: Arc<Semaphore>,
 }

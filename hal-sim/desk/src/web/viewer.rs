@@ -1,7 +1,6 @@
 //! One browser: status and answers go out, requests come in.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::extract::ws::{Message, WebSocket};
 use serde::Serialize;
@@ -11,6 +10,7 @@ use tokio::time::timeout;
 
 use super::bridge::{Bridge, Way, json};
 use super::guard::Guard;
+use super::life::{Life, PATIENCE};
 use super::line::Answer;
 use super::operator::{Operator, Order};
 use super::request::{self, Refusal, Request, Wanted};
@@ -18,8 +18,6 @@ use crate::error_words::refused_with;
 
 /// Requests of a viewer that may be under way at once.
 const AT_ONCE: usize = 16;
-/// How long a viewer may take to read a message.
-const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What a request came to.
 #[derive(Serialize)]
@@ -73,16 +71,25 @@ pub(super) async fn serve(
     let you = json(&Reply::You { name: way.0.name() });
     // There is room.
     let _ = answers.try_send(you);
+    let mut life = Life::new();
     loop {
         let text = tokio::select! {
             // Requests first: a stop must not wait for the status.
             biased;
             message = socket.recv() => {
                 let Some(Ok(message)) = message else { return };
+                life.heard();
                 match take(message, &bridge, &way.0, &guard, &operator, &slots, &answers) {
                     Some(reply) => json(&reply),
                     None => continue,
                 }
+            }
+            ping = life.ping() => {
+                let Some(ping) = ping else { return };
+                if !send(&mut socket, ping).await {
+                    return;
+                }
+                continue;
             }
             Some(answer) = answered.recv() => answer,
             Ok(()) = hello.changed() => Arc::clone(&hello.borrow_and_update()),
@@ -92,11 +99,14 @@ pub(super) async fn serve(
                 Err(RecvError::Closed) => return,
             },
         };
-        let message = Message::Text(text.as_ref().into());
-        if !matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(()))) {
+        if !send(&mut socket, Message::Text(text.as_ref().into())).await {
             return;
         }
     }
+}
+
+async fn send(socket: &mut WebSocket, message: Message) -> bool {
+    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
 }
 
 /// Takes a message; the reply, where one can be given at once.

@@ -11,6 +11,17 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| NO_NUMBER.to_owned())
 }
 
+/// Largest length, mm, and angle, deg: beyond it too few digits are left to mean anything.
+const LARGEST: f64 = 1e9;
+
+/// A length, mm, or an angle, deg.
+pub(super) fn coordinate(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value.is_finite() && value.abs() > LARGEST => Err(not_within(&-LARGEST, &LARGEST)),
+        value => Ok(value),
+    }
+}
+
 /// A number from the first to the last of `range`.
 pub(super) fn within(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| {

@@ -11,7 +11,7 @@ use std::time::Duration;
 use super::arguments::{Access, Controller, View};
 use super::error::CliError;
 use super::signal::until_signal;
-use desk::serve::check_address;
+use desk::serve::{REMOTE_PAGE_MEANS, check_address};
 use desk::web::{Endpoint, Page, PageError, PageOptions, new_password};
 
 /// Where the page is unless it is told otherwise.
@@ -65,6 +65,9 @@ pub(super) fn page(
     endpoint: Endpoint,
 ) -> Result<Page, CliError> {
     let is_remote = check_address(address.unwrap_or(ADDRESS), access.allow_remote)?;
+    if is_remote {
+        writeln!(io::stdout(), "{REMOTE_PAGE_MEANS}").map_err(CliError::output)?;
+    }
     let password = password(access, is_remote)?;
     let options = |address: &str| PageOptions {
         address: address.to_owned(),

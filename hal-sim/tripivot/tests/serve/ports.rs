@@ -63,6 +63,18 @@ fn a_stop_finds_a_place_when_there_is_none() {
         let _ = late.port.read_to_end(&mut rest);
         assert_eq!(rest, b"");
     }
+    // Nor do many that come and say nothing stand in its way: each would have half a second.
+    assert_eq!(mover.ask("MOV X 60\n\x05"), "1\n");
+    let silent: Vec<_> = (0..60).map(|_| served.connect()).collect();
+    let begun = Instant::now();
+    served.connect().send("STP\n");
+    assert_eq!(mover.ask("WAC ONT? X = 1\nERR?\n"), "10\n");
+    assert!(
+        begun.elapsed() < Duration::from_secs(3),
+        "{:?}",
+        begun.elapsed()
+    );
+    drop(silent);
 }
 
 /// A stage whose lines take a millisecond each.

@@ -12,6 +12,10 @@ use crate::web::bridge::json;
 
 /// Entries that are kept.
 const KEPT: usize = 300;
+/// Commands that wait.
+const WAITS: [&str; 2] = ["WAC", "DEL"];
+/// Commands that a held button repeats.
+const HELD: [&str; 2] = ["JOG", "RCV"];
 /// Longest name that is taken over.
 const NAME_CHARACTERS: usize = 24;
 
@@ -40,14 +44,12 @@ impl Journal {
         }
     }
 
-    /// Notes a line, unless it only asks or waits.
+    /// Notes a line, unless it only asks or waits, or is what a held button has asked for already.
     pub fn note(&self, who: &str, line: &str, outcome: &str) {
         let word = line.split_whitespace().next().unwrap_or_default();
         let asks = word.ends_with('?') || (word.starts_with('#') && word != "#24");
-        let waits = ["WAC", "DEL"]
-            .iter()
-            .any(|one| word.eq_ignore_ascii_case(one));
-        if asks || waits {
+        let is = |words: &[&str]| words.iter().any(|one| word.eq_ignore_ascii_case(one));
+        if asks || is(&WAITS) {
             return;
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -64,6 +66,12 @@ impl Journal {
             outcome,
         });
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let without_time =
+            |entry: &Arc<str>| entry.split_once("\"who\"").map(|(_, rest)| rest.to_owned());
+        if is(&HELD) && (kept.back()).is_some_and(|last| without_time(last) == without_time(&entry))
+        {
+            return;
+        }
         if kept.len() == KEPT {
             kept.pop_front();
         }
@@ -93,11 +101,15 @@ mod tests {
         for number in 0..=KEPT {
             journal.note("Ada\n", &format!("MOV X {number}"), "done");
         }
+        // A held button is one entry; what is asked for twice is two.
+        for line in ["JOG X 5", "JOG X 5", "MVR X 1", "MVR X 1", "JOG X 5"] {
+            journal.note("Ada", line, "taken");
+        }
         journal.note("", "#24", "sent");
         let (kept, _) = journal.read();
         assert_eq!(kept.len(), KEPT);
         assert!(
-            kept[0].contains(r#""who":"Ada","line":"MOV X 2""#),
+            kept[0].contains(r#""who":"Ada","line":"MOV X 6""#),
             "{}",
             kept[0]
         );

@@ -1,27 +1,20 @@
-//! A page's second connection: the sequence and the log out, orders in. It is also how a page is known to live: it has to answer
-//! a ping every second, which a browser does by itself as long as it and its network live.
+//! A page's second connection: the sequence and the log out, orders in.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
 
 use axum::extract::ws::{Message, WebSocket};
 use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::time::{Instant, interval, timeout};
+use tokio::time::timeout;
 
 use super::Operator;
 use super::sequence_status::Order;
 use crate::web::guard::Guard;
+use crate::web::life::{Life, PATIENCE};
 
 /// Longest message: a script.
 pub(in crate::web) const MESSAGE_BYTES: usize = 256 << 10;
-/// Between two pings.
-const PING_EVERY: Duration = Duration::from_secs(1);
-/// Without an answer for so long a page is gone.
-const GONE_AFTER: Duration = Duration::from_millis(2500);
-/// How long it may take to read a message.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A message of a page.
 #[derive(Deserialize)]
@@ -59,13 +52,12 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
             return;
         }
     }
-    let mut pings = interval(PING_EVERY);
-    let mut heard = Instant::now();
+    let mut life = Life::new();
     loop {
         let message = tokio::select! {
             message = socket.recv() => {
                 let Some(Ok(message)) = message else { return };
-                heard = Instant::now();
+                life.heard();
                 if let Message::Text(text) = message
                     && let Some(order) = order(&text, guard, page)
                 {
@@ -79,12 +71,10 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
                 Err(RecvError::Lagged(_)) => continue,
                 Err(RecvError::Closed) => return,
             },
-            _ = pings.tick() => {
-                if heard.elapsed() > GONE_AFTER {
-                    return;
-                }
-                Message::Ping(axum::body::Bytes::new())
-            }
+            ping = life.ping() => match ping {
+                Some(ping) => ping,
+                None => return,
+            },
         };
         if !send(socket, message).await {
             return;

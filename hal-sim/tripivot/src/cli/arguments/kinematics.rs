@@ -4,20 +4,20 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::super::number::number;
+use super::super::number::coordinate;
 
 /// One pose on the command line.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseArguments {
     /// Centre along x, mm.
-    #[arg(value_parser = number)]
+    #[arg(value_parser = coordinate)]
     pub(in super::super) x: f64,
     /// Centre along y, mm.
-    #[arg(value_parser = number)]
+    #[arg(value_parser = coordinate)]
     pub(in super::super) y: f64,
     /// Orientation, deg, any number of turns.
-    #[arg(value_parser = number)]
+    #[arg(value_parser = coordinate)]
     pub(in super::super) theta: f64,
     /// Tell the result as one JSON document on standard output.
     ///
@@ -32,7 +32,7 @@ pub(in super::super) struct PoseArguments {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PoseRows {
     /// X and Y in mm, THETA in deg.
-    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
+    #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv", value_parser = coordinate)]
     pub(in super::super) numbers: Vec<f64>,
     /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3.
     ///
@@ -48,7 +48,7 @@ pub(in super::super) struct PoseRows {
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PivotRows {
     /// Angles of the pivots on the track, deg.
-    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv", value_parser = number)]
+    #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv", value_parser = coordinate)]
     pub(in super::super) numbers: Vec<f64>,
     /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta.
     ///
@@ -69,7 +69,7 @@ pub(in super::super) struct Map {
     #[arg(long, value_name = "FILE")]
     pub(in super::super) out: PathBuf,
     /// Orientation of the platform, deg.
-    #[arg(long, default_value_t = 0.0, value_parser = number)]
+    #[arg(long, default_value_t = 0.0, value_parser = coordinate)]
     pub(in super::super) theta: f64,
 }
 

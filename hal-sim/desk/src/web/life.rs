@@ -1,0 +1,41 @@
+//! Whether a page is still there: it has to answer a ping every second, which a browser does by itself as long as it and its
+//! network live. A computer that sleeps and a network that is gone close nothing.
+
+use std::time::Duration;
+
+use axum::body::Bytes;
+use axum::extract::ws::Message;
+use tokio::time::{Instant, Interval, interval};
+
+/// Between two pings.
+const PING_EVERY: Duration = Duration::from_secs(1);
+/// Without a sign of life for so long a page is gone.
+const GONE_AFTER: Duration = Duration::from_millis(2500);
+/// How long it may take to read a message.
+pub(super) const PATIENCE: Duration = Duration::from_secs(2);
+
+/// The signs of life of one WebSocket.
+pub(super) struct Life {
+    pings: Interval,
+    heard: Instant,
+}
+
+impl Life {
+    pub fn new() -> Self {
+        Self {
+            pings: interval(PING_EVERY),
+            heard: Instant::now(),
+        }
+    }
+
+    /// Something has come from it.
+    pub fn heard(&mut self) {
+        self.heard = Instant::now();
+    }
+
+    /// The next ping, when it is due; `None` when the page is gone.
+    pub async fn ping(&mut self) -> Option<Message> {
+        self.pings.tick().await;
+        (self.heard.elapsed() <= GONE_AFTER).then(|| Message::Ping(Bytes::new()))
+    }
+}
