@@ -93,15 +93,14 @@ pub fn tick(
         supply_counts: inputs.supply_counts,
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,
+        servo: state.servo_sample(slot),
     };
     recorder.observe(&sample());
     if let Some(fault_record) = &mut queues.fault_record {
         fault_record.observe(&sample());
     }
     // Made anew, so that a tick that records nothing has it in registers only.
-    if queues.recorder.is_active() {
-        queues.recorder.observe(&sample());
-    }
+    queues.recorder.observe(&sample());
     // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
     // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
     // on when the command side reads.

@@ -88,9 +88,7 @@ impl<'q> FakeTick<'q> {
         let platform = self.now.centre.to_platform(&setpoint.position);
         self.now.pivots = pivots(&platform);
         self.now.loop_counters.ticks += 1;
-        if self.queues.recorder.is_active() {
-            self.queues.recorder.observe(&self.sample(setpoint));
-        }
+        self.queues.recorder.observe(&self.sample(setpoint));
         if self.queues.snapshots.ready() {
             let _ = self.queues.snapshots.enqueue(self.now.clone());
             self.now.loop_counters = LoopCounters::default();
@@ -123,6 +121,7 @@ impl<'q> FakeTick<'q> {
             supply_counts: 0,
             tick_cycles: 3000,
             commands: self.now.commands,
+            servo: None,
         }
     }
 
