@@ -1,5 +1,5 @@
-//! What every plan keeps to: limits, as a user states them and as a line meets them, mechanism, workspace, and which point of
-//! the platform is moved.
+//! What every plan keeps to: limits, as a user states them and as a line meets them, mechanism, workspace, and which
+//! point of the platform is moved.
 
 use kinematics::Geometry;
 use number::float::{FloatMinMax, hypot};

@@ -1,8 +1,8 @@
 //! Products and quotients of numbers of up to 128 bits.
 //!
 //! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A
-//! float's guess has 22 of its bits; what they leave is divided in turn. By a short divisor 64 bits are divided in digits of
-//! 16, three instructions of the chip.
+//! float's guess has 22 of its bits; what they leave is divided in turn. By a short divisor 64 bits are divided in
+//! digits of 16, each an instruction of the chip.
 
 use super::float::{i64_to_f32_fast, i128_to_f32_fast};
 use core::num::{NonZeroU16, NonZeroU32};

@@ -1,5 +1,5 @@
-//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the pivots
-//! can make of them at most, and what may be broken in it.
+//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the
+//! pivots can make of them at most, and what may be broken in it.
 
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;

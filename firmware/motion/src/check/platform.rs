@@ -74,6 +74,7 @@ impl Platform {
 
 impl CubicSegment {
     /// The platform there, when `centre` is the moved point in its axes.
+    #[inline(never)]
     pub fn platform(&self, sample: &MotionState, centre: [f32; 2]) -> Platform {
         let direction = self.sin_cos(sample.displacement[2]);
         Platform::new(self.point(sample), direction, sample.v, sample.a, centre)

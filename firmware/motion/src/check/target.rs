@@ -1,5 +1,5 @@
-//! Targets: which way round to an orientation, since theta counts turns and a target may mean its turn or only its direction; and
-//! whether one can be moved to, from anywhere.
+//! Targets: which way round to an orientation, since theta counts turns and a target may mean its turn or only its
+//! direction; and whether one can be moved to, from anywhere.
 
 use crate::constraints::Constraints;
 use crate::plan::Position;

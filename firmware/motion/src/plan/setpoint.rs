@@ -1,5 +1,5 @@
-//! What the control loop follows at a tick: the setpoint of the point of the platform that is moved, and what that is for the
-//! platform's own centre.
+//! What the control loop follows at a tick: the setpoint of the point of the platform that is moved, and what that is
+//! for the platform's own centre.
 //!
 //! ```text
 //!        P  the point that is moved, fixed in the platform at p        C   = P - R(theta) p

@@ -20,8 +20,7 @@
 //! |---|---|
 //! | here | velocities tried until one can be reached and given up again |
 //! | `request` | the velocity wanted, the limits, the state that is left |
-//! | `trajectory` | the way to the velocity, the velocity held, the way to rest |
-//! | `hold_time` | how long it is held, and how much slower it has to be |
+//! | `trajectory` | the way to the velocity, how long it is held, the way to rest; how much slower where that is too short |
 
 mod request;
 mod trajectory;

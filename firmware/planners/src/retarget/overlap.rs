@@ -1,5 +1,5 @@
-//! The plain line from where an ending comes to rest, and whether an ending and a line that overlap keep to the limits of path
-//! and rotation, in floats: what the pivots and the workspace ask for is left to the check.
+//! The plain line from where an ending comes to rest, and whether an ending and a line that overlap keep to the limits of
+//! path and rotation, in floats: what the pivots and the workspace ask for is left to the check.
 
 use super::ending::{Corner, Leaving};
 use motion::constraints::{MotionLimits, PathLimits, Speeds};

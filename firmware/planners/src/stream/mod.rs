@@ -24,9 +24,8 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `messages` | what goes between a stream, its sender and the tick |
-//! | `state` | the targets that wait, and what has been sent of them |
-//! | `sequence` | which plan is sent when; the sender's clock |
+//! | `state` | the targets that wait, what has been sent of them, what goes between a stream, its sender and the tick |
+//! | here | which plan is sent when; the sender's clock |
 //! | `plans` | a plan: knots along the curve, each held against every limit |
 //! | `spline` | the curve through the targets |
 //! | `knot` | from a state to a given one in three pieces |

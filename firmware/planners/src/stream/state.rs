@@ -1,5 +1,5 @@
-//! A stream: the targets that wait, what has been sent of them, the sender's clock; and what goes between a stream, its sender and
-//! the tick.
+//! A stream: the targets that wait, what has been sent of them, the sender's clock; and what goes between a stream, its
+//! sender and the tick.
 
 use super::knot::Knot;
 use super::spline::WINDOW;
