@@ -174,6 +174,7 @@ fn waves_learn_as_moves_do() {
     bench.run(4_000);
     bench.say("HLT\nERR?\n");
     bench.settle();
-    assert!(told(&mut bench, "CIRCLE").contains("TRIALS=6 "));
+    let after = told(&mut bench, "CIRCLE");
+    assert!(after.contains("TRIALS=6 "), "{after}");
     assert_eq!(bench.fault(), None);
 }

@@ -37,7 +37,7 @@ pub struct Sample {
     pub commands: u32,
 }
 
-/// Observes every tick. Runs inside it: no allocation, no blocking, no unbounded work.
+/// Observes every tick. Runs inside it, or right behind it: no allocation, no blocking, no unbounded work.
 pub trait TickObserver {
     /// Takes the sample of one tick.
     fn observe(&mut self, sample: &Sample);
