@@ -371,7 +371,7 @@ impl Parameters {
             filters: [FeedbackFilters::NONE; 3],
             ripple: [Ripple::NONE; 3],
             scheduled_inertia_kg_m2: 0.0,
-            learning: 2.0,
+            learning: 1.0,
             friction_learning: 0.1,
             keeps_learnt: false,
             latency_s: 72e-6,

@@ -62,6 +62,11 @@ fn help() {
          202=state: 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault \n\
          203=fault: kind of the latched one, 0 for none \n\
          204=cost of the tick before, processor cycles \n\
+         205=integral of pivot, what its feedback has collected, V \n\
+         206=model current of pivot, its motor's by the model, A \n\
+         207=learnt of the rate of pivot, besides the model's, V s/rad \n\
+         208=learnt of the torque of pivot, besides the model's, V/(N m) \n\
+         209=learnt of friction of pivot, besides the model's, V \n\
          #TriggerOptions \n\
          0=none; STE triggers whatever is set here \n\
          1=every command that moves \n\

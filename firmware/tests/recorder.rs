@@ -40,6 +40,7 @@ fn sample(now: u64) -> Sample {
         supply_counts: 0,
         tick_cycles: 0,
         commands: 0,
+        servo: None,
     }
 }
 

@@ -139,6 +139,18 @@ fn a_parameter_that_is_unknown_here_is_ignored_and_told() {
     );
 }
 
+/// The range of learning ended at 20 once, where no loop is stable.
+#[test]
+fn learning_that_is_too_fast_is_not_in_force() {
+    const LEARNING: u32 = 0x5450_0303;
+    let image = image(1, &[(LEARNING, 4.0), (SPEED, 123.5)]);
+    let mut bench = KeptBench::start(flash_with(&record(7, &image)));
+    assert_eq!(bench.bench.value(&format!("SPA? 1 {LEARNING}")), 1.0);
+    assert_eq!(bench.bench.value(&format!("SPA? 1 {SPEED}")), 123.5);
+    let told = "kept, not in force: 0x54500303 = 4, which may be 0 to 1\n";
+    assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
+}
+
 #[test]
 fn a_value_out_of_its_range_is_told_and_the_others_are_taken() {
     const FOLLOWING_ERROR: u32 = 0x5450_0500;

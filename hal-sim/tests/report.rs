@@ -38,6 +38,11 @@ fn sample(tick: u32, ticks: u32) -> Sample {
         },
         pivot_error_lsb: [1.0; 3],
         duty: [0.25, -0.5, 0.125],
+        integral_v: [0.5, -1.25, 0.0],
+        model_current_a: [0.0, 0.75, -2.0],
+        learnt_rate_v_s_rad: [0.0; 3],
+        learnt_torque_v_n_m: [0.0; 3],
+        learnt_friction_v: [0.0, 0.0, 0.125],
         separation_deg: (room_rad + geometry.separation_rad).to_degrees(),
     }
 }
@@ -121,6 +126,9 @@ fn the_tables_hold_what_was_recorded() {
     );
     assert_eq!(cell(7, "theta_true_error_urad"), "2.000000");
     assert_eq!(cell(7, "duty_2"), "-0.5000000");
+    assert_eq!(cell(7, "integral_2_v"), "-1.25000");
+    assert_eq!(cell(7, "model_current_3_a"), "-2.00000");
+    assert_eq!(cell(7, "learnt_friction_3_v"), "0.125000");
     assert_eq!(cell(7, "xy_true_error_um"), "0.500000");
     assert_eq!(cell(7, "xy_following_error_um"), "0.100000");
     let separation_deg = sample(120, 1_001).separation_deg;

@@ -8,13 +8,14 @@ from live import Live
 from owners import Owners
 from panels import Panels
 from real import Real
+from remote import Remote
 from report import Report
 from sequence import Sequence
 from settings import ARGUMENTS
 from silent import Silent
 from view import OnChip, OnTerminal
 
-__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Owners", "Panels", "Real", "Report", "Sequence", "Silent"]
+__all__ = ["Foreign", "Live", "OnChip", "OnTerminal", "Owners", "Panels", "Real", "Remote", "Report", "Sequence", "Silent"]
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -165,6 +165,19 @@ class Panels(OnServed):
         self.picture(browser, "soft-limits")
         self.aim(browser, 60, 0, "beyond the soft limits of x")
 
+    def test_a_geometry_that_was_changed_is_drawn(self):
+        browser = self.page()
+        for line in ("CCL 1 ADVANCED", "SPA 1 0x54500202 1.5"):
+            self.say(browser, line)
+        browser.run("document.getElementById('console').open = false")
+        # Guides that end 170 mm out leave a disk of 70 mm. The page asks for that every few seconds.
+        def told():
+            for y in (-55, -60):
+                browser.point("#scene", *self.pixel(browser, 50, y))
+            time.sleep(0.3)
+            return "70.0 mm is the limit" in browser.text("#aim")
+        browser.wait(told, lambda: f"the smaller disk; the page says {browser.text('#aim')}")
+
     def test_what_was_chosen_survives_a_reload(self):
         browser = self.ready()
         browser.type("#step-mm", "2.5\t")

@@ -39,10 +39,10 @@ class Driver:
 class Browser:
     """A browser window of its own, with a profile of its own."""
 
-    def __init__(self, driver, width=1280, height=900, dark=False, touch=False):
+    def __init__(self, driver, width=1280, height=900, dark=False, touch=False, flags=()):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        flags = [*FLAGS, f"--user-data-dir={self.profile.name}", f"--window-size={width},{height}"]
-        options = {"args": flags, "prefs": {"download.prompt_for_download": False}}
+        arguments = [*FLAGS, *flags, f"--user-data-dir={self.profile.name}", f"--window-size={width},{height}"]
+        options = {"args": arguments, "prefs": {"download.prompt_for_download": False}}
         if touch:
             metrics = {"width": width, "height": height, "pixelRatio": 2, "touch": True}
             options["mobileEmulation"] = {"deviceMetrics": metrics}

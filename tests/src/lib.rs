@@ -6,6 +6,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`trouble`] | ways to break a bench |
+//! | [`repeated`] | a way that is repeated, for iterative learning |
 //! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |
 //! | [`fuzz`] | random sessions and settings, and what has to hold whatever is sent |
 //! | [`measured`] | `hal-sim/MEASURED.md`: figures with the commands that give them |
@@ -13,6 +14,7 @@
 pub mod fuzz;
 pub mod ideal;
 pub mod measured;
+pub mod repeated;
 pub mod trouble;
 
 use firmware::control::Outputs;
@@ -70,6 +72,12 @@ impl Bench {
     /// What a reset of the chip leaves: the machine as it is, the controller started anew for this cause, the retained memory.
     pub fn reset(&mut self, cause: &'static str) {
         self.rig.reset(cause);
+        self.session = Session::new();
+    }
+
+    /// Ends the connection, and makes another one.
+    pub fn reconnect(&mut self) {
+        self.rig.disconnect(&mut self.session);
         self.session = Session::new();
     }
 

@@ -1,4 +1,4 @@
-//! The fuzz target for some seconds. Hours of it: `cargo run --release -p tests --bin fuzz -- --seconds 3600`.
+//! The fuzz target for some seconds. Hours of it: `cargo run --release --bin fuzz -- --seconds 3600`.
 
 #[test]
 fn nothing_is_found_in_the_first_cases() {

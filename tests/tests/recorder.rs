@@ -1,6 +1,7 @@
 //! What the data recorder says of a move, against what the simulator knows of the same ticks.
 
 use firmware::mode::Mode;
+use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
 
 const TURN: f64 = 4_294_967_296.0;
@@ -70,4 +71,54 @@ fn a_record_is_what_happened() {
     // Encoders a few counts (5e-6 deg, 9.4 nm) off by noise, and rings off the platform by their transmission.
     println!("real position off the plant's by {worst_real:e} mm or deg at most");
     assert!(worst_real < 1.31e-5, "{worst_real:e}");
+}
+
+/// What the recorder says of the servos against `LST?`, at rest after moves on a machine that is off the model: another way out of the tick.
+#[test]
+fn what_was_learnt_is_recorded() {
+    let mut bench = Bench::new(&stage_parameters(&RunOptions {
+        mismatch_percent: 20.0,
+        ..RunOptions::default()
+    }));
+    assert_eq!(bench.error_after("FRF"), "0");
+    bench.settle();
+    for line in ["MOV X 20 Y 5 W 30", "MOV X -20 Y -5 W -30"] {
+        bench.say(&format!("{line}\n"));
+        bench.settle();
+    }
+    bench.run(20_000);
+    assert_eq!(bench.error_after("SPA 1 0x16000201 20"), "0");
+    for pivot in 1..=3 {
+        let tables = "DRC 1 {} 207 2 {} 208 3 {} 209 4 {} 205 5 {} 206 6 0 0 7 0 0 8 0 0";
+        let setup = tables.replace("{}", &pivot.to_string());
+        assert_eq!(bench.error_after(&setup), "0");
+        assert_eq!(bench.error_after("DRT 0 4"), "0");
+        bench.run(30);
+        let told = bench.say("LST?\n");
+        let answer = bench.say("DRR?\n");
+        let row = answer.trim_end().lines().last().expect("a row");
+        let recorded: Vec<f64> = (row.split_whitespace())
+            .map(|number| number.parse().expect("a number"))
+            .collect();
+        let numbers = |name: &str| -> Vec<f64> {
+            let name = format!("{name}{pivot}=");
+            let line = told.lines().find_map(|line| line.strip_prefix(&name));
+            (line.expect("it is told").split_whitespace())
+                .map(|number| number.parse().expect("a number"))
+                .collect()
+        };
+        let mut expected = numbers("LEARNT")[..3].to_vec();
+        expected.extend(numbers("INTEGRAL"));
+        expected.extend(numbers("CURRENT"));
+        println!("pivot {pivot}: {recorded:?}, {expected:?}");
+        // Half a millisecond lies between the two: friction is learnt, and the integral collects. Current has the loop's noise.
+        for (k, off) in [1e-5, 1e-5, 5e-3, 5e-2, 5e-2].into_iter().enumerate() {
+            assert!(
+                (recorded[k] - expected[k]).abs() < off,
+                "pivot {pivot}, table {}",
+                k + 1
+            );
+        }
+        assert!(recorded[1].abs() > 0.05, "nothing learnt: {recorded:?}");
+    }
 }

@@ -178,6 +178,14 @@ fn a_silent_client_ends_it() {
 }
 
 #[test]
+fn it_ends_with_its_connection() {
+    let mut bench = left_at(OUTSIDE[0].0);
+    on_the_way(&mut bench);
+    bench.reconnect();
+    assert_given_up(&mut bench);
+}
+
+#[test]
 fn nothing_else_can_be_asked_of_it() {
     let mut bench = left_at(OUTSIDE[0].0);
     on_the_way(&mut bench);

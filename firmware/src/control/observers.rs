@@ -18,8 +18,6 @@ impl TickObserver for TickObservers<'_> {
         if let Some(fault_record) = &mut self.fault_record {
             fault_record.observe(sample);
         }
-        if self.recorder.is_active() {
-            self.recorder.observe(sample);
-        }
+        self.recorder.observe(sample);
     }
 }

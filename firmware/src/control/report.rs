@@ -7,6 +7,7 @@ use super::state::State;
 use super::tick_queues::TickQueues;
 use crate::drivers::bridge::Duty;
 use crate::motion::Position;
+use crate::recorder::ServoSample;
 use kinematics::Angle;
 
 impl State {
@@ -66,6 +67,18 @@ impl State {
             loop_counters: self.loop_counters,
             servo: self.servo_report(),
         }
+    }
+
+    /// The servo of this pivot, for the recorders.
+    #[inline]
+    pub(super) fn servo_sample(&self, pivot: usize) -> Option<ServoSample> {
+        let servo = self.servo.get(pivot)?;
+        Some(ServoSample {
+            pivot: pivot as u8,
+            weights: servo.learnt().weights,
+            integral_v: servo.integral_volts(),
+            current_knees: servo.current_knees(),
+        })
     }
 
     #[inline]

@@ -120,6 +120,7 @@ pub fn tick_and_drive(
         supply_counts: inputs.supply_counts,
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,
+        servo: state.servo_sample(slot),
     };
     recorder.observe(&sample());
     if let Some(observers) = &mut queues.observers {

@@ -22,6 +22,7 @@ fn sample(tick: u64, mode: Mode) -> Sample {
         supply_counts: 2978,
         tick_cycles: 0,
         commands: 0,
+        servo: None,
     }
 }
 

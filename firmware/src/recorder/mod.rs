@@ -35,7 +35,7 @@ mod writer;
 pub use memory::Recorder;
 pub use reader::{Cursor, Progress, RecorderReader};
 pub use running_hash::RunningHash;
-pub use sample::{Sample, TickObserver};
+pub use sample::{Sample, ServoSample, ServoSamples, TickObserver};
 pub use setup::{
     LevelTrigger, MAX_ROW_PERIOD_TICKS, MAX_ROW_WORDS, QueueFull, RECORDER_TABLES, RECORDER_WORDS,
     RecordSetup,

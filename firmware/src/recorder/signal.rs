@@ -1,6 +1,6 @@
 //! What can be recorded: each signal of the data path as a 32-bit word, as the tick has it.
 
-use super::sample::Sample;
+use super::sample::{Sample, ServoSamples};
 use crate::motion::Position;
 use kinematics::Angle;
 
@@ -35,6 +35,16 @@ pub enum RawSignal {
     Fault,
     /// What the tick before cost, cycles.
     Cost,
+    /// What a pivot's feedback has collected, V.
+    Integral(u8),
+    /// A motor's current by the model, over the dead time's knee.
+    ModelCurrent(u8),
+    /// What a servo has learnt of the rate besides the model's, V s/rad.
+    LearntRate(u8),
+    /// Of the torque, V/(N m).
+    LearntTorque(u8),
+    /// Of friction, V.
+    LearntFriction(u8),
 }
 
 /// How a signal's 32 bits are to be understood.
@@ -60,7 +70,14 @@ impl RawSignal {
             Self::Centre(_) => SignalFormat::Length,
             Self::Theta | Self::PivotSetpoint(_) | Self::Pivot(_) => SignalFormat::Angle,
             Self::PivotError(_) => SignalFormat::AngleError,
-            Self::Velocity(_) | Self::Acceleration(_) | Self::PivotRate(_) => SignalFormat::Float,
+            Self::Velocity(_)
+            | Self::Acceleration(_)
+            | Self::PivotRate(_)
+            | Self::Integral(_)
+            | Self::ModelCurrent(_)
+            | Self::LearntRate(_)
+            | Self::LearntTorque(_)
+            | Self::LearntFriction(_) => SignalFormat::Float,
             Self::Duty(_)
             | Self::Current(_)
             | Self::Supply
@@ -72,7 +89,7 @@ impl RawSignal {
 
     /// Its value in a tick; the low 32 bits are what is stored. The bits of a float stand in the low 32.
     #[inline]
-    pub(super) fn value(self, sample: &Sample) -> i64 {
+    pub(super) fn value(self, sample: &Sample, servos: &ServoSamples) -> i64 {
         let setpoint = &sample.setpoint;
         let (twist, acceleration) = (&setpoint.twist, &setpoint.acceleration);
         match self {
@@ -95,13 +112,18 @@ impl RawSignal {
             Self::Mode => sample.mode as i64,
             Self::Fault => sample.fault.map_or(0, |kind| kind as i64 + 1),
             Self::Cost => i64::from(sample.tick_cycles),
+            Self::Integral(i) => float(servos.of(i).integral_v),
+            Self::ModelCurrent(i) => float(servos.of(i).current_knees),
+            Self::LearntRate(i) => float(servos.of(i).weights[0]),
+            Self::LearntTorque(i) => float(servos.of(i).weights[1]),
+            Self::LearntFriction(i) => float(servos.of(i).weights[2]),
         }
     }
 
     /// Its value in a tick as a number that orders as the signal does: what triggers compare.
     #[inline]
-    pub(super) fn level(self, sample: &Sample) -> i64 {
-        let value = self.value(sample);
+    pub(super) fn level(self, sample: &Sample, servos: &ServoSamples) -> i64 {
+        let value = self.value(sample, servos);
         match self.format() {
             SignalFormat::Float => total_order_key(value as u32),
             _ => value,

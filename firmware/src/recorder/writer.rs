@@ -1,7 +1,7 @@
 //! The recorder's end that takes the samples of the ticks.
 
 use super::published::Published;
-use super::sample::Sample;
+use super::sample::{Sample, ServoSamples};
 use super::setup::{ORDER_SLOTS, Order, RecordSetup};
 use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Consumer;
@@ -25,6 +25,7 @@ pub struct RecorderWriter<'a> {
     /// There was a tick before: `were_above` and `was_faulted` hold.
     has_previous: bool,
     was_faulted: bool,
+    servos: ServoSamples,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,18 +56,27 @@ impl<'a> RecorderWriter<'a> {
             were_above: 0,
             has_previous: false,
             was_faulted: false,
+            servos: ServoSamples::default(),
         }
     }
 
-    /// Whether [`observe`](Self::observe) would do something: the sample need not be made otherwise.
+    /// Whether it records, waits for a trigger, or is to.
     #[inline]
     pub fn is_active(&self) -> bool {
         self.state != State::Idle || self.orders.ready()
     }
 
-    /// Takes the sample of a tick.
-    #[inline(never)]
+    /// Takes the sample of a tick. It tells of one servo: they are followed whether something is recorded or not.
+    #[inline]
     pub fn observe(&mut self, sample: &Sample) {
+        self.servos.update(sample);
+        if self.is_active() {
+            self.record(sample);
+        }
+    }
+
+    #[inline(never)]
+    fn record(&mut self, sample: &Sample) {
         // As many as fit into the queue.
         for _ in 1..ORDER_SLOTS {
             match self.orders.dequeue() {
@@ -127,7 +137,7 @@ impl<'a> RecorderWriter<'a> {
         let mut above = 0;
         for (i, trigger) in setup.level_triggers.iter().enumerate() {
             let bit = 1 << i;
-            if trigger.signal.level(sample) >= trigger.level {
+            if trigger.signal.level(sample, &self.servos) >= trigger.level {
                 above |= bit;
             }
             let crossed = self.has_previous && (above ^ self.were_above) & bit != 0;
@@ -146,7 +156,7 @@ impl<'a> RecorderWriter<'a> {
         let start = self.at as usize * width;
         if let Some(row) = self.words.get(start..start + width) {
             for (cell, signal) in row.iter().zip(&self.setup.signals) {
-                cell.store(signal.value(sample) as u32, Ordering::Relaxed);
+                cell.store(signal.value(sample, &self.servos) as u32, Ordering::Relaxed);
             }
         }
         if self.state == State::Triggered {
@@ -176,7 +186,10 @@ impl<'a> RecorderWriter<'a> {
             self.at + self.setup.rows - before
         };
         for (upper, signal) in self.published.upper.iter().zip(&self.setup.signals) {
-            upper.store((signal.value(sample) >> 32) as i32, Ordering::Relaxed);
+            upper.store(
+                (signal.value(sample, &self.servos) >> 32) as i32,
+                Ordering::Relaxed,
+            );
         }
         self.published.first.store(first, Ordering::Relaxed);
         self.published.before.store(before, Ordering::Relaxed);

@@ -124,6 +124,7 @@ impl<'q> FakeTick<'q> {
             supply_counts: 0,
             tick_cycles: 3000,
             commands: self.now.commands,
+            servo: None,
         }
     }
 

@@ -9,7 +9,7 @@ use super::sample::{Move, Sample, xy};
 use super::trace::Trace;
 use drawing::{ReportError, unwritable};
 
-const TRACE_COLUMNS: [&str; 32] = [
+const TRACE_COLUMNS: [&str; 47] = [
     "time_s",
     "moving",
     "x_setpoint_mm",
@@ -42,6 +42,21 @@ const TRACE_COLUMNS: [&str; 32] = [
     "separation_deg",
     "xy_following_error_um",
     "xy_true_error_um",
+    "integral_1_v",
+    "integral_2_v",
+    "integral_3_v",
+    "model_current_1_a",
+    "model_current_2_a",
+    "model_current_3_a",
+    "learnt_rate_1_v_s_rad",
+    "learnt_rate_2_v_s_rad",
+    "learnt_rate_3_v_s_rad",
+    "learnt_torque_1_v_n_m",
+    "learnt_torque_2_v_n_m",
+    "learnt_torque_3_v_n_m",
+    "learnt_friction_1_v",
+    "learnt_friction_2_v",
+    "learnt_friction_3_v",
 ];
 
 const MOVE_COLUMNS: [&str; 7] = [
@@ -92,6 +107,11 @@ fn trace_row(sample: &Sample) -> [String; TRACE_COLUMNS.len()] {
         (sample.pivot_rate_rad_s, 9),
         (sample.pivot_error_lsb, 4),
         (sample.duty, 7),
+        (sample.integral_v, 5),
+        (sample.model_current_a, 5),
+        (sample.learnt_rate_v_s_rad, 6),
+        (sample.learnt_torque_v_n_m, 6),
+        (sample.learnt_friction_v, 6),
     ];
     let mut cells = triples
         .into_iter()

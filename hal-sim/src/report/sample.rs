@@ -29,6 +29,16 @@ pub struct Sample {
     pub pivot_error_lsb: [f64; 3],
     /// Duty of the three bridges, -1 to 1.
     pub duty: [f64; 3],
+    /// What the pivots' feedback has collected, V; of each pivot as it was at most four ticks before, as all that follows.
+    pub integral_v: [f64; 3],
+    /// Their motors' currents by the controller's model, A.
+    pub model_current_a: [f64; 3],
+    /// What the servos have learnt of the rate besides the model's, V s/rad.
+    pub learnt_rate_v_s_rad: [f64; 3],
+    /// Of the torque, V/(N m).
+    pub learnt_torque_v_n_m: [f64; 3],
+    /// Of friction, V.
+    pub learnt_friction_v: [f64; 3],
     /// Smallest angle between two neighbouring pivots, deg.
     pub separation_deg: f64,
 }

@@ -131,6 +131,11 @@ mod tests {
             motion: MotionSample::default(),
             pivot_error_lsb: [1.0, -2.0, 0.0],
             duty: [0.1, -0.01 * f64::from(tick), 0.0],
+            integral_v: [0.0; 3],
+            model_current_a: [0.0; 3],
+            learnt_rate_v_s_rad: [0.0; 3],
+            learnt_torque_v_n_m: [0.0; 3],
+            learnt_friction_v: [0.0; 3],
             separation_deg: 100.0 - f64::from(tick % 7),
         }
     }

@@ -4,7 +4,7 @@ use crate::report::{MotionSample, Move, Sample, Trace};
 use firmware::mode::Mode;
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
-use firmware::recorder::{RunningHash, Sample as TickSample, TickObserver};
+use firmware::recorder::{RunningHash, Sample as TickSample, ServoSamples, TickObserver};
 use kinematics::{Pose, direct_rates, inverse};
 use std::f64::consts::{PI, TAU};
 
@@ -38,6 +38,9 @@ pub struct Observer {
     period_s: f64,
     window_counts: f64,
     pwm_counts: f64,
+    /// Dead time's knee of each drive, A.
+    knees_a: [f64; 3],
+    servos: ServoSamples,
     under_way: Option<f64>,
     /// Accelerations of the moved point (mm, deg) and rates of the pivots at the last tick: what follows from them is a
     /// difference.
@@ -56,6 +59,8 @@ impl Observer {
             // The half lets a setpoint between two counts be met; the controller's own window has it too.
             window_counts: parameters.window.counts + 0.5,
             pwm_counts: f64::from(parameters.power.pwm_counts),
+            knees_a: (parameters.drives.each_ref()).map(|drive| drive.dead_time_knee_a),
+            servos: ServoSamples::default(),
             under_way: None,
             last: Default::default(),
         }
@@ -64,6 +69,7 @@ impl Observer {
     /// Takes a tick with the plant's true pose (m, m, rad) at the encoders' latch. Ticks before referencing hold no setpoint
     /// and are left out.
     pub fn look(&mut self, tick: &TickSample, pose: [f64; 3]) {
+        self.servos.update(tick);
         if !matches!(tick.mode, Mode::Holding | Mode::Moving) {
             return;
         }
@@ -78,6 +84,8 @@ impl Observer {
         let (true_mm, true_rad) = ([pose[0] * 1e3, pose[1] * 1e3], pose[2]);
         let twist = &tick.setpoint.twist;
         let pivots = tick.pivot_setpoints.map(|angle| angle.units() as f64);
+        let servos = [0, 1, 2].map(|pivot| self.servos.of(pivot));
+        let learnt = |weight: usize| servos.map(|servo| f64::from(servo.weights[weight]));
         Sample {
             time_s: tick.tick as f64 * self.period_s,
             moving: tick.mode == Mode::Moving,
@@ -101,6 +109,12 @@ impl Observer {
                 (tick.pivots[i].units() - tick.pivot_setpoints[i].units()) as f64 / PER_COUNT
             }),
             duty: tick.duty.map(|duty| f64::from(duty.0) / self.pwm_counts),
+            integral_v: servos.map(|servo| f64::from(servo.integral_v)),
+            model_current_a: [0, 1, 2]
+                .map(|i| f64::from(servos[i].current_knees) * self.knees_a[i]),
+            learnt_rate_v_s_rad: learnt(0),
+            learnt_torque_v_n_m: learnt(1),
+            learnt_friction_v: learnt(2),
             separation_deg: separation_rad(pivots.map(|units| units / TURN * TAU)).to_degrees(),
         }
     }

@@ -673,6 +673,23 @@ fn what_was_asked_for_before_a_stop_does_not_follow_it() {
     assert_eq!(sent, ["MOV X 1", "#24", "MOV X 3"]);
 }
 
+/// Over connections of the pages' own as well: a stop of one drops what another has waiting.
+#[test]
+fn over_its_own_connection_too_nothing_follows_a_stop() {
+    let stage = Stage::start("127.0.0.1:0");
+    let page = page_at(Endpoint::Tcp(stage.address.to_string()));
+    let (mut one, mut other) = (Viewer::ready(&page), Viewer::ready(&page));
+    assert_eq!(one.ask("FRF")["error"], 0);
+    let under_way = one.post("DEL 1000");
+    let waiting = one.post("MOV X 2");
+    thread::sleep(Duration::from_millis(100));
+    other.ask("STP");
+    one.wait(|message| message["id"] == under_way);
+    let dropped = one.wait(|message| message["id"] == waiting);
+    assert_eq!(dropped["reason"], "not sent: a stop came before its turn");
+    assert_eq!(other.reply("MOV? X").as_deref(), Some("X=0"));
+}
+
 /// A controller for one client that takes its time for a move; it keeps what it has received.
 struct SlowController;
 

@@ -1,4 +1,4 @@
-//! The fuzz target by hand: `cargo run --release -p tests --bin fuzz -- --seconds 3600`, with `--seed` to start elsewhere or,
+//! The fuzz target by hand: `cargo run --release --bin fuzz -- --seconds 3600`, with `--seed` to start elsewhere or,
 //! with `--cases 1`, to see a case again. Exit code 1 when something did not hold.
 
 use std::process::ExitCode;

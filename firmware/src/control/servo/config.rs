@@ -22,6 +22,9 @@ const FROZEN_COUNTS: f64 = 6.0;
 const OSCILLATION_COUNTS: f64 = 25.0;
 /// Time constant with which the measured current corrects the motor constant.
 const MOTOR_CONSTANT_S: f64 = 0.01;
+/// Most that learning adds to the corner of the velocity loop's integral: what a loop has phase for that is a third as fast as the model's,
+/// since the motors are weaker and the load is heavier than it knows.
+const LEARNING_CORNER_1_S: f64 = 350.0;
 /// Torque at which its signal is 1, N m: what the reference motion asks for.
 const TORQUE_SCALE_N_M: f64 = 6.0;
 
@@ -49,6 +52,8 @@ pub struct PivotServoConfig {
     pub(super) filters: FilterConfig,
     pub(super) ripple: RippleConfig,
     pub(super) learning_gains: [f32; FEATURES],
+    /// What all of it may be worth together, in integral gains.
+    pub(super) most_learning: f32,
     pub(super) inertia: f32,
     /// Volts a signal asks for by the model: viscous friction's per rad/s, per torque, Coulomb friction's.
     pub(super) model_weights: [f32; FEATURES],
@@ -173,6 +178,9 @@ impl PivotServoConfig {
             filters,
             ripple: RippleConfig::new(&servo.ripple[pivot].harmonics, drive, servo.latency_s),
             learning_gains: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
+            // Without an integral there is nothing to learn from, and nothing to be bounded.
+            most_learning: (LEARNING_CORNER_1_S * gains.velocity_v_s_rad / gains.integral_v_rad)
+                .min(f64::from(u16::MAX)) as f32,
             inertia: drive.inertia_kg_m2 as f32,
             model_weights: [drive.viscous_n_m_s, 1.0, drive.coulomb_n_m]
                 .map(|torque| (volt_per_torque * torque) as f32),

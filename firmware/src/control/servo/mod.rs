@@ -12,8 +12,9 @@
 //! integral collects. So the integral gets company: `w_k' = g_k f_k r` for a few signals f_k of the setpoint (rate,
 //! torque, friction, each scaled to about 1, and led by what the drive takes to follow), and `sum w_k f_k` is added to
 //! the voltage. The integral itself is the case f = 1. This is the desired compensation adaptation law of Sadegh and
-//! Horowitz (1990), stable for what the velocity loop is stable for as long as the gains together stay in the
-//! integral's order of magnitude; at rest all f_k but friction's vanish and nothing is learnt.
+//! Horowitz (1990), stable as long as the loop has phase for all the integral gains together, `1 + sum g_k f_k^2` of
+//! the integral's own: so what they add is bounded, whatever the setpoint asks for. At rest all f_k but friction's vanish and nothing is
+//! learnt.
 //!
 //! | file | idea |
 //! |---|---|

@@ -222,10 +222,17 @@ impl PivotServo {
     /// that the pivots can take turns.
     #[inline]
     pub fn learn(&mut self, config: &PivotServoConfig) {
-        let collected = self.integral - self.integral_when_learnt;
+        let mut collected = self.integral - self.integral_when_learnt;
         self.integral_when_learnt = self.integral;
-        for (k, signal) in self.signals.into_iter().enumerate() {
-            let weight = self.learnt.weights[k] + config.learning_gains[k] * collected * signal;
+        let steps = [0, 1, 2].map(|k| config.learning_gains[k] * self.signals[k]);
+        // Integral gains that the weights are worth with these signals, the integral's own being 1.
+        let added =
+            (steps.iter().zip(&self.signals)).fold(0.0, |sum, (step, signal)| sum + step * signal);
+        if added > config.most_learning {
+            collected *= config.most_learning / added;
+        }
+        for (k, step) in steps.into_iter().enumerate() {
+            let weight = self.learnt.weights[k] + collected * step;
             self.learnt.weights[k] = clamp_symmetric(weight, config.learnt_weight_limit[k]);
         }
     }

@@ -90,6 +90,11 @@ pub(super) const OPTIONS: &[RecordOption] = &[
     option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
     option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(RawSignal::Fault))),
     option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(RawSignal::Cost))),
+    option(205, "integral", " of pivot, what its feedback has collected, V", |source| of_pivot(source, RawSignal::Integral)),
+    option(206, "model current", " of pivot, its motor's by the model, A", |source| of_pivot(source, RawSignal::ModelCurrent)),
+    option(207, "learnt of the rate", " of pivot, besides the model's, V s/rad", |source| of_pivot(source, RawSignal::LearntRate)),
+    option(208, "learnt of the torque", " of pivot, besides the model's, V/(N m)", |source| of_pivot(source, RawSignal::LearntTorque)),
+    option(209, "learnt of friction", " of pivot, besides the model's, V", |source| of_pivot(source, RawSignal::LearntFriction)),
 ];
 
 const fn option(
@@ -224,9 +229,11 @@ impl Channel {
             8 => "s",
             70 => of_axis("mm/s", "deg/s"),
             71 => of_axis("mm/s^2", "deg/s^2"),
-            200 => "A",
-            201 => "V",
+            200 | 206 => "A",
+            201 | 205 | 209 => "V",
             204 => "cycles",
+            207 => "V s/rad",
+            208 => "V/(N m)",
             _ => "",
         }
     }

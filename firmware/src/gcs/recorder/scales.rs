@@ -14,6 +14,8 @@ pub(super) struct Scales {
     geometry: Geometry,
     pwm_counts: f64,
     period_s: f64,
+    /// Dead time's knee of each drive, A.
+    knees_a: [f64; 3],
 }
 
 const LENGTH: f64 = 1.0 / 536_870_912.0;
@@ -26,6 +28,7 @@ impl Scales {
             geometry: parameters.geometry,
             pwm_counts: f64::from(parameters.power.pwm_counts),
             period_s: 1.0 / parameters.limits.rate_hz,
+            knees_a: (parameters.drives.each_ref()).map(|drive| drive.dead_time_knee_a),
         }
     }
 
@@ -44,6 +47,16 @@ impl Scales {
             (SignalFormat::Float, RawSignal::Velocity(0 | 1) | RawSignal::Acceleration(0 | 1)) => {
                 radius_mm
             }
+            (SignalFormat::Float, RawSignal::ModelCurrent(i)) => {
+                (self.knees_a.get(usize::from(i)).copied()).unwrap_or_default()
+            }
+            (
+                SignalFormat::Float,
+                RawSignal::Integral(_)
+                | RawSignal::LearntRate(_)
+                | RawSignal::LearntTorque(_)
+                | RawSignal::LearntFriction(_),
+            ) => 1.0,
             (SignalFormat::Float, _) => 180.0 / core::f64::consts::PI,
             (_, RawSignal::Duty(_)) => 1.0 / self.pwm_counts,
             (_, RawSignal::Current(_)) => CURRENT_A_PER_COUNT,

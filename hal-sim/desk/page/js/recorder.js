@@ -12,6 +12,10 @@ const PRESETS = {
   "errors of the pivots": ["1 3", "2 3", "3 3", "0 202"],
   "errors of the pose": ["X 3", "Y 3", "W 3", "0 202"],
   "duties and currents": ["1 73", "2 73", "3 73", "1 200", "2 200", "3 200"],
+  "integrals, currents by the model": ["1 205", "2 205", "3 205", "1 206", "2 206", "3 206"],
+  "what pivot 1 has learnt": ["1 3", "1 205", "1 207", "1 208", "1 209"],
+  "what pivot 2 has learnt": ["2 3", "2 205", "2 207", "2 208", "2 209"],
+  "what pivot 3 has learnt": ["3 3", "3 205", "3 207", "3 208", "3 209"],
 };
 /** Tables that record nothing. */
 const OFF = "0 0";

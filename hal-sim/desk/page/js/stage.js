@@ -10,6 +10,8 @@ const SPEED = "0x54500100";
 const TURN_DIRECTION = "0x54500110";
 /** Field of `*IDN?` that a simulated controller has in place of a serial number. */
 const SIMULATED = "SIM";
+/** The geometry and limits of speed change by a command of somebody, seldom: so often they are asked for, ms. */
+const GEOMETRY_EVERY_MS = 3000;
 /** Over so long, in the controller's time, a stage is looked at to see whether it rests, s; and how little it may move. */
 const REST_S = 0.05;
 const REST_DEG_S = 0.2;
@@ -59,6 +61,9 @@ export class Stage extends EventTarget {
     this.link = link;
     link.addEventListener("hello", ({ detail }) => this.#hello(detail));
     link.addEventListener("status", ({ detail }) => this.#status(detail.replies));
+    setInterval(() => {
+      if (this.connected && !link.freshness.stale && !document.hidden) this.#lookAtGeometry();
+    }, GEOMETRY_EVERY_MS);
   }
 
   /** Whether the controller knows this command. */
@@ -78,12 +83,16 @@ export class Stage extends EventTarget {
       this.#tell("link");
       return;
     }
+    await this.#lookAtGeometry();
+    this.#tell("link");
+  }
+
+  async #lookAtGeometry() {
     try {
       await this.#askGeometry();
     } catch {
-      // The connection broke again: the next hello asks anew.
+      // Asked again soon.
     }
-    this.#tell("link");
   }
 
   async #askGeometry() {
@@ -97,7 +106,6 @@ export class Stage extends EventTarget {
     const radius = value(RADIUS);
     const start = value(GUIDE_START) * radius;
     this.geometry = { radius, start, end: start + value(GUIDE_LENGTH) * radius, disk };
-    this.#tell("geometry");
   }
 
   #status(replies) {

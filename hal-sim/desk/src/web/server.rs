@@ -160,7 +160,8 @@ async fn check(State(shared): State<Shared>, request: Request, next: Next) -> Re
         (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::X_FRAME_OPTIONS, "DENY"),
-        (header::REFERRER_POLICY, "no-referrer"),
+        // With none at all, browsers say that a form comes from nowhere, and the password would be refused.
+        (header::REFERRER_POLICY, "same-origin"),
         (header::CACHE_CONTROL, "no-store"),
     ] {
         let headers = response.headers_mut();

@@ -187,7 +187,7 @@ const COMMON: &[Parameter] = &[
     GEOMETRY.float(0x5450_0203, "smallest angle between pivots", "deg", [0.0, 110.0],
         ValueSource::Settable(|p| p.geometry.separation_rad.to_degrees(), |p, deg| p.geometry.separation_rad = deg.to_radians())),
 
-    SERVO.float(0x5450_0303, "learning, share of the integral gain", "", [0.0, 20.0], at!(servo.learning)),
+    SERVO.float(0x5450_0303, "learning, share of the integral gain", "", [0.0, 1.0], at!(servo.learning)),
     SERVO.float(0x5450_0304, "learning of friction, share of learning", "", [0.0, 1.0], at!(servo.friction_learning)),
     SERVO.float(0x5450_0305, "latency from latch to duty", "s", [0.0, 1e-3], at!(servo.latency_s)),
     SERVO.float(0x5450_0306, "inertia of a pivot and its share of the platform that velocity and integral gain are for, 0: the same gains everywhere", "kg m^2", [0.0, 10.0], at!(servo.scheduled_inertia_kg_m2)),
