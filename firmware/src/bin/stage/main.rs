@@ -221,9 +221,9 @@ mod app {
         cortex_m::asm::dsb();
     }
 
-    /// The control task, every 50 us. If it ends more than 32 us after its event, its duty misses its PWM period and it
-    /// counts as late; after more than 35 us the next latch and with it the next frames are late, and the library takes
-    /// them for missing; if it never ends, the watchdog resets the chip.
+    /// The control task, every 50 us. Duties that are written more than 32 us after its event miss their PWM period: it
+    /// counts as late. If all of it takes more than 35 us, the next latch comes late, and after some 37 us the frames are
+    /// not there in time and count as missing; if it never ends, the watchdog resets the chip.
     #[task(binds = TIM1_CC, priority = 15, shared = [control], local = [config, state, tick_queues, sample_sender, tick_timing])]
     fn control(context: control::Context) {
         let control = context.shared.control;
