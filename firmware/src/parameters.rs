@@ -117,7 +117,7 @@ pub struct Drive {
 ///
 /// With voltage drive a ring follows `J w' = (Kt N / R) (u - Kt N w)` below the electrical corner, so a velocity gain
 /// Kv crosses over at `Kv Kt N / (R J)`: 40 V s/rad on 0.035 kg m^2 (a ring and its share of the platform) gives 1,600
-/// rad/s, 260 Hz. The electrical corner at R / L = 3,000 rad/s, 65 us from latch to the middle of the duty's effect and
+/// rad/s, 260 Hz. The electrical corner at R / L = 3,000 rad/s, 72 us from latch to the middle of the duty's effect and
 /// the 1.5 kHz resonance leave that room for a loop gain half as high again: a motor constant 20 % over and an inertia
 /// 20 % under the model. The position gain and the integral's corner lie a factor 5 below it (300 and 350 1/s), 11 and
 /// 12 deg of phase at crossover.
@@ -151,7 +151,7 @@ pub struct Servo {
     /// Whether what was learnt is stored without being asked for: when the servo goes off, and at rest from time to time.
     pub keeps_learnt: bool,
     /// Time from the encoders' latch to the middle of the period in which the duty computed from it acts, by which
-    /// voltage feedforward looks ahead: 15 us to the tick, 25 us to the next PWM period, half of the 50 us it acts.
+    /// voltage feedforward looks ahead: 15 us to the tick, 32 us to the PWM period, half of the 50 us it acts.
     pub latency_s: f64,
     /// What becomes of the gains while the setpoint rests.
     pub rest: RestMode,
@@ -374,7 +374,7 @@ impl Parameters {
             learning: 1.0,
             friction_learning: 0.1,
             keeps_learnt: false,
-            latency_s: 65e-6,
+            latency_s: 72e-6,
             rest: RestMode {
                 stiffness: 0.13,
                 delay_s: 0.05,

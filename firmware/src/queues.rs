@@ -7,7 +7,7 @@
 pub use crate::control::{Command, Snapshot, TickQueues};
 pub use crate::recorder::QueueFull;
 
-use crate::control::SNAPSHOT_SLOTS;
+use crate::control::{SNAPSHOT_SLOTS, TickObservers};
 use crate::fault_record::RetainedMemory;
 use crate::iterative_learning::{TrialControl, TrialMemory};
 use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
@@ -73,9 +73,11 @@ impl Queues {
             TickQueues {
                 commands: command_out,
                 snapshots: snapshot_in,
-                recorder: recorder_writer,
                 trial: trial_table,
-                fault_record: retained_memory.map(RetainedMemory::begin),
+                observers: Some(TickObservers {
+                    recorder: recorder_writer,
+                    fault_record: retained_memory.map(RetainedMemory::begin),
+                }),
             },
             CommandQueues {
                 commands: command_in,

@@ -138,14 +138,15 @@ fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
     let without = config();
     let full = full_loop(SUPPLY_COUNTS);
     for torque_n_m in [6.0, -6.0] {
+        // The mean: a duty is a whole number.
         let settled = |config: &PivotServoConfig| {
             let mut servo = PivotServo::default();
             let duties = (0..2_000).map(|_| servo.step(config, &asking(torque_n_m, 0.0), &full).0);
-            duties.last().unwrap_or_default()
+            duties.skip(1_000).map(f32::from).sum::<f32>() / 1e3
         };
         // 200 ns of 25 us: 33.6 counts of 4,200.
-        let more = f32::from(settled(&with) - settled(&without)) * torque_n_m.signum();
-        assert!((more - 33.6).abs() <= 0.44, "{more} counts");
+        let more = (settled(&with) - settled(&without)) * torque_n_m.signum();
+        assert!((more - 33.6).abs() <= 0.0022, "{more} counts");
     }
 }
 
@@ -203,12 +204,12 @@ fn what_is_no_number_asks_for_no_drive() {
     }
 }
 
-/// The change of a torque is led by what the drive takes to follow: 65 us, and 0.7 mH over 2.1 ohm. By as much of what was learnt.
+/// The change of a torque is led by what the drive takes to follow: 72 us, and 0.7 mH over 2.1 ohm. By as much of what was learnt.
 #[test]
 fn what_was_learnt_leads_as_the_model_does() {
     let config = config();
     let full = full_loop(SUPPLY_COUNTS);
-    let lead = (65e-6 + 0.7e-3 / 2.1) * 20e3;
+    let lead = (72e-6 + 0.7e-3 / 2.1) * 20e3;
     let mut learnt = PivotServo::default();
     for _ in 0..4_000 {
         // It comes 1 urad short of what 6 N m should do.
@@ -220,7 +221,7 @@ fn what_was_learnt_leads_as_the_model_does() {
         servo.restart();
         let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), &full).0);
         let ratio = f64::from(first) / f64::from(then);
-        assert!((ratio / (1.0 + lead) - 1.0).abs() < 1.26e-3, "{ratio}");
+        assert!((ratio / (1.0 + lead) - 1.0).abs() < 2.41e-3, "{ratio}");
         torques.push(then);
     }
     assert!(torques[1] > torques[0] + 10, "{torques:?}");

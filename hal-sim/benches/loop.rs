@@ -288,7 +288,7 @@ impl<'a, 'q> Bench<'a, 'q> {
     fn sensitivity(&mut self, hz: f64, ticks: u64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for tick in 0..SETTLE_TICKS + ticks {
-            // What is set now is latched in the second half of this period and read by the next tick.
+            // What is set now is latched later in this period and read by the next tick.
             let phase = TAU * hz * tick as f64 / RATE_HZ;
             self.host.stage.encoders[0].set_offset(SINE_RAD * phase.sin());
             let error = self.error_lsb() * LSB_RAD;

@@ -22,7 +22,7 @@ const PERIODS: u32 = 20_000;
 /// Ticks of the move that the controller makes by itself: all of it, and some rest.
 const MOVE_TICKS: usize = 40_000;
 /// The substeps of one control period, s.
-const SUBSTEPS_S: [f64; 4] = [12.5e-6, 12.5e-6, 10e-6, 15e-6];
+const SUBSTEPS_S: [f64; 4] = [16e-6, 16e-6, 3e-6, 15e-6];
 
 fn main() {
     println!("{:<44} {:>8}", "one control period of 50 us", "us");

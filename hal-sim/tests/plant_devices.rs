@@ -266,13 +266,13 @@ fn period_runs_old_pins_then_new_ones_and_latches_before_the_tick() {
         [Drive::Voltage(24.0); 3],
     );
     let grid = [
-        (12.5e-6, asleep),
-        (12.5e-6, asleep),
-        (10e-6, first),
+        (16e-6, asleep),
+        (16e-6, asleep),
+        (3e-6, first),
         (15e-6, first),
-        (12.5e-6, first),
-        (12.5e-6, first),
-        (10e-6, second),
+        (16e-6, first),
+        (16e-6, first),
+        (3e-6, second),
     ];
     for (step_s, drives) in grid {
         plant.step(step_s, &drives);

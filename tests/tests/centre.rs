@@ -79,7 +79,7 @@ fn the_machine_turns_about_the_chosen_point() {
     let there = run.mean_point(point);
     for (units, there) in held.setpoint.into_iter().zip(there) {
         let told_mm = units as f64 / TURN * RADIUS_MM;
-        assert!((told_mm - there).abs() < 2.7e-7, "{told_mm} {there}");
+        assert!((told_mm - there).abs() < 3.2e-7, "{told_mm} {there}");
     }
 
     // Holding, another point moves nothing; and back.

@@ -201,6 +201,8 @@ impl Commander {
     }
 
     fn send_stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
+        // What was learnt is for the motion that this ends.
+        self.end_trial(queues);
         let id = self.next_plan_id();
         let constraints = self.constraints();
         let Some((under_way, at)) = self.active_plan() else {

@@ -20,6 +20,7 @@
 //! | `command`, `snapshot` | what the command side asks, and what is reported to it |
 //! | `report` | when and how a snapshot is sent |
 //! | `tick_queues` | the tick's ends of the queues and recorders |
+//! | `observers` | the recorders, which observe every tick and may run behind it |
 //! | `loop_counters` | what the loop counts between two snapshots |
 
 mod command;
@@ -28,6 +29,7 @@ pub mod encoder;
 pub mod held_position;
 mod inspection;
 pub mod loop_counters;
+mod observers;
 mod oscillation;
 mod pivot_setpoints;
 mod referencing;
@@ -44,8 +46,9 @@ mod trial;
 pub mod units;
 
 pub use command::Command;
+pub use observers::TickObservers;
 pub use snapshot::{SNAPSHOT_SLOTS, ServoReport, Snapshot};
 pub use state::{Inputs, Outputs, State};
 pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
-pub use tick::tick;
+pub use tick::{tick, tick_and_drive};
 pub use tick_queues::TickQueues;

@@ -134,8 +134,8 @@ impl RestMode {
         for ((slow_sum, lasting_sum), &sum) in smoothed.zip(sums) {
             *slow_sum += (sum as f32 - *slow_sum) * config.smoothing;
             *lasting_sum += (*slow_sum - *lasting_sum) * config.lasting_smoothing;
-            slow = slow.max(slow_sum.abs());
-            lasting = lasting.max(lasting_sum.abs());
+            slow = larger(slow, slow_sum.abs());
+            lasting = larger(lasting, lasting_sum.abs());
             fast = sum.unsigned_abs().max(fast);
         }
         let is_soft = self.stiffness.gains <= config.stiffness;
@@ -157,18 +157,21 @@ impl RestMode {
             integral_rate,
         } = &mut self.stiffness;
         *gains = if *gains > config.stiffness {
-            (*gains * config.softening).max(config.stiffness)
+            larger(*gains * config.softening, config.stiffness)
         } else if lasts {
-            (*gains * config.quickening).min(config.stiffness)
+            smaller(*gains * config.quickening, config.stiffness)
         } else {
-            (*gains * config.slackening).max(config.slack_stiffness)
+            larger(*gains * config.slackening, config.slack_stiffness)
         };
         *integral_rate = if *integral_rate > config.fast_integral_rate {
             *integral_rate * config.integral_softening
         } else if lasts {
-            (*integral_rate * config.quickening).min(config.fast_integral_rate)
+            smaller(
+                *integral_rate * config.quickening,
+                config.fast_integral_rate,
+            )
         } else {
-            (*integral_rate * config.slackening).max(config.stiffness)
+            larger(*integral_rate * config.slackening, config.stiffness)
         };
     }
 
@@ -178,12 +181,24 @@ impl RestMode {
             gains,
             integral_rate,
         } = &mut self.stiffness;
-        *gains = (*gains + config.stiffening).min(1.0);
-        *integral_rate = (*integral_rate + config.stiffening).min(1.0);
+        *gains = smaller(*gains + config.stiffening, 1.0);
+        *integral_rate = smaller(*integral_rate + config.stiffening, 1.0);
     }
 
     /// The full loop, from now on.
     pub fn restart(&mut self) {
         *self = Self::default();
     }
+}
+
+// `f32::max` and `min` are calls of a function on the chip, for what they make of a NaN.
+
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+#[inline]
+fn smaller(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
 }

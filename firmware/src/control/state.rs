@@ -29,7 +29,7 @@ pub struct Inputs {
     pub supply_counts: u16,
     /// Cost of the tick before, processor cycles; 0 where nobody counts them.
     pub tick_cycles: u32,
-    /// The tick before ended after its deadline, or there should have been one more since.
+    /// The duties of the tick before missed their PWM period, or there should have been one more tick since.
     pub late: bool,
 }
 

@@ -1,5 +1,6 @@
 //! The control loop: one function of state and inputs.
 
+use super::command::Command;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
@@ -18,11 +19,15 @@ use kinematics::Angle;
 
 /// One period of the control loop, at 20 kHz by default.
 ///
-/// Encoder frames go in, duties come out; in between the data path reads top to bottom. Called by the timer's update
-/// interrupt with the highest priority. The frames were latched 15 us before; the duties act from the next PWM period,
-/// 25 us after the update, which is the deadline. A miss is a late duty: the old one acts one PWM period longer. No
-/// allocation, no blocking, no unbounded loop; no panic and no f64, which `cargo image-check` proves of the image. Its
-/// cost on the chip stands in `hal-sim/MEASURED.md` and is printed by `cargo chip`.
+/// Encoder frames go in, duties come out; in between the data path reads top to bottom. No allocation, no blocking, no
+/// unbounded loop; no panic and no f64, which `cargo image-check` proves of the image.
+///
+/// - Period: 50 us, by a timer's compare event. The frames were latched 15 us before.
+/// - Deadline: 32 us after the event, 5,376 cycles. There the PWM period begins in which the duties act.
+/// - Cost until then: in cycles by use, from `cargo chip-cycles`, which CI holds to `firmware/cycle-limits.csv`; in
+///   instructions from `cargo chip`. What follows, the rest of a plan that was taken, sample and snapshot, has no deadline.
+/// - Miss: the old duties act one PWM period, 25 us, longer. The next tick is told so ([`Inputs::late`]) and counts it; more
+///   than parameter 0x5450050B of them, one in 100 ticks forgiven, are a fault.
 #[inline]
 pub fn tick(
     config: &mut Config,
@@ -31,6 +36,23 @@ pub fn tick(
     queues: &mut TickQueues<'_>,
     recorder: &mut impl TickObserver,
 ) -> Outputs {
+    let mut given = Outputs::default();
+    tick_and_drive(config, state, inputs, queues, recorder, |outputs| {
+        given = outputs;
+    });
+    given
+}
+
+/// The same with the outputs handed to `drive` as soon as they are known.
+#[inline]
+pub fn tick_and_drive(
+    config: &mut Config,
+    state: &mut State,
+    inputs: &Inputs,
+    queues: &mut TickQueues<'_>,
+    recorder: &mut impl TickObserver,
+    drive: impl FnOnce(Outputs),
+) {
     state.tick = state.tick.wrapping_add(1);
     state
         .loop_counters
@@ -52,7 +74,6 @@ pub fn tick(
     if let Some(command) = command {
         state.commands = state.commands.wrapping_add(1);
         state.handle_command(config, command, &pivots);
-        let _ = queues.commands.dequeue();
         // Once more: referencing gives the pivots their turns.
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
@@ -75,10 +96,16 @@ pub fn tick(
         (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
     let slot = state.inspection_slot;
     state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
-    let outputs = Outputs {
+    drive(Outputs {
         duty,
         awake: state.bridges_awake(),
-    };
+    });
+    if let Some(Command::Move(plan)) = queues.commands.peek() {
+        state.motion.accept_rest(plan);
+    }
+    if commanded {
+        let _ = queues.commands.dequeue();
+    }
     let sample = || Sample {
         tick: state.tick,
         mode: state.mode,
@@ -96,11 +123,9 @@ pub fn tick(
         servo: state.servo_sample(slot),
     };
     recorder.observe(&sample());
-    if let Some(fault_record) = &mut queues.fault_record {
-        fault_record.observe(&sample());
+    if let Some(observers) = &mut queues.observers {
+        observers.observe(&sample());
     }
-    // Made anew, so that a tick that records nothing has it in registers only.
-    queues.recorder.observe(&sample());
     // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
     // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
     // on when the command side reads.
@@ -111,7 +136,6 @@ pub fn tick(
         state.report_due = false;
         state.send_snapshot(queues, &point.position, &pivots, &target, duty);
     }
-    outputs
 }
 
 // The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can

@@ -1,10 +1,9 @@
-//! The tick's ends of the queues to the command side, and of the recorders.
+//! The tick's ends of the queues to the command side, and what observes it.
 
 use super::command::Command;
+use super::observers::TickObservers;
 use super::snapshot::{SNAPSHOT_SLOTS, Snapshot};
-use crate::fault_record::FaultRecordWriter;
 use crate::iterative_learning::TrialTable;
-use crate::recorder::RecorderWriter;
 use heapless::spsc::{Consumer, Producer};
 
 /// The tick's ends.
@@ -13,12 +12,10 @@ pub struct TickQueues<'a> {
     pub commands: Consumer<'a, Command>,
     /// Where snapshots are sent.
     pub snapshots: Producer<'a, Snapshot>,
-    /// The data recorder's end in the tick.
-    pub recorder: RecorderWriter<'a>,
     /// The table of a move that is repeated.
     pub trial: TrialTable<'a>,
-    /// The fault record's end in the tick, where there is memory for one.
-    pub fault_record: Option<FaultRecordWriter<'a>>,
+    /// The recorders' ends. Whoever hands them the samples later, to spare the tick the time, takes them out.
+    pub observers: Option<TickObservers<'a>>,
 }
 
 impl TickQueues<'_> {
@@ -33,7 +30,8 @@ impl TickQueues<'_> {
     /// Throws away the commands that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.commands.dequeue().is_some() {}
-        if let Some(fault_record) = &mut self.fault_record {
+        let observers = self.observers.as_mut();
+        if let Some(fault_record) = observers.and_then(|it| it.fault_record.as_mut()) {
             fault_record.restart();
         }
     }

@@ -20,45 +20,22 @@ const HEAD_BITS: u32 = 2;
 /// The zero bit, where the start bit is bit 31.
 const ZERO_BIT: u32 = 1 << 30;
 
-/// Start values are 0, so the CRC of a number is the exclusive or of the CRCs of its parts: byte k of entry n is the
-/// CRC, not inverted, of the seven bits n at bit 7 k.
-static CRC_OF_SEVEN_BITS: [u32; 128] = crc_table();
 const CRC_MASK: u32 = 0x3F;
-const CRC_POLYNOMIAL: u32 = 0x43;
-
-const fn crc_table() -> [u32; 128] {
-    let mut table = [0; 128];
-    let mut bits = 0;
-    while bits < 128 {
-        let mut group = 0;
-        let mut remainder = (bits as u32) << 6;
-        while group < 4 {
-            // Seven steps of division bring the remainder to where the group above has its own.
-            let mut bit = 13;
-            while bit > 6 {
-                bit -= 1;
-                if remainder >> bit & 1 == 1 {
-                    remainder ^= CRC_POLYNOMIAL << (bit - 6);
-                }
-            }
-            table[bits] |= remainder << (8 * group);
-            remainder <<= 7;
-            group += 1;
-        }
-        bits += 1;
-    }
-    table
-}
 
 /// CRC of position and flags, not inverted, in the lowest six bits; what lies above them means nothing.
+///
+/// It is what they leave, times x^6, over the polynomial x^6 + x + 1. There x^6 is as good as x + 1, and its square x^12
+/// as good as x^2 + 1: two folds of 12 bits and one of 6 do without a table, which would have to be read from flash.
 #[inline]
 fn crc(covered: u32) -> u32 {
-    let part = |group: u32| CRC_OF_SEVEN_BITS[(covered >> (7 * group) & 0x7F) as usize];
-    // Each shift brings the byte that counts a place down.
-    let mut sum = part(3);
-    sum = sum >> 8 ^ part(2);
-    sum = sum >> 8 ^ part(1);
-    sum >> 8 ^ part(0)
+    let high = covered >> 12;
+    let folded = high ^ high << 2;
+    let above = folded >> 12;
+    let low = covered ^ folded ^ above ^ above << 2;
+    let (six, rest) = (low >> 6 & CRC_MASK, low & CRC_MASK);
+    let times = six ^ six << 2 ^ rest ^ rest << 1;
+    let above = times >> 6;
+    times ^ above ^ above << 1
 }
 
 /// The eight bytes of a transfer, as they came.

@@ -7,15 +7,15 @@
 //!
 //! Whoever writes may be stopped between any two words, and after a power-up there is anything in the memory. So each
 //! entry carries its own check and its own number or tick, from which its place follows: nothing else has to be right.
-//! An entry whose writing a reset has cut fails its check and is left out; the others stay. All words are atomics: the
-//! tick writes while the command side reads, and nobody waits.
+//! An entry whose writing a reset has cut fails its check and is left out; the others stay. All words are atomics: one side
+//! writes while the other reads, and nobody waits.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `memory` | the retained memory |
 //! | `checked_words` | entries of some words, with a check |
 //! | `row` | a tick of the fault record |
-//! | `writer` | its end in the tick |
+//! | `writer` | its end that takes the samples of the ticks |
 //! | `reader` | its other end |
 
 mod checked_words;

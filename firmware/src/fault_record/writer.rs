@@ -1,4 +1,4 @@
-//! The fault record's end in the tick.
+//! The fault record's end that takes the samples of the ticks.
 
 use super::memory::{LAYOUT_MAGIC, ROWS_AFTER_FAULT, RetainedMemory};
 use super::row::words;
@@ -64,7 +64,7 @@ impl<'a> FaultRecordWriter<'a> {
 }
 
 impl RetainedMemory {
-    /// The controller starts: what is there from before is kept, as far as it is whole. Gives the end in the tick.
+    /// The controller starts: what is there from before is kept, as far as it is whole. Gives the end that takes samples.
     pub fn begin(&self) -> FaultRecordWriter<'_> {
         if self.layout.load(Ordering::Relaxed) != LAYOUT_MAGIC {
             self.events.clear();

@@ -31,7 +31,7 @@ impl<const WORDS: usize> Recorder<WORDS> {
         }
     }
 
-    /// The end in the tick, and the one outside of it.
+    /// The tick's end, and the command side's.
     pub fn split(&mut self) -> (RecorderWriter<'_>, RecorderReader<'_>) {
         let (order_in, order_out) = self.orders.split();
         (

@@ -1,6 +1,6 @@
 //! The data recorder: what a tick computed, offered at its end, and how it is stored and read.
 //!
-//! A [`Recorder`] is a store of 32-bit words with two ends. The [`RecorderWriter`] writes into it inside the tick; the
+//! A [`Recorder`] is a store of 32-bit words with two ends. The [`RecorderWriter`] takes every tick's sample, on the chip right behind the tick; the
 //! [`RecorderReader`] orders records and reads them at low priority. Neither waits for the other, and there is no lock:
 //!
 //! - Orders go to the tick by value, through a queue. A [`RecordSetup`] is copied out of it once, so that the tick
@@ -19,7 +19,7 @@
 //! | `setup` | what a record is to be, and the orders to the tick |
 //! | `memory` | the memory, split into its two ends |
 //! | `published` | what the tick publishes of a record |
-//! | `writer` | the end in the tick: triggers, rows |
+//! | `writer` | the tick's end: triggers, rows |
 //! | `reader` | the end outside of it: orders, reading, turns put back |
 //! | `running_hash` | a hash of every tick |
 

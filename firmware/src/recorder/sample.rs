@@ -74,7 +74,7 @@ impl ServoSamples {
     }
 }
 
-/// Observes every tick. Runs inside it: no allocation, no blocking, no unbounded work.
+/// Observes every tick. Runs inside it, or right behind it: no allocation, no blocking, no unbounded work.
 pub trait TickObserver {
     /// Takes the sample of one tick.
     fn observe(&mut self, sample: &Sample);

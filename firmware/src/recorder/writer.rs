@@ -1,4 +1,4 @@
-//! The recorder's end in the tick.
+//! The recorder's end that takes the samples of the ticks.
 
 use super::published::Published;
 use super::sample::{Sample, ServoSamples};

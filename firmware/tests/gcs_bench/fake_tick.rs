@@ -10,7 +10,7 @@ use firmware::mode::Mode;
 use firmware::motion::{AxisState, PlanFollower, Setpoint, SetpointScale};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, Snapshot, TickQueues};
-use firmware::recorder::Sample;
+use firmware::recorder::{Sample, TickObserver};
 use kinematics::{Angle, Pose, inverse};
 
 /// Ticks that a stage at rest takes to settle.
@@ -88,7 +88,10 @@ impl<'q> FakeTick<'q> {
         let platform = self.now.centre.to_platform(&setpoint.position);
         self.now.pivots = pivots(&platform);
         self.now.loop_counters.ticks += 1;
-        self.queues.recorder.observe(&self.sample(setpoint));
+        let sample = self.sample(setpoint);
+        if let Some(observers) = &mut self.queues.observers {
+            observers.observe(&sample);
+        }
         if self.queues.snapshots.ready() {
             let _ = self.queues.snapshots.enqueue(self.now.clone());
             self.now.loop_counters = LoopCounters::default();

@@ -216,11 +216,47 @@ fn a_restart_by_command_is_told_as_one_and_the_loop_counts_its_cost() {
     assert_eq!(told("LATE="), 0.0);
 }
 
+/// The duties of a tick act 32 us after it, 47 us after the latch that they come of, and not before.
+#[test]
+fn duties_act_32_us_after_their_tick() {
+    const ACT_NS: u64 = 32_000;
+    const BESIDE_NS: u64 = 200;
+    let (send, receive) = mpsc::channel();
+    let mut before = [0.0; 3];
+    let mut changes = 0;
+    run(stage(), move |period| {
+        let pulses = |pins: &[BridgeState; 3]| pins.map(|bridge| bridge.pulse);
+        let now = pulses(&period.pins);
+        if let [.., (_, early), (_, late)] = period.probes {
+            assert_eq!((pulses(early), pulses(late)), (before, now));
+            changes += u32::from(before != now);
+        }
+        before = now;
+        match period.tick {
+            20 => period.send(b"FRF X\n"),
+            100 => period.send(b"MOV X 20 Y -30 W 90\n"),
+            1_000 => {
+                send.send(changes).expect("the test waits");
+                return Break(());
+            }
+            _ => {}
+        }
+        if period.tick >= 600 {
+            let acts_at = period.tick_at_ns() + ACT_NS;
+            period.at(acts_at - BESIDE_NS, Action::Probe);
+            period.at(acts_at + BESIDE_NS, Action::Probe);
+        }
+        Continue(())
+    });
+    let changes = receive.recv().expect("the last period");
+    assert!(changes > 300, "{changes}");
+}
+
 #[test]
 fn a_tick_is_followed_from_its_begin_to_its_end() {
     let image = elf_file::find().expect("`cargo stage` builds it");
     let (_, steps) = image::chip::follow(600).expect("as many instructions as were counted");
     let first = steps.first().expect("some").at;
     let code = image::proof::Code::read(&image).expect("understood");
-    assert_eq!(code.named("TIM1_UP_TIM10"), Some(first));
+    assert_eq!(code.named("TIM1_CC"), Some(first));
 }

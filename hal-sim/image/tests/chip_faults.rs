@@ -441,17 +441,17 @@ fn slow(instructions_per_second: u64) -> (String, usize) {
     (told, outcome.resets.len())
 }
 
+/// Whichever is found first: that duties were late, or that what follows them has held up the next latch.
 #[test]
 fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counted() {
-    for (rate, said) in [
-        (95_000_000, "control loop late too often"),
-        (140_000_000, "0 no fault"),
-    ] {
+    let late = ["control loop late too often", "encoder "];
+    for (rate, told_is) in [(78_000_000, &late[..]), (93_000_000, &["0 no fault"])] {
         let (told, resets) = slow(rate);
         println!("{rate}: {resets} resets, {told}");
-        assert!(told.contains(said) && resets == 0, "{rate}: {told}");
+        let is_told = told_is.iter().any(|is| told.contains(is));
+        assert!(is_told && resets == 0, "{rate}: {told}");
         let in_time = told.lines().any(|line| line.trim() == "LATE=0");
-        assert_eq!(in_time, said == "0 no fault", "{rate}: {told}");
+        assert_eq!(in_time, told_is == ["0 no fault"], "{rate}: {told}");
     }
 }
 
@@ -459,7 +459,7 @@ fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counte
 /// tick of a loop that drives nothing leaves time again for telling it: the watchdog has no cause to bite.
 #[test]
 fn a_tick_longer_than_its_period_ends_in_a_fault_that_is_told() {
-    let (told, resets) = slow(40_000_000);
+    let (told, resets) = slow(46_000_000);
     println!("{resets} resets, {told}");
     let said = ["encoder ", "control loop late too often"];
     assert!(said.iter().any(|said| told.contains(said)), "{told}");

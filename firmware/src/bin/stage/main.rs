@@ -22,14 +22,15 @@
 //! # Timeline
 //!
 //! ```text
-//!  latch            tick T                     T + 25 us        latch            tick T + 50 us
-//!  |----- 15 us ----|------------ 25 us -----------|--- 10 us ---|----- 15 us -----|
-//!  | 12.2 us SPI    | control task                 | duty of T acts from here
-//!  | 7.6 us ADC     | 18 us at one cycle an instruction; the goal is 12.5 us
+//!  latch            tick T                                T + 32 us  latch            tick T + 50 us
+//!  |----- 15 us ----|------------ 32 us ---------------------|- 3 us -|----- 15 us -----|
+//!  | 12.2 us SPI    | control task                           | duty of T acts from here
+//!  | 7.6 us ADC     | what it takes: `cargo chip-cycles`
+//!  |- 3 us -|----- 25 us -----------|---------- 25 us -------|----- 25 us --- PWM periods
 //! ```
 //!
-//! From the encoders' latch to the PWM period in which the answer acts: 40 us. A duty takes over with a whole PWM
-//! period. Phase and sleep pins change inside the tick: the enable pulse stands at the beginning of the period, so with
+//! From the encoders' latch to the PWM period in which the answer acts: 47 us (`timeline`). A duty takes over with a whole
+//! PWM period. Phase and sleep pins change inside the tick: the enable pulse stands at the beginning of the period, so with
 //! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase
 //! does not matter until the new duty comes.
 //!
@@ -37,10 +38,11 @@
 //!
 //! Latch and tick share a priority, 1 in the hardware; they never meet. Above them, at 0, are only the exceptions that end
 //! the program (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
-//! All the rest, command interface, settings, independent watchdog and log, is the idle task. Between the two sides
-//! are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame that meets another one, or a
-//! full buffer, is dropped instead. The independent
-//! watchdog is fed by the idle task, and only while the tick counter moves.
+//! Below them, at 15 in the hardware, runs what records the ticks (`samples`): rows of the recorders and the trace are
+//! written in what the tick leaves of its period. All the rest, command interface, settings, independent watchdog and log,
+//! is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame
+//! that meets another one, or a full buffer, is dropped instead. The independent watchdog is fed by the idle task, and
+//! only while the tick counter moves.
 #![no_std]
 #![no_main]
 
@@ -60,10 +62,12 @@ mod pwm;
 mod reset_cause;
 mod restart;
 mod retained_memory;
+mod samples;
 mod self_check;
 mod self_test;
 mod serial;
 mod tick_timing;
+mod timeline;
 mod trace;
 mod watchdog;
 
@@ -77,6 +81,7 @@ mod app {
         flash::SettingsFlash,
         identity, restart,
         retained_memory::RETAINED_MEMORY,
+        samples::{SampleQueue, SampleReceiver, SampleSender},
         self_test::StageBoard,
         serial::{Receiver, Transmitter},
         tick_timing::TickTiming,
@@ -85,12 +90,14 @@ mod app {
     };
     use core::mem::MaybeUninit;
     use firmware::control::config::Config;
-    use firmware::control::{Inputs, State, tick};
+    use firmware::control::{Inputs, State, TickObservers, tick_and_drive};
     use firmware::fault::FaultKind;
     use firmware::gcs::{Identity, Interpreter, Session};
     use firmware::parameters::Parameters;
     use firmware::queues::{CommandQueues, Queues, TickQueues};
+    use firmware::recorder::TickObserver;
     use firmware::settings_store::SettingsStore;
+    use stm32f4xx_hal::pac::Interrupt;
 
     /// What is in force until settings have been stored.
     const PARAMETERS: Parameters = Parameters::REFERENCE.uncommissioned();
@@ -105,6 +112,9 @@ mod app {
     struct Local {
         config: Config,
         state: &'static mut State,
+        sample_sender: SampleSender,
+        sample_receiver: SampleReceiver,
+        observers: Option<TickObservers<'static>>,
         trace_writer: TraceWriter,
         tick_timing: TickTiming,
         tick_queues: TickQueues<'static>,
@@ -119,6 +129,7 @@ mod app {
     // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
     #[init(local = [
         queues: Queues = Queues::new(),
+        samples: SampleQueue = SampleQueue::new(),
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
@@ -140,7 +151,7 @@ mod app {
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
         let mut core = context.core;
-        let (tick_queues, command_queues) =
+        let (mut tick_queues, command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
         let identity = Identity {
             serial: context.local.serial_place.write(identity::serial()),
@@ -174,9 +185,14 @@ mod app {
         }
         .with_motor_heat(RETAINED_MEMORY.motor_heat())
         .with_learnt(&config);
+        let (sample_sender, sample_receiver) = context.local.samples.split();
         let local = Local {
             config,
             state: context.local.state_place.write(state),
+            sample_sender: SampleSender(sample_sender),
+            sample_receiver,
+            // They run behind the tick.
+            observers: tick_queues.observers.take(),
             trace_writer: TraceWriter::default(),
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
             tick_queues,
@@ -205,13 +221,17 @@ mod app {
         cortex_m::asm::dsb();
     }
 
-    /// The control task, every 50 us. If it takes longer than 35 us, the next latch and with it the next frames are
-    /// late, and the library takes them for missing; if it never ends, the watchdog resets the chip.
-    #[task(binds = TIM1_UP_TIM10, priority = 15, shared = [control], local = [config, state, tick_queues, trace_writer, tick_timing])]
+    /// The control task, every 50 us. Duties that are written more than 32 us after its event miss their PWM period: it
+    /// counts as late. If all of it takes more than 35 us, the next latch comes late, and after some 37 us the frames are
+    /// not there in time and count as missing; if it never ends, the watchdog resets the chip.
+    #[task(binds = TIM1_CC, priority = 15, shared = [control], local = [config, state, tick_queues, sample_sender, tick_timing])]
     fn control(context: control::Context) {
         let control = context.shared.control;
         control.pwm.disarm_tick();
-        let (tick_cycles, late) = context.local.tick_timing.begin();
+        let (tick_cycles, late) = context
+            .local
+            .tick_timing
+            .begin(control.pwm.counts_since_tick());
         let counts = control.analog.counts();
         let inputs = Inputs {
             frames: control.encoders.frames(),
@@ -222,20 +242,40 @@ mod app {
             tick_cycles,
             late,
         };
-        let outputs = tick(
+        tick_and_drive(
             context.local.config,
             context.local.state,
             &inputs,
             context.local.tick_queues,
-            context.local.trace_writer,
+            context.local.sample_sender,
+            |outputs| {
+                control.bridges.set(outputs.duty, outputs.awake);
+                control.pwm.connect(outputs.awake);
+                context.local.tick_timing.end();
+                // What follows has no deadline.
+                trace::mark_end_of_tick();
+            },
         );
-        control.bridges.set(outputs.duty, outputs.awake);
-        control.pwm.connect(outputs.awake);
-        context.local.tick_timing.end();
         watchdog::feed_window();
+        rtic::pend(Interrupt::CRYP);
         // The interrupt's acknowledgement has arrived before the core looks whether there is one (erratum 838869).
         cortex_m::asm::dsb();
-        trace::mark_end_of_tick();
+    }
+
+    /// Records the tick that has just ended, in what it leaves of the period: below latch and tick, above the command
+    /// side. Bound to the interrupt of a peripheral that the chip does not have.
+    #[task(binds = CRYP, priority = 1, local = [sample_receiver, observers, trace_writer])]
+    fn observe(context: observe::Context) {
+        let local = context.local;
+        // Looked at where it lies: it is too long to be moved.
+        while let Some(sample) = local.sample_receiver.peek() {
+            if let Some(observers) = local.observers {
+                observers.observe(sample);
+            }
+            // Last: whoever sees the tick there finds it recorded.
+            local.trace_writer.observe(sample);
+            let _ = local.sample_receiver.dequeue();
+        }
     }
 
     /// The command interface, the settings and the watchdog.

@@ -1,13 +1,14 @@
 //! TIM1: three edge-aligned PWM outputs of 40 kHz, the tick's interrupt, and the break input.
 //!
-//! Compare values are preloaded: what the tick writes takes over at the next PWM period, whole. The repetition counter,
-//! which would give a 20 kHz interrupt by itself, would also hold the preload back to the next tick. Instead, the latch
-//! task, 15 us before, arms the interrupt of one update, and the tick disarms it.
+//! Compare values are preloaded: what the tick writes takes over at the next PWM period, whole. The tick is the interrupt
+//! of channel 4's compare event, so that it may come anywhere in a PWM period (`timeline`): it has the rest of that one
+//! and the whole next one, and its duty acts with the one after. The latch task arms it in every second PWM period, and
+//! the tick disarms it.
 //!
 //! While the break input is low the outputs are low without any software, and they stay low until [`Bridges::drive`]
 //! finds the input released: low brakes the motors (the bridges' phase/enable mode).
 
-use crate::clocks;
+use crate::timeline::{PWM_COUNTS, TICK_COUNT};
 use core::convert::Infallible;
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use stm32f4xx_hal::{
@@ -15,12 +16,8 @@ use stm32f4xx_hal::{
     rcc::{Enable, Rcc},
 };
 
-/// PWM frequency, Hz.
-pub const PWM_HZ: u32 = 40_000;
-/// Counts of a PWM period: the full duty.
-pub const MAX_DUTY: u16 = (clocks::TIM1_HZ / PWM_HZ) as u16;
-
-const _: () = assert!(MAX_DUTY as u32 * PWM_HZ == clocks::TIM1_HZ);
+/// The full duty.
+pub const MAX_DUTY: u16 = PWM_COUNTS;
 
 /// What is left of TIM1 when the PWM channels are taken out.
 pub struct PwmTimer {
@@ -55,7 +52,10 @@ pub fn configure(
         // SAFETY: 0b01 is lock level 1; the field's values are all defined.
         unsafe { w.lock().bits(0b01) }
     });
+    tim.ccr(3).write(|w| w.ccr().set(TICK_COUNT));
     tim.egr().write(|w| w.ug().set_bit());
+    // The first tick comes two whole periods after the start.
+    tim.cnt().write(|w| w.cnt().set(TICK_COUNT));
     (
         PwmTimer { tim },
         (PwmChannel(()), PwmChannel(()), PwmChannel(())),
@@ -63,16 +63,30 @@ pub fn configure(
 }
 
 impl PwmTimer {
-    /// Lets the next update interrupt. Called once a control period, in the PWM period before the tick's.
+    /// Lets the next compare event interrupt. Called once a control period, in the tick's PWM period, before it.
+    #[inline(always)]
     pub fn arm_tick(&mut self) {
-        self.tim.sr().write(|w| w.uif().clear_bit());
-        self.tim.dier().write(|w| w.uie().enabled());
+        self.tim.sr().write(|w| w.cc4if().clear_bit());
+        self.tim.dier().write(|w| w.cc4ie().enabled());
     }
 
-    /// Acknowledges the tick's interrupt, and lets no further update interrupt until the next latch.
+    /// Acknowledges the tick's interrupt, and lets no further one come until the next latch.
+    #[inline(always)]
     pub fn disarm_tick(&mut self) {
         self.tim.dier().reset();
-        self.tim.sr().write(|w| w.uif().clear_bit());
+        self.tim.sr().write(|w| w.cc4if().clear_bit());
+    }
+
+    /// Counts since the tick's compare event, cycles of the core: how long the interrupt took to get here.
+    #[inline(always)]
+    pub fn counts_since_tick(&self) -> u32 {
+        let count = self.tim.cnt().read().cnt().bits();
+        let since = count.wrapping_sub(TICK_COUNT);
+        u32::from(if count < TICK_COUNT {
+            since.wrapping_add(PWM_COUNTS)
+        } else {
+            since
+        })
     }
 
     /// Whether the break has cut the outputs since the last call.

@@ -1,10 +1,8 @@
 //! What a tick costs and whether it comes and ends in time, by the core's cycle counter.
 
-use crate::clocks;
+use crate::timeline::{DEADLINE_CYCLES, PERIOD_CYCLES};
 use cortex_m::peripheral::{DCB, DWT};
 
-/// From the tick's interrupt to the PWM period in which its duty acts: 25 us.
-const DEADLINE_CYCLES: u32 = clocks::CORE_HZ / 40_000;
 // Told to who models the tick's cycles: a symbol whose value is the number.
 core::arch::global_asm!(
     ".global stage_deadline_cycles",
@@ -12,15 +10,18 @@ core::arch::global_asm!(
     const DEADLINE_CYCLES
 );
 
-/// More than this between two ticks, and one has been missed: one and a half times 50 us.
-const MISSED_CYCLES: u32 = clocks::CORE_HZ / 20_000 * 3 / 2;
+/// More than this between two ticks, and one has been missed: one and a half periods.
+const MISSED_CYCLES: u32 = PERIOD_CYCLES * 3 / 2;
 
 /// See the module.
 #[derive(Default)]
 pub struct TickTiming {
     /// When the last tick began.
     began: Option<u32>,
+    /// What it cost.
     cycles: u32,
+    /// How late it began, cycles after its event.
+    delay: u32,
 }
 
 impl TickTiming {
@@ -31,15 +32,18 @@ impl TickTiming {
         Self::default()
     }
 
-    /// A tick begins: what the last one cost, and whether it was late or this one is.
+    /// A tick begins, so many cycles after its event: what the last one cost, and whether its duty missed its period or
+    /// there should have been one more since.
     #[inline]
-    pub fn begin(&mut self) -> (u32, bool) {
+    pub fn begin(&mut self, delay: u32) -> (u32, bool) {
         let now = DWT::cycle_count();
         let missed = self
             .began
             .is_some_and(|began| now.wrapping_sub(began) > MISSED_CYCLES);
+        let was_late = self.delay + self.cycles > DEADLINE_CYCLES;
         self.began = Some(now);
-        (self.cycles, missed || self.cycles > DEADLINE_CYCLES)
+        self.delay = delay;
+        (self.cycles, missed || was_late)
     }
 
     /// The tick ends.

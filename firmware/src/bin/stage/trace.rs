@@ -61,7 +61,7 @@ impl Trace {
     }
 }
 
-/// What the tick hands its samples to: keeps [`TRACE`] up to date.
+/// What the samples go to at last: keeps [`TRACE`] up to date.
 #[derive(Default)]
 pub struct TraceWriter(RunningHash);
 
@@ -75,7 +75,7 @@ impl TickObserver for TraceWriter {
     }
 }
 
-/// Puts the symbol `stage_tick_end` here, and no instruction: where a bench stops counting a tick's cost.
+/// Puts the symbol `stage_tick_end` here, and no instruction: where a bench stops counting a tick's cost, its duties written.
 // A numbered label, which the lint asks for, is no symbol. No `nomem`: the tick's stores stay in front of the label.
 #[allow(named_asm_labels)]
 #[inline(always)]

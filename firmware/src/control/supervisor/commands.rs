@@ -67,7 +67,8 @@ impl State {
             Command::Reference if !self.referenced => self.reference(config, pivots),
             Command::Reference | Command::Servo(_) => self.hold(config, pivots),
             Command::Move(plan) => {
-                let taken = self.motion.accept(plan).is_ok();
+                // The rest of it is copied once the duties are written.
+                let taken = self.motion.accept_first(plan).is_ok();
                 if taken {
                     self.settling.start();
                 }

@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Symbols of the image: the handler of the tick, where its cost ends, the record.
-pub(super) const TICK_BEGIN: &str = "TIM1_UP_TIM10";
+pub(super) const TICK_BEGIN: &str = "TIM1_CC";
 pub(super) const TICK_END: &str = "stage_tick_end";
 const TRACE: &str = "TRACE";
 /// Where the image keeps its settings: at the beginning of bank 2.

@@ -1,5 +1,6 @@
 //! What the ticks cost, in instructions, exactly: from the first instruction of the interrupt handler to the symbol
-//! `stage_tick_end`. Exception entry and return, and the handler's last few instructions, come on top.
+//! `stage_tick_end`, where the duties are written: the deadline is theirs. Exception entry and return, and what the handler
+//! does after that for the recorders and the command side, come on top.
 
 /// Cost of the ticks of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -74,7 +74,7 @@ pub struct Period<'a> {
     pub tick: u64,
     /// The stage at this tick. Its encoders' frames have been handed over already: a fault set now shows next period.
     pub stage: &'a mut Stage,
-    /// What the pins said over the second half of the last period.
+    /// What the pins said from where the last tick's duty acts.
     pub pins: [BridgeState; 3],
     /// Whether bridges have switched themselves off. May be changed.
     pub bridge_faults: &'a mut [bool; 3],

@@ -123,7 +123,7 @@ impl Twin {
         let (mut panel_side, command_queues) = ControllerMemory::endless().split();
         let (mut tick_queues, tick_side) = ControllerMemory::endless().split();
         // The twin's command side orders its records from the twin's tick; nothing of them has to be held back.
-        std::mem::swap(&mut panel_side.recorder, &mut tick_queues.recorder);
+        std::mem::swap(&mut panel_side.observers, &mut tick_queues.observers);
         let (links, flash) = ((tick_queues, command_queues), SettingsFlash::in_memory());
         Self {
             rig: Rig::new(links, parameters, flash, ControlLoop::new),

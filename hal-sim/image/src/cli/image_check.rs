@@ -5,7 +5,9 @@ use std::process::ExitCode;
 use super::error::CliError;
 use crate::chip::elf_file;
 use crate::cost::{Sizes, print_sizes};
-use crate::proof::{Code, LEVELS, NESTING, Stack, faults, print_proof, print_stack, vector_faults};
+use crate::proof::{
+    CONTROL_LOOP, Code, NESTING, Stack, faults, print_proof, print_stack, vector_faults,
+};
 
 /// Share of the stack's memory that has to be left, so that a change or two still fit.
 const LEFT: f64 = 0.25;
@@ -14,7 +16,7 @@ pub(super) fn run() -> Result<ExitCode, CliError> {
     let path = elf_file::find();
     let path = path.ok_or_else(|| CliError::Value("no image: `cargo stage` builds it".into()))?;
     let code = Code::read(&path)?;
-    let handlers = LEVELS[1].handlers;
+    let handlers = CONTROL_LOOP;
     let mut faults = faults(&code, handlers);
     faults.extend(vector_faults(&code));
     println!("{}", print_proof(&code, handlers, &faults));

@@ -41,7 +41,7 @@ impl Tallies {
 pub fn print_cycles(tallies: &Tallies, deadline: u64) -> String {
     let share = |cycles: u64| 100.0 * cycles as f64 / deadline as f64;
     let mut text = format!(
-        "cycles of a tick, from its interrupt to its last store, by a model of core and flash: no board was measured\n\
+        "cycles of a tick, from its interrupt until its duties are written, by a model of core and flash: no board was measured\n\
          deadline {deadline} cycles; the goal is {:.0} % of it nominally, and under 100 % pessimistically\n\n",
         100.0 * GOAL,
     );

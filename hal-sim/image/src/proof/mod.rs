@@ -38,6 +38,6 @@ pub use error::ProofError;
 pub use listing::listing;
 pub use print::{print_proof, print_stack};
 pub use safe::{Fault, faults};
-pub use stack::{Depth, Depths, LEVELS, Level, NESTING, Stack};
+pub use stack::{CONTROL_LOOP, Depth, Depths, LEVELS, Level, NESTING, Stack};
 pub use step::{Decoded, Engine, Step};
 pub use vectors::vector_faults;

@@ -25,20 +25,27 @@ pub struct Level {
 }
 
 /// The levels, lowest priority first: each may interrupt the ones before it once.
-pub const LEVELS: [Level; 3] = [
+pub const LEVELS: [Level; 4] = [
     Level {
         name: "start and idle task",
         handlers: &["Reset"],
     },
     Level {
+        name: "recorders",
+        handlers: &["CRYP"],
+    },
+    Level {
         name: "latch and tick",
-        handlers: &["TIM3", "TIM1_UP_TIM10"],
+        handlers: &["TIM3", "TIM1_CC"],
     },
     Level {
         name: "processor faults",
         handlers: &["DefaultHandler"],
     },
 ];
+
+/// Handlers of the control loop.
+pub const CONTROL_LOOP: &[&str] = LEVELS[2].handlers;
 
 /// How deep a function gets, and on which way.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

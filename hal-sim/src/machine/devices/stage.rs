@@ -2,14 +2,14 @@
 //!
 //! ```text
 //!  tick k                                                    tick k+1
-//!  T          T + P/4      T + P/2       T + 0.7 P           T + P
-//!  |-- 12.5 us --|-- 12.5 us --|-- 10 us --|--------- 15 us ---|      P = 50 us
-//!  |  drive of tick k-1        |  drive of tick k              |
-//!                                        ^ encoders latch: the frames that tick k+1 reads
+//!  T           T + 0.32 P     T + 0.64 P   T + 0.7 P         T + P
+//!  |--- 16 us ---|--- 16 us ---|--- 3 us ---|------ 15 us ------|      P = 50 us
+//!  |  drive of tick k-1        |  drive of tick k               |
+//!                                           ^ encoders latch: the frames that tick k+1 reads
 //! ```
 //!
-//! The PWM runs at twice the control rate and takes a new duty over at its next period, half a control period after
-//! the tick that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
+//! The PWM runs at twice the control rate and takes a new duty over with the second period that begins after the tick
+//! that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
 
 use super::analog;
 use super::bridge::{BridgeParameters, BridgeState};
@@ -18,9 +18,9 @@ use crate::machine::plant::{AXES, Drive, Plant, PlantParameters};
 use serde::{Deserialize, Serialize};
 
 /// Substeps before the new drive acts, in parts of the period.
-const OLD_DRIVE: [f64; 2] = [0.25, 0.25];
+const OLD_DRIVE: [f64; 2] = [0.32, 0.32];
 /// Part of the period from the new drive to the encoders' latch.
-const TO_LATCH: f64 = 0.2;
+const TO_LATCH: f64 = 0.06;
 /// Part of the period from the latch to the next tick.
 const AFTER_LATCH: f64 = 0.3;
 
@@ -136,21 +136,11 @@ impl Stage {
         self.latch();
     }
 
-    /// Runs one control period: the pins as the last call left them for the first half, `pins` from there on.
+    /// Runs one control period: the pins as the last call left them until the tick's duty acts, `pins` from there on.
     pub fn advance_period(&mut self, pins: [BridgeState; AXES]) {
-        self.advance_first_half();
-        self.advance_second_half(pins);
-    }
-
-    /// From a tick to the middle of the period, under the pins of the last period.
-    pub fn advance_first_half(&mut self) {
         for part in OLD_DRIVE {
             self.substep(part);
         }
-    }
-
-    /// From the middle of the period, where `pins` take over, past the encoders' latch to the next tick.
-    pub fn advance_second_half(&mut self, pins: [BridgeState; AXES]) {
         self.advance_to_latch(pins);
         self.substep(AFTER_LATCH);
     }

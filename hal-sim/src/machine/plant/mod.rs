@@ -113,7 +113,7 @@ impl Plant {
         self.dynamics.drive = DriveModel::new(&self.parameters);
     }
 
-    /// Integrates over `step_s` (10 to 15 us is what the parameters are made for) with constant drives: one classic
+    /// Integrates over `step_s` (3 to 16 us is what the parameters are made for) with constant drives: one classic
     /// Runge-Kutta step of fourth order. A broken plant stands still.
     pub fn step(&mut self, step_s: f64, drives: &[Drive; AXES]) {
         if self.broken.is_some() {
