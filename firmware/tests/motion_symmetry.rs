@@ -209,8 +209,11 @@ fn apart(one: &Plan, image: &Plan, starts: [&[AxisState; 3]; 2], symmetry: &Symm
 }
 
 /// Lines and new targets take as long, and are at the same places, on the turned and mirrored mechanism. Not to the
-/// bit: single precision rounds differently, and where it does, another of nearly equal motions may be taken. How often
-/// is counted.
+/// bit: single precision rounds differently, and a planner that decides gets the other answer where what it looks at is at a
+/// limit to the last bits. Of 45,040 new targets 91 were apart by more than roundings, all traced to the first decision that
+/// differed: in 9 a delay that is just kept, or just not, moved its search to the other half (up to 0.5 % of the duration and
+/// 1.6 mm on the way); in 2 the check took or refused a speed at its slack (8 %, 2.8 mm); in the other 80 a slower line was made
+/// slower by another sample, or in another number of intervals (0.09 % and 0.03 mm).
 #[test]
 fn the_mechanism_is_the_same_all_round() {
     let all = (
@@ -267,8 +270,7 @@ fn the_mechanism_is_the_same_all_round() {
             Ok(())
         });
     result.unwrap();
-    // Of a hundred lines one may round to another motion, of new targets some: to one that is not much different. The bounds of the
-    // worst are those of forty seeds.
+    // Of a hundred lines one may round to another motion, to one that is not much different.
     let [lines, targets] = differences.take();
     let ([ticks, places], [ticks_new, places_new]) =
         (spread("lines", &lines), spread("new targets", &targets));
@@ -279,7 +281,9 @@ fn the_mechanism_is_the_same_all_round() {
     assert!(lines.len() > 1_400 && targets.len() > 1_000);
     assert!(ticks[0] == 0.0 && ticks[1] < 2e-3 && places[0] < 1e-6 && places[1] < 1e-3);
     assert!(ticks_new[0] == 0.0 && places_new[0] < 1e-6);
-    assert!(ticks_new[1] < 6e-3 && places_new[1] < 6e-3);
+    // What samples and intervals make of it; and a decision at a limit, one new target in four thousand.
+    let decided = |off: &&[f64; 2]| off[0] > 9.4e-4 || off[1] > 3.2e-4;
+    assert!(targets.iter().filter(decided).count() <= 3);
     assert!(only_one.get() <= 16);
 }
 

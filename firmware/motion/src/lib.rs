@@ -14,12 +14,11 @@
 //!
 //! | file or folder | idea |
 //! |---|---|
-//! | `limits`, `refusal`, `turn_direction`, `tolerances` | limits as a user states them; why a move is refused; which way round to an orientation; what is granted over a limit |
+//! | `refusal`, `tolerances` | why a move is refused; what is granted over a limit |
 //! | `constraints` | what every plan keeps to: limits, mechanism, workspace, and the point that is moved |
 //! | `plan` | the plan, the integers it is made of, sums of plans, and how the tick follows it |
-//! | `speeds` | translation and rotation as one pair |
-//! | `profile` | the two profiles |
-//! | `check` | whether a plan is inside every limit |
+//! | `profile` | `rest_to_rest`: seven segments in closed form, as three moving averages; `velocity`: three segments from any velocity and acceleration to a wanted velocity |
+//! | `check` | whether a plan is inside every limit, and a target inside the workspace |
 #![cfg_attr(not(test), no_std)]
 
 /// The same for x, y and theta, written out: compiled for size, an array's `map` stays a loop over closures, at four times the
@@ -47,28 +46,25 @@ macro_rules! both {
     };
 }
 
-pub mod profile;
-
 pub mod check;
 pub mod constraints;
-pub mod limits;
 pub mod plan;
 pub mod refusal;
-pub mod speeds;
 pub mod tolerances;
-pub mod turn_direction;
 
-pub use check::target::check_target;
-pub use constraints::{Bounds, Constraints};
-pub use limits::{Limits, PathLimits};
+/// Jerk-limited profiles: how long each segment lasts.
+pub mod profile {
+    pub mod rest_to_rest;
+    pub mod velocity;
+}
+
+pub use check::target::{TurnDirection, check_target};
+pub use constraints::{Bounds, Constraints, Limits, PathLimits};
 pub use plan::axis_state::{AxisState, JERK_STEP, SUB_BITS};
+pub use plan::fault_stop::FaultStop;
 pub use plan::follower::{PlanFollower, Stale};
-pub use plan::rotation_centre::{MAX_CENTRE_OFFSET, RotationCentre};
-pub use plan::setpoint::{Setpoint, SetpointScale};
-pub use plan::time_scaling::FaultStop;
+pub use plan::setpoint::{MAX_CENTRE_OFFSET, RotationCentre, Setpoint, SetpointScale};
 pub use plan::{MAX_PIECES, Piece, Plan, PlanStart, Position};
 pub use profile::rest_to_rest::RestToRestProfile;
-pub use refusal::Refusal;
-pub use refusal::RetargetError;
+pub use refusal::{Refusal, RetargetError};
 pub use tolerances::JERK_TOLERANCE;
-pub use turn_direction::TurnDirection;

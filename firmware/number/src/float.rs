@@ -88,7 +88,26 @@ pub fn truncate(value: f32) -> i64 {
     }
 }
 
-/// The same within 31 bits, which is hardware.
+/// A double without its fraction, a number; beyond 63 bits the largest. The compiler's conversion is made of four calls.
+pub fn truncate_f64(value: f64) -> i64 {
+    const MANTISSA: u32 = 52;
+    let bits = value.to_bits();
+    let exponent = (bits >> MANTISSA & 0x7FF) as i32 - 0x3FF;
+    let mantissa = (bits & ((1 << MANTISSA) - 1) | 1 << MANTISSA) as i64;
+    let size = match exponent {
+        ..0 => 0,
+        0..52 => mantissa >> (52 - exponent),
+        52..63 => mantissa << (exponent - 52),
+        _ => i64::MAX,
+    };
+    if value.is_sign_negative() {
+        size.wrapping_neg()
+    } else {
+        size
+    }
+}
+
+/// A float rounded to a whole number within 31 bits, which is hardware.
 #[inline]
 pub fn round_i32(value: f32) -> i32 {
     if value.abs() < 8_388_608.0 {
@@ -174,5 +193,18 @@ mod tests {
             }
         }
         assert_eq!(ceil_i32(f32::NAN), 0);
+    }
+
+    #[test]
+    fn a_double_is_cut_as_the_compiler_does() {
+        let mut random = crate::random::Random::new(3);
+        for _ in 0..100_000 {
+            let value = random.bits(64) as f64 * 2.0_f64.powi(-(random.bits(8).abs() as i32));
+            assert_eq!(truncate_f64(value), value as i64, "{value:e}");
+        }
+        for value in [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 2.0_f64.powi(53) + 2.0] {
+            assert_eq!(truncate_f64(value), value as i64, "{value:e}");
+        }
+        assert_eq!(truncate_f64(1e300), i64::MAX);
     }
 }

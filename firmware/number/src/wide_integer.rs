@@ -1,9 +1,11 @@
 //! Products and quotients of numbers of up to 128 bits.
 //!
 //! The quotient does without the library's division, which goes bit by bit: some 3,000 instructions on the chip. A
-//! float's guess has 22 of its bits; what they leave is divided in turn.
+//! float's guess has 22 of its bits; what they leave is divided in turn. By a short divisor 64 bits are divided in digits of
+//! 16, three instructions of the chip.
 
 use super::float::{i64_to_f32_fast, i128_to_f32_fast};
+use core::num::{NonZeroU16, NonZeroU32};
 
 /// Guesses that 64 bits take.
 const ROUNDS: usize = 4;
@@ -38,6 +40,28 @@ pub fn quotient(numerator: i128, divisor: i128) -> Option<(i64, i128)> {
         }
     }
     Some((quotient, rest))
+}
+
+/// `value` / `divisor` rounded towards zero, exactly; zero over zero.
+#[inline(never)]
+pub fn divide(value: i64, divisor: i64) -> i64 {
+    let Some(short) = u16::try_from(divisor).ok().and_then(NonZeroU16::new) else {
+        return value.checked_div(divisor).unwrap_or(0);
+    };
+    let short = NonZeroU32::from(short);
+    let size = value.unsigned_abs();
+    let (high, low) = ((size >> 32) as u32, size as u32);
+    let (first, rest) = (high / short, high % short);
+    let upper = rest << 16 | low >> 16;
+    let (second, rest) = (upper / short, upper % short);
+    let third = (rest << 16 | low & 0xFFFF) / short;
+    // The first two digits have 16 bits and more, the third one has no more than 16.
+    let quotient = (i64::from(first) << 32) + (i64::from(second) << 16) + i64::from(third);
+    if value < 0 {
+        quotient.wrapping_neg()
+    } else {
+        quotient
+    }
 }
 
 /// The product.
@@ -106,6 +130,24 @@ mod tests {
                     None => assert!(right.abs() >= (1 << 62) - (1 << 40), "{right}"),
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_short_divisor_divides_as_any_other() {
+        let values = numbers(63).map(|value| value as i64);
+        for value in values
+            .flat_map(|value| [value, -value])
+            .chain([0, i64::MIN])
+        {
+            for divisor in [1, 2, 3, 7, 6_000, 40_001, 65_535, 65_536, 1 << 40, -5] {
+                assert_eq!(
+                    divide(value, divisor),
+                    value / divisor,
+                    "{value} / {divisor}"
+                );
+            }
+            assert_eq!(divide(value, 0), 0);
         }
     }
 }

@@ -40,6 +40,7 @@
 //!
 //! | file or folder | idea |
 //! |---|---|
+//! | `steady_motion` | how far a steady motion can go before the edge or a bound: for lines and jogs |
 //! | `line`, `stop`, `jog`, `stream` | the planners of the table above |
 //! | `retarget` | a new target in motion: uses none of the others, but the same profiles |
 #![cfg_attr(not(test), no_std)]
@@ -50,6 +51,7 @@ extern crate motion;
 mod jog;
 mod line;
 mod retarget;
+mod steady_motion;
 mod stop;
 mod stream;
 

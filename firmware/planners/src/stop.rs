@@ -5,15 +5,14 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use motion::check::violation::Violation;
+use motion::check::Violation;
 use motion::check::{Budget, PlanCheck, is_over};
-use motion::constraints::Constraints;
+use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::velocity_pieces;
-use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces, write_sum};
-use motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
-use motion::speeds::Speeds;
+use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
+use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
+use motion::profile::velocity::{VelocityProfile, stop_speeds};
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
 
@@ -53,15 +52,8 @@ pub fn plan_stop(
         return None;
     }
     let state = of.state_after(axes, at);
-    let mut plan = Plan {
-        id,
-        start: PlanStart::Splice {
-            plan: of.id,
-            tick: at,
-        },
-        nudge: of.nudge,
-        ..Plan::default()
-    };
+    let mut plan = Plan::new(id, of.left_at(at), of.end);
+    plan.nudge = of.nudge;
     write_stop(&mut plan, &state, whole - at, constraints, stop)?;
     Some(plan)
 }
@@ -92,13 +84,17 @@ fn write_stop(
 ) -> Option<()> {
     let plan_check = PlanCheck::for_stop(constraints);
     let hz = constraints.limits.rate_hz as f32;
-    let limits = AccelerationLimits::new(constraints);
+    let ordinary = constraints.motion_limits();
     let segment = CubicSegment::new(state, hz);
     let now = segment.start;
     let urgent_jerk = || constraints.limits.urgent_jerk();
-    let plain = VelocityProfile::new(&now, &[0.0; 3], &limits);
+    let plain = VelocityProfile::new(&now, &[0.0; 3], &ordinary);
     let plain_s = plain.times_s();
-    let most = hardest_brake(&segment, plain.direction(&limits, plain_s[0]), &plan_check);
+    let most = hardest_brake(
+        &segment,
+        plain.direction(&ordinary, plain_s[0]),
+        &plan_check,
+    );
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
             acceleration: most.fmin(1.0),
@@ -111,7 +107,7 @@ fn write_stop(
     };
     let mut apart = false;
     for _ in 0..ATTEMPTS {
-        let limits = limits.scaled(hardness.acceleration, hardness.jerk);
+        let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
         let times_s = if hardness == Hardness::PLAIN {
             plain_s
@@ -120,11 +116,11 @@ fn write_stop(
         };
         let ticks = profile.whole_ticks(times_s, hz);
         // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
-        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, constraints);
+        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, ordinary.speed);
         if apart {
             write_apart(&mut plan.pieces, state, &now, &limits, hz);
         } else {
-            write_together(&mut plan.pieces, state, ticks);
+            write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
@@ -163,20 +159,9 @@ fn write_stop(
 }
 
 /// Whether the speed rises over its limit before the stop brakes.
-fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, constraints: &Constraints) -> bool {
-    let limits = &constraints.limits;
-    let limit = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
+fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, limit: Speeds) -> bool {
     let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
     is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
-}
-
-/// Writes the pieces that bring all axes to rest in so many ticks.
-pub(super) fn write_together(pieces: &mut Pieces, state: &[AxisState; 3], ticks: [u64; 3]) {
-    pieces.clear();
-    for piece in velocity_pieces(state, &[0; 3], ticks) {
-        // Four of many.
-        let _ = push_piece(pieces, piece);
-    }
 }
 
 /// The same where translation and rotation each brake as soon as they can.
@@ -184,7 +169,7 @@ fn write_apart(
     pieces: &mut Pieces,
     state: &[AxisState; 3],
     now: &MotionState,
-    limits: &AccelerationLimits,
+    limits: &MotionLimits,
     hz: f32,
 ) {
     let part = |axes: [usize; 3]| {

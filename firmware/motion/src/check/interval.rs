@@ -1,11 +1,49 @@
-//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, and what
-//! the pivots can make of them at most.
+//! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the pivots
+//! can make of them at most, and what may be broken in it.
 
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
+use crate::constraints::Speeds;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::speeds::Speeds;
 use number::float::{FloatMinMax, hypot};
+
+/// What a plan breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Violation {
+    /// Disk or bounds, on the way or in a stop.
+    Workspace,
+    /// Speed, by this factor.
+    Speed(f32),
+    /// Acceleration or jerk, by this factor.
+    Acceleration(f32),
+    /// The pivots' rate, by this factor.
+    PivotRate(f32),
+    /// The pivots' acceleration, by this factor.
+    PivotAcceleration(f32),
+    /// Disk or bounds, in a stop from an instant on the way.
+    NoRoomToStop,
+}
+
+impl Violation {
+    pub(super) fn is_of_pivots(&self) -> bool {
+        matches!(self, Self::PivotRate(_) | Self::PivotAcceleration(_))
+    }
+
+    /// This, or what was seen of the same before, when that was worse.
+    pub(super) fn or_worse(self, before: Option<Self>) -> Self {
+        match (self, before) {
+            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.fmax(over)),
+            (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
+                Self::Acceleration(now.fmax(over))
+            }
+            (Self::PivotRate(now), Some(Self::PivotRate(over))) => Self::PivotRate(now.fmax(over)),
+            (Self::PivotAcceleration(now), Some(Self::PivotAcceleration(over))) => {
+                Self::PivotAcceleration(now.fmax(over))
+            }
+            _ => self,
+        }
+    }
+}
 
 /// One end of an interval.
 #[derive(Clone, Copy, Default)]

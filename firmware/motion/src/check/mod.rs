@@ -23,12 +23,11 @@
 //! | file | idea |
 //! |---|---|
 //! | `plan_check` | the pieces of a plan against every limit, interval by interval |
-//! | `interval` | an interval: its ends, and how large everything is in between |
-//! | `violation` | which limit is broken, and by how much |
+//! | `interval` | an interval: its ends, how large everything is in between, which limit is broken and by how much |
 //! | `platform` | the platform at an instant: its centre's motion and the pivots' |
 //! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
 //! | `workspace` | disk and bounds, on the way and for a stop |
-//! | `target` | whether a target can be moved to |
+//! | `target` | which way round to an orientation, and whether a target can be moved to |
 //! | `instant` | one instant against every limit: for streams |
 
 pub mod instant;
@@ -37,10 +36,7 @@ pub mod pivot_bounds;
 mod plan_check;
 pub mod platform;
 pub mod target;
-pub mod violation;
 mod workspace;
 
-#[cfg(test)]
-mod tests;
-
+pub use interval::Violation;
 pub use plan_check::{Budget, PlanCheck, is_over};

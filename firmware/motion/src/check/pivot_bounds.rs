@@ -12,7 +12,7 @@
 //! The first is attained; the second sums worst cases that do not meet, and is up to half too large.
 
 use crate::constraints::Constraints;
-use crate::speeds::Speeds;
+use crate::constraints::Speeds;
 use number::float::hypot;
 use number::sqrt_f32;
 
@@ -54,25 +54,19 @@ impl PivotGain {
 pub struct PivotBound {
     rate: f32,
     acceleration: f32,
-    arm: f32,
+    /// How far the moved point lies from the platform's centre, track radii.
+    pub arm: f32,
 }
 
 impl PivotBound {
     /// Of what plans keep to.
     pub fn new(constraints: &Constraints) -> Self {
+        let [x, y] = constraints.centre();
         Self {
             rate: constraints.limits.pivot_rate_rad_s as f32,
             acceleration: constraints.limits.pivot_acceleration_rad_s2 as f32,
-            arm: hypot(
-                constraints.rotation_centre[0] as f32,
-                constraints.rotation_centre[1] as f32,
-            ),
+            arm: hypot(x, y),
         }
-    }
-
-    /// How far the moved point lies from the platform's centre, track radii.
-    pub fn arm(&self) -> f32 {
-        self.arm
     }
 
     /// Whether the pivots' rate holds at `speeds` anywhere within `radius`.

@@ -1,16 +1,14 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
+use super::interval::Violation;
 use super::interval::{IntervalBounds, IntervalEnd};
 use super::pivot_bounds::PivotGain;
 use super::platform::greatest;
-use super::violation::Violation;
 use super::workspace::{StopLimits, Workspace};
-use crate::constraints::Constraints;
+use crate::constraints::{Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::profile::velocity::AccelerationLimits;
-use crate::speeds::Speeds;
 use crate::tolerances::PLAN_SLACK;
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;
@@ -18,21 +16,17 @@ use number::sqrt_f32;
 /// What a plan is held against.
 pub struct PlanCheck {
     /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
-    motion_limits: Option<MotionLimits>,
+    motion_limits: Option<Limits>,
     /// Rate and acceleration, rad/s and rad/s^2.
     pivots: [f32; 2],
     workspace: Workspace,
     hz: f32,
 }
 
-/// Limits of translation and rotation.
-struct MotionLimits {
-    speed: Speeds,
-    acceleration: Speeds,
-    jerk: Speeds,
-    /// With which a stop brakes, and the same for a bound of its way.
-    stop: AccelerationLimits,
-    braking: StopLimits,
+/// Limits of translation and rotation, and those with which a stop brakes.
+struct Limits {
+    motion: MotionLimits,
+    stop: StopLimits,
 }
 
 /// An interval of a piece.
@@ -79,18 +73,17 @@ impl PlanCheck {
     /// The check of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
     pub fn new(constraints: &Constraints, start: &[AxisState; 3]) -> Self {
-        let limits = &constraints.limits;
-        let stop = AccelerationLimits::new(constraints);
-        let speed = constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s);
-        let now = MotionState::new(start, limits.rate_hz as f32);
+        let stop = constraints.motion_limits();
+        let now = MotionState::new(start, constraints.limits.rate_hz as f32);
         // What is granted over a limit is not granted over a state again: it would add up from plan to plan.
         let kept = |state: &[f32; 3]| Speeds::of(state).scaled(1.0 / PLAN_SLACK);
-        let motion_limits = MotionLimits {
-            speed: speed.max(kept(&now.v)),
-            acceleration: stop.acceleration.max(kept(&now.a)),
-            jerk: stop.jerk,
-            stop,
-            braking: StopLimits::new(&stop),
+        let motion_limits = Limits {
+            motion: MotionLimits {
+                speed: stop.speed.max(kept(&now.v)),
+                acceleration: stop.acceleration.max(kept(&now.a)),
+                jerk: stop.jerk,
+            },
+            stop: StopLimits::new(stop),
         };
         Self {
             motion_limits: Some(motion_limits),
@@ -133,7 +126,9 @@ impl PlanCheck {
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
-            self.check_jerk(jerk)?;
+            if let Some(limits) = &self.motion_limits {
+                within_limit(jerk, &limits.motion.jerk, Violation::Acceleration)?;
+            }
             if piece.ticks == 1 {
                 // What a tick changes does not show, nor what some of them do, one after the other.
                 self.evaluate(&segment, piece.ticks, to);
@@ -239,16 +234,6 @@ impl PlanCheck {
         within(rate / rate_limit, Violation::PivotRate)
     }
 
-    fn check_jerk(&self, [linear, angular]: [f32; 2]) -> Result<(), Violation> {
-        let Some(motion_limits) = &self.motion_limits else {
-            return Ok(());
-        };
-        within(
-            part(linear, angular, &motion_limits.jerk),
-            Violation::Acceleration,
-        )
-    }
-
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
     /// try: zero where it is broken at an end.
     fn check_interval(
@@ -275,51 +260,21 @@ impl PlanCheck {
         [from, to]: [&IntervalEnd; 2],
         [sizes, moving]: [&IntervalBounds; 2],
     ) -> Result<f32, Violation> {
-        if let Some(motion_limits) = &self.motion_limits {
-            let [linear, angular] = sizes.v;
-            within(
-                part(linear, angular, &motion_limits.speed),
-                Violation::Speed,
-            )?;
-            let [linear, angular] = sizes.a;
-            within(
-                part(linear, angular, &motion_limits.acceleration),
-                Violation::Acceleration,
-            )?;
+        if let Some(Limits { motion, .. }) = &self.motion_limits {
+            within_limit(sizes.v, &motion.speed, Violation::Speed)?;
+            within_limit(sizes.a, &motion.acceleration, Violation::Acceleration)?;
         }
         let eighth = interval.seconds * interval.seconds / 8.0;
         let rise = both!(k => sizes.a[k] * eighth);
         (self.workspace).check_bounds(interval.bound_distances, &from.sample, &to.sample, rise)?;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
         let radius = self.workspace.check_disk(furthest)?;
-        if let Some(motion_limits) = &self.motion_limits {
-            self.check_stop(interval, to, motion_limits)?;
+        if let Some(Limits { stop, .. }) = &self.motion_limits {
+            (self.workspace)
+                .check_stop(interval.segment, interval.bound_distances, to, stop)
+                .map_err(|_| Violation::NoRoomToStop)?;
         }
         Ok(radius)
-    }
-
-    /// A stop from here.
-    fn check_stop(
-        &self,
-        interval: &Interval<'_>,
-        at: &IntervalEnd,
-        motion_limits: &MotionLimits,
-    ) -> Result<(), Violation> {
-        if self.workspace.stop_is_clear_of_edges(
-            interval.bound_distances,
-            at,
-            &motion_limits.braking,
-        ) {
-            return Ok(());
-        }
-        (self.workspace)
-            .check_stop(
-                interval.segment,
-                interval.bound_distances,
-                &at.sample,
-                &motion_limits.stop,
-            )
-            .map_err(|_| Violation::NoRoomToStop)
     }
 
     fn check_pivots(
@@ -391,6 +346,15 @@ fn part(linear: f32, angular: f32, limit: &Speeds) -> f32 {
 pub fn is_over(value: Speeds, limit: Speeds) -> bool {
     const MORE: f32 = 1.0 + 2.0 * (PLAN_SLACK - 1.0);
     part(value.linear, value.angular, &limit) > MORE
+}
+
+/// The same of translation and rotation.
+fn within_limit(
+    [linear, angular]: [f32; 2],
+    limit: &Speeds,
+    broken: fn(f32) -> Violation,
+) -> Result<(), Violation> {
+    within(part(linear, angular, limit), broken)
 }
 
 /// The part of a limit that is used is not over one.

@@ -1,12 +1,12 @@
 //! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
 
 use super::interval::IntervalEnd;
-use super::violation::Violation;
-use crate::constraints::{Bounds, Constraints};
+use super::interval::Violation;
+use crate::constraints::{Bounds, Constraints, MotionLimits};
 use crate::plan::axis_state::AxisState;
+use crate::plan::axis_state::PER_POSITION_UNIT;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::plan::units::PER_POSITION_UNIT;
-use crate::profile::velocity::{AccelerationLimits, VelocityProfile, stop_displacements};
+use crate::profile::velocity::{VelocityProfile, stop_displacements};
 use crate::tolerances::WORKSPACE_RADII;
 use core::f32::consts::TAU;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
@@ -22,6 +22,7 @@ pub struct Workspace {
 
 /// What translation and rotation brake with, per second.
 pub struct StopLimits {
+    limits: MotionLimits,
     /// Acceleration, and its inverse.
     most: [f32; 2],
     over_most: [f32; 2],
@@ -30,10 +31,11 @@ pub struct StopLimits {
 }
 
 impl StopLimits {
-    pub fn new(limits: &AccelerationLimits) -> Self {
+    pub fn new(limits: MotionLimits) -> Self {
         let most = [limits.acceleration.linear, limits.acceleration.angular];
         let jerk = [limits.jerk.linear, limits.jerk.angular];
         Self {
+            limits,
             most,
             over_most: most.map(|most| 1.0 / most),
             over_jerk: jerk.map(|jerk| 1.0 / jerk),
@@ -43,7 +45,7 @@ impl StopLimits {
 
 impl Workspace {
     pub fn new(constraints: &Constraints) -> Self {
-        let centre = constraints.rotation_centre.map(|value| value as f32);
+        let centre = constraints.centre();
         Self {
             radius: constraints.usable_radius as f32,
             bounds: constraints.bounds,
@@ -110,7 +112,7 @@ impl Workspace {
 
     /// Whether a stop from here ends far from every edge: a bound of its way, twice what it is as a rule, for a few
     /// operations.
-    pub fn stop_is_clear_of_edges(
+    fn stop_is_clear_of_edges(
         &self,
         bound_distances: &[[f32; 2]; 3],
         at: &IntervalEnd,
@@ -128,15 +130,19 @@ impl Workspace {
         at.point_distance + self.arm + way <= self.radius && clear(0) && clear(1) && clear(2)
     }
 
-    /// Holds a stop from a state against disk and bounds: at the ends of its three segments.
+    /// Holds a stop from here against disk and bounds: at the ends of its three segments.
     pub fn check_stop(
         &self,
         segment: &CubicSegment,
         bound_distances: &[[f32; 2]; 3],
-        at: &MotionState,
-        limits: &AccelerationLimits,
+        end: &IntervalEnd,
+        limits: &StopLimits,
     ) -> Result<(), Violation> {
-        let stop = VelocityProfile::new(at, &[0.0; 3], limits);
+        if self.stop_is_clear_of_edges(bound_distances, end, limits) {
+            return Ok(());
+        }
+        let at = &end.sample;
+        let stop = VelocityProfile::new(at, &[0.0; 3], &limits.limits);
         for displacement in stop_displacements(at, stop.rough_times_s()) {
             let spot = MotionState {
                 displacement,

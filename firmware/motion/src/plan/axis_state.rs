@@ -133,6 +133,15 @@ impl AxisState {
     }
 }
 
+/// 2^32: units of a [`Position`] in a track radius or a turn.
+pub const POSITION_UNITS: f32 = 4_294_967_296.0;
+/// The inverse.
+pub const PER_POSITION_UNIT: f32 = 1.0 / POSITION_UNITS;
+/// 2^72: units of an [`AxisState`](super::axis_state::AxisState).
+pub const AXIS_UNITS: f32 = 4_722_366_482_869_645_213_696.0;
+/// The inverse.
+pub const PER_AXIS_UNIT: f32 = 1.0 / AXIS_UNITS;
+
 #[cfg(test)]
 mod tests {
     use crate::plan::axis_state::*;

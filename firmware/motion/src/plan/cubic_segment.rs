@@ -1,7 +1,7 @@
 //! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
 
 use super::axis_state::AxisState;
-use super::units::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
+use super::axis_state::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
 use super::{Piece, Position};
 use core::f32::consts::TAU;
 use kinematics::Angle;
@@ -107,4 +107,11 @@ impl CubicSegment {
         let (sin, cos) = sin_cos_f32(Angle::from_units(theta));
         (sin, cos)
     }
+}
+
+/// Rates of the axes (2^-72 units a tick, `hz` ticks a second) as track radii and rad per second.
+pub fn per_second(rates: &[i64; 3], hz: f32) -> [f32; 3] {
+    let unit = PER_AXIS_UNIT * hz;
+    let [x, y, theta] = each!(i => i64_to_f32_fast(rates[i]) * unit);
+    [x, y, theta * TAU]
 }

@@ -6,69 +6,84 @@
 //! and the plan's velocity times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity
 //! to the acceleration.
 
-use super::follower::PlanFollower;
-use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
-use super::time_scaling::{FaultStop, TimeScaling};
+use super::axis_state::AxisState;
+use super::motion_plan::Position;
+use super::setpoint::{ACCELERATION_CUT, Setpoint, VELOCITY_CUT};
 use kinematics::{Acceleration, Twist};
 
 /// 2^-32 turns or track radii in what a velocity and an acceleration are cut to.
 const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;
 const ACCELERATION_UNIT: f32 = 1.0 / (1 << (40 - ACCELERATION_CUT)) as f32;
 
-impl PlanFollower {
-    /// A stop begins at the setpoint of this tick.
-    pub fn begin_fault_stop(&mut self) {
-        self.time_scaling = TimeScaling {
+/// How a motion is slowed down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaultStop {
+    /// Part of the stop that is a tick.
+    step: f32,
+    rate_hz: f32,
+}
+
+impl FaultStop {
+    /// A stop that takes so long.
+    pub fn new(duration_s: f64, rate_hz: f64) -> Self {
+        Self {
+            step: (1.0 / (duration_s * rate_hz)) as f32,
+            rate_hz: rate_hz as f32,
+        }
+    }
+}
+
+/// Where in its stop a motion is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct TimeScaling {
+    /// Part of the stop that is over.
+    progress: f32,
+    /// Part of the plan's tick that has begun.
+    part: f32,
+    rate: f32,
+    /// Change of the rate, 1/s.
+    rate_change: f32,
+}
+
+impl TimeScaling {
+    /// A stop begins.
+    pub fn begun() -> Self {
+        Self {
             rate: 1.0,
-            ..TimeScaling::default()
-        };
+            ..Self::default()
+        }
     }
 
-    /// One tick on, in a stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
-    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop) {
-        if !self.moving {
-            return;
-        }
-        let mut time_scaling = self.time_scaling;
-        let before = time_scaling.rate;
-        time_scaling.progress += fault_stop.step;
-        let u = time_scaling.progress;
+    /// One tick on: whether a tick of the plan passes in it; `None` when the stop is over.
+    pub fn advance(&mut self, fault_stop: &FaultStop) -> Option<bool> {
+        let before = self.rate;
+        self.progress += fault_stop.step;
+        let u = self.progress;
         if u >= 1.0 {
-            let rest = self.fault_stop_position();
-            self.rest_at(rest);
-            return;
+            return None;
         }
-        time_scaling.rate = 1.0 - u * u * (3.0 - 2.0 * u);
-        time_scaling.rate_change = -6.0 * u * (1.0 - u) * fault_stop.step * fault_stop.rate_hz;
-        time_scaling.part += 0.5 * (before + time_scaling.rate);
-        if time_scaling.part >= 1.0 {
-            time_scaling.part -= 1.0;
-            self.advance();
+        self.rate = 1.0 - u * u * (3.0 - 2.0 * u);
+        self.rate_change = -6.0 * u * (1.0 - u) * fault_stop.step * fault_stop.rate_hz;
+        self.part += 0.5 * (before + self.rate);
+        let passes = self.part >= 1.0;
+        if passes {
+            self.part -= 1.0;
         }
-        self.time_scaling = time_scaling;
+        Some(passes)
     }
 
-    /// The setpoint now, in a stop.
-    pub fn fault_stop_setpoint(&self, scale: &SetpointScale) -> Setpoint {
-        if !self.moving {
-            return self.setpoint(scale);
-        }
-        let plan = self.setpoint(scale);
-        let TimeScaling {
-            part,
-            rate,
-            rate_change,
-            ..
-        } = self.time_scaling;
+    /// The setpoint now, of the plan's at its last tick, where the axes are.
+    pub fn setpoint(&self, plan: &Setpoint, axes: &[AxisState; 3], rate_hz: f32) -> Setpoint {
+        let (rate, rate_change) = (self.rate, self.rate_change);
         // Of the plan within its tick.
-        let tick = part / scale.rate_hz;
+        let tick = self.part / rate_hz;
         let (twist, acceleration) = (&plan.twist, &plan.acceleration);
         let x = twist.x + acceleration.x * tick;
         let y = twist.y + acceleration.y * tick;
         let theta = twist.theta + acceleration.theta * tick;
         let square = rate * rate;
         Setpoint {
-            position: self.fault_stop_position(),
+            position: self.position(axes),
             twist: Twist {
                 x: x * rate,
                 y: y * rate,
@@ -83,13 +98,12 @@ impl PlanFollower {
     }
 
     /// The plan's position within its tick.
-    fn fault_stop_position(&self) -> [i64; 3] {
-        let part = self.time_scaling.part;
-        self.axes.map(|axis| {
+    pub fn position(&self, axes: &[AxisState; 3]) -> Position {
+        axes.map(|axis| {
             let velocity = (axis.velocity >> VELOCITY_CUT) as i32 as f32 * VELOCITY_UNIT;
             let acceleration =
                 (axis.acceleration >> ACCELERATION_CUT) as i32 as f32 * ACCELERATION_UNIT;
-            let way = part * (velocity + 0.5 * part * acceleration);
+            let way = self.part * (velocity + 0.5 * self.part * acceleration);
             axis.rounded().wrapping_add(i64::from(way as i32))
         })
     }

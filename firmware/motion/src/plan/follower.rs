@@ -1,8 +1,9 @@
 //! Following a plan tick by tick, and taking the next one.
 
 use super::axis_state::{AxisState, TickIncrement};
-use super::rotation_centre::RotationCentre;
-use super::setpoint::{ACCELERATION_CUT, Setpoint, SetpointScale, VELOCITY_CUT};
+use super::fault_stop::{FaultStop, TimeScaling};
+use super::motion_plan::same;
+use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
 use super::{Plan, PlanStart, Position};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
@@ -12,21 +13,21 @@ use kinematics::{Acceleration, Twist};
 /// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
 pub struct PlanFollower {
-    pub(super) axes: [AxisState; 3],
+    axes: [AxisState; 3],
     /// The point that is moved.
-    pub(super) centre: RotationCentre,
-    pub(super) slots: [Plan; 2],
+    centre: RotationCentre,
+    slots: [Plan; 2],
     /// Slot of the plan under way, or of the last one.
-    pub(super) current: usize,
-    pub(super) moving: bool,
+    current: usize,
+    moving: bool,
     /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
-    pub(super) splice: Option<u64>,
-    pub(super) piece: usize,
+    splice: Option<u64>,
+    piece: usize,
     /// Ticks of the piece that are left, and what drives the axes in it.
-    pub(super) left: u64,
-    pub(super) increments: [TickIncrement; 3],
-    pub(super) done: u64,
-    pub(super) time_scaling: super::time_scaling::TimeScaling,
+    left: u64,
+    increments: [TickIncrement; 3],
+    done: u64,
+    time_scaling: TimeScaling,
 }
 
 /// A plan does not start where the motion is (any more); nothing has changed.
@@ -151,6 +152,32 @@ impl PlanFollower {
         }
     }
 
+    /// A fault's stop begins at the setpoint of this tick.
+    pub fn begin_fault_stop(&mut self) {
+        self.time_scaling = TimeScaling::begun();
+    }
+
+    /// One tick on, in a fault's stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
+    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop) {
+        if !self.moving {
+            return;
+        }
+        match self.time_scaling.advance(fault_stop) {
+            Some(true) => self.advance(),
+            Some(false) => {}
+            None => self.rest_at(self.time_scaling.position(&self.axes)),
+        }
+    }
+
+    /// The setpoint now, in a fault's stop.
+    pub fn fault_stop_setpoint(&self, scale: &SetpointScale) -> Setpoint {
+        let plan = self.setpoint(scale);
+        if !self.moving {
+            return plan;
+        }
+        self.time_scaling.setpoint(&plan, &self.axes, scale.rate_hz)
+    }
+
     /// The pose now.
     #[inline]
     pub fn position(&self) -> Position {
@@ -191,9 +218,4 @@ impl PlanFollower {
         self.moving = false;
         self.splice = None;
     }
-}
-
-/// Equality, word by word: that of arrays is a call that compares bytes.
-fn same(a: &Position, b: &Position) -> bool {
-    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
 }

@@ -8,12 +8,11 @@
 //! as the plan's nudge.
 
 use super::axis_state::{AxisState, JERK_STEP, SUB_BITS};
-use super::motion_plan::Plan;
-use super::piece::{MAX_PIECES, Piece, Position};
+use super::motion_plan::{MAX_PIECES, Piece, Pieces, Plan, Position, push_piece, same};
 use heapless::Vec;
 use number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
 use number::round_ties_even;
-use number::wide_integer::quotient;
+use number::wide_integer::{divide, quotient};
 
 /// The pieces that take the axes to the velocities `wanted` (2^-72 units a tick): a jerk, a time without, a jerk, and a
 /// tick that takes what rounding leaves of the acceleration, so that exactly none is left. What rounding leaves of a
@@ -39,10 +38,24 @@ pub fn velocity_pieces(
         pieces[2].jerk[i] = last;
         pieces[3].jerk[i] = axis.acceleration.wrapping_add(ramps).wrapping_neg();
     }
-    if pieces[3].jerk == [0; 3] {
+    if same(&pieces[3].jerk, &[0; 3]) {
         pieces[3].ticks = 0;
     }
     pieces
+}
+
+/// Writes them in place of what there is.
+pub fn write_velocity_pieces(
+    pieces: &mut Pieces,
+    state: &[AxisState; 3],
+    wanted: &[i64; 3],
+    ticks: [u64; 3],
+) {
+    pieces.clear();
+    for piece in velocity_pieces(state, wanted, ticks) {
+        // Four of many.
+        let _ = push_piece(pieces, piece);
+    }
 }
 
 /// Jerks of the first and the last segment.
@@ -60,7 +73,7 @@ fn velocity_jerks(axis: &AxisState, wanted: i64, [n1, n2, n3]: [u64; 3]) -> [i64
 
 /// Twice `value` over `divisor`, without an overflow, to two.
 fn twice_over(value: i64, divisor: i64) -> i64 {
-    let whole = over(value, divisor);
+    let whole = divide(value, divisor);
     // Less than the divisor.
     let rest = 2 * value.wrapping_sub(whole.wrapping_mul(divisor));
     2 * whole + i64::from(rest >= divisor) - i64::from(rest <= -divisor)
@@ -69,12 +82,7 @@ fn twice_over(value: i64, divisor: i64) -> i64 {
 /// The jerk that changes an acceleration by `change` in `ticks`, rounded towards zero to one that integers follow
 /// exactly.
 fn jerk(change: i64, ticks: i64) -> i64 {
-    over(change, ticks * JERK_STEP) * JERK_STEP
-}
-
-/// A quotient rounded towards zero; zero over nothing, so that there is no panic in it.
-fn over(value: i64, divisor: i64) -> i64 {
-    value.checked_div(divisor).unwrap_or(0)
+    divide(change, ticks * JERK_STEP) * JERK_STEP
 }
 
 /// Fraction bits of jerks that are not just 1 and -1. Times the cube of the longest duration they are within 128 bits.
@@ -128,8 +136,7 @@ impl PathProfile {
             let way = i128::from(plan.end[i]) - i128::from(*from);
             if way != 0 {
                 let rest = self.axis(i, way << SUB_BITS, &moments, plan)?;
-                // In 64 bits a division is a tenth of one in 128.
-                plan.nudge[i] = rest / duration as i64;
+                plan.nudge[i] = divide(rest, duration as i64);
             }
         }
         Some(())

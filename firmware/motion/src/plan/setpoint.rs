@@ -1,7 +1,20 @@
-//! What the control loop follows at a tick, and the factors that make it of the integers of a plan.
+//! What the control loop follows at a tick: the setpoint of the point of the platform that is moved, and what that is for the
+//! platform's own centre.
+//!
+//! ```text
+//!        P  the point that is moved, fixed in the platform at p        C   = P - R(theta) p
+//!       /                                                              C'  = P' - theta' E R p
+//!      / R(theta) p                                                    C'' = P'' - theta'' E R p + theta'^2 R p
+//!     C  the platform's centre, which the pivots carry                 E: the quarter turn
+//! ```
+//!
+//! Plans are in P, so that a straight line of P is a straight plan wherever the point lies, and theta turns about it.
+//! The pivots need C: the tick derives it, in whole units of a position, so that the way there and back is exact:
+//! another point may be chosen at rest and the platform does not move by a single unit.
 
-use super::piece::Position;
-use kinematics::{Acceleration, Twist};
+use super::motion_plan::Position;
+use kinematics::{Acceleration, Scalar, Twist};
+use number::Fixed;
 
 /// Where the point that is moved, or the platform's centre, should be at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,4 +58,93 @@ impl SetpointScale {
             rate_hz: rate_hz as f32,
         }
     }
+}
+
+/// A point of the platform: x and y in the platform's own axes. The default is the platform's centre itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RotationCentre([Fixed; 2]);
+
+/// Furthest that a point may lie from the platform's centre, track radii. Further out its rotation alone would ask more
+/// of the numbers than [`Fixed`] holds.
+pub const MAX_CENTRE_OFFSET: f64 = 1.0;
+
+impl RotationCentre {
+    /// The platform's own centre.
+    pub const PLATFORM: Self = Self([Fixed::ZERO; 2]);
+
+    /// The point at `point` (track radii), to the nearest 2^-29; `None` beyond [`MAX_CENTRE_OFFSET`] or when it is no
+    /// point.
+    pub fn new(point: [f64; 2]) -> Option<Self> {
+        (libm::hypot(point[0], point[1]) <= MAX_CENTRE_OFFSET)
+            .then(|| Self(point.map(Fixed::from_f64)))
+    }
+
+    /// Where it lies, track radii, exactly.
+    pub fn point(&self) -> [f64; 2] {
+        self.0.map(Fixed::to_f64)
+    }
+
+    /// Position of this point when the platform's centre is at `platform`.
+    pub fn from_platform(&self, platform: &Position) -> Position {
+        let [x, y, theta] = *platform;
+        let arm = self.arm(theta).units;
+        [x.wrapping_add(arm[0]), y.wrapping_add(arm[1]), theta]
+    }
+
+    /// Position of the platform's centre when this point is at `point`: the inverse of
+    /// [`from_platform`](Self::from_platform), to the unit.
+    pub fn to_platform(&self, point: &Position) -> Position {
+        let [x, y, theta] = *point;
+        let arm = self.arm(theta).units;
+        [x.wrapping_sub(arm[0]), y.wrapping_sub(arm[1]), theta]
+    }
+
+    /// The platform's setpoint when this point's is `point`.
+    #[inline]
+    pub fn platform_setpoint(&self, point: &Setpoint) -> Setpoint {
+        if *self == Self::PLATFORM {
+            return *point;
+        }
+        let Setpoint {
+            position: [x, y, theta],
+            twist,
+            acceleration,
+        } = *point;
+        let Arm { units, radii } = self.arm(theta);
+        let [a, b] = radii;
+        let turning = twist.theta * twist.theta;
+        Setpoint {
+            position: [x.wrapping_sub(units[0]), y.wrapping_sub(units[1]), theta],
+            twist: Twist {
+                x: twist.x + twist.theta * b,
+                y: twist.y - twist.theta * a,
+                theta: twist.theta,
+            },
+            acceleration: Acceleration {
+                x: acceleration.x + (acceleration.theta * b + turning * a),
+                y: acceleration.y - (acceleration.theta * a - turning * b),
+                theta: acceleration.theta,
+            },
+        }
+    }
+
+    /// R(theta) p.
+    #[inline(never)]
+    fn arm(&self, theta: i64) -> Arm {
+        let Self([x, y]) = *self;
+        let (sin, cos) = Fixed::sin_cos(kinematics::Angle::from_units(theta));
+        let units = [
+            Fixed::products_as_position((x, cos), (-y, sin)),
+            Fixed::products_as_position((x, sin), (y, cos)),
+        ];
+        // A point is within one radius: 33 bits, which a float cuts to 24 anyway.
+        let radii = units.map(|units| (units >> 2) as i32 as f32 * (1.0 / (1 << 30) as f32));
+        Arm { units, radii }
+    }
+}
+
+/// From the platform's centre to the point, in the base frame: 2^-32 track radii, and track radii.
+struct Arm {
+    units: [i64; 2],
+    radii: [f32; 2],
 }

@@ -12,7 +12,7 @@
 //! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
 //! themselves, a millionth.
 
-use crate::limits::PathLimits;
+use crate::constraints::PathLimits;
 use crate::plan::quantise::{JerkSegment, PathProfile};
 use crate::plan::{Plan, Position};
 use crate::tolerances::WHOLE_DURATION;

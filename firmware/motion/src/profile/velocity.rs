@@ -19,9 +19,8 @@
 //! ([`quantise`](crate::plan::quantise)). One more tick closes what rounding leaves of the acceleration, so
 //! that a velocity that is kept for years is kept.
 
-use crate::constraints::Constraints;
+use crate::constraints::{MotionLimits, Speeds};
 use crate::plan::cubic_segment::MotionState;
-use crate::speeds::Speeds;
 use crate::tolerances::{ROUNDED_TIMES, WHOLE_TICKS};
 use number::float::{FloatMinMax, ceil, ceil_ticks, floor, hypot};
 use number::sqrt_f32;
@@ -34,36 +33,6 @@ const SETTLED_S: f32 = 5e-8;
 const NEARLY_SETTLED_S: f32 = 1e-5;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
-
-/// Limits of acceleration and jerk in units per second.
-#[derive(Clone, Copy, Debug)]
-pub struct AccelerationLimits {
-    /// Of translation and rotation, per second squared.
-    pub acceleration: Speeds,
-    /// The same per second cubed.
-    pub jerk: Speeds,
-}
-
-impl AccelerationLimits {
-    /// Those of ordinary motion.
-    #[inline(never)]
-    pub fn new(constraints: &Constraints) -> Self {
-        let limits = &constraints.limits;
-        let speeds = |mm_s: f64, deg_s: f64| constraints.speeds(mm_s, deg_s);
-        Self {
-            acceleration: speeds(limits.acceleration_mm_s2, limits.turn_acceleration_deg_s2),
-            jerk: speeds(limits.jerk_mm_s3, limits.turn_jerk_deg_s3),
-        }
-    }
-
-    /// With acceleration and jerk times these.
-    pub fn scaled(&self, acceleration: f32, jerk: f32) -> Self {
-        Self {
-            acceleration: self.acceleration.scaled(acceleration),
-            jerk: self.jerk.scaled(jerk),
-        }
-    }
-}
 
 /// A change of velocity, with everything over the limits of acceleration.
 pub struct VelocityProfile {
@@ -80,7 +49,7 @@ pub struct VelocityProfile {
 impl VelocityProfile {
     /// From a state to a velocity, track radii and rad per second.
     #[inline(never)]
-    pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &AccelerationLimits) -> Self {
+    pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &MotionLimits) -> Self {
         let over = [
             1.0 / limits.acceleration.linear,
             1.0 / limits.acceleration.angular,
@@ -214,10 +183,8 @@ impl VelocityProfile {
     /// P over the limits in so much time.
     fn peak(&self, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
         let scale = 1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
-        {
-            let w = self.left_after(t1 / 2.0);
-            each!(i => w[i] * scale)
-        }
+        let w = self.left_after(t1 / 2.0);
+        each!(i => w[i] * scale)
     }
 
     /// The part of the limit that P comes to in so much time: jerk alone may end at less than all of it.
@@ -245,7 +212,7 @@ impl VelocityProfile {
 
     /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
     /// first segment lasts this long.
-    pub fn direction(&self, limits: &AccelerationLimits, first_s: f32) -> [f32; 3] {
+    pub fn direction(&self, limits: &MotionLimits, first_s: f32) -> [f32; 3] {
         let w = self.left_after(first_s / 2.0);
         let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
         let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
@@ -312,14 +279,18 @@ fn size(vector: &[f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::axis_state::AXIS_UNITS;
     use crate::plan::axis_state::AxisState;
     use crate::plan::quantise::velocity_pieces;
-    use crate::plan::units::AXIS_UNITS;
     use number::random::Random;
 
     const HZ: f32 = 20_000.0;
     /// 40 track radii and 126 rad per second squared; a hundred times as much per second cubed.
-    const LIMITS: AccelerationLimits = AccelerationLimits {
+    const LIMITS: MotionLimits = MotionLimits {
+        speed: Speeds {
+            linear: 2.0,
+            angular: 6.3,
+        },
         acceleration: Speeds {
             linear: 40.0,
             angular: 126.0,

@@ -1,17 +1,15 @@
 //! What a jog is planned from: the velocity that is wanted, limits in single precision, and the state that is left.
 
-use super::travel_time::SteadyMotion;
+use crate::steady_motion::SteadyMotion;
 use motion::check::pivot_bounds::PivotBound;
 use motion::check::target::MAX_TURNS;
-use motion::constraints::Constraints;
+use motion::constraints::{Constraints, MotionLimits, Speeds};
+use motion::plan::axis_state::{AXIS_UNITS, PER_POSITION_UNIT};
 use motion::plan::axis_state::{AxisState, SUB_BITS};
 use motion::plan::cubic_segment::MotionState;
-use motion::plan::units::{AXIS_UNITS, PER_POSITION_UNIT};
-use motion::profile::velocity::AccelerationLimits;
 use motion::refusal::{Refusal, RetargetError};
-use motion::speeds::Speeds;
 use motion::tolerances::JOG_RADII;
-use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
+use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate_f64};
 
 /// Least part of the ordinary acceleration with which a jog is begun.
 const LEAST_FORCE: f32 = 0.05;
@@ -24,7 +22,7 @@ pub(super) struct JogRequest<'a> {
     usable: f32,
     /// Wanted, 2^-72 units a tick.
     pub velocity: [i64; 3],
-    pub acceleration_limits: AccelerationLimits,
+    pub limits: MotionLimits,
 }
 
 /// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see
@@ -60,8 +58,8 @@ impl<'a> JogRequest<'a> {
             hz: limits.rate_hz as f32,
             pivot_bound: PivotBound::new(constraints),
             usable: constraints.usable_radius as f32,
-            velocity: [x * per_mm, y * per_mm, turning * per_deg].map(|rate| rate as i64),
-            acceleration_limits: AccelerationLimits::new(constraints),
+            velocity: [x * per_mm, y * per_mm, turning * per_deg].map(truncate_f64),
+            limits: constraints.motion_limits(),
         })
     }
 
@@ -70,7 +68,7 @@ impl<'a> JogRequest<'a> {
         &self,
         now: &InitialState,
         target: &[f32; 3],
-    ) -> Result<(f32, AccelerationLimits), RetargetError> {
+    ) -> Result<(f32, MotionLimits), RetargetError> {
         let pivot_bound = &self.pivot_bound;
         let speeds = Speeds::of(target);
         let most = pivot_bound
@@ -84,7 +82,7 @@ impl<'a> JogRequest<'a> {
             return Err(RetargetError::Refused(Refusal::PivotRate { radius_mm }));
         }
         let travels =
-            |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm() > 0.0;
+            |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm > 0.0;
         let MotionState { v, a, .. } = &now.motion;
         let (speed, acceleration) = (Speeds::of(v), Speeds::of(a));
         let radius = if travels(speeds) || travels(speed) || travels(acceleration) {
@@ -93,19 +91,18 @@ impl<'a> JogRequest<'a> {
             out
         };
         // An acceleration under way adds to the velocity while it is released: straight from the one to this.
-        let jerk = self.acceleration_limits.jerk;
+        let jerk = self.limits.jerk;
         let release_s =
             (acceleration.linear / jerk.linear).fmax(acceleration.angular / jerk.angular);
         let released = each!(i => v[i] + a[i] * release_s / 2.0);
         let gained = speed.max(Speeds::of(&released));
         let margin = pivot_bound.acceleration_margin(radius, speeds.max(gained));
-        let part =
-            margin / pivot_bound.acceleration_demand(radius, self.acceleration_limits.acceleration);
+        let part = margin / pivot_bound.acceleration_demand(radius, self.limits.acceleration);
         if part < LEAST_FORCE {
             return Err(RetargetError::NeedsStop);
         }
         let part = part.fmin(1.0);
-        Ok((radius, self.acceleration_limits.scaled(part, 1.0)))
+        Ok((radius, self.limits.scaled(part, 1.0)))
     }
 
     /// Seconds of steady motion until theta meets its bounds.
@@ -131,12 +128,8 @@ impl<'a> JogRequest<'a> {
             theta: axes[2].rounded(),
             velocity: [x, y],
             turning,
-            centre: self.centre(),
+            centre: self.constraints.centre(),
         }
-    }
-
-    fn centre(&self) -> [f32; 2] {
-        self.constraints.rotation_centre.map(|radii| radii as f32)
     }
 }
 

@@ -4,19 +4,19 @@
 //! end. In general `f = |C|^2 = |P|^2 + |p|^2 - 2 P.R p` is at most `(|P| + |p|)^2`: only the parts of the line with P
 //! further out than the disk's radius less |p| need a look, one at each end. A part with a whole turn leaves the disk,
 //! because at some orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f
-//! is below the limit by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`.
+//! is below the limit by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`
+//! (see `steady_motion`).
 
 use super::path::Path;
+use crate::steady_motion::{SteadyMotion, crossing};
 use core::f32::consts::TAU;
-use kinematics::Angle;
 use motion::check::target::check_target;
 use motion::constraints::Constraints;
 use motion::plan::Position;
-use motion::plan::units::POSITION_UNITS;
 use motion::refusal::Refusal;
 use motion::tolerances::LINE_SQUARED_RADII;
 use number::float::{FloatMinMax, hypot};
-use number::{sin_cos_f32, sqrt_f32};
+use number::sqrt_f32;
 
 /// Where a line is furthest out of the disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +64,12 @@ pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) ->
     let path = Path::new(from, to, constraints);
     let there = Walk::new(&path, from[2], constraints, false);
     let back = Walk::new(&path, to[2], constraints, true);
-    let start = there.square(0.0).0;
+    let start = there.motion.square(0.0).0;
     let limit = start.fmax(usable * usable) + LINE_SQUARED_RADII;
-    let [first, second] = near_ends(&path, usable - there.arm + LINE_SQUARED_RADII / 2.0)?;
+    let [first, second] = near_ends(
+        &path,
+        usable - there.motion.arm() + LINE_SQUARED_RADII / 2.0,
+    )?;
     let ends = [(there, first), (back, second)];
     ends.into_iter()
         .find_map(|(walk, way)| walk.exit(way, limit))
@@ -89,66 +92,42 @@ fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
     parts.iter().any(|&part| part > 0.0).then_some(parts)
 }
 
-/// A walk from one end of a line.
+/// A walk from one end of a line, with the path parameter for seconds.
 struct Walk {
-    from: [f32; 2],
-    displacement: [f32; 2],
-    /// theta at this end, 2^-32 turns.
-    theta: i64,
-    /// rad.
-    turn: f32,
-    /// p, and its length.
-    centre: [f32; 2],
-    arm: f32,
-    /// B.
+    motion: SteadyMotion,
+    /// Half of B.
     second_derivative: f32,
     backwards: bool,
 }
 
 impl Walk {
     fn new(path: &Path, theta: i64, constraints: &Constraints, backwards: bool) -> Self {
-        let centre = constraints.rotation_centre.map(|part| part as f32);
-        let arm = hypot(centre[0], centre[1]);
-        let furthest = [path.from, path.point(1.0)]
+        let ends = [path.from, path.point(1.0)];
+        let sign = if backwards { -1.0 } else { 1.0 };
+        let motion = SteadyMotion {
+            point: ends[usize::from(backwards)],
+            theta,
+            velocity: path.displacement.map(|way| way * sign),
+            turning: path.turn * sign,
+            centre: constraints.centre(),
+        };
+        let furthest = ends
             .into_iter()
             .fold(0.0_f32, |most, [x, y]| most.fmax(hypot(x, y)));
         let turn = path.turn.abs();
-        let (from, sign) = if backwards {
-            (path.point(1.0), -1.0)
-        } else {
-            (path.from, 1.0)
-        };
         Self {
-            from,
-            displacement: path.displacement.map(|way| way * sign),
-            theta,
-            turn: path.turn * sign,
-            centre,
-            arm,
-            second_derivative: 2.0 * path.length * path.length
-                + 2.0 * arm * turn * (2.0 * path.length + turn * furthest),
+            second_derivative: path.length * path.length
+                + motion.arm() * turn * (2.0 * path.length + turn * furthest),
+            motion,
             backwards,
         }
-    }
-
-    /// f, and f'.
-    fn square(&self, s: f32) -> (f32, f32) {
-        let turned = (self.turn * s * (POSITION_UNITS / TAU)) as i64;
-        let (sin, cos) = sin_cos_f32(Angle::from_units(self.theta.wrapping_add(turned)));
-        let [p, q] = self.centre;
-        let (arm_x, arm_y) = (cos * p - sin * q, sin * p + cos * q);
-        let x = self.from[0] + self.displacement[0] * s - arm_x;
-        let y = self.from[1] + self.displacement[1] * s - arm_y;
-        let rate_x = self.displacement[0] + self.turn * arm_y;
-        let rate_y = self.displacement[1] - self.turn * arm_x;
-        (x * x + y * y, 2.0 * (x * rate_x + y * rate_y))
     }
 
     /// The exit within a part of the way.
     #[inline(never)]
     fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
-        let turn = 1.01 * TAU / self.turn.abs();
+        let turn = 1.01 * TAU / self.motion.turning.abs();
         let part = part.fmin(turn);
         if part <= 0.0 || (part < turn && !self.leaves(part, limit)) {
             return None;
@@ -159,7 +138,7 @@ impl Walk {
         };
         for k in 0..=SAMPLES {
             let s = part * k as f32 / SAMPLES as f32;
-            let radius = sqrt_f32(self.square(s).0);
+            let radius = sqrt_f32(self.motion.square(s).0);
             if radius > worst.radius {
                 let fraction = if self.backwards { 1.0 - s } else { s };
                 worst = Exit { radius, fraction };
@@ -171,20 +150,14 @@ impl Walk {
     fn leaves(&self, part: f32, limit: f32) -> bool {
         let mut s = 0.0;
         for _ in 0..MOST_STEPS {
-            let (square, slope) = self.square(s);
-            let room = limit - square;
-            if room < 0.0 {
+            let (square, half_rate) = self.motion.square(s);
+            if square > limit {
                 return true;
             }
             if s >= part {
                 return false;
             }
-            let root = sqrt_f32(slope * slope + 2.0 * self.second_derivative * room);
-            let step = if slope > 0.0 {
-                2.0 * room / (root + slope)
-            } else {
-                (root - slope) / self.second_derivative
-            };
+            let step = crossing(square - limit, half_rate, self.second_derivative);
             s = (s + step.fmax(LEAST_STEP)).fmin(part);
         }
         true

@@ -17,7 +17,7 @@
 
 use super::rounded_ramps::{JerkRamp, JerkRamps, RoundedRamps};
 use super::segments::Corners;
-use motion::limits::PathLimits;
+use motion::constraints::PathLimits;
 use motion::plan::quantise::PathProfile;
 use motion::tolerances::WHOLE_DURATION;
 use number::float::{FloatMinMax, ceil_i32};
@@ -43,6 +43,11 @@ pub(super) fn write_path_profile(
 
 /// The corners, with ramps of no length yet.
 fn corner_ramps(corners: &Corners, slower: f32, hz: f32) -> Option<JerkRamps> {
+    let ramp = |middle, change| JerkRamp {
+        middle,
+        ticks: 0,
+        change,
+    };
     let mut ramps = JerkRamps::new();
     let (mut middle, mut before) = (0, 0.0);
     for pair in corners.windows(2) {
@@ -54,25 +59,11 @@ fn corner_ramps(corners: &Corners, slower: f32, hz: f32) -> Option<JerkRamps> {
         }
         let ticks = ceil_i32(ticks).max(1);
         let acceleration = (b.rate - a.rate) / (hz * slower * ticks as f32);
-        let change = acceleration - before;
-        ramps
-            .push(JerkRamp {
-                middle,
-                ticks: 0,
-                change,
-            })
-            .ok()?;
+        ramps.push(ramp(middle, acceleration - before)).ok()?;
         middle += ticks;
         before = acceleration;
     }
-    let change = -before;
-    ramps
-        .push(JerkRamp {
-            middle,
-            ticks: 0,
-            change,
-        })
-        .ok()?;
+    ramps.push(ramp(middle, -before)).ok()?;
     (middle < LONGEST).then_some(ramps)
 }
 

@@ -22,7 +22,7 @@
 use kinematics::{Angle, Scalar};
 use motion::constraints::Constraints;
 use motion::plan::Position;
-use motion::plan::units::PER_POSITION_UNIT;
+use motion::plan::axis_state::PER_POSITION_UNIT;
 use number::float::{FloatMinMax, i64_to_f32_fast};
 use number::{sin_cos_f32, sqrt_f32};
 
@@ -65,7 +65,7 @@ impl Path {
         let displacement =
             both!(i => i64_to_f32_fast(to[i].wrapping_sub(from[i])) * PER_POSITION_UNIT);
         let turn_units = to[2].wrapping_sub(from[2]);
-        let [x, y] = constraints.rotation_centre.map(|part| part as f32);
+        let [x, y] = constraints.centre();
         // n_i of the platform's own axes: its guides point at -30, 90 and 210 deg.
         let half = 0.5;
         let wide = f32::SIN_60;

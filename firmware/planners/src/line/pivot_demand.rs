@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use heapless::Vec;
-use motion::limits::PathLimits;
+use motion::constraints::PathLimits;
 use motion::tolerances::{PIVOT_MARGIN, PIVOT_MARGIN_PER_SQUARE};
 use number::float::FloatMinMax;
 

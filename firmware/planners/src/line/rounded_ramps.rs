@@ -27,7 +27,6 @@ pub(super) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;
 /// The ramps in integers.
 pub(super) struct RoundedRamps {
     ramps: Vec<RoundedRamp, { MAX_SEGMENTS + 1 }>,
-    start: i32,
     end: i32,
 }
 
@@ -58,7 +57,6 @@ impl RoundedRamps {
             .fold(0.0_f32, |most, r| most.fmax(jerk(r).abs()));
         let mut rounded = Self {
             ramps: Vec::new(),
-            start: i32::MAX,
             end: i32::MIN,
         };
         let scale = (1_u32 << JERK_BITS) as f32 / largest;
@@ -69,7 +67,6 @@ impl RoundedRamps {
                 end: ramp.middle + half,
                 jerk: round_i32(jerk(ramp) * scale),
             };
-            rounded.start = rounded.start.min(ramp.start);
             rounded.end = rounded.end.max(ramp.end);
             rounded.ramps.push(ramp).ok()?;
         }

@@ -7,7 +7,7 @@
 
 use super::topp::SquaredSpeeds;
 use heapless::Vec;
-use motion::limits::PathLimits;
+use motion::constraints::PathLimits;
 use number::float::FloatMinMax;
 use number::sqrt_f32;
 
@@ -74,35 +74,22 @@ pub(super) fn fit_segments_below(
 pub(super) fn remove_close_corners(corners: &mut Corners, limits: &PathLimits) {
     let mut k = 1;
     while k + 2 < corners.len() {
-        let segment = |k: usize| Segment::new(&corners[k], &corners[k + 1]);
-        let (before, here, after) = (segment(k - 1), segment(k), segment(k + 1));
-        let [first, second] = [
-            before.acceleration - here.acceleration,
-            here.acceleration - after.acceleration,
-        ];
+        // How long a segment lasts, and its acceleration.
+        let segment = |k: usize| {
+            let (from, to) = (&corners[k], &corners[k + 1]);
+            let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
+            (seconds, (to.rate - from.rate) / seconds)
+        };
+        let ((_, before), (seconds, here), (_, after)) =
+            (segment(k - 1), segment(k), segment(k + 1));
+        let (first, second) = (before - here, here - after);
         let ramps = (first + second) / (2.0 * limits.jerk);
-        if first > 0.0 && second > 0.0 && here.seconds < ramps {
+        if first > 0.0 && second > 0.0 && seconds < ramps {
             // The one that stands out less.
             corners.remove(if first < second { k } else { k + 1 });
             k = k.saturating_sub(1).max(1);
         } else {
             k += 1;
-        }
-    }
-}
-
-/// What happens between two corners.
-struct Segment {
-    seconds: f32,
-    acceleration: f32,
-}
-
-impl Segment {
-    fn new(from: &Corner, to: &Corner) -> Self {
-        let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
-        Self {
-            seconds,
-            acceleration: (to.rate - from.rate) / seconds,
         }
     }
 }

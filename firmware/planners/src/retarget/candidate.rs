@@ -2,7 +2,7 @@
 //! line from there, and the delay between them.
 
 use super::ending::{Ended, Ending, Leaving};
-use super::line::Line;
+use super::overlap::Line;
 use super::overlap::{Overlap, Part};
 use heapless::Vec;
 use motion::plan::{Piece, Pieces, Plan, Position, write_sum};

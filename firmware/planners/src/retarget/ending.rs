@@ -2,15 +2,14 @@
 
 use heapless::Vec;
 use motion::check::is_over;
-use motion::constraints::Constraints;
+use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::velocity_pieces;
+use motion::plan::quantise::write_velocity_pieces;
 use motion::plan::{
     MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
 };
-use motion::profile::velocity::{AccelerationLimits, VelocityProfile};
-use motion::speeds::Speeds;
+use motion::profile::velocity::VelocityProfile;
 use number::float::ticks_to_f32;
 
 /// How the motion under way comes to rest.
@@ -30,8 +29,7 @@ pub(super) struct Leaving<'a> {
     /// The axes where it is left.
     pub state: [AxisState; 3],
     pub now: MotionState,
-    pub speed: Speeds,
-    pub limits: AccelerationLimits,
+    pub limits: MotionLimits,
     pub hz: f32,
 }
 
@@ -80,16 +78,14 @@ impl<'a> Leaving<'a> {
         constraints: &Constraints,
     ) -> Self {
         let state = of.state_after(from, at);
-        let limits = &constraints.limits;
-        let hz = limits.rate_hz as f32;
+        let hz = constraints.limits.rate_hz as f32;
         Self {
             of,
             at,
             to,
             state,
             now: MotionState::new(&state, hz),
-            speed: constraints.speeds(limits.speed_mm_s, limits.turn_speed_deg_s),
-            limits: AccelerationLimits::new(constraints),
+            limits: constraints.motion_limits(),
             hz,
         }
     }
@@ -97,14 +93,14 @@ impl<'a> Leaving<'a> {
     /// Whether the motion is over the limits: in an urgent stop, or since a limit has been lowered.
     pub fn is_outside(&self) -> bool {
         is_over(Speeds::of(&self.now.a), self.limits.acceleration)
-            || is_over(Speeds::of(&self.now.v), self.speed)
+            || is_over(Speeds::of(&self.now.v), self.limits.speed)
     }
 
     /// Whether an ending is over the limits by itself: a stop at an edge, or the end of a stream.
     pub fn is_over(&self, ended: &Ended) -> bool {
-        let AccelerationLimits { acceleration, jerk } = self.limits;
         (ended.corners.iter()).any(|corner| {
-            is_over(Speeds::of(&corner.a), acceleration) || is_over(Speeds::of(&corner.j), jerk)
+            is_over(Speeds::of(&corner.a), self.limits.acceleration)
+                || is_over(Speeds::of(&corner.j), self.limits.jerk)
         })
     }
 
@@ -125,9 +121,8 @@ impl<'a> Leaving<'a> {
             Ending::Stop { acceleration, jerk } => {
                 let limits = self.limits.scaled(acceleration, jerk);
                 let profile = VelocityProfile::new(&self.now, &[0.0; 3], &limits);
-                velocity_pieces(&self.state, &[0; 3], profile.ticks(self.hz))
-                    .into_iter()
-                    .try_for_each(|piece| push_piece(pieces, piece))?;
+                let ticks = profile.ticks(self.hz);
+                write_velocity_pieces(pieces, &self.state, &[0; 3], ticks);
             }
         }
         let mut now = Corner {

@@ -23,23 +23,21 @@
 //! |---|---|
 //! | here | candidates, and the soonest that the check is content with |
 //! | `ending` | how the motion under way comes to rest |
-//! | `line` | the plain line from there |
-//! | `overlap` | translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
+//! | `overlap` | the plain line from there; translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
 //! | `candidate` | for each part an ending, a line, and the least delay between them |
 
 mod candidate;
 mod ending;
-mod line;
 mod overlap;
 
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
+use motion::check::Violation;
 use motion::check::target::check_target;
-use motion::check::violation::Violation;
 use motion::check::{Budget, PlanCheck};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
-use motion::plan::{Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use motion::plan::{Plan, Position, nudge_to, state_after_pieces};
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::SLOWER_FOR_PIVOTS;
 use number::sqrt_f32;
@@ -79,26 +77,21 @@ struct Search {
     intervals: usize,
 }
 
-impl Effort {
-    const fn search(self) -> Search {
-        match self {
-            Self::First => Search {
-                parts: &[Part::Whole],
-                endings: 2,
-                shares: 1,
-                checks: 1,
-                intervals: 5,
-            },
-            Self::All => Search {
-                parts: &[Part::Translation, Part::Rotation],
-                endings: ENDINGS.len(),
-                shares: 2,
-                checks: 4,
-                intervals: 60,
-            },
-        }
-    }
-}
+const FIRST: Search = Search {
+    parts: &[Part::Whole],
+    endings: 2,
+    shares: 1,
+    checks: 1,
+    intervals: 5,
+};
+
+const ALL: Search = Search {
+    parts: &[Part::Translation, Part::Rotation],
+    endings: ENDINGS.len(),
+    shares: 2,
+    checks: 4,
+    intervals: 60,
+};
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
 ///
@@ -115,7 +108,10 @@ pub fn plan_retarget(
     constraints: &Constraints,
     effort: Effort,
 ) -> Result<Plan, RetargetError> {
-    let search = effort.search();
+    let search = match effort {
+        Effort::First => &FIRST,
+        Effort::All => &ALL,
+    };
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
@@ -128,16 +124,8 @@ pub fn plan_retarget(
         return Err(RetargetError::NeedsStop);
     }
     let mut ended = Ended::default();
-    let mut candidate = soonest(&leaving, &search, &mut ended).ok_or(RetargetError::NeedsStop)?;
-    let mut plan = Plan {
-        id,
-        start: PlanStart::Splice {
-            plan: of.id,
-            tick: at,
-        },
-        end: to,
-        ..Plan::default()
-    };
+    let mut candidate = soonest(&leaving, search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
     let mut budget = Budget {
         intervals: search.intervals,

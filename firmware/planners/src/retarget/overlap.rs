@@ -1,12 +1,81 @@
-//! Whether an ending and a line that overlap keep to the limits of path and rotation, in floats: what the pivots and
-//! the workspace ask for is left to the check.
+//! The plain line from where an ending comes to rest, and whether an ending and a line that overlap keep to the limits of path
+//! and rotation, in floats: what the pivots and the workspace ask for is left to the check.
 
 use super::ending::{Corner, Leaving};
-use super::line::{Line, LineCorner};
-use motion::profile::velocity::AccelerationLimits;
-use motion::speeds::Speeds;
+use motion::constraints::{MotionLimits, PathLimits, Speeds};
+use motion::profile::rest_to_rest::RestToRestProfile;
 use motion::tolerances::OVERLAP;
-use number::float::{FloatMinMax, ticks_to_f32};
+use number::float::{FloatMinMax, hypot, ticks_to_f32};
+
+/// Where the jerk of the path parameter changes: times since the line began, and the state there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LineCorner {
+    pub at_s: f32,
+    pub rate: f32,
+    pub acceleration: f32,
+    pub jerk: f32,
+}
+
+/// A plain line: its way (track radii, rad) and its profile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub way: [f32; 3],
+    pub profile: RestToRestProfile,
+}
+
+impl Line {
+    /// Along `way` (zero in what does not move) with a share of the limits of acceleration and jerk; `None` where there
+    /// is no way to go, or one that takes longer than can be counted.
+    pub fn new(way: [f32; 3], share: f32, leaving: &Leaving<'_>) -> Option<Self> {
+        if way == [0.0; 3] {
+            return None;
+        }
+        let (length, turn) = (hypot(way[0], way[1]), way[2].abs());
+        let least = |limit: &Speeds| (limit.linear / length).fmin(limit.angular / turn);
+        let limits = PathLimits {
+            rate: least(&leaving.limits.speed),
+            acceleration: least(&leaving.limits.acceleration) * share,
+            jerk: least(&leaving.limits.jerk) * share,
+        };
+        let profile = RestToRestProfile::new(&limits, leaving.hz)?;
+        Some(Self { way, profile })
+    }
+
+    /// The same, slower by a factor.
+    pub fn slowed(&self, slower: f32) -> Option<Self> {
+        Some(Self {
+            profile: self.profile.slowed(slower)?,
+            ..*self
+        })
+    }
+
+    /// Its corners.
+    pub fn corners(&self, hz: f32) -> [LineCorner; 8] {
+        let tick_s = 1.0 / hz;
+        let RestToRestProfile { jerk, ramp, travel } = self.profile;
+        let [b1, b2, b3] = [jerk, ramp, travel].map(|ticks| ticks_to_f32(ticks) * tick_s);
+        let rate = 1.0 / b3;
+        let acceleration = rate / b2;
+        let jerk = acceleration / b1;
+        let half = acceleration * b1 / 2.0;
+        let corner = |at_s, rate, acceleration, jerk| LineCorner {
+            at_s,
+            rate,
+            acceleration,
+            jerk,
+        };
+        [
+            corner(0.0, 0.0, 0.0, jerk),
+            corner(b1, half, acceleration, 0.0),
+            corner(b2, rate - half, acceleration, -jerk),
+            corner(b1 + b2, rate, 0.0, 0.0),
+            corner(b3, rate, 0.0, -jerk),
+            corner(b3 + b1, rate - half, -acceleration, 0.0),
+            corner(b3 + b2, half, -acceleration, jerk),
+            corner(b1 + b2 + b3, 0.0, 0.0, 0.0),
+        ]
+    }
+}
 
 /// Translation, rotation, or both.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +115,7 @@ impl Part {
 
 /// What the sum keeps to.
 pub(super) struct Overlap {
-    speed: Speeds,
-    acceleration: Speeds,
-    jerk: Speeds,
+    limits: MotionLimits,
     hz: f32,
 }
 
@@ -57,11 +124,10 @@ const HALVINGS: usize = 3;
 
 impl Overlap {
     pub fn new(leaving: &Leaving<'_>) -> Self {
-        let AccelerationLimits { acceleration, jerk } = leaving.limits;
+        let mut limits = leaving.limits.scaled(OVERLAP, OVERLAP);
+        limits.speed = limits.speed.scaled(OVERLAP);
         Self {
-            speed: leaving.speed.scaled(OVERLAP),
-            acceleration: acceleration.scaled(OVERLAP),
-            jerk: jerk.scaled(OVERLAP),
+            limits,
             hz: leaving.hz,
         }
     }
@@ -147,10 +213,10 @@ impl Overlap {
             let kept = |vector: &[f32; 3], times: f32, limit: &Speeds| {
                 part.is_within(vector, way, times, limit)
             };
-            if !(kept(&a.j, b.jerk, &self.jerk)
-                && kept(&acc, acceleration, &self.acceleration)
-                && kept(&v, rate, &self.speed)
-                && kept(&v_middle, rate_middle, &self.speed))
+            if !(kept(&a.j, b.jerk, &self.limits.jerk)
+                && kept(&acc, acceleration, &self.limits.acceleration)
+                && kept(&v, rate, &self.limits.speed)
+                && kept(&v_middle, rate_middle, &self.limits.speed))
             {
                 return false;
             }

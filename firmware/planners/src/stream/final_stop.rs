@@ -9,7 +9,7 @@ use motion::plan::Piece;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::MotionState;
 use motion::plan::quantise::velocity_pieces;
-use motion::profile::velocity::{AccelerationLimits, VelocityProfile, stop_speeds};
+use motion::profile::velocity::{VelocityProfile, stop_speeds};
 use motion::refusal::Refusal;
 use motion::tolerances::JERK_TOLERANCE;
 use number::float::{FloatMinMax, ticks_to_f32};
@@ -29,10 +29,9 @@ pub(super) fn final_stop(
     instant_check: &InstantCheck<'_>,
 ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
     let motion = MotionState::new(state, instant_check.hz);
-    let limits = AccelerationLimits::new(instant_check.constraints);
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
-        let limits = limits.scaled(part, 1.0);
+        let limits = instant_check.limits.scaled(part, 1.0);
         let ticks = VelocityProfile::new(&motion, &[0.0; 3], &limits)
             .with_first_jerk(JERK_TOLERANCE)
             .ticks(instant_check.hz);
@@ -76,7 +75,7 @@ fn walk(
                 continue;
             }
             let now = instant_check.evaluate(&axes).ok()?;
-            if !instant_check.is_inside(&before, &now, ticks as f32 / instant_check.hz) {
+            if !instant_check.is_inside(&before, &now, ticks_to_f32(ticks) / instant_check.hz) {
                 return None;
             }
             worst = worst.fmax(now.pivots[0]).fmax(now.pivots[1]);
@@ -92,7 +91,7 @@ mod tests {
     use kinematics::Geometry;
     use motion::Constraints;
     use motion::Limits;
-    use motion::plan::units::AXIS_UNITS;
+    use motion::plan::axis_state::AXIS_UNITS;
 
     const CONSTRAINTS: Constraints = Constraints::new(Limits::REFERENCE, Geometry::REFERENCE);
 

@@ -3,14 +3,15 @@
 use super::final_stop::final_stop;
 use super::spline::curve_point;
 use super::state::{PART_BITS, SentPlan, Stream};
-use heapless::Vec;
 use motion::check::instant::{InstantCheck, InstantState};
 use motion::constraints::Constraints;
+use motion::constraints::Speeds;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
+use motion::plan::cubic_segment::per_second;
 use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
 use motion::refusal::Refusal;
-use motion::speeds::{Speeds, per_second};
 use motion::tolerances::JERK_TOLERANCE;
+use number::float::ticks_to_f32;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
 pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
@@ -32,13 +33,7 @@ impl Stream {
             }
             None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
-        let mut plan = Plan {
-            id,
-            start,
-            pieces: Vec::new(),
-            nudge: [0; 3],
-            end: rest,
-        };
+        let mut plan = Plan::new(id, start, rest);
         let (state, now) = self.knots(&mut plan, from, &instant_check)?;
         let splice = plan.ticks();
         if self.complete {
@@ -74,14 +69,13 @@ impl Stream {
             for piece in self.pieces(&state) {
                 let jerk = per_second(&piece.jerk, instant_check.hz);
                 let jerk = Speeds::of(&each!(i => jerk[i] * instant_check.hz * instant_check.hz));
-                if jerk.linear > instant_check.jerk_limit.linear * JERK_TOLERANCE
-                    || jerk.angular > instant_check.jerk_limit.angular * JERK_TOLERANCE
-                {
+                let most = instant_check.limits.jerk.scaled(JERK_TOLERANCE);
+                if jerk.linear > most.linear || jerk.angular > most.angular {
                     return Err(Refusal::Jerk);
                 }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
                 let now = instant_check.evaluate(&state)?;
-                instant_check.check(&before, &now, piece.ticks as f32 / instant_check.hz)?;
+                instant_check.check(&before, &now, ticks_to_f32(piece.ticks) / instant_check.hz)?;
                 before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
@@ -137,12 +131,11 @@ impl Stream {
     #[inline(never)]
     fn target(&self, place: usize) -> Position {
         let last = self.targets.len() - 1;
-        // There is one always: the start, or the last.
-        self.targets
-            .iter()
-            .nth(place.min(last))
-            .copied()
-            .unwrap_or_default()
+        match self.targets.get(place.min(last)) {
+            Some(target) => each!(i => target[i]),
+            // There is one always: the start, or the last.
+            None => Position::default(),
+        }
     }
 
     fn is_at_the_end(&self) -> bool {

@@ -7,7 +7,13 @@ use super::arguments::Place;
 use super::error::CliError;
 
 /// Parts of the path of a file of ours: what stands before them is of the machine it was built on.
-const CRATES: [&str; 2] = ["firmware/src/", "kinematics/src/"];
+const CRATES: [&str; 5] = [
+    "firmware/src/",
+    "firmware/number/src/",
+    "firmware/motion/src/",
+    "firmware/planners/src/",
+    "kinematics/src/",
+];
 /// What is none of ours: the compiler's library, and what it is called for is not known.
 const OTHER: &str = "libraries";
 

@@ -1,4 +1,4 @@
-//! How far a steady motion can go: until the platform's centre meets the edge, or the moved point its bounds.
+//! A steady motion, and how far it can go: until the platform's centre meets the edge, or the moved point its bounds.
 //!
 //! The square of the centre's distance from the track's is followed: it grows no faster than a parabola of its value,
 //! its slope and the most that its second derivative can be, whose crossing with the edge's square is known. Where the
@@ -7,7 +7,7 @@
 
 use kinematics::Angle;
 use motion::constraints::Bounds;
-use motion::plan::units::{PER_POSITION_UNIT, POSITION_UNITS};
+use motion::plan::axis_state::{PER_POSITION_UNIT, POSITION_UNITS};
 use motion::tolerances::JOG_RADII;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use number::{sin_cos_f32, sqrt_f32};
@@ -41,7 +41,7 @@ impl SteadyMotion {
     /// Until the platform's centre meets the edge of the disk of `radius`.
     pub fn time_to_edge(&self, radius: f32) -> TravelTime {
         let radius = radius - JOG_RADII;
-        let arm = hypot(self.centre[0], self.centre[1]);
+        let arm = self.arm();
         if self.turning == 0.0 || arm == 0.0 {
             let centre = self.platform(0.0);
             let seconds = self.straight(centre, radius);
@@ -62,7 +62,8 @@ impl SteadyMotion {
                     theta_too: false,
                 };
             }
-            let step = self.step(seconds, radius, second_derivative);
+            let (square, half_rate) = self.square(seconds);
+            let step = crossing(square - radius * radius, half_rate, second_derivative);
             seconds += step;
             if step < LEAST_STEP {
                 break;
@@ -102,8 +103,13 @@ impl SteadyMotion {
         )
     }
 
-    /// A step in which the platform's centre is certain to stay inside.
-    fn step(&self, seconds: f32, radius: f32, second_derivative: f32) -> f32 {
+    /// How far the moved point lies from the platform's centre.
+    pub fn arm(&self) -> f32 {
+        hypot(self.centre[0], self.centre[1])
+    }
+
+    /// The square of the distance of the platform's centre from the track's, and half of its rate.
+    pub fn square(&self, seconds: f32) -> (f32, f32) {
         let point = self.point_after(seconds);
         let [x, y] = self.platform(seconds);
         let arm = [point[0] - x, point[1] - y];
@@ -111,14 +117,10 @@ impl SteadyMotion {
             self.velocity[0] + self.turning * arm[1],
             self.velocity[1] - self.turning * arm[0],
         ];
-        crossing(
-            x * x + y * y - radius * radius,
-            x * rate[0] + y * rate[1],
-            second_derivative,
-        )
+        (x * x + y * y, x * rate[0] + y * rate[1])
     }
 
-    fn point_after(&self, seconds: f32) -> [f32; 2] {
+    pub fn point_after(&self, seconds: f32) -> [f32; 2] {
         both!(i => self.point[i] + self.velocity[i] * seconds)
     }
 
@@ -139,7 +141,7 @@ impl SteadyMotion {
 
 /// When `value + 2 slope t + second_derivative t^2` becomes positive; at once where it is and grows, never when nothing
 /// bends it.
-fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
+pub(super) fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
     if second_derivative <= 0.0 {
         return f32::INFINITY;
     }
@@ -159,7 +161,7 @@ fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::jog::travel_time::*;
+    use super::*;
 
     fn steady(point: [f32; 2], velocity: [f32; 2], turning: f32, centre: [f32; 2]) -> SteadyMotion {
         SteadyMotion {

@@ -1,16 +1,10 @@
 //! One plan of one piece for each thing that can be broken, and its twin that keeps it.
 
-use super::plan_check::Budget;
-use super::violation::Violation;
-use super::*;
-use crate::Limits;
-use crate::constraints::Constraints;
-use crate::plan::axis_state::AxisState;
-use crate::plan::units::AXIS_UNITS;
-use crate::plan::{Piece, Plan, PlanStart};
 use core::f64::consts::TAU;
-use heapless::Vec;
 use kinematics::Geometry;
+use motion::check::{Budget, PlanCheck, Violation};
+use motion::plan::axis_state::AXIS_UNITS;
+use motion::{AxisState, Constraints, Limits, Piece, Plan, PlanStart};
 
 const CONSTRAINTS: Constraints = Constraints::new(Limits::REFERENCE, Geometry::REFERENCE);
 const HZ: f64 = CONSTRAINTS.limits.rate_hz;
@@ -103,7 +97,7 @@ fn the_pivots_rate_is_met_where_it_is_met() {
     // A part of the turn that is far from there.
     let mut constraints = CONSTRAINTS;
     constraints.limits.pivot_rate_rad_s = 8.7;
-    let some: Vec<u64, 8> = (0..6).map(|sixth| sixth * 4_000).collect();
+    let some: Vec<u64> = (0..6).map(|sixth| sixth * 4_000).collect();
     let kept = some.iter().filter(|&&from| {
         let mut now = start;
         turn.pieces[0].advance(&mut now, from, &[0; 3]);
