@@ -372,7 +372,7 @@ impl Parameters {
             ripple: [Ripple::NONE; 3],
             scheduled_inertia_kg_m2: 0.0,
             learning: 1.0,
-            friction_learning: 0.1,
+            friction_learning: 0.2,
             keeps_learnt: false,
             latency_s: 72e-6,
             rest: RestMode {

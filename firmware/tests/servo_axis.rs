@@ -227,6 +227,28 @@ fn what_was_learnt_leads_as_the_model_does() {
     assert!(torques[1] > torques[0] + 10, "{torques:?}");
 }
 
+/// The voltage that learning adds for what the integral collects: as the square of the torque, 1 at 6 N m, and never more than 350 1/s
+/// of the velocity gain, which with the reference's gains is the integral's own.
+#[test]
+fn what_learning_adds_is_bounded_whatever_the_torque() {
+    let config = config();
+    let full = full_loop(SUPPLY_COUNTS);
+    for (torque_n_m, expected) in [(3.0, 0.25), (5.4, 0.81), (12.0, 1.0), (30.0, 1.0)] {
+        let mut servo = PivotServo::default();
+        for _ in 0..10 {
+            servo.step(&config, &asking(torque_n_m, -1e-4), &full);
+        }
+        servo.skip_learning();
+        let before = servo.integral_volts();
+        servo.step(&config, &asking(torque_n_m, -1e-4), &full);
+        servo.learn(&config);
+        let collected = servo.integral_volts() - before;
+        let added = servo.learnt().weights[1] * torque_n_m / collected;
+        println!("{torque_n_m} N m: {added}");
+        assert!((added - expected).abs() < 1e-3, "{torque_n_m} N m: {added}");
+    }
+}
+
 /// The rate and the current's size say that the motor constant is off; servo off and on does not take that away.
 #[test]
 fn a_restart_keeps_what_the_current_has_told() {

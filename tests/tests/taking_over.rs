@@ -60,7 +60,10 @@ fn take_over(bench: &mut Bench, line: &str) {
 fn assert_is_told(bench: &mut Bench) {
     let told = target(bench);
     for (i, unit) in units().into_iter().enumerate() {
-        assert_eq!(told[i], (told[i] * STEPS).round() / STEPS, "{told:?}");
+        let short = (told[i] * STEPS).round() / STEPS;
+        // One in five hundred lies at the edge of what means the same unit: that is told with all its digits.
+        let at_edge = (short / unit - setpoint(bench)[i] as f64).abs() > 0.499;
+        assert!(told[i] == short || at_edge, "{told:?}");
         assert_eq!(setpoint(bench)[i], (told[i] / unit).round() as i64);
     }
     let before = (setpoint(bench), bench.sample().commands);
