@@ -1,5 +1,8 @@
 """The live page in front of a simulated stage of its own, used as a person would."""
 
+import contextlib
+import os
+import signal
 import time
 
 from page import SIZES, SOFT_SERVO, OnServed
@@ -207,6 +210,31 @@ class Live(OnServed):
         self.assertLess(place, 79)
         self.light(browser, "settled")
         self.assertAlmostEqual(self.shown(browser, "x"), place, delta=0.5)
+
+    def test_a_jog_ends_with_its_browser(self):
+        """Killed, or asleep with its computer: no button is let go, and no connection closed."""
+        other = self.ready()
+        for how in (signal.SIGKILL, signal.SIGSTOP):
+            browser = self.page()
+            browser.click("#jog")
+            browser.type("#step-mm", "2.5")
+            browser.run("document.querySelector('[data-step=\"X+\"]').scrollIntoView({ block: 'center' })")
+            browser.hold("[data-step='X+']")
+            other.wait_text("#mode", "moving")
+            processes = browser.processes()
+            self.assertTrue(processes)
+            for process in processes:
+                os.kill(process, how)
+            try:
+                other.wait_text("#mode", "holding")
+                self.light(other, "settled")
+                self.assertLess(self.shown(other, "x"), 79)
+            finally:
+                if how == signal.SIGSTOP:
+                    for process in processes:
+                        os.kill(process, signal.SIGCONT)
+            with contextlib.suppress(RuntimeError, OSError):
+                browser.close()
 
     def test_clicks_are_meant_in_the_frame_in_force(self):
         browser = self.ready()

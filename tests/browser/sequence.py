@@ -123,6 +123,28 @@ class Sequence(OnServed):
         browser.wait_text("#sequence-said", "fault: ")
         browser.wait_text("#alarm-text", "following error too large")
 
+    def test_an_order_that_nobody_answers_is_told(self):
+        browser = self.page()
+        self.runs_on(browser)
+        self.served.freeze()
+        try:
+            browser.click("#sequence-end")
+            browser.wait_text("#sequence-said", "no answer: whether it was carried out is not known")
+        finally:
+            self.served.thaw()
+        browser.wait_text("#sequence-said", "ended by an operator")
+
+    def test_the_page_that_owns_the_stage_runs_it(self):
+        browser, other = self.page(), self.page()
+        browser.click("#own")
+        browser.wait_text("#owner-who", "Only this page may command.")
+        self.load(other, "FRF\n")
+        other.click("#sequence-run")
+        other.wait_text("#sequence-said", "another connection owns the stage")
+        self.load(browser, STEADY)
+        browser.click("#sequence-run")
+        browser.wait_text("#sequence-said", "done: 9 lines in ")
+
     def test_a_page_that_is_closed_pauses_it(self):
         browser, other = self.page(), self.page()
         self.runs_on(browser)
@@ -132,7 +154,7 @@ class Sequence(OnServed):
     def test_a_page_that_answers_no_more_pauses_it(self):
         browser, other = self.page(), self.page()
         self.runs_on(browser)
-        frozen = processes_of(browser.profile.name)
+        frozen = browser.processes()
         self.assertTrue(frozen)
         for process in frozen:
             os.kill(process, signal.SIGSTOP)
@@ -152,18 +174,3 @@ class Sequence(OnServed):
         other.wait_text("#mode", "moving")
         other.click("#sequence-end")
         other.wait_text("#sequence-said", "ended by an operator")
-
-
-def processes_of(profile):
-    """All processes of the browser with this profile."""
-    found = []
-    for name in os.listdir("/proc"):
-        if not name.isdigit():
-            continue
-        try:
-            with open(f"/proc/{name}/cmdline", "rb") as file:
-                if profile.encode() in file.read():
-                    found.append(int(name))
-        except OSError:
-            pass
-    return found

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import os
 import subprocess
 import tempfile
 import time
@@ -158,6 +159,20 @@ class Browser:
             self.run(heights, "", "")
         with open(path, "wb") as file:
             file.write(base64.b64decode(shot["data"]))
+
+    def processes(self):
+        """All that belong to it."""
+        found = []
+        for name in os.listdir("/proc"):
+            if not name.isdigit():
+                continue
+            try:
+                with open(f"/proc/{name}/cmdline", "rb") as file:
+                    if self.profile.name.encode() in file.read():
+                        found.append(int(name))
+            except OSError:
+                pass
+        return found
 
     def close(self):
         """Closes the window; once more does nothing."""

@@ -3,9 +3,14 @@
 //! The emulator has no noise on its lines: that damaged bytes take their line with them is for a real one to show.
 
 use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Bench, elf_file};
+use hal_sim::rig::run::RunOptions;
+use image::chip::{Bench, LineServer, elf_file};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::ops::ControlFlow::{Break, Continue};
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread;
 
 /// No line of these is a command, but the beginning of any with the end of any other is one that moves the stage.
 const FLOOD: &[u8] = b"MOV X 5               BAD               \n";
@@ -59,4 +64,32 @@ fn pieces_of_lines_never_make_up_one() {
         .strip_prefix("304\nX=")
         .and_then(|x| x.trim_end().parse::<f64>().ok());
     assert!(place_mm.is_some_and(|x| x.abs() < 1e-4), "{answers}");
+}
+
+/// Over TCP, for clients that have no serial line: a browser is none of them.
+#[test]
+fn what_a_browser_sends_is_cut_off_before_the_chip_hears_it() {
+    let server = LineServer::bind("127.0.0.1:0").expect("a free port");
+    let address = server.address().expect("its place");
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopped = Arc::clone(&stop);
+    let serving =
+        thread::spawn(move || server.run(&RunOptions::default(), stopped, |_| {}).is_ok());
+    let mut browser = TcpStream::connect(address).expect("a connection");
+    browser
+        .write_all(b"POST / HTTP/1.1\r\nHost: stage\r\n\r\nFRF X\n")
+        .expect("sent");
+    let mut heard = Vec::new();
+    // Closed with what it sent unread, the connection may end in a reset.
+    let _ = browser.read_to_end(&mut heard);
+    assert_eq!(heard, b"");
+    let mut client = TcpStream::connect(address).expect("a connection");
+    client.write_all(b"FRF? X\n").expect("sent");
+    let mut answer = String::new();
+    BufReader::new(client)
+        .read_line(&mut answer)
+        .expect("an answer");
+    assert_eq!(answer, "X=0\n");
+    stop.store(true, Ordering::Relaxed);
+    assert!(serving.join().expect("no panic"));
 }

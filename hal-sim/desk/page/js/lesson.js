@@ -5,6 +5,8 @@ import { drawMechanism, drawTrack } from "./mechanism.js";
 import { onColours } from "./theme.js";
 import { fit, inSight, Plane } from "./view.js";
 
+/** Longest wait for the movements. */
+const PATIENCE_MS = 2000;
 const SECONDS = 5;
 /** Rounds after which it rests, until it is chosen anew. */
 const ROUNDS = 3;
@@ -25,7 +27,7 @@ export class Lesson {
   }
 
   async #load() {
-    const response = await fetch("/lesson.json");
+    const response = await fetch("/lesson.json", { signal: AbortSignal.timeout(PATIENCE_MS) });
     this.#movements = await response.json();
     const choice = byId("lesson-choice");
     this.buttons = this.#movements.map(({ name }, index) => {

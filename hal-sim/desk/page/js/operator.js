@@ -3,15 +3,18 @@
 import { socketTo } from "./link.js";
 
 const RETRY_MS = 300;
-/** Longest wait for the connection. */
+/** Longest wait for the connection, and for an answer. */
 const PATIENCE_MS = 2000;
 
 export class Operator extends EventTarget {
   #socket = null;
+  /** What orders are known for this page's by. */
+  #key = "";
 
   constructor(link) {
     super();
     this.link = link;
+    link.addEventListener("you", ({ detail }) => { this.#key = detail.key; });
     setInterval(() => this.#open(), RETRY_MS);
     link.addEventListener("hello", () => this.#open());
   }
@@ -20,13 +23,27 @@ export class Operator extends EventTarget {
     return this.#socket?.readyState === WebSocket.OPEN;
   }
 
-  /** Gives an order to the sequence; throws when it cannot get there. */
+  /** Gives an order to the sequence; throws when it cannot get there, or nobody answers. */
   async order(order) {
     const { stale, age } = this.link.freshness;
     const begins = order !== "stop" && order !== "pause";
     if (stale && begins && this.link.open) throw new Error(`not sent: no status for ${age.toFixed(1)} s`);
     if (!this.open) await this.#opened();
-    this.#socket.send(JSON.stringify({ token: this.link.token, order }));
+    const told = this.#told();
+    this.#socket.send(JSON.stringify({ token: this.link.token, order, key: this.#key }));
+    await told;
+  }
+
+  /** Every order changes what is told of the sequence. */
+  #told() {
+    return new Promise((resolve, reject) => {
+      const silence = setTimeout(() => reject(new Error("no answer: whether it was carried out is not known")), PATIENCE_MS);
+      const done = () => {
+        clearTimeout(silence);
+        resolve();
+      };
+      this.addEventListener("sequence", done, { once: true });
+    });
   }
 
   #opened() {

@@ -4,6 +4,8 @@ import { byId, make, report, save, setText } from "./dom.js";
 import { remember, remembered } from "./remembered.js";
 
 const UNTITLED = "untitled";
+/** Longest wait for an example. */
+const PATIENCE_MS = 2000;
 const BUSY = ["running", "pausing", "paused"];
 const WORDS = { idle: "", running: "running", pausing: "pauses after this line", paused: "paused", ended: "" };
 
@@ -59,7 +61,7 @@ export class SequencePanel {
     examples.addEventListener("change", () => report(this.said, async () => {
       const name = examples.value;
       examples.value = "";
-      const response = await fetch(`/examples/${name}`);
+      const response = await fetch(`/examples/${name}`, { signal: AbortSignal.timeout(PATIENCE_MS) });
       if (!response.ok) throw new Error(`there is no example ${name}`);
       this.#load(name, await response.text());
     }));

@@ -2,11 +2,11 @@
 //! the line.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,7 @@ use tokio::sync::{broadcast, oneshot, watch};
 use super::arbiter::{Arbiter, Verdict, ViewerNumber, page_name};
 use super::line::{Answer, Line};
 use super::own_line::{JOG_TIME_MS, OwnLine};
+use super::password::random_text;
 use super::port::{Endpoint, Port};
 use super::request::Refusal;
 use super::stops::Stops;
@@ -34,6 +35,8 @@ const WAITING: usize = 64;
 const BACKLOG: usize = 128;
 /// `#24`.
 const STOP: u8 = 24;
+/// Bytes of randomness in the key of a way.
+const KEY_BYTES: usize = 8;
 
 /// What viewers hold of the bridge.
 #[derive(Clone)]
@@ -44,6 +47,8 @@ pub(super) struct Bridge {
     bypass: Arc<Mutex<Option<Port>>>,
     endpoint: Endpoint,
     viewers: Arc<AtomicU64>,
+    /// Viewers' ways by their keys.
+    ways: Arc<Mutex<HashMap<String, Weak<Way>>>>,
     takes_several: Arc<AtomicBool>,
     stops: Stops,
 }
@@ -53,6 +58,8 @@ pub(super) struct Bridge {
 pub(super) struct Way {
     bridge: Bridge,
     viewer: ViewerNumber,
+    /// What its viewer alone is told, to be known by elsewhere.
+    key: String,
     /// Opened with its first line; a serial line has none.
     own: Option<OwnLine>,
 }
@@ -122,6 +129,7 @@ impl Bridge {
             bypass,
             endpoint,
             viewers: Arc::default(),
+            ways: Arc::default(),
             takes_several,
             stops,
         })
@@ -143,11 +151,23 @@ impl Bridge {
         let own = (self.endpoint.is_tcp())
             .then(|| OwnLine::start(self.endpoint.clone(), page_name(viewer), self.stops.clone()))
             .transpose()?;
-        Ok(HeldWay(Arc::new(Way {
+        let key = random_text(KEY_BYTES)?;
+        let way = Arc::new(Way {
             bridge: self.clone(),
             viewer,
+            key: key.clone(),
             own,
-        })))
+        });
+        let mut ways = self.ways.lock().unwrap_or_else(PoisonError::into_inner);
+        ways.retain(|_, way| way.strong_count() > 0);
+        ways.insert(key, Arc::downgrade(&way));
+        Ok(HeldWay(way))
+    }
+
+    /// The way with this key, while its viewer is there.
+    pub fn way_of(&self, key: &str) -> Weak<Way> {
+        let ways = self.ways.lock().unwrap_or_else(PoisonError::into_inner);
+        ways.get(key).cloned().unwrap_or_default()
     }
 
     async fn ask(&self, viewer: ViewerNumber, line: String) -> Result<Answer, Refusal> {
@@ -190,6 +210,20 @@ impl Way {
         page_name(self.viewer)
     }
 
+    /// What its viewer is known by elsewhere.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// Whether it owns the stage.
+    pub async fn owns(&self) -> bool {
+        let told = self.ask("OWN?".to_owned()).await;
+        told.is_ok_and(|answer| {
+            let reply = answer.reply.unwrap_or_default();
+            reply.lines().any(|line| line.trim() == "MINE=1")
+        })
+    }
+
     /// Has a line carried out in its turn.
     pub async fn ask(&self, line: String) -> Result<Answer, Refusal> {
         match self.own_line() {
@@ -213,6 +247,7 @@ impl Drop for HeldWay {
             bridge,
             viewer,
             own,
+            ..
         } = &*self.0;
         if let Some(own) = own {
             own.close();

@@ -32,8 +32,9 @@ enum Reply {
     },
     /// It did not.
     Refused { id: Option<u64>, reason: String },
-    /// What the viewer is called where others ask who commands.
-    You { name: String },
+    /// What the viewer is called where others ask who commands, and what its orders to the sequence say so that they are known for
+    /// its own.
+    You { name: String, key: String },
     /// So many status messages were lost, because they were not read in time.
     Lost { messages: u64 },
 }
@@ -46,7 +47,7 @@ impl Reply {
             Self::Answer { error: 0, .. } => "taken".to_owned(),
             Self::Answer { error, .. } => refused_with(*error),
             Self::Refused { reason, .. } => reason.clone(),
-            Self::You { name } => name.clone(),
+            Self::You { name, .. } => name.clone(),
             Self::Lost { messages } => format!("{messages} messages lost"),
         }
     }
@@ -68,7 +69,10 @@ pub(super) async fn serve(
     hello.mark_changed();
     let (answers, mut answered) = mpsc::channel::<Arc<str>>(AT_ONCE);
     let slots = Arc::new(Semaphore::new(AT_ONCE));
-    let you = json(&Reply::You { name: way.0.name() });
+    let you = json(&Reply::You {
+        name: way.0.name(),
+        key: way.0.key().to_owned(),
+    });
     // There is room.
     let _ = answers.try_send(you);
     let mut life = Life::new();

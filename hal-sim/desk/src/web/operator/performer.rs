@@ -5,6 +5,7 @@
 //! of another client of the controller shows in the target, which a stop moves to where the stage is, or in the jog, which it
 //! ends: both are compared before every line. What ends a wave is not told apart from its own end.
 
+use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 use firmware::gcs::Operator as Comparison;
@@ -12,7 +13,7 @@ use script::Line;
 use tokio::time::{Instant, sleep};
 
 use crate::error_words::refused_with;
-use crate::web::bridge::{Bridge, HeldWay};
+use crate::web::bridge::{Bridge, HeldWay, Way};
 
 /// Between two looks at what is waited for.
 const LOOK_EVERY: Duration = Duration::from_millis(40);
@@ -35,7 +36,9 @@ type Mark = Option<(&'static str, String)>;
 pub(super) struct Performer {
     bridge: Bridge,
     /// Its lines' way to the controller, a viewer's of its own.
-    way: HeldWay,
+    own: HeldWay,
+    /// That of the page that had it run, while that page owns the stage.
+    owners: Weak<Way>,
     mark: Mark,
     /// The constant velocity under way, which ends where it is not renewed.
     jog: Option<String>,
@@ -47,14 +50,29 @@ impl Performer {
     /// # Errors
     /// There is no way to the controller, in words.
     pub fn new(bridge: Bridge) -> Result<Self, String> {
-        let way = (bridge.way()).map_err(|error| format!("no way to the controller: {error}"))?;
+        let own = (bridge.way()).map_err(|error| format!("no way to the controller: {error}"))?;
         Ok(Self {
             bridge,
-            way,
+            own,
+            owners: Weak::new(),
             mark: None,
             jog: None,
             recording: Vec::new(),
         })
+    }
+
+    /// Goes by the way with this key if that one owns the stage, and else by its own.
+    pub async fn choose_way(&mut self, key: &str) {
+        let way = self.bridge.way_of(key);
+        let owns = match way.upgrade() {
+            Some(way) => way.owns().await,
+            None => false,
+        };
+        self.owners = if owns { way } else { Weak::new() };
+    }
+
+    fn way(&self) -> Arc<Way> {
+        (self.owners.upgrade()).unwrap_or_else(|| Arc::clone(&self.own.0))
     }
 
     /// Has a line carried out, and waits where it waits; its answer, or why it was not, in words.
@@ -122,7 +140,7 @@ impl Performer {
             ));
         }
         let answer =
-            (self.way.0.ask(line.text.clone()).await).map_err(|refusal| refusal.to_string())?;
+            (self.way().ask(line.text.clone()).await).map_err(|refusal| refusal.to_string())?;
         if line.is_done_with(answer.error) {
             Ok(answer.reply)
         } else {
@@ -131,7 +149,7 @@ impl Performer {
     }
 
     async fn ask(&self, text: &str) -> Result<Option<String>, String> {
-        let asked = self.way.0.ask(text.to_owned()).await;
+        let asked = self.way().ask(text.to_owned()).await;
         let answer = asked.map_err(|refusal| refusal.to_string())?;
         match answer.error {
             0 | 10 => Ok(answer.reply),

@@ -9,7 +9,7 @@ use tokio::time::Instant;
 
 use super::journal::Journal;
 use super::performer::Performer;
-use super::sequence_status::{Answered, Order, State, Status};
+use super::sequence_status::{Answered, Order, Orderer, State, Status};
 use crate::web::bridge::{Bridge, json};
 
 /// The task behind a sequence's handle.
@@ -20,7 +20,7 @@ pub(super) struct Runner {
     pub status: Status,
     pub tell: watch::Sender<Arc<str>>,
     /// The page that began it or had it go on.
-    pub page: u64,
+    pub by: Orderer,
     /// Whether the stage is to come to rest at its end.
     pub halts: bool,
 }
@@ -36,12 +36,12 @@ impl Runner {
                 name,
                 text,
                 steps,
-                page,
+                by,
             } = order
             else {
                 continue;
             };
-            self.page = page;
+            self.by = by;
             self.status.answers.clear();
             match Script::parse(&name, &text) {
                 Ok(script) => self.play(script, text, steps).await,
@@ -71,7 +71,10 @@ impl Runner {
             self.status.line = Some(line.number);
             self.say(state, true, String::new());
             let result = match self.may_go_on().await {
-                Ok(()) => self.carry_out(&mut performer, line).await,
+                Ok(()) => {
+                    performer.choose_way(&self.by.key).await;
+                    self.carry_out(&mut performer, line).await
+                }
                 Err(ended) => Err(ended),
             };
             if let Err(Ended(reason)) = result {
@@ -109,12 +112,12 @@ impl Runner {
                 return Err(Ended("the server ends".to_owned()));
             };
             match order {
-                Order::Continue { page } => {
-                    self.page = page;
+                Order::Continue { by } => {
+                    self.by = by;
                     self.say(State::Running, true, String::new());
                 }
-                Order::Step { page } => {
-                    self.page = page;
+                Order::Step { by } => {
+                    self.by = by;
                     self.say(State::Pausing, true, String::new());
                 }
                 other => self.take(other)?,
@@ -163,11 +166,11 @@ impl Runner {
             Order::Pause if self.status.state == State::Running => {
                 self.say(State::Pausing, true, "pauses after this line".to_owned());
             }
-            Order::Continue { page } if self.status.state == State::Pausing => {
-                self.page = page;
+            Order::Continue { by } if self.status.state == State::Pausing => {
+                self.by = by;
                 self.say(State::Running, true, String::new());
             }
-            Order::Gone { page } if page == self.page && self.status.state != State::Paused => {
+            Order::Gone { page } if page == self.by.page && self.status.state != State::Paused => {
                 let said = "the page that ran it is gone: it pauses after this line";
                 self.say(State::Pausing, false, said.to_owned());
             }

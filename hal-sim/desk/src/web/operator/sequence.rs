@@ -15,7 +15,7 @@ use tokio::sync::{mpsc, watch};
 
 use super::journal::Journal;
 use super::runner::Runner;
-use super::sequence_status::{Order, State, Status};
+use super::sequence_status::{Order, Orderer, State, Status};
 use crate::web::bridge::{Bridge, json};
 
 /// The handle that all pages share.
@@ -47,7 +47,7 @@ impl Sequence {
             journal,
             status,
             tell,
-            page: 0,
+            by: Orderer::default(),
             halts: false,
         };
         tokio::spawn(runner.run());

@@ -2,6 +2,14 @@
 
 use serde::Serialize;
 
+/// The page that an order comes from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::web) struct Orderer {
+    pub page: u64,
+    /// That of its way to the controller; empty: it has not told it.
+    pub key: String,
+}
+
 /// What an operator wants of the sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::web) enum Order {
@@ -10,14 +18,14 @@ pub(in crate::web) enum Order {
         name: String,
         text: String,
         steps: bool,
-        page: u64,
+        by: Orderer,
     },
     /// The next line, and no more.
-    Step { page: u64 },
+    Step { by: Orderer },
     /// No further line.
     Pause,
     /// On from where it is.
-    Continue { page: u64 },
+    Continue { by: Orderer },
     /// Ends it, and brings the stage to rest smoothly.
     Stop,
     /// A page has stopped the stage.

@@ -9,7 +9,7 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::time::timeout;
 
 use super::Operator;
-use super::sequence_status::Order;
+use super::sequence_status::{Order, Orderer};
 use crate::web::guard::Guard;
 use crate::web::life::{Life, PATIENCE};
 
@@ -22,6 +22,9 @@ pub(in crate::web) const MESSAGE_BYTES: usize = 256 << 10;
 struct Request {
     token: String,
     order: Wanted,
+    /// Of the page's way to the controller.
+    #[serde(default)]
+    key: String,
 }
 
 #[derive(Deserialize)]
@@ -88,22 +91,23 @@ async fn send(socket: &mut WebSocket, message: Message) -> bool {
 
 /// The order in a message of somebody who may give one.
 fn order(text: &str, guard: &Guard, page: u64) -> Option<Order> {
-    let Request { token, order } = serde_json::from_str(text).ok()?;
+    let Request { token, order, key } = serde_json::from_str(text).ok()?;
     if !guard.knows(&token) {
         return None;
     }
-    let run = |name, text, steps| Order::Run {
+    let by = Orderer { page, key };
+    let run = |name, text, steps, by| Order::Run {
         name,
         text,
         steps,
-        page,
+        by,
     };
     Some(match order {
-        Wanted::Run { name, text } => run(name, text, false),
-        Wanted::First { name, text } => run(name, text, true),
-        Wanted::Step => Order::Step { page },
+        Wanted::Run { name, text } => run(name, text, false, by),
+        Wanted::First { name, text } => run(name, text, true, by),
+        Wanted::Step => Order::Step { by },
         Wanted::Pause => Order::Pause,
-        Wanted::Continue => Order::Continue { page },
+        Wanted::Continue => Order::Continue { by },
         Wanted::Stop => Order::Stop,
     })
 }
@@ -116,14 +120,18 @@ mod tests {
     fn orders_need_the_token() {
         let guard = Guard::new("127.0.0.1:8080", None).unwrap();
         let token = guard.token();
-        let step = format!(r#"{{"token":"{token}","order":"step"}}"#);
-        assert_eq!(order(&step, &guard, 3), Some(Order::Step { page: 3 }));
+        let step = format!(r#"{{"token":"{token}","order":"step","key":"a"}}"#);
+        let by = Orderer {
+            page: 3,
+            key: "a".to_owned(),
+        };
+        assert_eq!(order(&step, &guard, 3), Some(Order::Step { by }));
         let run = format!(r#"{{"token":"{token}","order":{{"run":{{"name":"a","text":"FRF"}}}}}}"#);
         assert!(matches!(
             order(&run, &guard, 3),
             Some(Order::Run {
                 steps: false,
-                page: 3,
+                by: Orderer { page: 3, .. },
                 ..
             })
         ));
