@@ -37,12 +37,19 @@ export class SequencePanel {
     return { name: this.name.value.trim() || UNTITLED, text: this.text.value };
   }
 
-  #give(order) {
-    return report(this.said, async () => {
+  async #give(order) {
+    const taken = await report(this.said, async () => {
       const wanted = order();
       if (wanted !== "pause" && wanted !== "stop") await this.firstMove.agree();
       await this.operator.order(wanted);
     });
+    // What the sequence has said meanwhile stays.
+    if (taken) this.#say(this.#status);
+  }
+
+  #say({ good, said }) {
+    this.said.className = `said ${good ? "good" : "bad"}`;
+    setText(this.said, said);
   }
 
   #files() {
@@ -77,7 +84,7 @@ export class SequencePanel {
   #show(status) {
     const before = this.#status;
     this.#status = status;
-    const { state, name, line, done, total, said, good } = status;
+    const { state, name, line, done, total, said } = status;
     const busy = BUSY.includes(state);
     this.text.hidden = busy;
     this.lines.hidden = !busy;
@@ -90,10 +97,7 @@ export class SequencePanel {
     setText(this.state, busy ? `${name}: ${WORDS[state]}, line ${line}; ${done} of ${total} lines done` : "");
     if (busy) this.#list(status);
     else if (!this.text.value && status.text) this.#load(name, status.text);
-    if (said || before.state !== state) {
-      this.said.className = `said ${good ? "good" : "bad"}`;
-      setText(this.said, said);
-    }
+    if (said || before.state !== state) this.#say(status);
     this.#report(status);
   }
 
