@@ -1,6 +1,5 @@
 //! Why the program has ended: kept over the reset that follows, and told by `EVT?` after it.
 
-use crate::fault_handlers::EXCEPTION_MAGIC;
 use core::sync::atomic::{AtomicU32, Ordering};
 use firmware::gcs::{CRASH_FILE_BYTES, Crash, CrashCause};
 use stm32f4xx_hal::pac::Interrupt;
@@ -9,6 +8,8 @@ use stm32f4xx_hal::pac::Interrupt;
 const WORDS: usize = 9;
 /// What they begin with when the rest is a panic's.
 const PANIC_MAGIC: u32 = 0x5041_4E49;
+/// When it is an exception's.
+pub const EXCEPTION_MAGIC: u32 = 0x4558_4350;
 
 /// The words: which kind, then what the kind has. The start-up code leaves them alone. Of an exception, written in
 /// [`fault_handlers`](crate::fault_handlers): its number, the stack pointer, program counter, link register, and the

@@ -5,7 +5,10 @@
 //! stack, since that may be what is broken: a fault while a fault is handled stops the core with the outputs on. The
 //! first two stores let all motors coast.
 
-use crate::{board::SLEEP_PINS_LOW, crash::CRASH};
+use crate::{
+    board::SLEEP_PINS_LOW,
+    crash::{CRASH, EXCEPTION_MAGIC},
+};
 
 /// `TIM1_BDTR`, and its bit that connects the outputs.
 const TIM1_BDTR: u32 = 0x4001_0044;
@@ -14,8 +17,6 @@ const MOE: u32 = 1 << 15;
 const SCB_CFSR: u32 = 0xE000_ED28;
 const SCB_AIRCR: u32 = 0xE000_ED0C;
 const AIRCR_RESET: u32 = 0x05FA_0004;
-/// What [`CRASH`] begins with when the rest is an exception's.
-pub const EXCEPTION_MAGIC: u32 = 0x4558_4350;
 /// Bytes of the words that the processor pushes first, the program counter among them.
 const FRAME_BYTES: u32 = 32;
 

@@ -36,7 +36,8 @@
 //!
 //! # Priorities
 //!
-//! Latch and tick share a priority, 1 in the hardware; they never meet. Above them, at 0, are only the exceptions that end
+//! Latch and tick share a priority, 1 in the hardware: what a tick does after its duties for the recorders and the command side
+//! has to be over by the next latch, or holds it up. Above them, at 0, are only the exceptions that end
 //! the program (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
 //! Below them, at 15 in the hardware, runs what records the ticks (`samples`): rows of the recorders and the trace are
 //! written in what the tick leaves of its period. All the rest, command interface, settings, independent watchdog and log,

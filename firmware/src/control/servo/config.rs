@@ -2,15 +2,12 @@
 
 use super::filter::FilterConfig;
 use super::inertia::carried_inertia;
-use super::learnt::Learnt;
+use super::learnt::{FEATURES, Learnt};
 use super::platform_torque::Body;
 use super::ripple::RippleConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::iterative_learning::InversePlant;
 use crate::parameters::Parameters;
-
-/// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
-pub(super) const FEATURES: usize = 3;
 
 /// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
 const MAX_DUTY: f64 = 0.98;

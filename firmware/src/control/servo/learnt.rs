@@ -1,6 +1,7 @@
 //! What a servo learns of its drive.
 
-use super::config::FEATURES;
+/// Signals of the setpoint that feedforward learns the weight of: rate, torque, friction.
+pub(super) const FEATURES: usize = 3;
 
 /// What a servo has learnt: what the model of its drive has wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

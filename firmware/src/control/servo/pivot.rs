@@ -1,9 +1,9 @@
 //! The servo of one pivot.
 
-use super::config::{FEATURES, PivotServoConfig};
+use super::config::PivotServoConfig;
 use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::filter::Filters;
-use super::learnt::Learnt;
+use super::learnt::{FEATURES, Learnt};
 use super::presliding::Presliding;
 use crate::control::rest_mode::Stiffness;
 use crate::drivers::bridge::Duty;

@@ -2,8 +2,7 @@
 //! radii 0.1 mm, directions 2 mrad, offsets 0.2 mm, run-out and straightness 5 um and less). Its poses and angles, over the track
 //! radius, are in `kinematics/tests/data/built-all.csv`.
 
-use super::geometry::PivotGeometry;
-use super::parameters::AXES;
+use super::pivot_geometry::{AXES, PivotGeometry};
 
 /// The three pivots with their rings and guides.
 pub(super) const BUILT: [PivotGeometry; AXES] = [

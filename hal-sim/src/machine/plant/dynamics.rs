@@ -24,7 +24,8 @@ use super::drive::{Drive, DriveModel};
 use super::friction::Friction;
 use super::geometry::{Geometry, GuideState, OffGuide};
 use super::guide::Guides;
-use super::parameters::{AXES, PlantParameters};
+use super::parameters::PlantParameters;
+use super::pivot_geometry::AXES;
 use super::state::State;
 
 /// Forces from outside, for tests and disturbances.

@@ -11,7 +11,8 @@
 //! | `state` | the state vector |
 //! | `body` | platform and payload |
 //! | `drive` | winding, motor, transmission |
-//! | `geometry`, `built` | where a pivot lies on its guide, with every error of geometry; the reference stage's |
+//! | `pivot_geometry`, `built` | how a pivot, its ring and its guide are built; the reference stage's |
+//! | `geometry` | where a pivot lies on its guide, with every error of that |
 //! | `guide` | a guide's forces: across it, along it, at its ends |
 //! | `friction`, `stops` | friction by bristles, of rings and of guides; ends of the guides |
 //! | `dynamics` | the equations of motion |
@@ -25,6 +26,7 @@ mod geometry;
 mod guide;
 mod imperfections;
 mod parameters;
+mod pivot_geometry;
 mod state;
 mod stops;
 
@@ -32,9 +34,10 @@ pub use body::Body;
 pub use drive::{Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
-pub use geometry::{OffGuide, PivotGeometry};
+pub use geometry::OffGuide;
 pub use imperfections::{Imperfections, NAMED, Named};
-pub use parameters::{AXES, FrictionParameters, Payload, PlantParameters};
+pub use parameters::{FrictionParameters, Payload, PlantParameters};
+pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
 
 use dynamics::Dynamics;

@@ -4,12 +4,9 @@
 //! reference stage leaves it open; the reason follows.
 
 use super::built::BUILT;
-use super::geometry::PivotGeometry;
 use super::imperfections::Imperfections;
+use super::pivot_geometry::{AXES, PivotGeometry};
 use serde::{Deserialize, Serialize};
-
-/// Number of pivots, drives, encoders and guides.
-pub const AXES: usize = 3;
 
 /// A load on the platform. Its centre and its own inertia are given in the platform frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,22 +1,12 @@
-//! The way back of a stage that was found out of its reach: slow, with limited voltage, and no further out.
-//!
-//! The way goes straight towards the middle of the track, at the orientation at which the stage was found: on it the disk, every
-//! guide and the separation of the pivots only get better (`on_the_way_back_all_margins_grow` in `tests/tests/recovery.rs` walks such ways). It
-//! ends just inside the disk, where every orientation is in reach. Nobody can ask for another way, and what the supervisor watches
-//! meanwhile is in [`Parameters::for_recovery`].
-//!
-//! | step | what happens next, as soon as nothing is in flight |
-//! |---|---|
-//! | `Limit` | the tick has the limits of recovery: it references, or holds |
-//! | `Hold` | the stage holds: the way is planned and sent |
-//! | `Drive` | the way: once settled at its end the limits are those of before, and the stage is held; given up, the servo goes off first |
-//! | `Restore` | the servo is off, or a fault is latched: the limits are those of before |
+//! Its beginning, its steps and its end.
 
-use super::error::CommandError;
-use super::in_flight::InFlight;
-use super::reach::closest_pivots_rad;
-use super::sent_plan::{Goal, SentPlan};
-use super::state::Commander;
+use super::state::{Recovery, RecoveryEnd, Step};
+use crate::commander::coordinates::UNITS_PER_RADIUS;
+use crate::commander::error::CommandError;
+use crate::commander::in_flight::InFlight;
+use crate::commander::reach::closest_pivots_rad;
+use crate::commander::sent_plan::{Goal, SentPlan};
+use crate::commander::state::Commander;
 use crate::control::config::Config;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits, Position};
@@ -32,32 +22,6 @@ const PIVOT_RATE_RAD_S: f64 = 0.5;
 const PIVOT_ACCELERATION_RAD_S2: f64 = 20.0;
 /// How far inside the disk the way ends, track radii.
 const INSIDE_RADII: f64 = 0.01;
-
-/// How far a recovery has come.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Recovery {
-    step: Step,
-    /// It is to end where it is.
-    is_given_up: bool,
-}
-
-/// See the module.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Limit,
-    Hold,
-    Drive,
-    Restore,
-}
-
-/// How a recovery has ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RecoveryEnd {
-    /// In reach, held.
-    InReach,
-    /// Given up, refused, or ended by a fault; the servo is off.
-    GivenUp,
-}
 
 impl Commander {
     /// Begins to drive a stage back into its reach; the pose at which it was found, mm, mm and deg. Whoever begins goes on with
@@ -103,7 +67,7 @@ impl Commander {
     }
 
     /// It ends where it is, with the servo off.
-    pub(super) const fn give_up_recovery(&mut self) {
+    pub(in crate::commander) const fn give_up_recovery(&mut self) {
         if let Some(recovery) = &mut self.recovery {
             recovery.is_given_up = true;
         }
@@ -203,8 +167,7 @@ impl Commander {
         let [x, y, theta] = snapshot.setpoint;
         let centre = snapshot.centre.to_platform(&snapshot.setpoint);
         let [centre_x, centre_y] = [centre[0], centre[1]].map(|part| part as f64);
-        let inside = (self.base_constraints.usable_radius - INSIDE_RADII)
-            * super::coordinates::UNITS_PER_RADIUS;
+        let inside = (self.base_constraints.usable_radius - INSIDE_RADII) * UNITS_PER_RADIUS;
         let share = (1.0 - inside / libm::hypot(centre_x, centre_y)).max(0.0);
         let [way_x, way_y] = [centre_x, centre_y].map(|part| libm::rint(part * share) as i64);
         [x - way_x, y - way_y, theta]

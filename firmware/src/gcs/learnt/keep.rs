@@ -1,16 +1,12 @@
-//! What the servos have learnt of their drives: gathered from the snapshots, told by `LST?`, kept over a restart.
-//!
-//! It is kept as parameters, which the tick starts with. `WPA` takes over what is in force; where a parameter asks for it, the
-//! controller stores it by itself when the servo goes off, and every ten minutes at rest, if it has changed by more than what the
-//! integral makes up for unnoticed.
+//! Told by `LST?`, taken over and stored.
 
-use super::error::ErrorCode;
-use super::interpreter::Interpreter;
-use super::output::WriteFailed;
-use super::reply_writer::ReplyWriter;
 use crate::control::ServoReport;
+use crate::gcs::error::ErrorCode;
+use crate::gcs::interpreter::Interpreter;
+use crate::gcs::output::WriteFailed;
+use crate::gcs::reply_writer::ReplyWriter;
 use crate::parameters::{Learnt, Parameters};
-use crate::queues::{CommandQueues, Snapshot};
+use crate::queues::CommandQueues;
 
 /// Time between what is stored by itself.
 const KEEP_S: f64 = 600.0;
@@ -22,38 +18,9 @@ const WORTH: Learnt = Learnt {
     motor_constant_v_s_rad: 0.05,
 };
 
-/// The servos, as they were told last.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ServoReports {
-    servos: [Option<ServoReport>; 3],
-    was_held: bool,
-    /// Tick at which it was kept last, or tried.
-    kept_tick: u64,
-}
-
-impl ServoReports {
-    /// Takes the next snapshot.
-    pub fn update(&mut self, snapshot: &Snapshot) {
-        if let Some(servo) = self.servos.get_mut(snapshot.servo.pivot) {
-            *servo = Some(snapshot.servo);
-        }
-    }
-
-    /// What has been learnt; what is kept of a pivot that has not been told of yet.
-    fn learnt(&self, parameters: &Parameters) -> [Learnt; 3] {
-        let mut learnt = parameters.learnt;
-        for (learnt, servo) in learnt.iter_mut().zip(&self.servos) {
-            if let Some(servo) = servo {
-                *learnt = servo.learnt.to_keep();
-            }
-        }
-        learnt
-    }
-}
-
 impl Interpreter {
     /// What the servos have learnt becomes what they start with. To be called only at rest.
-    pub(super) fn take_over_learnt(
+    pub(in crate::gcs) fn take_over_learnt(
         &mut self,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
@@ -69,7 +36,7 @@ impl Interpreter {
     }
 
     /// Keeps it without being asked, when the time has come.
-    pub(super) fn keep_learnt(&mut self, queues: &mut CommandQueues<'_>) {
+    pub(in crate::gcs) fn keep_learnt(&mut self, queues: &mut CommandQueues<'_>) {
         let held = self.commander.is_held();
         let went_off = core::mem::replace(&mut self.servo_reports.was_held, held) && !held;
         if !self.parameters.servo.keeps_learnt {
@@ -95,7 +62,10 @@ impl Interpreter {
     }
 
     /// The lines of `LST?`.
-    pub(super) fn reply_learnt(&self, reply: &mut ReplyWriter<'_>) -> Result<(), WriteFailed> {
+    pub(in crate::gcs) fn reply_learnt(
+        &self,
+        reply: &mut ReplyWriter<'_>,
+    ) -> Result<(), WriteFailed> {
         let drives = self.parameters.drives.iter();
         for ((number, servo), drive) in (1..).zip(self.servo_reports.servos).zip(drives) {
             let ServoReport {
