@@ -125,6 +125,21 @@ fn a_division_of_integers_takes_2_to_12_cycles_by_the_setting() {
     );
 }
 
+#[test]
+fn others_run_beside_a_division_of_the_floating_point_unit_and_its_own_wait() {
+    let (beside, behind) = ([&[VDIV], [ADD; 13].as_slice()].concat(), [VDIV, ADD, VADD]);
+    assert_eq!((table(&beside), table(&behind)), (14, 15));
+    // What moves other registers does not wait, what moves the result does.
+    assert_eq!(table(&[VDIV, ADD, VMOV]), 15);
+    assert_eq!(table(&[VDIV, ADD, VLDR]), 16);
+    assert_eq!(table(&[VDIV, VPUSH, ADD]), 14);
+    // Its result is late once more for the instruction right behind it.
+    assert_eq!(table(&[VDIV, VADD]), 15);
+    assert_eq!(table(&[VDIV, VMUL]), 16);
+    let code: Vec<_> = beside.iter().map(|code| (*code, Bus::None)).collect();
+    assert_eq!(run_with(Setting::PESSIMISTIC, &code).table, 27);
+}
+
 /// Technical Reference Manual, 3.3.3: its own examples.
 #[test]
 fn loads_overlap_unless_the_next_address_hangs_on_them() {

@@ -5,10 +5,11 @@
 //!   the next load or store waits until it is through.
 //! - A result of floating-point arithmetic is there a cycle late for the instruction right behind; the addend of a multiplication
 //!   with addition is taken a cycle late too.
+//! - A division or root of the floating-point unit takes 14 cycles; the unit's next arithmetic waits for it, and what touches its
+//!   result. Loads, stores and moves of other registers do not: the manual is silent on that, LLVM's model of the core has it so.
 //! - A jump that is taken costs the refill of the pipeline: what the fetch takes to have the instruction there.
 //!
-//! Not in it: that an `IT` may cost nothing, accesses of the DMA to the same RAM, the integer core running on beside a division of
-//! the floating-point unit.
+//! Not in it: that an `IT` may cost nothing, accesses of the DMA to the same RAM.
 
 use super::fetch::Fetch;
 use super::flash::Flash;
@@ -93,6 +94,8 @@ impl Cycles {
 
 /// From the interrupt to the first instruction of its handler, with a memory without wait states (Technical Reference Manual, 3.9).
 const ENTRY: u64 = 12;
+/// A division or root of the floating-point unit (7.2).
+const FLOAT_DIVIDE: u64 = 14;
 const WORD: u64 = 4;
 
 const APB1: std::ops::Range<u32> = 0x4000_0000..0x4001_0000;
@@ -112,6 +115,9 @@ struct Before {
     loaded: Option<Registers>,
     /// What the arithmetic right before has written.
     late: Registers,
+    /// The cycle in which the floating-point unit has divided, and what it has written then.
+    divided_at: u64,
+    divided: Registers,
     /// The cycle in which a store over a slow bus is through.
     stored_at: u64,
     /// Whether the floating-point registers of what was interrupted are kept.
@@ -172,6 +178,7 @@ impl Core {
             each(ran.at, &cycles);
             sum.add(&cycles);
         }
+        sum.float += before.divided_at.saturating_sub(now);
         sum
     }
 
@@ -187,7 +194,14 @@ impl Core {
         if instruction.float && !std::mem::replace(&mut before.stacked, true) {
             cycles.entry += self.setting.lazy_stacking;
         }
-        cycles.float += u64::from(instruction.float && instruction.reads.meets(before.late));
+        if instruction.float {
+            let divided = before.divided;
+            let computes = matches!(instruction.kind, Kind::Float(_) | Kind::FloatDivide);
+            if computes || instruction.reads.meets(divided) || instruction.writes.meets(divided) {
+                cycles.float += before.divided_at.saturating_sub(begins_at + cycles.entry);
+            }
+            cycles.float += u64::from(instruction.reads.meets(before.late));
+        }
         let overlaps = before
             .loaded
             .is_some_and(|loaded| !loaded.meets(instruction.address));
@@ -208,9 +222,13 @@ impl Core {
                 before.stored_at = begins_at + so_far + through + 1 + self.peripheral(address);
             }
         }
+        if instruction.kind == Kind::FloatDivide {
+            before.divided_at = begins_at + so_far + FLOAT_DIVIDE;
+            before.divided = instruction.writes;
+        }
         before.loaded = instruction.is_load().then_some(instruction.writes);
         before.late = match instruction.kind {
-            Kind::Float(_) => instruction.writes,
+            Kind::Float(_) | Kind::FloatDivide => instruction.writes,
             _ => Registers::default(),
         };
         so_far + cycles.table + cycles.data + cycles.peripherals
@@ -222,6 +240,8 @@ impl Core {
         match instruction.kind {
             Kind::Plain(cycles) | Kind::Float(cycles) => u64::from(cycles),
             Kind::Divide => u64::from(self.setting.divide),
+            Kind::FloatDivide if self.setting.divides_beside => 1,
+            Kind::FloatDivide => FLOAT_DIVIDE,
             Kind::Load | Kind::StoreIndexed => 2 - less,
             Kind::Store | Kind::Jump | Kind::JumpRegister => 1,
             Kind::Many(words) | Kind::JumpLoaded(words) => 1 + u64::from(words),

@@ -16,6 +16,8 @@ pub enum Kind {
     Float(u32),
     /// Division of integers: 2 to 12 cycles, by the numbers.
     Divide,
+    /// A division or a root of the floating-point unit.
+    FloatDivide,
     /// Loads one word, or less: two cycles, one behind another load.
     Load,
     /// Stores one word, or less, at a place known by a register and a number: one cycle.
@@ -150,7 +152,7 @@ fn kind(insn: &Insn<'_>, name: &str, operands: &[ArmOperand], all: &[Registers])
         _ if starts(&["str", "vstr"]) => Kind::Store,
         _ if starts(&["sdiv", "udiv"]) => Kind::Divide,
         _ if starts(&["mla", "mls"]) => Kind::Plain(2),
-        _ if starts(&["vdiv", "vsqrt"]) => Kind::Float(14),
+        _ if starts(&["vdiv", "vsqrt"]) => Kind::FloatDivide,
         _ if starts(&[
             "vmla", "vmls", "vnmla", "vnmls", "vfma", "vfms", "vfnma", "vfnms",
         ]) =>

@@ -26,6 +26,9 @@ pub struct Setting {
     pub lazy_stacking: u64,
     /// What a division of integers takes, 2 to 12 cycles.
     pub divide: u32,
+    /// Whether the integer core runs on beside a division of the floating-point unit. Its erratum 776924 says that it does, far
+    /// enough for an interrupt's first instructions.
+    pub divides_beside: bool,
 }
 
 /// Wait states of the flash at 168 MHz and 3.3 V (RM0090, table 11).
@@ -47,6 +50,7 @@ impl Setting {
         apb2: 5,
         lazy_stacking: LAZY_STACKING,
         divide: 7,
+        divides_beside: true,
     };
 
     /// What is possible at best.
@@ -70,6 +74,7 @@ impl Setting {
         apb1: 12,
         apb2: 8,
         divide: 12,
+        divides_beside: false,
         ..Self::NOMINAL
     };
 
