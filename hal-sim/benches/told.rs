@@ -9,6 +9,7 @@ use firmware::parameters::{Harmonic, Parameters};
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
+use hal_sim::rig::with_drives_told;
 
 fn main() {
     println!(
@@ -71,24 +72,12 @@ fn demonstration(parameters: &Parameters, stage: &StageParameters, options: &Run
 
 /// The controller's parameters with the machine's true numbers in place of the model's.
 fn told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
-    let mut told = parameters.clone();
-    let plant = &stage.plant;
+    let mut told = with_drives_told(parameters, stage);
     // What the reference gains are for: the inertia at a pivot in the middle of the reference stage.
     told.servo.scheduled_inertia_kg_m2 = middle_inertia_kg_m2();
-    for (drive, gains) in told.drives.iter_mut().zip(&mut told.servo.gains) {
-        let weaker = drive.torque_constant_n_m_a / plant.torque_constant_n_m_a;
-        gains.velocity_v_s_rad *= weaker;
-        gains.integral_v_rad *= weaker;
-        drive.torque_constant_n_m_a = plant.torque_constant_n_m_a;
-        drive.inertia_kg_m2 = plant.ring_inertia_kg_m2 + plant.motor_inertia_kg_m2;
-        drive.viscous_n_m_s = plant.ring_friction.viscous;
-        drive.coulomb_n_m = plant.ring_friction.coulomb;
-    }
-    let payload = &plant.payload;
+    let payload = &stage.plant.payload;
     let (sin, cos) = payload.direction_rad.sin_cos();
     let platform = &mut told.platform;
-    platform.mass_kg = plant.platform_mass_kg;
-    platform.inertia_kg_m2 = plant.platform_inertia_kg_m2;
     platform.payload_kg = payload.mass_kg;
     platform.payload_inertia_kg_m2 = payload.inertia_kg_m2;
     platform.payload_centre_mm = [cos, sin].map(|part| part * payload.eccentricity_m * 1e3);

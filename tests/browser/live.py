@@ -195,13 +195,16 @@ class Live(OnServed):
         self.near(browser, "w", -15, 0.1, "target")
         self.arrive(browser, x=5, w=-15)
 
-    def test_jogs_as_long_as_a_button_is_held(self):
-        browser = self.ready()
+    def hold_a_jog(self, browser):
+        """Presses a button, and keeps it pressed: half a minute to the edge of the disk."""
         browser.click("#jog")
-        # Half a minute to the edge of the disk.
         browser.type("#step-mm", "2.5")
         browser.run("document.querySelector('[data-step=\"X+\"]').scrollIntoView({ block: 'center' })")
         browser.hold("[data-step='X+']")
+
+    def test_jogs_as_long_as_a_button_is_held(self):
+        browser = self.ready()
+        self.hold_a_jog(browser)
         browser.wait_text("#mode", "moving")
         browser.wait(lambda: self.shown(browser, "x") > 1, "the stage under way")
         browser.release()
@@ -216,10 +219,7 @@ class Live(OnServed):
         other = self.ready()
         for how in (signal.SIGKILL, signal.SIGSTOP):
             browser = self.page()
-            browser.click("#jog")
-            browser.type("#step-mm", "2.5")
-            browser.run("document.querySelector('[data-step=\"X+\"]').scrollIntoView({ block: 'center' })")
-            browser.hold("[data-step='X+']")
+            self.hold_a_jog(browser)
             other.wait_text("#mode", "moving")
             processes = browser.processes()
             self.assertTrue(processes)

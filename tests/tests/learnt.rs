@@ -1,10 +1,10 @@
 //! What the servos learn: over a restart, used from the first move on; at the highest gain that is allowed; and where there is nothing
 //! to be learnt.
 
-use firmware::parameters::Parameters;
-use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
+use hal_sim::rig::with_drives_told;
 use tests::Bench;
 
 const MOVES: [&str; 3] = [
@@ -67,7 +67,7 @@ fn demonstration(learning: f64, options: &RunOptions, told: bool) -> f64 {
     let stage = stage_parameters(options);
     let mut parameters = controller_parameters(options);
     if told {
-        tell(&mut parameters, &stage);
+        parameters = with_drives_told(&parameters, &stage);
     }
     parameters.servo.learning = learning;
     let script = Script::demonstration().expect("it is a script");
@@ -80,26 +80,6 @@ fn demonstration(learning: f64, options: &RunOptions, told: bool) -> f64 {
     );
     assert_eq!(outcome.fault, None, "learning {learning}");
     outcome.run.facts().following_error.pivots_lsb.rms
-}
-
-/// The drives as they are; platform and payload stay what the controller takes them for.
-fn tell(parameters: &mut Parameters, stage: &StageParameters) {
-    let plant = &stage.plant;
-    for (drive, gains) in parameters
-        .drives
-        .iter_mut()
-        .zip(&mut parameters.servo.gains)
-    {
-        let weaker = drive.torque_constant_n_m_a / plant.torque_constant_n_m_a;
-        gains.velocity_v_s_rad *= weaker;
-        gains.integral_v_rad *= weaker;
-        drive.torque_constant_n_m_a = plant.torque_constant_n_m_a;
-        drive.inertia_kg_m2 = plant.ring_inertia_kg_m2 + plant.motor_inertia_kg_m2;
-        drive.viscous_n_m_s = plant.ring_friction.viscous;
-        drive.coulomb_n_m = plant.ring_friction.coulomb;
-    }
-    parameters.platform.mass_kg = plant.platform_mass_kg;
-    parameters.platform.inertia_kg_m2 = plant.platform_inertia_kg_m2;
 }
 
 /// Moves at full speed, again and again: the errors of the last ones are no larger than those of the first.

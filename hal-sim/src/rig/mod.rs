@@ -7,6 +7,7 @@
 //! | `conditions` | what a run is made under |
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
+//! | `told` | a controller that is told of the machine before it |
 //! | `simulated_board` | what the simulated controller says of its board |
 //! | [`observer`] | looks at every tick for the report |
 
@@ -16,7 +17,9 @@ pub mod exercise;
 pub mod observer;
 pub mod run;
 mod simulated_board;
+mod told;
 
 pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use conditions::run_conditions;
+pub use told::with_drives_told;

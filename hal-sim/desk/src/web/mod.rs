@@ -24,6 +24,7 @@
 //! | `login` | asking for it |
 //! | `http` | connections of browsers, bounded in number and patience |
 //! | `viewer` | one browser: status and answers out, requests in |
+//! | `life` | whether a page is still there |
 //! | `operator` | sequences that run here, and the log of who did what |
 //! | `lesson` | the mechanism's three movements, for the page's explanation |
 //! | `server`, `shared` | the page's files, the token, the WebSockets; what their handlers share |

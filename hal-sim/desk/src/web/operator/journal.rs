@@ -29,10 +29,18 @@ struct Entry<'a> {
     outcome: &'a str,
 }
 
+/// What is kept.
+#[derive(Default)]
+struct Kept {
+    entries: VecDeque<Arc<str>>,
+    /// Who, line and outcome of the last.
+    last: [String; 3],
+}
+
 /// The log of one server.
 #[derive(Clone)]
 pub(in crate::web) struct Journal {
-    kept: Arc<Mutex<VecDeque<Arc<str>>>>,
+    kept: Arc<Mutex<Kept>>,
     news: broadcast::Sender<Arc<str>>,
 }
 
@@ -65,17 +73,16 @@ impl Journal {
             line,
             outcome,
         });
+        let last = [who, line.to_owned(), outcome.to_owned()];
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let without_time =
-            |entry: &Arc<str>| entry.split_once("\"who\"").map(|(_, rest)| rest.to_owned());
-        if is(&HELD) && (kept.back()).is_some_and(|last| without_time(last) == without_time(&entry))
-        {
+        if is(&HELD) && kept.last == last {
             return;
         }
-        if kept.len() == KEPT {
-            kept.pop_front();
+        kept.last = last;
+        if kept.entries.len() == KEPT {
+            kept.entries.pop_front();
         }
-        kept.push_back(Arc::clone(&entry));
+        kept.entries.push_back(Arc::clone(&entry));
         // Nobody needs to look. Within the lock, so that nobody gets an entry twice.
         let _ = self.news.send(entry);
     }
@@ -83,7 +90,10 @@ impl Journal {
     /// What is kept, and what comes from now on.
     pub fn read(&self) -> (Vec<Arc<str>>, broadcast::Receiver<Arc<str>>) {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        (kept.iter().cloned().collect(), self.news.subscribe())
+        (
+            kept.entries.iter().cloned().collect(),
+            self.news.subscribe(),
+        )
     }
 }
 
