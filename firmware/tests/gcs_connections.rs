@@ -248,7 +248,6 @@ fn an_owner_alone_commands_and_everybody_stops() {
         "MAC BEG m",
         "MAC DEL m",
         "MAC START m",
-        "VAR A 1",
         "STE X 1",
     ] {
         assert_eq!(bench.error_after(line), "4002", "{line}");
@@ -258,13 +257,14 @@ fn an_owner_alone_commands_and_everybody_stops() {
         "CCL 1 ADVANCED",
         "HBT 1000",
         "JTM 300",
+        "VAR A 1",
         "DRT 0 0 0",
         "LST",
         "HBT 0",
     ] {
         assert_eq!(bench.error_after(line), "0", "{line}");
     }
-    assert_eq!(bench.say("VAR?\nMAC?\nPOS? X\n"), "\n\nX=0.000000000\n");
+    assert_eq!(bench.say("VAR?\nMAC?\nPOS? X\n"), "A=1\n\nX=0.000000000\n");
     for stop in ["STP\n", "\x18", "HLT\n"] {
         assert_eq!(bench.say_to(other, "MOV X 50\nERR?\n"), "0\n");
         bench.run(1_000);

@@ -250,6 +250,40 @@ fn variables_are_set_added_to_and_forgotten() {
 }
 
 #[test]
+fn variables_belong_to_their_connection_until_a_macro_gets_them() {
+    let mut bench = with(&[("count", "ADD N $N 1; ADD N $N 1")]);
+    let other = bench.connect();
+    assert_eq!(bench.error_after("VAR N 5\nVAR Q 1"), "0");
+    assert_eq!(bench.say_to(other, "VAR?\nERR?\n"), "\n0\n");
+    assert_eq!(bench.say_to(other, "VAR? Q\nERR?\n"), "1007\n");
+    assert_eq!(bench.say_to(other, "MOV X $Q\nERR?\n"), "1007\n");
+    // Its own, with the same name.
+    assert_eq!(bench.say_to(other, "VAR Q MAC\nVAR? Q\n"), "Q=MAC\n");
+    assert_eq!(bench.say("VAR? Q\n"), "Q=1\n");
+    assert_eq!(bench.error_after("MAC START count"), "0");
+    finish(&mut bench);
+    assert_eq!(bench.say("VAR?\nMAC ERR?\n"), "N=7 \nQ=1\n\n");
+    // What the macro has is everybody's, behind what is a connection's own.
+    assert_eq!(bench.say_to(other, "VAR?\n"), "Q=MAC \nN=7\n");
+    assert_eq!(bench.say_to(other, "ADD N $N 1\nVAR Q\nERR?\n"), "0\n");
+    assert_eq!(bench.say("VAR? N\n"), "N=8\n");
+    assert_eq!(bench.say_to(other, "VAR? Q\n"), "Q=1\n");
+    // An owner's macros are the owner's.
+    assert_eq!(bench.error_after("OWN 1"), "0");
+    assert_eq!(bench.say_to(other, "VAR N 1\nERR?\n"), "4002\n");
+    assert_eq!(bench.say_to(other, "VAR M 1\nERR?\n"), "0\n");
+    // With no room for them no macro starts.
+    assert_eq!(bench.error_after("OWN 0"), "0");
+    for number in 2..MAX_VARIABLES {
+        assert_eq!(bench.error_after(&format!("VAR N{number} 1")), "0");
+    }
+    assert_eq!(bench.error_after("MAC START count"), "0");
+    finish(&mut bench);
+    assert_eq!(bench.say_to(other, "MAC START count\nERR?\n"), "601\n");
+    assert_eq!(bench.say_to(other, "VAR? M N\n"), "M=1 \nN=10\n");
+}
+
+#[test]
 fn loops_count_and_end() {
     let mut bench = with(&[(
         "count",

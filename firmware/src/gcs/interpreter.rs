@@ -55,6 +55,7 @@ pub struct Interpreter {
     /// What `TST?` asks, where there is one.
     pub(super) board: Option<&'static dyn Board>,
     pub(super) macros: Macros,
+    /// Those of macros.
     pub(super) variables: Variables,
     pub(super) persistence: Persistence,
     /// Errors for every connection: how many so far, and the latest.

@@ -10,6 +10,7 @@ use super::replies::reply_furthest_target;
 use super::request::{Action, Request};
 use super::session::{InputItem, Session};
 use super::table::find_byte;
+use super::variables::expand;
 use super::wave::reply_waves;
 use crate::commander::Quantity;
 use crate::queues::CommandQueues;
@@ -167,8 +168,7 @@ impl Interpreter {
             }
         }
         let request = if line.contains(&b'$') {
-            let locals = self.macros.locals(session);
-            parse(&self.variables.expand(line, locals)?)
+            parse(&expand(line, |name| self.variable(name, session))?)
         } else {
             parse(line)
         };

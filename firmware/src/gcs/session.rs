@@ -6,6 +6,7 @@ use super::monitor::Monitor;
 use super::recorder::{FaultRecordReadout, RecordReadout};
 use super::request::Condition;
 use super::text::{LINE_BYTES, TEXT_BYTES, Text};
+use super::variables::Variables;
 use core::fmt::Write;
 use heapless::{Deque, Vec};
 use kinematics::Angle;
@@ -53,6 +54,8 @@ pub struct Session {
     pub(super) recording: Option<u32>,
     /// Its lines are those of a macro that runs.
     pub(super) is_macro: bool,
+    /// Its own; those of macros are the interpreter's.
+    pub(super) variables: Variables,
     /// The tick of the last fault that was reported to this connection.
     pub(super) fault_tick: Option<u64>,
     /// What `MON?` has to tell it.

@@ -63,10 +63,7 @@ impl Interpreter {
     ) -> Result<bool, ErrorCode> {
         let left = match &condition.left {
             Operand::Axis(quantity, axis) => self.commander.value(*quantity, *axis),
-            Operand::Variable(name) => {
-                let locals = self.macros.locals(session);
-                self.variables.number(name, locals)?
-            }
+            Operand::Variable(name) => self.variable_number(name, session)?,
         };
         Ok(condition.operator.holds(left, condition.value))
     }

@@ -17,6 +17,7 @@ pub mod colour;
 pub mod envelope;
 pub mod files;
 pub mod mechanism;
+mod outlines;
 pub mod png;
 pub mod progress;
 pub mod scale;

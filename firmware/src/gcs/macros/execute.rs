@@ -40,18 +40,20 @@ impl Interpreter {
         Ok(())
     }
 
-    /// `MAC START`: from a connection the macro begins a session of its own; from a macro it runs before that goes on.
+    /// `MAC START`: from a connection the macro begins a session of its own and gets the connection's variables; from a macro it
+    /// runs before that goes on.
     fn start(
         &mut self,
         name: &Name,
         times: u32,
         arguments: &[Option<Text>; 2],
-        session: &Session,
+        session: &mut Session,
     ) -> Result<(), ErrorCode> {
         if self.macros.is_running() && !session.is_macro {
             return Err(ErrorCode::MacroRunning);
         }
         let place = self.macros.place(name)?;
+        self.variables.take(&mut session.variables)?;
         self.macros.calls.enter(place, times, arguments)?;
         if !session.is_macro {
             self.macros.failure = None;

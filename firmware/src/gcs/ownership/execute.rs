@@ -7,7 +7,6 @@ use crate::gcs::macros::MacroRequest;
 use crate::gcs::request::{Action, Request};
 use crate::gcs::session::Session;
 use crate::gcs::text::{Name, Text};
-use crate::gcs::variables::VariableRequest;
 
 impl Interpreter {
     /// `OWN`: 1 makes the connection the owner, if there is none; 0 ends that.
@@ -60,7 +59,7 @@ impl Interpreter {
 
 impl Request {
     /// Whether it starts a motion, or changes a mode, a parameter or anything else that motions of others depend on: what an owner
-    /// has for itself. Stops do not count, nor does what belongs to the connection alone.
+    /// has for itself. Stops do not count, nor does what belongs to the connection alone; variables look for themselves.
     pub fn changes_stage(&self) -> bool {
         match self {
             Self::Macro(request) => matches!(
@@ -70,7 +69,6 @@ impl Request {
                     | MacroRequest::Start(..)
                     | MacroRequest::Delete(_)
             ),
-            Self::Variables(request) => !matches!(request, VariableRequest::Query(_)),
             Self::Act(action) => !matches!(
                 action,
                 Action::Stop

@@ -7,7 +7,7 @@ use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
 use crate::gcs::reply_writer::ReplyWriter;
 use crate::gcs::session::Session;
-use crate::gcs::text::{Name, Text};
+use crate::gcs::text::Name;
 
 impl Interpreter {
     /// Carries out what is about variables.
@@ -23,11 +23,9 @@ impl Interpreter {
                 number_text(a + b).and_then(|sum| self.set_variable(name, Some(sum), session))
             }
             VariableRequest::Query(names) => {
-                let named = names.iter().flatten();
-                let locals = self.macros.locals(session);
-                let known = |name: &Name| self.variables.get(name, locals).is_some();
-                if named.clone().all(known) {
-                    return self.reply_variables(names, out);
+                let known = |name: &Name| self.variable(name, session).is_some();
+                if names.iter().flatten().all(known) {
+                    return self.reply_variables(names, session, out);
                 }
                 Err(ErrorCode::UnknownVariable)
             }
@@ -38,24 +36,17 @@ impl Interpreter {
         Ok(())
     }
 
-    fn set_variable(
-        &mut self,
-        name: &Name,
-        value: Option<Text>,
-        session: &Session,
-    ) -> Result<(), ErrorCode> {
-        let locals = self.macros.locals_mut(session);
-        self.variables.set(name, value, locals)
-    }
-
     fn reply_variables(
         &self,
         names: &[Option<Name>],
+        session: &Session,
         out: &mut Output<'_>,
     ) -> Result<(), WriteFailed> {
         let mut reply = ReplyWriter::new(out);
         let all = names.iter().all(Option::is_none);
-        for (name, value) in self.variables.iter() {
+        let is_hidden = |name: &Name| session.variables.get(name).is_some();
+        let of_macros = self.variables.iter().filter(|(name, _)| !is_hidden(name));
+        for (name, value) in session.variables.iter().chain(of_macros) {
             if all || names.contains(&Some(*name)) {
                 reply.line(format_args!("{name}={value}"))?;
             }

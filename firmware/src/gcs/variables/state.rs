@@ -5,13 +5,13 @@ use crate::gcs::text::{LINE_BYTES, Name, Text, is_name_byte};
 use core::fmt::Write;
 use heapless::Vec;
 
-/// Variables that can be set, besides the local ones.
+/// Variables that a connection can have, and that macros can have together, besides their local ones.
 pub const MAX_VARIABLES: usize = 32;
 
 /// Variables 0 to 9 of a running macro.
 pub(in crate::gcs) type Locals = [Option<Text>; 10];
 
-/// The controller's variables.
+/// Variables of a connection, or of all macros.
 #[derive(Default)]
 pub(in crate::gcs) struct Variables {
     entries: Vec<(Name, Text), MAX_VARIABLES>,
@@ -23,35 +23,13 @@ impl Variables {
         self.entries.iter()
     }
 
-    /// The value of a variable; local ones are there only inside a macro.
-    pub fn get<'a>(&'a self, name: &Name, locals: Option<&'a Locals>) -> Option<&'a Text> {
-        match name.digit() {
-            Some(digit) => locals?.get(digit)?.as_ref(),
-            None => (self.entries.iter().find(|(other, _)| other == name)).map(|(_, value)| value),
-        }
-    }
-
-    /// Its value as a number.
-    pub fn number(&self, name: &Name, locals: Option<&Locals>) -> Result<f64, ErrorCode> {
-        let text = self.get(name, locals).ok_or(ErrorCode::UnknownVariable)?;
-        let number = text.as_str().parse::<f64>().ok();
-        number
-            .filter(|number| number.is_finite())
-            .ok_or(ErrorCode::InvalidNumber)
+    /// The value of one.
+    pub fn get(&self, name: &Name) -> Option<&Text> {
+        (self.entries.iter().find(|(other, _)| other == name)).map(|(_, value)| value)
     }
 
     /// Sets one, or forgets it.
-    pub fn set(
-        &mut self,
-        name: &Name,
-        value: Option<Text>,
-        locals: Option<&mut Locals>,
-    ) -> Result<(), ErrorCode> {
-        if let Some(digit) = name.digit() {
-            let local = locals.and_then(|locals| locals.get_mut(digit));
-            *local.ok_or(ErrorCode::UnknownVariable)? = value;
-            return Ok(());
-        }
+    pub fn set(&mut self, name: &Name, value: Option<Text>) -> Result<(), ErrorCode> {
         let place = self.entries.iter().position(|(other, _)| other == name);
         match (place, value) {
             (Some(place), Some(value)) => self.entries[place].1 = value,
@@ -67,24 +45,35 @@ impl Variables {
         Ok(())
     }
 
-    /// The line with the values of its variables in their places.
-    pub fn expand(
-        &self,
-        line: &[u8],
-        locals: Option<&Locals>,
-    ) -> Result<Vec<u8, LINE_BYTES>, ErrorCode> {
-        let mut expanded = Vec::new();
-        let mut rest = line;
-        while let Some(at) = rest.iter().position(|&byte| byte == b'$') {
-            append(&mut expanded, &rest[..at])?;
-            let (name, rest_of_line) = reference(&rest[at + 1..])?;
-            let value = self.get(&name, locals).ok_or(ErrorCode::UnknownVariable)?;
-            append(&mut expanded, value.as_bytes())?;
-            rest = rest_of_line;
+    /// Takes all of another's, or none where there is no room for them.
+    pub fn take(&mut self, others: &mut Self) -> Result<(), ErrorCode> {
+        let new = (others.iter()).filter(|(name, _)| self.get(name).is_none());
+        if self.entries.len() + new.count() > self.entries.capacity() {
+            return Err(ErrorCode::NoMemory);
         }
-        append(&mut expanded, rest)?;
-        Ok(expanded)
+        for (name, value) in core::mem::take(&mut others.entries) {
+            self.set(&name, Some(value))?;
+        }
+        Ok(())
     }
+}
+
+/// The line with the values of its variables in their places.
+pub(in crate::gcs) fn expand<'a>(
+    line: &[u8],
+    value: impl Fn(&Name) -> Option<&'a Text>,
+) -> Result<Vec<u8, LINE_BYTES>, ErrorCode> {
+    let mut expanded = Vec::new();
+    let mut rest = line;
+    while let Some(at) = rest.iter().position(|&byte| byte == b'$') {
+        append(&mut expanded, &rest[..at])?;
+        let (name, rest_of_line) = reference(&rest[at + 1..])?;
+        let value = value(&name).ok_or(ErrorCode::UnknownVariable)?;
+        append(&mut expanded, value.as_bytes())?;
+        rest = rest_of_line;
+    }
+    append(&mut expanded, rest)?;
+    Ok(expanded)
 }
 
 fn append(line: &mut Vec<u8, LINE_BYTES>, bytes: &[u8]) -> Result<(), ErrorCode> {

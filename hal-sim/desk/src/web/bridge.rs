@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -50,6 +50,7 @@ pub(super) struct Bridge {
     /// Viewers' ways by their keys.
     ways: Arc<Mutex<HashMap<String, Weak<Way>>>>,
     takes_several: Arc<AtomicBool>,
+    no_controller: Arc<OnceLock<String>>,
     stops: Stops,
 }
 
@@ -107,6 +108,7 @@ impl Bridge {
         let (hello_sender, hello) = watch::channel(Arc::from(""));
         let bypass = Arc::default();
         let takes_several = Arc::<AtomicBool>::default();
+        let no_controller = Arc::<OnceLock<String>>::default();
         let stops = Stops::default();
         let worker = Worker {
             endpoint: endpoint.clone(),
@@ -116,6 +118,7 @@ impl Bridge {
             bypass: Arc::clone(&bypass),
             arbiter: RefCell::default(),
             takes_several: Arc::clone(&takes_several),
+            no_controller: Arc::clone(&no_controller),
             stops: stops.clone(),
         };
         worker.say_offline("not connected yet".to_owned());
@@ -131,8 +134,14 @@ impl Bridge {
             viewers: Arc::default(),
             ways: Arc::default(),
             takes_several,
+            no_controller,
             stops,
         })
+    }
+
+    /// Why what is at the other end cannot be a controller, once that is known. One that was there before may come back.
+    pub fn no_controller(&self) -> Arc<OnceLock<String>> {
+        Arc::clone(&self.no_controller)
     }
 
     /// The status messages from now on.
@@ -266,6 +275,7 @@ struct Worker {
     bypass: Arc<Mutex<Option<Port>>>,
     arbiter: RefCell<Arbiter>,
     takes_several: Arc<AtomicBool>,
+    no_controller: Arc<OnceLock<String>>,
     stops: Stops,
 }
 
@@ -274,11 +284,16 @@ struct Done;
 
 impl Worker {
     fn run(self) {
+        let mut was_there = false;
         loop {
-            let reason = match self.serve() {
+            let reason = match self.serve(&mut was_there) {
                 Ok(Done) => return,
                 Err(error) => error,
             };
+            if reason.kind() == io::ErrorKind::InvalidData && !was_there {
+                // Said once is enough.
+                let _ = self.no_controller.set(reason.to_string());
+            }
             self.set_bypass(None);
             self.say_offline(reason.to_string());
             if self.refuse_for(RETRY).is_err() {
@@ -288,8 +303,9 @@ impl Worker {
     }
 
     /// Serves as long as the line holds.
-    fn serve(&self) -> io::Result<Done> {
+    fn serve(&self, was_there: &mut bool) -> io::Result<Done> {
         let mut line = Line::open(&self.endpoint)?;
+        *was_there = true;
         self.set_bypass(Some(line.bypass()?));
         let takes_several = self.endpoint.is_tcp() && Line::has_another(&self.endpoint);
         self.takes_several.store(takes_several, Ordering::Relaxed);

@@ -4,15 +4,20 @@
 use std::time::Duration;
 
 use axum::body::Bytes;
-use axum::extract::ws::Message;
-use tokio::time::{Instant, Interval, interval};
+use axum::extract::ws::{Message, WebSocket};
+use tokio::time::{Instant, Interval, interval, timeout};
 
 /// Between two pings.
 const PING_EVERY: Duration = Duration::from_secs(1);
 /// Without a sign of life for so long a page is gone.
 const GONE_AFTER: Duration = Duration::from_millis(2500);
 /// How long it may take to read a message.
-pub(super) const PATIENCE: Duration = Duration::from_secs(2);
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Sends a message; whether it has been taken in time.
+pub(super) async fn send(socket: &mut WebSocket, message: Message) -> bool {
+    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
+}
 
 /// The signs of life of one WebSocket.
 pub(super) struct Life {

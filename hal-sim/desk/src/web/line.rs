@@ -41,6 +41,9 @@ pub(crate) struct Answer {
 
 impl Line {
     /// Opens it, throws away what is still on its way, and asks who is there.
+    ///
+    /// # Errors
+    /// What the port says; `InvalidData` when what is there cannot be a controller.
     pub fn open(endpoint: &Endpoint) -> io::Result<Self> {
         let mut line = Self {
             port: endpoint.open()?,
@@ -72,7 +75,8 @@ impl Line {
         while self.receive(SILENCE)? {
             self.forget();
             if Instant::now() > end {
-                return Err(io::Error::other(
+                return Err(io::Error::new(
+                    io::ErrorKind::InvalidData,
                     "it never stops sending: this is no controller that waits for commands, or the line has another rate",
                 ));
             }

@@ -70,6 +70,14 @@ pub enum PageError {
         /// What the system says.
         error: io::Error,
     },
+    /// What is at the other end cannot be a controller.
+    #[error("{place}: {reason}")]
+    NoController {
+        /// Where it was looked for.
+        place: String,
+        /// What it does that a controller does not.
+        reason: String,
+    },
     /// A thread or its runtime cannot be started, or there is no randomness to be had.
     #[error("cannot serve the page: {0}")]
     Start(io::Error),

@@ -2,7 +2,7 @@
 
 use std::io;
 use std::net::{SocketAddr, TcpListener};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
 use axum::Router;
@@ -44,6 +44,7 @@ const TOO_MANY: &str = "there are as many pages of this stage as it serves at on
 /// A page that is served until it is dropped.
 pub struct Page {
     address: SocketAddr,
+    no_controller: Arc<OnceLock<String>>,
     /// Dropped, it ends the server.
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -92,6 +93,7 @@ impl Page {
             .enable_all()
             .build()?;
         let bridge = Bridge::start(endpoint)?;
+        let no_controller = bridge.no_controller();
         let shared = Shared {
             guard: Arc::new(Guard::new(&options.address, options.public_url.as_deref())?),
             password: (options.password.clone().map(Password::new).transpose()?).map(Arc::new),
@@ -116,9 +118,16 @@ impl Page {
         })?;
         Ok(Self {
             address: place,
+            no_controller,
             stop: Some(stop),
             thread: Some(thread),
         })
+    }
+
+    /// Why what is at the other end cannot be a controller, once that is known and none was there before.
+    #[must_use]
+    pub fn no_controller(&self) -> Option<&str> {
+        self.no_controller.get().map(String::as_str)
     }
 
     /// Where it is.

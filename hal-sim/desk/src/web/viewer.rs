@@ -6,11 +6,10 @@ use axum::extract::ws::{Message, WebSocket};
 use serde::Serialize;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{Semaphore, mpsc};
-use tokio::time::timeout;
 
 use super::bridge::{Bridge, Way, json};
 use super::guard::Guard;
-use super::life::{Life, PATIENCE};
+use super::life::{Life, send};
 use super::line::Answer;
 use super::operator::{Operator, Order};
 use super::request::{self, Refusal, Request, Wanted};
@@ -107,10 +106,6 @@ pub(super) async fn serve(
             return;
         }
     }
-}
-
-async fn send(socket: &mut WebSocket, message: Message) -> bool {
-    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
 }
 
 /// Takes a message; the reply, where one can be given at once.

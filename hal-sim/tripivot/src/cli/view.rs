@@ -1,4 +1,4 @@
-//! `tripivot view`: the page for a controller that runs already, until Ctrl-C.
+//! `tripivot view`: the page for a controller that runs already, until Ctrl-C, or until what is at the line is found to be none.
 
 use std::fs;
 use std::io::{self, Write};
@@ -34,6 +34,10 @@ pub(super) fn run(arguments: &View) -> Result<ExitCode, CliError> {
     );
     (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
     while !stop.load(Ordering::Relaxed) {
+        if let Some(reason) = page.no_controller() {
+            let reason = reason.to_owned();
+            return Err(PageError::NoController { place, reason }.into());
+        }
         thread::sleep(LOOK_EVERY);
     }
     Ok(ExitCode::SUCCESS)

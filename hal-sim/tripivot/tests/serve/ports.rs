@@ -261,10 +261,12 @@ fn a_line_that_never_stops_talking_is_no_controller() {
     for arguments in [
         ["settings", "export", file.to_str().unwrap()],
         ["record", "--out", folder.to_str().unwrap()],
+        ["view", "--web", "127.0.0.1:0"],
     ] {
         let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
             .args(arguments)
             .args(["--connect", &address])
+            .stdin(Stdio::null())
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{output:?}");

@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use axum::extract::ws::{Message, WebSocket};
 use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::time::timeout;
 
 use super::Operator;
 use super::sequence_status::{Order, Orderer};
 use crate::web::guard::Guard;
-use crate::web::life::{Life, PATIENCE};
+use crate::web::life::{Life, send};
 
 /// Longest message: a script.
 pub(in crate::web) const MESSAGE_BYTES: usize = 256 << 10;
@@ -83,10 +82,6 @@ async fn talk(socket: &mut WebSocket, operator: &Operator, guard: &Guard, page: 
             return;
         }
     }
-}
-
-async fn send(socket: &mut WebSocket, message: Message) -> bool {
-    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
 }
 
 /// The order in a message of somebody who may give one.
