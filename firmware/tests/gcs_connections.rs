@@ -86,6 +86,12 @@ fn a_jog_lasts_as_long_as_its_connection_has_said_and_is_renewed() {
     assert_eq!(bench.error_after("JTM 0\nJOG W 90"), "0");
     bench.run(20_000);
     assert_eq!(jogs(&mut bench), "X=0 Y=0 W=90");
+    // What is in force is meant too.
+    assert_eq!(bench.error_after("JTM 100"), "0");
+    bench.run(1_900);
+    assert_eq!(jogs(&mut bench), "X=0 Y=0 W=90");
+    bench.run(200);
+    assert_eq!(jogs(&mut bench), "X=0 Y=0 W=0");
 }
 
 #[test]

@@ -275,11 +275,19 @@ fn who_has_promised_to_be_heard_has_to_be() {
 
 #[test]
 fn nobody_ends_the_heartbeat_of_another_connection() {
-    for line in ["HBT 0\n", "HBT 86400000\n", "SPA 1 0x54500510 0\n", "RPA\n"] {
+    for line in [
+        "HBT 0\n",
+        "HBT 86400000\n",
+        "SPA 1 0x54500510 0\n",
+        "RPA\n",
+        "RBT\n",
+    ] {
         let mut bench = Bench::ready();
         let other = bench.connect();
         bench.say("HBT 20\n");
         bench.say_to(other, line);
+        let error = bench.say_to(other, "ERR?\n");
+        assert!(line != "RBT\n" || error == "89\n", "{error}");
         bench.say("MOV X 50\n");
         for _ in 0..60 {
             bench.say_to(other, "POS?\n");

@@ -136,6 +136,7 @@ class Live(OnServed):
         self.assertIn("rad, limit", browser.text("#alarm-text"))
         browser.wait_text("#mode", "fault")
         self.picture(browser, "fault")
+        self.assert_accessible(browser, "a fault")
         browser.click("#home")
         browser.wait_text("#said", "a fault is latched")
         browser.click("#acknowledge")

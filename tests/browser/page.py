@@ -34,6 +34,18 @@ class WithDriver(unittest.TestCase):
     def picture(self, browser, name, **options):
         browser.picture(str(pathlib.Path(ARGUMENTS.pictures) / f"{name}.png"), **options)
 
+    def assert_accessible(self, browser, state):
+        """The rules of axe-core have nothing serious against what the window shows; what else they have is printed."""
+        axe = pathlib.Path(ARGUMENTS.axe).read_text(encoding="utf-8")
+        browser.run(axe + "; window.axe = axe")
+        found = browser.run("""
+            return axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => violations.map(
+              ({ id, impact, nodes }) => [impact, id, nodes.slice(0, 3).map(({ html, failureSummary }) => html.slice(0, 160) + ' ' + failureSummary.slice(0, 300))]))""")
+        serious = [one for one in found if one[0] in ("serious", "critical")]
+        self.assertEqual(serious, [], state)
+        for impact, rule, _ in found:
+            print(f"{state}: axe says {impact}: {rule}")
+
 
 class OnPage(WithDriver):
     """What a person does on the live page, and sees there. Conditions that are waited for stay true once they are: a slow

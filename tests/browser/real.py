@@ -32,6 +32,7 @@ class Real(OnPage):
         self.enter(browser, x="30")
         self.asked(browser)
         self.picture(browser, "first-move")
+        self.assert_accessible(browser, "the question before the first move")
         # STOP can be pressed meanwhile, and is an answer.
         browser.click("#stop")
         browser.wait_text("#stop-said", "stopped, as the controller says")

@@ -33,6 +33,7 @@ class Remote(OnPage):
             browser = self.window(flags=proxy.flags)
             browser.open(proxy.url)
             self.assertEqual(browser.run("return location.href"), proxy.url + "login")
+            self.assert_accessible(browser, "the password")
             browser.type("[name=password]", "wrong")
             browser.click("button")
             browser.wait_text("[role=status]", "not the password")

@@ -33,6 +33,9 @@ class Silent(OnPage):
         # When each of the page's words came, by the page's own clock: a slow machine may look late.
         browser.run("""
             window.seen = {};
+            window.lag = 0;
+            let looked = performance.now();
+            setInterval(() => { const now = performance.now(); window.lag = Math.max(window.lag, now - looked - 50); looked = now; }, 50);
             const note = () => {
               if (document.body.classList.contains('stale')) window.seen.stale ??= performance.now();
               const stop = document.getElementById('stop-said');
@@ -43,20 +46,27 @@ class Silent(OnPage):
             new MutationObserver(note).observe(document.body, { subtree: true, attributes: true, childList: true, characterData: true });""")
         return browser
 
+    def lag(self, browser):
+        """What a busy machine adds to what the page does in its time, ms: each of two looks may be as late as the latest was."""
+        return 2 * browser.run("return window.lag")
+
     def falls_silent(self, browser):
         """Says so at once; the stop is not confirmed; requests end. The request is made before the page knows."""
         begun = browser.run("""
             const begun = performance.now(); document.getElementById('halt').click(); return begun""")
         browser.wait(lambda: browser.run("return 'stale' in window.seen"), "a page that knows it is stale")
-        self.assertLess(browser.run("return window.seen.stale") - begun, 1500)
+        # 500 ms from the last status, which may have come when the line fell silent, and two looks of 100 ms.
+        self.assertLess(browser.run("return window.seen.stale") - begun, 900 + self.lag(browser))
         browser.wait_text("#mode", "no")
-        self.assertEqual(browser.run("return getComputedStyle(document.querySelector('main')).filter"), "grayscale(1) opacity(0.45)")
+        for dimmed in ("main", "#machine", "#mode", "#notices"):
+            self.assertEqual(browser.run(f"return getComputedStyle(document.querySelector('{dimmed}')).filter"), "grayscale(1) opacity(0.45)", dimmed)
+        self.assertEqual(browser.run("return getComputedStyle(document.getElementById('stop')).filter"), "none")
         pressed = browser.run("const at = performance.now(); document.getElementById('stop').click(); return at")
         browser.wait_text("#stop-said", "NOT CONFIRMED: use the emergency stop")
         self.assertNotIn("stopped", browser.text("#stop-said"))
         words = browser.run("return window.seen")
         unconfirmed = next(at for text, at in words.items() if "NOT CONFIRMED" in text)
-        self.assertLess(unconfirmed - pressed, 2000)
+        self.assertLess(unconfirmed - pressed, 1400 + self.lag(browser))
         browser.wait(lambda: browser.text("#said") and browser.run("return document.getElementById('said').className") == "said bad",
                      "an end of the request")
         ended = browser.wait(lambda: browser.run("return window.seen['no answer within 2 s']"), "the page's own end of the request")

@@ -26,9 +26,7 @@ class View:
         self.assertEqual(browser.text("#machine-line"), self.place)
         self.reference(browser)
         self.enter(browser, x="20", y="-10", w="30")
-        if browser.text("#machine-kind") == "REAL STAGE":
-            browser.wait(lambda: browser.run("return document.getElementById('first-move').open"), "the question")
-            browser.click("#first-move button[value=move]")
+        self.assertEqual(browser.text("#machine-kind"), "SIMULATED")
         self.arrive(browser, x=20, y=-10, w=30)
         self.aim(browser, 70, 60, "outside the usable disk")
         self.aim(browser, -10, 5, "mm: reachable")

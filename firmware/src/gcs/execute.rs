@@ -48,7 +48,7 @@ impl Interpreter {
             Action::CycleTime(ms) => Ok(self.commander.set_cycle_time(ms)?),
             Action::Jog(values) => self.jog(&values, session, queues),
             Action::Recover(value) => self.recover(value, session, queues),
-            Action::JogTime(ms) => Self::set_jog_time(ms, session),
+            Action::JogTime(ms) => self.set_jog_time(ms, session),
             Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
@@ -82,7 +82,7 @@ impl Interpreter {
                 self.restart_statistics();
                 Ok(())
             }
-            Action::Restart => self.restart(),
+            Action::Restart => self.restart(session),
             Action::Acknowledge => Ok(self.commander.acknowledge_fault(queues)?),
             Action::Delay(ms) => {
                 if !(0.0..=MAX_DELAY_MS).contains(&ms) {
@@ -164,10 +164,13 @@ impl Interpreter {
         self.commander.stop(stop, queues);
     }
 
-    /// `RBT`: a stage in motion would be let go.
-    fn restart(&mut self) -> Result<(), ErrorCode> {
+    /// `RBT`: a stage in motion would be let go, and what another connection has promised be forgotten.
+    fn restart(&mut self, session: &Session) -> Result<(), ErrorCode> {
         if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
+        }
+        if self.heartbeat.is_promised_by_another(session.number) {
+            return Err(ErrorCode::NotAllowed);
         }
         self.wants_restart = true;
         Ok(())

@@ -6,7 +6,7 @@ use hal_sim::machine::devices::{Stage, StageParameters};
 use hal_sim::rig::run::RunOptions;
 use image::chip::{Bench, LineServer, elf_file};
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
+use std::net::{SocketAddr, TcpStream};
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
@@ -66,6 +66,17 @@ fn pieces_of_lines_never_make_up_one() {
     assert!(place_mm.is_some_and(|x| x.abs() < 1e-4), "{answers}");
 }
 
+/// The first line of the answer to a client that comes and goes.
+fn asked(address: SocketAddr, lines: &str) -> String {
+    let mut client = TcpStream::connect(address).expect("a connection");
+    client.write_all(lines.as_bytes()).expect("sent");
+    let mut answer = String::new();
+    BufReader::new(client)
+        .read_line(&mut answer)
+        .expect("an answer");
+    answer
+}
+
 /// Over TCP, for clients that have no serial line: a browser is none of them.
 #[test]
 fn what_a_browser_sends_is_cut_off_before_the_chip_hears_it() {
@@ -83,13 +94,11 @@ fn what_a_browser_sends_is_cut_off_before_the_chip_hears_it() {
     // Closed with what it sent unread, the connection may end in a reset.
     let _ = browser.read_to_end(&mut heard);
     assert_eq!(heard, b"");
-    let mut client = TcpStream::connect(address).expect("a connection");
-    client.write_all(b"FRF? X\n").expect("sent");
-    let mut answer = String::new();
-    BufReader::new(client)
-        .read_line(&mut answer)
-        .expect("an answer");
-    assert_eq!(answer, "X=0\n");
+    assert_eq!(asked(address, "FRF? X\n"), "X=0\n");
+    // The line does not tell the chip that its client is gone; its constant velocity ends all the same.
+    assert_eq!(asked(address, "FRF X\nJOG W 20\nJOG? W\n"), "W=20\n");
+    assert_eq!(asked(address, "JTM?\n"), "0\n");
+    assert_eq!(asked(address, "JOG? W\n"), "W=0\n");
     stop.store(true, Ordering::Relaxed);
     assert!(serving.join().expect("no panic"));
 }

@@ -66,6 +66,13 @@ impl Heartbeat {
             .retain(|promise| !(promise.has_ended && promise.silence.is_too_long));
     }
 
+    /// Whether a connection that is still there has promised to be heard, other than this one.
+    pub fn is_promised_by_another(&self, connection: Option<ConnectionNumber>) -> bool {
+        let is_others =
+            |promise: &Promise| !promise.has_ended && Some(promise.connection) != connection;
+        self.promises.iter().any(is_others)
+    }
+
     /// What a connection has promised, ms.
     pub fn promised_ms(&self, connection: Option<ConnectionNumber>) -> Option<f64> {
         let own = |promise: &&Promise| Some(promise.connection) == connection;

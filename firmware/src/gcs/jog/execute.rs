@@ -22,18 +22,29 @@ impl Interpreter {
     ) -> Result<(), ErrorCode> {
         self.commander.jog(values, queues)?;
         let owner = session.number.filter(|_| !session.is_macro);
-        let ticks = session.jog_time_ms.map(|ms| self.commander.ticks(ms));
-        let end = ticks.map(|ticks| self.commander.tick() + ticks);
-        self.jogs.note(values, owner, end);
+        self.jogs.note(values, owner, self.jog_end(session));
         Ok(())
     }
 
-    /// `JTM`: how long the velocities of this connection last without another `JOG`; 0: as long as the connection.
-    pub(in crate::gcs) fn set_jog_time(ms: f64, session: &mut Session) -> Result<(), ErrorCode> {
+    /// The tick at which a velocity ends that this connection asks for now.
+    fn jog_end(&self, session: &Session) -> Option<u64> {
+        let ticks = session.jog_time_ms.map(|ms| self.commander.ticks(ms));
+        ticks.map(|ticks| self.commander.tick() + ticks)
+    }
+
+    /// `JTM`: how long the velocities of this connection last without another `JOG`, those in force from now on; 0: as long as
+    /// the connection.
+    pub(in crate::gcs) fn set_jog_time(
+        &mut self,
+        ms: f64,
+        session: &mut Session,
+    ) -> Result<(), ErrorCode> {
         if ms != 0.0 && !(MIN_JOG_TIME_MS..=MAX_DELAY_MS).contains(&ms) {
             return Err(ErrorCode::OutOfRange);
         }
         session.jog_time_ms = (ms != 0.0).then_some(ms);
+        let owner = session.number.filter(|_| !session.is_macro);
+        self.jogs.set_end(owner, self.jog_end(session));
         Ok(())
     }
 

@@ -37,6 +37,15 @@ impl Jogs {
         }
     }
 
+    /// The velocities of a connection that are in force end at this tick; `None`: with the connection.
+    pub fn set_end(&mut self, connection: Option<ConnectionNumber>, end_tick: Option<u64>) {
+        for owned in self.axes.iter_mut().flatten() {
+            if Some(owned.connection) == connection {
+                owned.end_tick = end_tick;
+            }
+        }
+    }
+
     /// A connection has ended: so do its velocities.
     pub fn connection_ended(&mut self, number: ConnectionNumber) {
         for owned in self.axes.iter_mut().flatten() {

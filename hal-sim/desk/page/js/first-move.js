@@ -2,7 +2,8 @@
 
 import { byId, setText } from "./dom.js";
 
-const MOVES = /^\s*(MOV|MVR|MRT|MRW|STE|JOG|RCV\s+1|WGO|MAC\s+N?START)\b/i;
+// What a variable stands for is not known here.
+const MOVES = /^\s*(MOV|MVR|MRT|MRW|STE|JOG|RCV\s+1|WGO|MAC\s+N?START)\b|\$/i;
 
 export class FirstMove {
   /** The machine that may be moved from here, by who and where it is. */

@@ -11,6 +11,7 @@ export class Freshness extends EventTarget {
   #tick = "";
   #since = performance.now();
   #looked = performance.now();
+  #wasBusy = false;
   #beginning = -Infinity;
 
   constructor() {
@@ -54,9 +55,10 @@ export class Freshness extends EventTarget {
 
   #look() {
     const now = performance.now();
-    const busy = now - this.#looked > 3 * LOOK_MS;
+    // After a long pause of the page itself, what came meanwhile is taken first. One that is never quicker looks all the same.
+    const busy = now - this.#looked > 3 * LOOK_MS && !this.#wasBusy;
     this.#looked = now;
-    // After a long pause of the page itself, what came meanwhile is taken first.
+    this.#wasBusy = busy;
     if (!busy && now - this.#since > LONGEST_MS) this.#tell(true);
   }
 

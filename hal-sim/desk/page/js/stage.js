@@ -9,7 +9,8 @@ const GUIDE_LENGTH = "0x54500202";
 const SPEED = "0x54500100";
 const TURN_DIRECTION = "0x54500110";
 /** Field of `*IDN?` that a simulated controller has in place of a serial number. */
-const SIMULATED = "SIM";
+// Serial numbers: of the simulated controller, and "emulated" in hexadecimal, as the emulated chip has it.
+const SIMULATED = /^(SIM$|656D756C61746564)/;
 /** The geometry and limits of speed change by a command of somebody, seldom: so often they are asked for, ms. */
 const GEOMETRY_EVERY_MS = 3000;
 /** Over so long, in the controller's time, a stage is looked at to see whether it rests, s; and how little it may move. */
@@ -75,7 +76,7 @@ export class Stage extends EventTarget {
 
   async #hello(hello) {
     Object.assign(this, { connected: hello.connected, reason: hello.reason, place: hello.place, identity: hello.identity });
-    this.simulated = hello.identity.split(",")[2]?.trim() === SIMULATED;
+    this.simulated = SIMULATED.test(hello.identity.split(",")[2]?.trim());
     this.help = hello.help.split("\n").slice(1, -1);
     this.known = commands(hello.help);
     this.now = null;

@@ -18,8 +18,10 @@ const WAITING_BYTES: usize = 64 << 10;
 const PATIENCE: Duration = Duration::from_secs(5);
 /// How much of a line is kept for notices.
 const LINE_BYTES: usize = 80;
-/// Lines of a client that are carried out in a turn: more would take the stage's time.
+/// Lines of a client that are carried out in a turn: more would take the time of the others.
 const LINES_PER_TURN: usize = 16;
+/// Time for the lines of all clients in a turn: more would take the stage's. The line that is under way then is finished.
+const TIME_PER_TURN: Duration = Duration::from_micros(500);
 /// `#24`
 const STOP: u8 = 24;
 /// How long a connection that may only stop the stage has for saying so.
@@ -45,7 +47,7 @@ pub(super) struct Connection {
     output: Output,
     /// When the client last read, or had nothing to read.
     last_read: Instant,
-    /// Its end was seen at this time; what it sent before is still carried out.
+    /// Its end was seen at this time.
     ended: Option<Instant>,
     /// The last line it sent, as far as it has come.
     line: Vec<u8>,
@@ -63,6 +65,19 @@ pub(super) enum ConnectionKind {
     Terminal,
     /// There is no place left for a client; a stop is taken all the same.
     StopOnly,
+}
+
+/// What a turn has left for the lines of clients.
+#[derive(Debug, Default)]
+pub(super) struct Budget {
+    spent: Duration,
+}
+
+impl Budget {
+    /// Whether no further line is carried out in this turn.
+    pub fn is_spent(&self) -> bool {
+        self.spent >= TIME_PER_TURN
+    }
 }
 
 /// What has become of a client.
@@ -128,12 +143,18 @@ impl Connection {
         self.kind == ConnectionKind::StopOnly
     }
 
+    /// When it was.
+    pub const fn opened(&self) -> Instant {
+        self.opened
+    }
+
     /// Whether its end has been seen.
     pub const fn has_ended(&self) -> bool {
         self.ended.is_some()
     }
 
-    /// Its client has sent all that it will; what came before is still carried out.
+    /// Its client has sent all that it will; what came before is still carried out, as far as it takes no longer than
+    /// [`PATIENCE`].
     pub const fn end(&mut self, now: Instant) {
         self.ended = Some(now);
     }
@@ -169,12 +190,17 @@ impl Connection {
     }
 
     /// Whether lines of it wait for the next turn.
-    pub const fn has_lines_left(&self) -> bool {
-        self.lines_left == 0 && !self.input.is_empty()
+    pub fn has_lines_left(&self, budget: &Budget) -> bool {
+        (self.lines_left == 0 || budget.is_spent()) && !self.input.is_empty()
     }
 
     /// Has the controller carry out what has come, line by line, so that a refusal can be told with its line.
-    pub fn service(&mut self, controller: &mut impl Controller, say: &mut dyn FnMut(Notice)) {
+    pub fn service(
+        &mut self,
+        controller: &mut impl Controller,
+        budget: &mut Budget,
+        say: &mut dyn FnMut(Notice),
+    ) {
         if self.state != ClientState::Here {
             return;
         }
@@ -182,7 +208,10 @@ impl Connection {
             self.take_stop();
         }
         loop {
-            let taken = self.kind != ConnectionKind::StopOnly && self.lines_left > 0 && self.feed();
+            let may =
+                self.kind != ConnectionKind::StopOnly && self.lines_left > 0 && !budget.is_spent();
+            let begun = (may && !self.input.is_empty()).then(Instant::now);
+            let taken = begun.is_some() && self.feed();
             self.lines_left -= usize::from(taken);
             let waiting = self.output.len();
             (self.session).set_room(WAITING_BYTES.saturating_sub(waiting));
@@ -191,6 +220,7 @@ impl Connection {
                 return;
             }
             self.tell_error(say);
+            budget.spent += begun.map_or(Duration::ZERO, |begun| begun.elapsed());
             if !taken {
                 return;
             }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-use super::connection::{Connection, ConnectionKind, Port};
+use super::connection::{Budget, Connection, ConnectionKind, Port};
 use super::keepalive::keep_alive;
 use super::pace::{Pace, Pacing};
 use super::terminal::Terminal;
@@ -98,6 +98,7 @@ impl Server {
             pace: Pace::new(now, rate_hz),
             listener: self.listener,
             connections: terminal.into_iter().collect(),
+            budget: Budget::default(),
             accept_from: now,
             fault_tick: None,
             lost_told: None,
@@ -121,7 +122,9 @@ struct Service<'a, C> {
     controller: &'a mut C,
     pace: Pace,
     listener: TcpListener,
+    /// The first one has the first turn.
     connections: Vec<Connection>,
+    budget: Budget,
     /// No connection is accepted before.
     accept_from: Instant,
     /// The fault that was told last.
@@ -133,9 +136,7 @@ struct Service<'a, C> {
 
 impl<C: Controller> Service<'_, C> {
     fn turn(&mut self) -> io::Result<()> {
-        for connection in &mut self.connections {
-            connection.begin_turn();
-        }
+        self.begin_turn();
         for _ in 0..self.pace.take(Instant::now()) {
             self.controller.tick();
             self.service();
@@ -150,9 +151,21 @@ impl<C: Controller> Service<'_, C> {
         Ok(())
     }
 
+    fn begin_turn(&mut self) {
+        for connection in &mut self.connections {
+            connection.begin_turn();
+        }
+        if self.budget.is_spent() {
+            // Who came last in a turn whose time was not enough for all comes earlier in the next one.
+            self.connections.rotate_left(1);
+        }
+        self.budget = Budget::default();
+    }
+
     /// How long nothing is due.
     fn idle_time(&self) -> Duration {
-        if self.connections.iter().any(Connection::has_lines_left) {
+        let has_lines_left = |one: &Connection| one.has_lines_left(&self.budget);
+        if self.connections.iter().any(has_lines_left) {
             return Duration::ZERO;
         }
         self.pace.wait(Instant::now()).min(LOOK_EVERY)
@@ -170,7 +183,7 @@ impl<C: Controller> Service<'_, C> {
         // Also with nobody there: a macro goes on.
         self.controller.advance();
         for connection in &mut self.connections {
-            connection.service(self.controller, self.say);
+            connection.service(self.controller, &mut self.budget, self.say);
         }
         self.controller.keep();
     }
@@ -259,7 +272,8 @@ impl<C: Controller> Service<'_, C> {
                 let name = from.to_string();
                 if self.connections.len() >= CLIENTS + STOP_PLACES {
                     // What it has sent has been carried out.
-                    let oldest = self.connections.iter_mut().find(|one| one.is_stop_only());
+                    let stop_only = self.connections.iter_mut().filter(|one| one.is_stop_only());
+                    let oldest = stop_only.min_by_key(|one| one.opened());
                     oldest.into_iter().for_each(Connection::break_off);
                 }
                 let kind = if self.connections.len() < CLIENTS {

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use firmware::gcs::{ErrorCode, parse};
+use firmware::gcs::{Action, ErrorCode, Query, Request, parse};
 
 use super::line::Answer;
 
@@ -43,11 +43,18 @@ impl Arbiter {
     /// What a line of a viewer comes to.
     pub fn judge(&self, viewer: ViewerNumber, line: &str) -> Verdict {
         let is_others = self.owner.is_some_and(|owner| owner != viewer);
-        let line = match words(line)[..] {
-            ["OWN", "1", ..] if is_others => return Verdict::Refuse(ErrorCode::OwnedByAnother),
+        let line = match said(line) {
+            Said::Own { own: true, .. } if is_others => {
+                return Verdict::Refuse(ErrorCode::OwnedByAnother);
+            }
             // The line's ownership is that of the viewer who has it.
-            ["OWN", "0", ..] if is_others => return Verdict::Send(vec!["OWN?".to_owned()]),
-            ["OWN", "1"] => format!("OWN 1 {}", page_name(viewer)),
+            Said::Own { own: false, .. } if is_others => {
+                return Verdict::Send(vec!["OWN?".to_owned()]);
+            }
+            Said::Own {
+                own: true,
+                named: false,
+            } => format!("OWN 1 {}", page_name(viewer)),
             _ => line.to_owned(),
         };
         let changes_stage = parse(line.as_bytes()).is_ok_and(|request| request.changes_stage());
@@ -80,22 +87,22 @@ impl Arbiter {
             self.named
         };
         let done = answer.error == 0;
-        match words(line)[..] {
-            ["OWN", "1", ..] if done => {
+        match said(line) {
+            Said::Own { own: true, .. } if done => {
                 (self.owner, self.named) = (Some(viewer), Some(viewer));
             }
-            ["OWN", "0", ..] => {
+            Said::Own { own: false, .. } => {
                 answer.reply = None;
                 self.named = None;
                 self.owner = self.owner.filter(|owner| *owner != viewer);
             }
-            ["OWN?"] => {
+            Said::WhoOwns => {
                 let mine = format!("MINE={}", u8::from(self.owner == Some(viewer)));
                 let rows = answer.reply.iter().flat_map(|reply| reply.lines());
                 let rows = rows.map(|row| if row.starts_with("MINE=") { &mine } else { row });
                 answer.reply = Some(rows.collect::<Vec<_>>().join("\n"));
             }
-            ["CCL", ..] if done => {
+            Said::Level if done => {
                 self.levels.insert(viewer, line.to_owned());
                 self.level = Some(line.to_owned());
             }
@@ -123,17 +130,28 @@ impl Arbiter {
     }
 }
 
-fn words(line: &str) -> Vec<&str> {
-    // Words of the language that are told apart here are written as the controller's help has them, or in small letters.
-    line.split_whitespace().map(known_word).collect()
+/// What a line means for those who share it.
+enum Said {
+    /// To own the stage, or no longer, and whether by a name.
+    Own {
+        own: bool,
+        named: bool,
+    },
+    WhoOwns,
+    Level,
+    Other,
 }
 
-fn known_word(word: &str) -> &str {
-    let known = ["OWN", "OWN?", "CCL"];
-    known
-        .into_iter()
-        .find(|known| known.eq_ignore_ascii_case(word))
-        .unwrap_or(word)
+fn said(line: &str) -> Said {
+    match parse(line.as_bytes()) {
+        Ok(Request::Act(Action::Own(value, name))) if value == 0.0 || value == 1.0 => Said::Own {
+            own: value == 1.0,
+            named: name.is_some(),
+        },
+        Ok(Request::Query(Query::Ownership)) => Said::WhoOwns,
+        Ok(Request::Act(Action::Level(..))) => Said::Level,
+        _ => Said::Other,
+    }
 }
 
 #[cfg(test)]
@@ -215,8 +233,17 @@ mod tests {
         );
         let others = done(&mut arbiter, 4, "OWN?", Some(told)).reply;
         assert_eq!(others.as_deref(), Some("OWNER=page_3\nMINE=0\nLAST=page_3"));
-        // Who does not own gives nothing back.
-        assert_eq!(sends(&arbiter, 4, "OWN 0"), ["OWN?"]);
+        // Who does not own gives nothing back, however the numbers are written.
+        for line in ["OWN 0", "OWN 0.0", "own -0 eve"] {
+            assert_eq!(sends(&arbiter, 4, line), ["OWN?"], "{line}");
+        }
+        for line in ["OWN 1.0", "OWN +1 eve"] {
+            assert_eq!(
+                arbiter.judge(4, line),
+                Verdict::Refuse(ErrorCode::OwnedByAnother),
+                "{line}"
+            );
+        }
         assert_eq!(done(&mut arbiter, 4, "OWN 0", Some(told)).reply, None);
         assert!(!arbiter.leave(4));
         assert!(arbiter.leave(3));

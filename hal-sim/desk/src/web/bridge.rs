@@ -15,7 +15,7 @@ use tokio::sync::{broadcast, oneshot, watch};
 
 use super::arbiter::{Arbiter, Verdict, ViewerNumber, page_name};
 use super::line::{Answer, Line};
-use super::own_line::{JOG_TIME_MS, OwnLine};
+use super::own_line::{OwnLine, jog_limit};
 use super::password::random_text;
 use super::port::{Endpoint, Port};
 use super::request::Refusal;
@@ -318,10 +318,6 @@ impl Worker {
             reason: String::new(),
         });
         self.arbiter.borrow_mut().forget();
-        if !takes_several {
-            // A controller that does not know it says so, and does without.
-            line.ask(&format!("JTM {JOG_TIME_MS}"))?;
-        }
         let all = [FAST, &slow(&help)].concat();
         let mut next = Instant::now();
         for number in 0_u32.. {
@@ -378,7 +374,7 @@ impl Worker {
         asked_after: u64,
     ) -> io::Result<Result<Answer, Refusal>> {
         let mut arbiter = self.arbiter.borrow_mut();
-        let lines = match arbiter.judge(viewer, text) {
+        let mut lines = match arbiter.judge(viewer, text) {
             Verdict::Refuse(code) => {
                 return Ok(Ok(Answer {
                     reply: None,
@@ -387,6 +383,9 @@ impl Worker {
             }
             Verdict::Send(lines) => lines,
         };
+        if let Some(limit) = jog_limit(text) {
+            lines.insert(0, limit);
+        }
         let mut answer = Answer {
             reply: None,
             error: 0,

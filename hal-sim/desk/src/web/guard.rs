@@ -14,6 +14,8 @@ use super::password::{is_same, random_text};
 use axum::http::HeaderMap;
 use axum::http::header::{HOST, ORIGIN};
 
+/// What proxies tell of their clients.
+const FORWARDED_FOR: &str = "x-forwarded-for";
 /// Bytes of randomness in a token.
 const TOKEN_BYTES: usize = 16;
 
@@ -41,6 +43,18 @@ impl Guard {
     /// Whether browsers know it over TLS.
     pub fn is_secure(&self) -> bool {
         (self.public_origin.as_deref()).is_some_and(|origin| origin.starts_with("https://"))
+    }
+
+    /// Where a request comes from: where a proxy on this machine stands in front of the page, the address that the proxy itself
+    /// has added, which is the last.
+    pub fn client(&self, peer: IpAddr, headers: &HeaderMap) -> IpAddr {
+        let told = headers.get_all(FORWARDED_FOR).iter().next_back();
+        let last = (told.and_then(|value| value.to_str().ok()))
+            .and_then(|value| value.rsplit(',').next()?.trim().parse().ok());
+        match last {
+            Some(client) if self.public_origin.is_some() && peer.is_loopback() => client,
+            _ => peer,
+        }
     }
 
     /// What requests have to bring along.
@@ -165,6 +179,23 @@ mod tests {
             );
         }
         assert!(!guard.allows_host(&headers("evil.lab", None)));
+    }
+
+    #[test]
+    fn a_proxy_says_whose_request_it_is_and_nobody_else_does() {
+        let [local, far, told] = [[127, 0, 0, 1], [192, 0, 2, 1], [192, 0, 2, 9]].map(IpAddr::from);
+        let mut headers = headers("stage.lab", None);
+        let direct = Guard::new("127.0.0.1:8080", None).unwrap();
+        let behind = Guard::new("127.0.0.1:8080", Some("https://stage.lab")).unwrap();
+        assert_eq!(behind.client(local, &headers), local);
+        // What the client has made up stands before what the proxy knows.
+        headers.append(FORWARDED_FOR, "198.51.100.1".parse().unwrap());
+        headers.append(FORWARDED_FOR, "198.51.100.2, 192.0.2.9".parse().unwrap());
+        assert_eq!(behind.client(local, &headers), told);
+        assert_eq!(behind.client(far, &headers), far);
+        assert_eq!(direct.client(local, &headers), local);
+        headers.append(FORWARDED_FOR, "unknown".parse().unwrap());
+        assert_eq!(behind.client(local, &headers), local);
     }
 
     #[test]

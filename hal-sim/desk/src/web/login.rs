@@ -45,7 +45,7 @@ pub(super) async fn form() -> Response {
 /// A try.
 pub(super) async fn enter(
     State(shared): State<Shared>,
-    Extension(Peer(from)): Extension<Peer>,
+    Extension(Peer(peer)): Extension<Peer>,
     headers: HeaderMap,
     Form(Try { password: text }): Form<Try>,
 ) -> Response {
@@ -59,7 +59,8 @@ pub(super) async fn enter(
     let Some(password) = &shared.password else {
         return Redirect::to("/").into_response();
     };
-    match password.check(from, &text, Instant::now()) {
+    let client = shared.guard.client(peer, &headers);
+    match password.check(client, &text, Instant::now()) {
         Ok(()) => {
             let cookie = password.cookie(shared.guard.is_secure());
             ([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response()

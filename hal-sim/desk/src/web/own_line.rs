@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use firmware::gcs::{Action, Request, parse};
 use tokio::sync::oneshot;
 
 use super::line::{Answer, Line};
@@ -20,7 +21,7 @@ const WAITING: usize = 16;
 /// How long a line may take: `WAC` and `DEL` are as long as they say. The viewer's end cuts it short.
 const PATIENCE: Duration = Duration::from_secs(86_400);
 /// How long a constant velocity of a page lasts without being renewed, ms: a page that is gone does not let a button go.
-pub(super) const JOG_TIME_MS: u32 = 300;
+const JOG_TIME_MS: u32 = 300;
 
 /// A line that waits for its turn.
 struct Pending {
@@ -139,14 +140,29 @@ impl Worker {
             }
             open.port = Some(line.bypass()?);
         }
-        // A controller that does not know them says so, and does without.
+        // A controller that does not know it says so, and does without.
         line.ask(&format!("OWN 0 {}", self.name))?;
-        line.ask(&format!("JTM {JOG_TIME_MS}"))?;
         line.set_patience(PATIENCE);
         Ok(line)
     }
 }
 
 fn carry_out(line: &mut Line, text: &str) -> Result<Answer, Refusal> {
-    line.ask(text).map_err(|_| Refusal::Broken)
+    let mut ask = |text: &str| line.ask(text).map_err(|_| Refusal::Broken);
+    if let Some(limit) = jog_limit(text) {
+        ask(&limit)?;
+    }
+    ask(text)
+}
+
+/// What goes before a line that lasts as long as a button is held: who looks to its renewal may forget it with a restart
+/// (`RBT`, a reset), so it is said each time. A controller that does not know it says so, and does without.
+pub(super) fn jog_limit(line: &str) -> Option<String> {
+    let is_held = match parse(line.as_bytes()) {
+        Ok(Request::Act(Action::Jog(_))) => true,
+        Ok(Request::Act(Action::Recover(on))) => on != 0.0,
+        // What a variable stands for is not known here.
+        _ => line.contains('$'),
+    };
+    is_held.then(|| format!("JTM {JOG_TIME_MS}"))
 }

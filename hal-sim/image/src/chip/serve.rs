@@ -12,12 +12,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::run::machine_parameters;
 use super::{Bench, ChipError, Period, elf_file};
-use desk::serve::ProtocolCheck;
+use desk::serve::{ProtocolCheck, keep_alive};
 use hal_sim::machine::devices::Stage;
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 
 /// Control periods between two looks at the client: half a millisecond of the chip's time.
 const LOOK_EVERY: u64 = 10;
+/// What the chip, which does not see its client go, is sent then: the rest of a line that it has begun is nobody's, and its
+/// constant velocity ends with it.
+const LEFT: &[u8] = b"\nJTM 10\nDEL 20\nJTM 0\n";
 /// Bytes read at a time: what the line passes between two looks, and not more than the image's buffer holds.
 const READ_BYTES: usize = 512;
 
@@ -139,8 +142,7 @@ impl Line {
             Err(_) => Some(LineNotice::Left(*address)),
         };
         if let Some(notice) = gone {
-            // The rest of a line that it has begun is nobody's.
-            period.send(b"\n");
+            period.send(LEFT);
             say(&notice);
             self.client = None;
         }
@@ -155,7 +157,10 @@ impl Line {
         let Ok((stream, address)) = self.listener.accept() else {
             return;
         };
-        if stream.set_nonblocking(true).is_ok() && stream.set_nodelay(true).is_ok() {
+        let is_ready = (stream.set_nonblocking(true))
+            .and_then(|()| stream.set_nodelay(true))
+            .and_then(|()| keep_alive(&stream));
+        if is_ready.is_ok() {
             say(&LineNotice::Connected(address));
             self.client = Some((stream, address));
             self.check = ProtocolCheck::default();

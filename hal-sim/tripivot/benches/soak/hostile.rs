@@ -12,7 +12,7 @@ use tungstenite::Message;
 use crate::honest::open;
 
 /// What is sent without pause; questions are answered, and read.
-pub const FLOODS: [&str; 4] = ["x\n", "POS?\n", "x\n", "MOV? X\n"];
+pub const FLOODS: [&str; 4] = ["x\n", "POS?\n", "HPA?\n", "MOV? X\n"];
 /// Lines at a time.
 const LINES: usize = 500;
 /// Between two deaths, and between two messages that a slow page reads.

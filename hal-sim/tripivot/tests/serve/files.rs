@@ -62,7 +62,10 @@ fn a_settings_file_that_could_not_be_made_is_in_nobodys_way() {
 #[test]
 fn what_keeps_nothing_is_no_settings_file() {
     let folder = Folder::new("kinds");
-    for place in ["/dev/null", folder.0.to_str().unwrap()] {
+    let fifo = folder.file("fifo");
+    let made = Command::new("mkfifo").arg(&fifo).status().unwrap();
+    assert!(made.success());
+    for place in ["/dev/null", folder.0.to_str().unwrap(), &fifo] {
         let output = tripivot(&[
             "serve",
             "--listen",

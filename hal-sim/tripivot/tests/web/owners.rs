@@ -108,6 +108,9 @@ fn a_page_may_own_the_stage_as_long_as_it_is_there() {
     }
 }
 
+/// A page that says nothing is gone for its server after 2.5 s: what ends before then ends by itself.
+const LONG_AFTER: Duration = Duration::from_secs(2);
+
 /// A computer that sleeps closes nothing: it answers no ping.
 #[test]
 fn a_page_that_is_silent_is_gone() {
@@ -151,6 +154,19 @@ fn a_jog_of_a_page_ends_without_it() {
             assert_eq!(looker.value("JOG? W"), 20.0);
         }
         looker.until("JOG? W", 0.0);
+        // The controller has started again, and knows nothing of what was said before.
+        for line in ["RBT", "FRF"] {
+            let end = Instant::now() + PATIENCE;
+            while looker.ask(line)["error"] != 0 {
+                assert!(Instant::now() < end, "{line} is not taken");
+            }
+        }
+        asleep.reply("JOG W 20");
+        let start = Instant::now();
+        looker.until("JOG? W", 0.0);
+        assert!(start.elapsed() < LONG_AFTER, "{:?}", start.elapsed());
+        // Nor is its end that of the page's connection, for which a minute is too long.
+        asleep.reply("CSV?");
     }
 }
 

@@ -72,9 +72,9 @@ fn who_owns_the_stage_runs_sequences() {
             let run = json!({"run": {"name": "one", "text": text}});
             let order = json!({"token": operator.token, "order": run, "key": key});
             operator.send(&order.to_string());
-            operator.wait(|message| message["state"] == "running");
-            let end = operator.wait(|message| message["state"] == "ended");
-            assert_eq!(end["good"], good, "{end}");
+            // That it runs may not be told, if it ends at once.
+            let end =
+                operator.wait(|message| message["state"] == "ended" && message["good"] == good);
             let said = end["said"].as_str().unwrap();
             assert_eq!(
                 said.contains("another connection owns the stage"),
