@@ -10,6 +10,7 @@ from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, U
 from unicorn.arm_const import (
     UC_ARM_REG_LR,
     UC_ARM_REG_PC,
+    UC_ARM_REG_BASEPRI,
     UC_ARM_REG_PRIMASK,
     UC_ARM_REG_SP,
     UC_CPU_ARM_CORTEX_M4,
@@ -190,7 +191,9 @@ class Chip:
         self.sleeping = False
         running = self.kept[-1][1] if self.kept else 0x100
         priority = self.interrupts.priority(lines[0])
-        if priority >= running or self.uc.reg_read(UC_ARM_REG_PRIMASK):
+        # A ceiling of 0 is none.
+        ceiling = self.uc.reg_read(UC_ARM_REG_BASEPRI) or 0x100
+        if priority >= min(running, ceiling) or self.uc.reg_read(UC_ARM_REG_PRIMASK):
             return
         self.interrupts.pending.discard(lines[0])
         self.uc.reg_write(UC_ARM_REG_PC, self.pc)

@@ -12,7 +12,7 @@ use std::num::NonZeroU64;
 const HANDLER: &str = "TIM3";
 /// The handler's address in a made-up image; the functions after it follow in steps of 2.
 const START: u64 = 0x1000;
-const LAST: &str = LEVELS[3].handlers[0];
+const LAST: &str = LEVELS[4].handlers[0];
 const PANIC: &str = "core::panicking::panic_fmt";
 
 /// A made-up image: names, frames, and numbers of the functions that each calls.

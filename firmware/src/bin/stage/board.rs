@@ -7,7 +7,7 @@ use crate::{
     encoders::Encoders,
     flash::SettingsFlash,
     latch::LatchTimer,
-    pwm::{self, PwmChannel, PwmTimer},
+    pwm::{self, PwmChannel, PwmTimer, TickEvent},
     reset_cause::ResetCause,
     self_check::SelfCheck,
     serial::{self, Receiver, Transmitter},
@@ -35,24 +35,26 @@ pub fn let_motors_coast() {
     port.bsrr().write(|w| unsafe { w.bits(SLEEP_PINS_LOW.1) });
 }
 
-/// What the latch and the tick work on.
-pub struct Loop {
-    /// The latch's timer.
-    pub latch_timer: LatchTimer,
-    /// The tick's timer.
-    pub pwm: PwmTimer,
+/// What is measured: started by the latch, read by the tick.
+pub struct Sensors {
     /// The encoders.
     pub encoders: Encoders,
     /// Currents and supply.
     pub analog: Analog,
-    /// The bridges.
-    pub bridges: Bridges,
 }
 
 /// Everything.
 pub struct Board {
-    /// What the loop works on.
-    pub control: Loop,
+    /// The latch's timer.
+    pub latch_timer: LatchTimer,
+    /// What the latch arms the tick by.
+    pub tick_event: TickEvent,
+    /// What is measured.
+    pub sensors: Sensors,
+    /// The tick's timer.
+    pub pwm: PwmTimer,
+    /// The bridges.
+    pub bridges: Bridges,
     /// Bytes of the command interface.
     pub receiver: Receiver,
     /// Answers of the command interface.
@@ -193,7 +195,7 @@ impl Board {
             .pe15
             .into_alternate::<1>()
             .set_internal_resistor(Pull::Down);
-        let (pwm, (pwm1, pwm2, pwm3)) = pwm::configure(peripherals.TIM1, &mut rcc);
+        let (pwm, tick_event, (pwm1, pwm2, pwm3)) = pwm::configure(peripherals.TIM1, &mut rcc);
         port_e.pe9.into_alternate::<1>();
         port_e.pe11.into_alternate::<1>();
         port_e.pe13.into_alternate::<1>();
@@ -205,13 +207,11 @@ impl Board {
             axis(pwm3, port_d.pd2, port_d.pd6, port_d.pd10),
         );
         Self {
-            control: Loop {
-                latch_timer,
-                pwm,
-                encoders,
-                analog,
-                bridges,
-            },
+            latch_timer,
+            tick_event,
+            sensors: Sensors { encoders, analog },
+            pwm,
+            bridges,
             receiver,
             transmitter,
             flash: SettingsFlash::new(peripherals.FLASH, peripherals.PWR, &self_check, &mut rcc),

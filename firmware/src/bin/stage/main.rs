@@ -36,14 +36,14 @@
 //!
 //! # Priorities
 //!
-//! Latch and tick share a priority, 1 in the hardware: what a tick does after its duties for the recorders and the command side
-//! has to be over by the next latch, or holds it up. Above them, at 0, are only the exceptions that end
-//! the program (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
+//! The latch has 1 in the hardware, the tick 2: a latch comes in its time, whatever a tick still does after its duties
+//! for the recorders and the command side. Above them, at 0, are only the exceptions that end the program
+//! (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
 //! Below them, at 15 in the hardware, runs what records the ticks (`samples`): rows of the recorders and the trace are
 //! written in what the tick leaves of its period. All the rest, command interface, settings, independent watchdog and log,
-//! is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up: a log frame
-//! that meets another one, or a full buffer, is dropped instead. The independent watchdog is fed by the idle task, and
-//! only while the tick counter moves.
+//! is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
+//! that reads its sensors, when no latch is due: a log frame that meets another one, or a full buffer, is dropped instead.
+//! The independent watchdog is fed by the idle task, and only while the tick counter moves.
 #![no_std]
 #![no_main]
 
@@ -78,9 +78,12 @@ use defmt_rtt as _;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use crate::{
-        board::{Board, Loop},
+        board::{Board, Bridges, Sensors},
         flash::SettingsFlash,
-        identity, restart,
+        identity,
+        latch::LatchTimer,
+        pwm::{PwmTimer, TickEvent},
+        restart,
         retained_memory::RETAINED_MEMORY,
         samples::{SampleQueue, SampleReceiver, SampleSender},
         self_test::StageBoard,
@@ -105,12 +108,15 @@ mod app {
 
     #[shared]
     struct Shared {
-        #[lock_free]
-        control: Loop,
+        sensors: Sensors,
     }
 
     #[local]
     struct Local {
+        latch_timer: LatchTimer,
+        tick_event: TickEvent,
+        pwm: PwmTimer,
+        bridges: Bridges,
         config: Config,
         state: &'static mut State,
         sample_sender: SampleSender,
@@ -138,7 +144,11 @@ mod app {
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
         let Board {
-            mut control,
+            mut latch_timer,
+            tick_event,
+            sensors,
+            mut pwm,
+            bridges,
             receiver,
             transmitter,
             flash,
@@ -187,7 +197,14 @@ mod app {
         .with_motor_heat(RETAINED_MEMORY.motor_heat())
         .with_learnt(&config);
         let (sample_sender, sample_receiver) = context.local.samples.split();
+        watchdogs.start(&mut rcc);
+        // Last: everything that takes time is done, the first tick comes 50 us from here.
+        latch_timer.start_with(&mut pwm);
         let local = Local {
+            latch_timer,
+            tick_event,
+            pwm,
+            bridges,
             config,
             state: context.local.state_place.write(state),
             sample_sender: SampleSender(sample_sender),
@@ -204,40 +221,40 @@ mod app {
             receiver,
             transmitter,
         };
-        watchdogs.start(&mut rcc);
-        // Last: everything that takes time is done, the first tick comes 50 us from here.
-        control.latch_timer.start_with(&mut control.pwm);
-        (Shared { control }, local)
+        (Shared { sensors }, local)
     }
 
     /// Latches the encoders, starts the conversions, arms the tick.
-    #[task(binds = TIM3, priority = 15, shared = [control])]
-    fn latch(context: latch::Context) {
-        let control = context.shared.control;
-        control.latch_timer.acknowledge();
-        control.encoders.latch();
-        control.analog.start();
-        control.pwm.arm_tick();
+    #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event])]
+    fn latch(mut context: latch::Context) {
+        context.local.latch_timer.acknowledge();
+        context.shared.sensors.lock(|sensors| {
+            sensors.encoders.latch();
+            sensors.analog.start();
+        });
+        context.local.tick_event.arm();
         // The acknowledgement has arrived before the core looks for further interrupts (erratum 838869).
         cortex_m::asm::dsb();
     }
 
     /// The control task, every 50 us. Duties that are written more than 32 us after its event miss their PWM period: it
-    /// counts as late. If all of it takes more than 35 us, the next latch comes late, and after some 37 us the frames are
-    /// not there in time and count as missing; if it never ends, the watchdog resets the chip.
-    #[task(binds = TIM1_CC, priority = 15, shared = [control], local = [config, state, tick_queues, sample_sender, tick_timing])]
-    fn control(context: control::Context) {
-        let control = context.shared.control;
-        control.pwm.disarm_tick();
-        let (tick_cycles, late) = context
-            .local
-            .tick_timing
-            .begin(control.pwm.counts_since_tick());
-        let counts = control.analog.counts();
+    /// counts as late. The next latch interrupts what it does after that; if all of it takes more than 50 us the next tick
+    /// comes late, and if it never ends, the watchdog resets the chip.
+    #[task(
+        binds = TIM1_CC, priority = 14, shared = [sensors],
+        local = [pwm, bridges, config, state, tick_queues, sample_sender, tick_timing]
+    )]
+    fn control(mut context: control::Context) {
+        let (pwm, bridges) = (context.local.pwm, context.local.bridges);
+        pwm.disarm_tick();
+        let (tick_cycles, late) = context.local.tick_timing.begin(pwm.counts_since_tick());
+        // The latch is 35 us off: nobody waits for this.
+        let (frames, counts) = (context.shared.sensors)
+            .lock(|sensors| (sensors.encoders.frames(), sensors.analog.counts()));
         let inputs = Inputs {
-            frames: control.encoders.frames(),
-            bridge_fault: control.bridges.faults(),
-            emergency_stop: control.pwm.take_break(),
+            frames,
+            bridge_fault: bridges.faults(),
+            emergency_stop: pwm.take_break(),
             current_counts: counts.current,
             supply_counts: counts.supply,
             tick_cycles,
@@ -250,8 +267,8 @@ mod app {
             context.local.tick_queues,
             context.local.sample_sender,
             |outputs| {
-                control.bridges.set(outputs.duty, outputs.awake);
-                control.pwm.connect(outputs.awake);
+                bridges.set(outputs.duty, outputs.awake);
+                pwm.connect(outputs.awake);
                 context.local.tick_timing.end();
                 // What follows has no deadline.
                 trace::mark_end_of_tick();

@@ -24,6 +24,9 @@ pub struct PwmTimer {
     tim: pac::TIM1,
 }
 
+/// The latch's part of TIM1: what lets the tick's interrupt come.
+pub struct TickEvent(());
+
 /// One PWM output: TIM1 channel `CHANNEL`, 1 to 3.
 pub struct PwmChannel<const CHANNEL: u8>(());
 
@@ -31,7 +34,11 @@ pub struct PwmChannel<const CHANNEL: u8>(());
 pub fn configure(
     tim: pac::TIM1,
     rcc: &mut Rcc,
-) -> (PwmTimer, (PwmChannel<1>, PwmChannel<2>, PwmChannel<3>)) {
+) -> (
+    PwmTimer,
+    TickEvent,
+    (PwmChannel<1>, PwmChannel<2>, PwmChannel<3>),
+) {
     pac::TIM1::enable(rcc);
     // URS: only an overflow sets the update flag, not the software update below.
     tim.cr1().write(|w| w.arpe().enabled().urs().counter_only());
@@ -58,18 +65,23 @@ pub fn configure(
     tim.cnt().write(|w| w.cnt().set(TICK_COUNT));
     (
         PwmTimer { tim },
+        TickEvent(()),
         (PwmChannel(()), PwmChannel(()), PwmChannel(())),
     )
 }
 
-impl PwmTimer {
+impl TickEvent {
     /// Lets the next compare event interrupt. Called once a control period, in the tick's PWM period, before it.
     #[inline(always)]
-    pub fn arm_tick(&mut self) {
-        self.tim.sr().write(|w| w.cc4if().clear_bit());
-        self.tim.dier().write(|w| w.cc4ie().enabled());
+    pub fn arm(&mut self) {
+        // SAFETY: both registers are written as a whole, here and by the tick that this lets come.
+        let tim = unsafe { &*pac::TIM1::ptr() };
+        tim.sr().write(|w| w.cc4if().clear_bit());
+        tim.dier().write(|w| w.cc4ie().enabled());
     }
+}
 
+impl PwmTimer {
     /// Acknowledges the tick's interrupt, and lets no further one come until the next latch.
     #[inline(always)]
     pub fn disarm_tick(&mut self) {

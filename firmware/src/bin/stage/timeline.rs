@@ -18,7 +18,7 @@ const PWM_PERIOD_US: u32 = 1_000_000 / PWM_HZ;
 const MAX_LATENCY_US: u32 = 47;
 
 const _: () = assert!(LEAD_US + DEADLINE_US <= MAX_LATENCY_US);
-// The next latch comes after the deadline; what a tick does after its duties has what is left between them.
+// The next latch comes after the deadline: it interrupts only what a tick does after its duties.
 const _: () = assert!(DEADLINE_US < PERIOD_US - LEAD_US);
 // The duty acts in the second PWM period that begins after the tick.
 const _: () = assert!(DEADLINE_US > PWM_PERIOD_US && DEADLINE_US < 2 * PWM_PERIOD_US);

@@ -25,7 +25,7 @@ pub struct Level {
 }
 
 /// The levels, lowest priority first: each may interrupt the ones before it once.
-pub const LEVELS: [Level; 4] = [
+pub const LEVELS: [Level; 5] = [
     Level {
         name: "start and idle task",
         handlers: &["Reset"],
@@ -35,8 +35,12 @@ pub const LEVELS: [Level; 4] = [
         handlers: &["CRYP"],
     },
     Level {
-        name: "latch and tick",
-        handlers: &["TIM3", "TIM1_CC"],
+        name: "tick",
+        handlers: &["TIM1_CC"],
+    },
+    Level {
+        name: "latch",
+        handlers: &["TIM3"],
     },
     Level {
         name: "processor faults",
@@ -45,7 +49,7 @@ pub const LEVELS: [Level; 4] = [
 ];
 
 /// Handlers of the control loop.
-pub const CONTROL_LOOP: &[&str] = LEVELS[2].handlers;
+pub const CONTROL_LOOP: &[&str] = &["TIM3", "TIM1_CC"];
 
 /// How deep a function gets, and on which way.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
