@@ -151,6 +151,22 @@ fn a_file_keeps_what_was_kept_over_a_restart_of_the_program() {
 }
 
 #[test]
+fn what_can_no_longer_be_kept_is_told() {
+    let file = folder("unlinked").join("stage.settings");
+    let served = Served::start(&file);
+    assert_eq!(served.say("WPA 100\nERR?"), "0\n");
+    fs::remove_file(&file).unwrap();
+    assert_eq!(served.say("WPA 100\nERR?"), "4001\n");
+}
+
+#[test]
+fn an_endless_file_is_no_settings() {
+    let served = Served::start(&folder("endless").join("stage.settings"));
+    let output = served.settings("import", Path::new("/dev/zero"));
+    assert!(complaint(&output, 2).contains("more than"), "{output:?}");
+}
+
+#[test]
 fn settings_go_from_one_controller_to_another_as_text() {
     let folder = folder("text");
     let file = folder.join("stage.txt");
