@@ -175,6 +175,39 @@ fn a_bridge_that_pulls_its_fault_pin() {
     }
 }
 
+/// Clients wait for the end of a motion by `#5`: it is told as long as the stage slides, and no longer.
+#[test]
+fn a_stage_that_slides_after_a_fault_is_told_as_moving() {
+    let mut bench = moving();
+    bench.rig.front.bridges[0].set_fault(true);
+    bench.tick();
+    bench.rig.front.bridges[0].set_fault(false);
+    let speed = |bench: &Bench| {
+        let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
+        rates
+            .into_iter()
+            .fold(0.0, |most: f64, rate| most.max(rate.abs()))
+    };
+    let begun = bench.sample().tick;
+    let mut slid = 0;
+    let mut at_rest = 0;
+    while at_rest < 6_000 {
+        assert!(bench.sample().tick < begun + 200_000, "it never rests");
+        bench.run(100);
+        let slides = speed(&bench) > 0.02;
+        slid += u32::from(slides);
+        at_rest = if slides { 0 } else { at_rest + 100 };
+        assert!(
+            !slides || bench.say("\x05") != "0\n",
+            "{} rad/s",
+            speed(&bench)
+        );
+    }
+    // For longer than every fault is told as motion.
+    assert!(slid > 30, "{slid}");
+    assert_eq!(bench.say("\x05"), "0\n");
+}
+
 #[test]
 fn a_bridge_fault_matters_only_while_driving() {
     let mut bench = Bench::default();
