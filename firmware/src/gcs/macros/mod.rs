@@ -14,7 +14,7 @@
 //! | macros | [`MAX_MACROS`] |
 //! | names, arguments and values | 16 and 32 characters |
 //! | depth of macros in macros | [`MAX_CALL_DEPTH`] |
-//! | variables | 32, and 10 local ones a macro |
+//! | variables | 32 a connection, 32 of all macros, and 10 local ones a macro |
 //!
 //! | file | idea |
 //! |---|---|
