@@ -3,6 +3,8 @@
 import os
 import signal
 
+import time
+
 from page import SOFT_SERVO, OnServed
 
 STEADY = "FRF\nWAC ONT? W = 1\n# A comment.\nVLS 20\nMOV X 20\nWAC ONT? X = 1\nDEL 100\nPOS? X\nMOV X 0\nWAC ONT? X = 1\n"
@@ -130,6 +132,8 @@ class Sequence(OnServed):
         try:
             browser.click("#sequence-end")
             browser.wait_text("#sequence-said", "no answer: whether it was carried out is not known")
+            # For longer than a page may be silent: it was not the page.
+            time.sleep(2)
         finally:
             self.served.thaw()
         browser.wait_text("#sequence-said", "ended by an operator")

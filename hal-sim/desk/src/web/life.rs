@@ -40,7 +40,11 @@ impl Life {
 
     /// The next ping, when it is due; `None` when the page is gone.
     pub async fn ping(&mut self) -> Option<Message> {
-        self.pings.tick().await;
+        let due = self.pings.tick().await;
+        if due.elapsed() > PING_EVERY {
+            // This server was held up itself: what has come meanwhile is not read yet.
+            self.heard();
+        }
         (self.heard.elapsed() <= GONE_AFTER).then(|| Message::Ping(Bytes::new()))
     }
 }
