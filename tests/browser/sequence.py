@@ -2,7 +2,6 @@
 
 import os
 import signal
-
 import time
 
 from page import SOFT_SERVO, OnServed
