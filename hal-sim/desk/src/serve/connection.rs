@@ -20,6 +20,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const LINE_BYTES: usize = 80;
 /// Lines of a client that are carried out in a turn: more would take the time of the others.
 const LINES_PER_TURN: usize = 16;
+/// A stop among so many bytes that wait is carried out whatever time others have taken.
+const STOP_BYTES: usize = 256;
 /// Time for the lines of all clients in a turn: more would take the stage's. The line that is under way then is finished.
 const TIME_PER_TURN: Duration = Duration::from_micros(500);
 /// `#24`
@@ -208,8 +210,9 @@ impl Connection {
             self.take_stop();
         }
         loop {
-            let may =
-                self.kind != ConnectionKind::StopOnly && self.lines_left > 0 && !budget.is_spent();
+            let may = self.kind != ConnectionKind::StopOnly
+                && self.lines_left > 0
+                && (!budget.is_spent() || self.asks_for_a_stop());
             let begun = (may && !self.input.is_empty()).then(Instant::now);
             let taken = begun.is_some() && self.feed();
             self.lines_left -= usize::from(taken);
@@ -227,25 +230,14 @@ impl Connection {
         }
     }
 
+    /// Whether a stop waits, with so little before it that it waits for nobody's time.
+    fn asks_for_a_stop(&self) -> bool {
+        self.input.len() <= STOP_BYTES && stop_in(&self.input).is_some()
+    }
+
     /// Gives the session a stop, if one has come, and nothing else.
     fn take_stop(&mut self) {
-        let is_stop = |line: &&[u8]| {
-            let word = line.trim_ascii().get(..3).unwrap_or_default();
-            line.ends_with(b"\n")
-                && [b"STP", b"HLT"]
-                    .iter()
-                    .any(|stop| word.eq_ignore_ascii_case(*stop))
-        };
-        let line = self
-            .input
-            .split_inclusive(|&byte| byte == b'\n')
-            .find(is_stop);
-        let stop = if self.input.contains(&STOP) {
-            Some([STOP].as_slice())
-        } else {
-            line
-        };
-        if let Some(stop) = stop {
+        if let Some(stop) = stop_in(&self.input) {
             self.session.receive(stop);
             self.input.clear();
             self.ended = Some(self.opened);
@@ -339,6 +331,21 @@ impl Connection {
         self.last_read = now;
         self.state = ClientState::Here;
     }
+}
+
+/// The first stop in what has come, as a byte or a line.
+fn stop_in(input: &[u8]) -> Option<&[u8]> {
+    let is_stop = |line: &&[u8]| {
+        let word = line.trim_ascii().get(..3).unwrap_or_default();
+        line.ends_with(b"\n")
+            && [b"STP", b"HLT"]
+                .iter()
+                .any(|stop| word.eq_ignore_ascii_case(*stop))
+    };
+    if input.contains(&STOP) {
+        return Some(&[STOP]);
+    }
+    input.split_inclusive(|&byte| byte == b'\n').find(is_stop)
 }
 
 fn is_passing(error: &io::Error) -> bool {

@@ -3,7 +3,8 @@
 //! One thread does everything, in turns: the ticks that the wall clock says are due, in small batches, and what has come in
 //! meanwhile. It waits for nothing but the clock and the connections together, so no client holds up the stage or another
 //! client: sockets never block, every buffer is bounded, a turn carries out so many lines of a client, and no further one of
-//! anybody after half a millisecond; who does not read is disconnected. Who speaks another protocol, a browser above all, is cut off before anything of it is carried out.
+//! anybody but a stop after half a millisecond; who does not read is disconnected. Who speaks another protocol, a browser
+//! above all, is cut off before anything of it is carried out.
 //!
 //! ```text
 //! clock -> Pace -> due ticks -> Controller::tick

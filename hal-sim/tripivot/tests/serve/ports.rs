@@ -1,10 +1,10 @@
 //! Dead, flooding and half-open clients: none takes another's place, the stage's time or the disk.
 
 use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -90,6 +90,7 @@ struct Slow<'a> {
     /// Lines since the last tick, and the most between two.
     lines: usize,
     most_lines: usize,
+    all_lines: Arc<AtomicUsize>,
 }
 
 impl Controller for Slow<'_> {
@@ -114,6 +115,7 @@ impl Controller for Slow<'_> {
     ) -> Result<(), W::Error> {
         if !session.is_idle() {
             self.lines += 1;
+            self.all_lines.fetch_add(1, Ordering::Relaxed);
             thread::sleep(Duration::from_millis(1));
         }
         self.stage.service(session, replies)
@@ -136,8 +138,8 @@ impl Controller for Slow<'_> {
     }
 }
 
-#[test]
-fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
+/// Such a stage, served. What comes of `drive`, and the most lines between two ticks.
+fn with_slow<T>(drive: impl FnOnce(SocketAddr, &AtomicUsize) -> T) -> (T, usize) {
     let options = ServeOptions {
         listen: "127.0.0.1:0".into(),
         speed: 1.0,
@@ -147,6 +149,8 @@ fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
     let address = server.address().unwrap();
     let stop = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&stop);
+    let all_lines = Arc::<AtomicUsize>::default();
+    let counted = Arc::clone(&all_lines);
     let serving = thread::spawn(move || {
         let mut memory = ControllerMemory::new();
         let stage = Simulated::new(
@@ -158,10 +162,50 @@ fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
             stage,
             lines: 0,
             most_lines: 0,
+            all_lines: counted,
         };
         server.run(&mut slow, &stopped, &mut drop).unwrap();
         slow.most_lines
     });
+    let result = drive(address, &all_lines);
+    stop.store(true, Ordering::Relaxed);
+    (result, serving.join().unwrap())
+}
+
+#[test]
+fn a_stop_waits_for_no_flood() {
+    let (mut waited, _) = with_slow(|address, lines| {
+        let floods: Vec<_> = (0..40)
+            .map(|_| {
+                let mut flood = connect(address);
+                flood.send(&"x\n".repeat(100));
+                flood
+            })
+            .collect();
+        let mut stopper = connect(address);
+        let mut waited = Vec::new();
+        for _ in 0..11 {
+            let before = lines.load(Ordering::Relaxed);
+            // The stop has no answer, the question behind it has.
+            assert_eq!(stopper.ask("\x18\x05"), "0\n");
+            waited.push(lines.load(Ordering::Relaxed) - before);
+        }
+        drop(floods);
+        waited
+    });
+    waited.sort_unstable();
+    // Half of 40, one a turn, if it had to wait for its turn.
+    assert!(waited[5] < 10, "{waited:?}");
+}
+
+#[test]
+fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
+    let ((), most_lines) = with_slow(|address, _| flood_and_wait(address));
+    // A turn's time is less than a line's here: one is carried out in it, and one more where no tick was due.
+    assert!((1..=2).contains(&most_lines), "{most_lines}");
+}
+
+fn flood_and_wait(address: SocketAddr) {
     let mut floods: Vec<_> = (0..4).map(|_| connect(address)).collect();
     for flood in &mut floods {
         flood.send(&"x\n".repeat(500));
@@ -170,10 +214,6 @@ fn a_flood_of_lines_does_not_take_the_time_of_the_stage() {
         // Answered when all of it has been carried out: none waits for ever.
         assert_eq!(flood.ask("CSV?\n"), "2.0\n");
     }
-    stop.store(true, Ordering::Relaxed);
-    let most_lines = serving.join().unwrap();
-    // A turn's time is less than a line's here: one is carried out in it, and one more where no tick was due.
-    assert!((1..=2).contains(&most_lines), "{most_lines}");
 }
 
 #[test]
