@@ -17,6 +17,8 @@ const SILENCE: Duration = Duration::from_millis(50);
 const TALK: Duration = Duration::from_secs(3);
 /// How long a second connection may take to answer.
 const ANOTHER: Duration = Duration::from_secs(1);
+/// Who made it, what it is, its serial number and its version.
+const IDENTITY_FIELDS: usize = 4;
 /// Longest answer: more than the recorder of any controller holds.
 const ANSWER_BYTES: usize = 16 << 20;
 
@@ -56,6 +58,15 @@ impl Line {
         line.port.write_all(b"\n")?;
         line.wait_for_silence()?;
         line.identity = line.ask_known(&["*IDN?"])?.remove(0);
+        if line.identity.split(',').count() < IDENTITY_FIELDS {
+            let said = line.identity.escape_debug();
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                format!(
+                    "asked who it is it says “{said}”: this is no controller, or the line has another rate"
+                ),
+            ));
+        }
         line.ask_known(&["ERR?"])?;
         Ok(line)
     }
