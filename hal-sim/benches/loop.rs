@@ -5,7 +5,6 @@
 //! and the program, without any equation of the plant. Crossover is the highest frequency at which |L| is 1, Ms the largest |S|.
 //! A push is a torque of 1 N m on a ring of a stage at rest, with the full loop and after rest mode.
 
-use firmware::control::servo::{ServoConfig, carried_inertia};
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::{Lead, Notch, Parameters};
 use firmware::queues::{Command, Queues, TickQueues};
@@ -14,6 +13,7 @@ use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::External;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use hal_sim::rig::{with_inertia_scheduled, with_payload_told};
 use std::f64::consts::TAU;
 
 const RATE_HZ: f64 = 20_000.0;
@@ -124,12 +124,7 @@ impl Case {
         parameters.limits.turn_speed_deg_s = 4.0;
         // The sine is none of its own.
         parameters.supervision.oscillation_v = 120.0;
-        let payload = &stage.plant.payload;
-        let (sin, cos) = payload.direction_rad.sin_cos();
-        let platform = &mut parameters.platform;
-        platform.payload_kg = payload.mass_kg;
-        platform.payload_inertia_kg_m2 = payload.inertia_kg_m2;
-        platform.payload_centre_mm = [cos, sin].map(|part| part * payload.eccentricity_m * 1e3);
+        parameters = with_payload_told(&parameters, &stage);
         let servo = &mut parameters.servo;
         // With what the platform weighs at a ring, from nothing to all of it and a load, the resonance is between 0.9 and 1.15 times
         // what it is for the slowest mode in the centre.
@@ -161,7 +156,7 @@ impl Case {
             }
         }
         if self.tuning == Tuning::Shaped {
-            parameters.servo.scheduled_inertia_kg_m2 = middle_inertia_kg_m2();
+            parameters = with_inertia_scheduled(&parameters);
         }
         (stage, parameters)
     }
@@ -225,13 +220,6 @@ impl Case {
         }
         sensitivities
     }
-}
-
-fn middle_inertia_kg_m2() -> f64 {
-    let reference = Parameters::REFERENCE;
-    let body = ServoConfig::new(&reference).body;
-    let carried = carried_inertia(&body, &[1.0; 3], &[1.0; 3], 0);
-    reference.drives[0].inertia_kg_m2 + f64::from(carried)
 }
 
 struct Bench<'a, 'q> {

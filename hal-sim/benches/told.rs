@@ -4,12 +4,11 @@
 //! the payload's true numbers, with velocity and integral gain scaled by R / Kt and scheduled by the inertia; and told the motors'
 //! ripple besides. All of it is what `SPA` can set.
 
-use firmware::control::servo::{ServoConfig, carried_inertia};
-use firmware::parameters::{Harmonic, Parameters};
+use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
-use hal_sim::rig::with_drives_told;
+use hal_sim::rig::{with_machine_told, with_ripple_told};
 
 fn main() {
     println!(
@@ -32,8 +31,8 @@ fn main() {
         };
         let stage = stage_parameters(&options);
         let as_it_comes = controller_parameters(&options);
-        let told = told(&as_it_comes, &stage);
-        let with_ripple = with_ripple(&told, &stage);
+        let told = with_machine_told(&as_it_comes, &stage);
+        let with_ripple = with_ripple_told(&told, &stage);
         for (words, parameters) in [
             ("nothing", as_it_comes),
             ("machine", told),
@@ -68,38 +67,4 @@ fn demonstration(parameters: &Parameters, stage: &StageParameters, options: &Run
         "{:.3} / {:.3} | {mean:.1} / {worst:.1}",
         centre.rms, centre.peak
     )
-}
-
-/// The controller's parameters with the machine's true numbers in place of the model's.
-fn told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
-    let mut told = with_drives_told(parameters, stage);
-    // What the reference gains are for: the inertia at a pivot in the middle of the reference stage.
-    told.servo.scheduled_inertia_kg_m2 = middle_inertia_kg_m2();
-    let payload = &stage.plant.payload;
-    let (sin, cos) = payload.direction_rad.sin_cos();
-    let platform = &mut told.platform;
-    platform.payload_kg = payload.mass_kg;
-    platform.payload_inertia_kg_m2 = payload.inertia_kg_m2;
-    platform.payload_centre_mm = [cos, sin].map(|part| part * payload.eccentricity_m * 1e3);
-    told
-}
-
-fn middle_inertia_kg_m2() -> f64 {
-    let reference = Parameters::REFERENCE;
-    let body = ServoConfig::new(&reference).body;
-    let carried = carried_inertia(&body, &[1.0; 3], &[1.0; 3], 0);
-    reference.drives[0].inertia_kg_m2 + f64::from(carried)
-}
-
-fn with_ripple(parameters: &Parameters, stage: &StageParameters) -> Parameters {
-    let mut told = parameters.clone();
-    let plant = &stage.plant;
-    for ripple in &mut told.servo.ripple {
-        ripple.harmonics[0] = Harmonic {
-            periods: plant.ripple_periods_per_motor_turn * plant.gear_ratio,
-            amplitude_n_m: plant.ripple_n_m,
-            phase_deg: 0.0,
-        };
-    }
-    told
 }

@@ -1,7 +1,8 @@
-//! A controller that is told of the machine before it.
+//! A controller that is told of the machine before it: the true numbers in place of the model's, each of them something that `SPA` sets.
 
 use crate::machine::devices::StageParameters;
-use firmware::parameters::Parameters;
+use firmware::control::servo::{ServoConfig, carried_inertia};
+use firmware::parameters::{Harmonic, Parameters};
 
 /// The controller's parameters with the drives and the platform as they are on this machine, and gains that fit its motors. Payload
 /// and everything else stay what the controller takes them for.
@@ -20,5 +21,57 @@ pub fn with_drives_told(parameters: &Parameters, stage: &StageParameters) -> Par
     }
     told.platform.mass_kg = plant.platform_mass_kg;
     told.platform.inertia_kg_m2 = plant.platform_inertia_kg_m2;
+    told
+}
+
+/// The same with the load on the platform.
+#[must_use]
+pub fn with_payload_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let payload = &stage.plant.payload;
+    let (sin, cos) = payload.direction_rad.sin_cos();
+    let platform = &mut told.platform;
+    platform.payload_kg = payload.mass_kg;
+    platform.payload_inertia_kg_m2 = payload.inertia_kg_m2;
+    platform.payload_centre_mm = [cos, sin].map(|part| part * payload.eccentricity_m * 1e3);
+    told
+}
+
+/// The same with the velocity and integral gains scheduled by what a pivot moves. The gains are for the inertia at a pivot with the
+/// reference stage's platform in the middle.
+#[must_use]
+pub fn with_inertia_scheduled(parameters: &Parameters) -> Parameters {
+    let reference = Parameters::REFERENCE;
+    let body = ServoConfig::new(&reference).body;
+    let carried = carried_inertia(&body, &[1.0; 3], &[1.0; 3], 0);
+    let mut told = parameters.clone();
+    told.servo.scheduled_inertia_kg_m2 = reference.drives[0].inertia_kg_m2 + f64::from(carried);
+    told
+}
+
+/// The same with the torque ripple of the motors.
+#[must_use]
+pub fn with_ripple_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let plant = &stage.plant;
+    for ripple in &mut told.servo.ripple {
+        ripple.harmonics[0] = Harmonic {
+            periods: plant.ripple_periods_per_motor_turn * plant.gear_ratio,
+            amplitude_n_m: plant.ripple_n_m,
+            phase_deg: 0.0,
+        };
+    }
+    told
+}
+
+/// Share of the integral gain with which an identified machine learns what changes: more would answer to the motors' ripple.
+pub const IDENTIFIED_LEARNING: f64 = 0.25;
+
+/// All of it but the ripple, and a learning for what is left.
+#[must_use]
+pub fn with_machine_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let drives = with_drives_told(parameters, stage);
+    let mut told = with_inertia_scheduled(&with_payload_told(&drives, stage));
+    told.servo.learning = IDENTIFIED_LEARNING;
     told
 }
