@@ -6,7 +6,7 @@ use firmware::gcs::{Identity, Interpreter};
 use firmware::parameters::Parameters;
 use firmware::settings_store::SettingsStore;
 use flash_bench::gcs_bench::Bench;
-use flash_bench::{Flash, KeptBench};
+use flash_bench::{Flash, KeptBench, restore};
 
 /// As on the chip.
 const SECTOR: usize = 16 << 10;
@@ -21,7 +21,7 @@ fn board(flash: Flash<SECTOR>) -> KeptBench<SECTOR> {
     };
     let mut panel = Interpreter::new(&Parameters::REFERENCE.uncommissioned(), identity);
     let mut keeper = SettingsStore::new(flash);
-    assert_eq!(keeper.restore(&mut panel), None);
+    assert_eq!(restore(&mut keeper, &mut panel), None);
     let mut bench = Bench::with(panel);
     bench.run(2);
     KeptBench { bench, keeper }

@@ -220,7 +220,8 @@ fn damage_is_overwritten_by_wpa_alone() {
     let damaged = flash.clone();
     let mut panel = flash_bench::fresh();
     let mut keeper = firmware::settings_store::SettingsStore::new(flash);
-    assert_eq!(keeper.restore(&mut panel), Some(FaultKind::SettingsDamaged));
+    let problem = flash_bench::restore(&mut keeper, &mut panel);
+    assert_eq!(problem, Some(FaultKind::SettingsDamaged));
     let mut bench = KeptBench {
         bench: Bench::with(panel),
         keeper,

@@ -6,7 +6,8 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
 use firmware::parameters::Parameters;
 use firmware::settings_store::SettingsStore;
-use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
+use flash_bench::gcs_bench::Bench;
+use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept, restore, write};
 
 const SECTOR: usize = 1024;
 const SPEED: u32 = 0x5450_0100;
@@ -25,7 +26,7 @@ fn used() -> KeptBench<SECTOR> {
 
 fn restored(flash: &Flash<SECTOR>) -> (Option<FaultKind>, Kept) {
     let mut panel = fresh();
-    let problem = SettingsStore::new(flash.powered()).restore(&mut panel);
+    let problem = restore(&mut SettingsStore::new(flash.powered()), &mut panel);
     let found = kept(&panel, panel.parameters());
     (problem, found)
 }
@@ -80,7 +81,68 @@ fn image(version: u16, parameters: &[(u32, f64)]) -> Vec<u8> {
         image.extend(value.to_le_bytes());
     }
     image.push(0);
+    if version > 2 {
+        image.push(0);
+    }
     image
+}
+
+/// A table of a repeated move with so many points, of which each byte is what `volts` says.
+fn table(points: u16, volts: u8) -> Vec<u8> {
+    let mut table = vec![1, 3];
+    table.extend(b"OUT");
+    // Frozen; a quarter at a time; trials.
+    table.extend([1, 2, 9, 0, 0, 0]);
+    for counts in [12.5_f32, 0.5, 0.75] {
+        table.extend(counts.to_le_bytes());
+    }
+    table.extend(0x0123_4567_89AB_CDEF_u64.to_le_bytes());
+    table.extend((u64::from(points) * 20 - 40).to_le_bytes());
+    table.extend(20_u32.to_le_bytes());
+    table.extend(points.to_le_bytes());
+    table.extend(vec![volts; 6 * usize::from(points)]);
+    table
+}
+
+/// What a command side that starts with this image tells of its tables.
+fn tables_of(image: &[u8]) -> (Option<FaultKind>, String) {
+    let mut bench = Bench::with(fresh());
+    let mut keeper = SettingsStore::new(flash_with(&record(7, image)));
+    let problem = keeper.restore(&mut bench.contents());
+    bench.run(2);
+    (problem, bench.say("ILC?\n"))
+}
+
+#[test]
+fn tables_of_repeated_moves_are_as_described() {
+    let mut with_table = image(3, &[(SPEED, 123.5)]);
+    with_table.pop();
+    let told = |points: u16| tables_of(&[&with_table[..], &table(points, 3)].concat());
+    assert_eq!(
+        told(30),
+        (
+            None,
+            "OUT=frozen TRIALS=9 FIRST=12.500 BEST=0.500 LAST=0.750 POINTS=30 TICKS=20 KEPT=1\n"
+                .to_owned()
+        )
+    );
+    // One point less or more than it says, and one table more than there is.
+    let damaged = (Some(FaultKind::SettingsDamaged), "\n".to_owned());
+    let whole = [&with_table[..], &table(30, 3)].concat();
+    assert_eq!(tables_of(&whole[..whole.len() - 1]), damaged);
+    assert_eq!(tables_of(&[&whole[..], &[0; 6]].concat()), damaged);
+    // More points than the pool has, a duration that does not go with them, an error that is no number, a state that is none.
+    for (at, bytes) in [
+        (with_table.len() + 5, [3_u8].to_vec()),
+        (with_table.len() + 6, [5].to_vec()),
+        (with_table.len() + 11, f32::NAN.to_le_bytes().to_vec()),
+        (with_table.len() + 31, 600_u64.to_le_bytes().to_vec()),
+        (with_table.len() + 39, 15_u32.to_le_bytes().to_vec()),
+    ] {
+        let mut wrong = whole.clone();
+        wrong[at..at + bytes.len()].copy_from_slice(&bytes);
+        assert_eq!(tables_of(&wrong), damaged, "{bytes:?} at {at}");
+    }
 }
 
 fn flash_with(record: &[u8]) -> Flash<SECTOR> {
@@ -96,8 +158,8 @@ fn value(found: &Kept, id: u32) -> f64 {
 
 #[test]
 fn the_format_is_the_one_described() {
-    // And the version before, which an older firmware has left.
-    for version in [2, 1] {
+    // And the versions before, which an older firmware has left.
+    for version in [3, 2, 1] {
         let flash = flash_with(&record(7, &image(version, &[(SPEED, 123.5)])));
         let (problem, found) = restored(&flash);
         assert_eq!(problem, None);
@@ -107,7 +169,7 @@ fn the_format_is_the_one_described() {
 
 #[test]
 fn settings_of_a_newer_firmware_are_refused() {
-    let flash = flash_with(&record(7, &image(3, &[(SPEED, 123.5)])));
+    let flash = flash_with(&record(7, &image(4, &[(SPEED, 123.5)])));
     assert_eq!(
         restored(&flash),
         (Some(FaultKind::SettingsNewer), nothing_kept())
@@ -237,14 +299,14 @@ fn any_content_at_all_leaves_parameters_that_go_together() {
         }
         let mut panel = fresh();
         let mut keeper = SettingsStore::new(flash);
-        let problem = keeper.restore(&mut panel);
+        let problem = restore(&mut keeper, &mut panel);
         assert!(panel.parameters().are_sound(), "case {case}");
         if problem.is_some() {
             assert_eq!(kept(&panel, panel.parameters()), nothing_kept());
         }
         // Whatever was there, settings can be kept from now on.
-        assert_eq!(keeper.write(&panel), Ok(()), "case {case}");
-        assert_eq!(keeper.restore(&mut fresh()), None, "case {case}");
+        assert_eq!(write(&mut keeper, &mut panel), Ok(()), "case {case}");
+        assert_eq!(restore(&mut keeper, &mut fresh()), None, "case {case}");
     }
 }
 

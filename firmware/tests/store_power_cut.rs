@@ -6,7 +6,7 @@
 mod flash_bench;
 
 use firmware::settings_store::SettingsStore;
-use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept};
+use flash_bench::{Flash, Kept, KeptBench, Random, fresh, kept, restore, write};
 
 /// Small, so that the journal goes round it often.
 const SECTOR: usize = 1024;
@@ -58,7 +58,7 @@ fn macro_change(random: &mut Random, bench: &mut KeptBench<SECTOR>) {
 /// What a start with this flash finds, which is no damage.
 fn found(flash: &Flash<SECTOR>, context: &str) -> Kept {
     let mut panel = fresh();
-    let problem = SettingsStore::new(flash.powered()).restore(&mut panel);
+    let problem = restore(&mut SettingsStore::new(flash.powered()), &mut panel);
     assert_eq!(problem, None, "{context}");
     kept(&panel, panel.parameters())
 }
@@ -82,7 +82,7 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
         }
         bench.bench.run(3);
         // Not carried out yet: this is what it will be.
-        let panel = bench.bench.panel();
+        let panel = bench.bench.panel_mut();
         let new = kept(panel, panel.parameters_to_store());
         let mut survivor = None;
         for step in 0.. {
@@ -93,8 +93,8 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
                 let tear_seed = random.bits();
                 flash.cut_in(step, tear_seed);
                 let mut keeper = SettingsStore::new(flash);
-                keeper.restore(&mut fresh());
-                ended = keeper.write(panel).is_ok();
+                restore(&mut keeper, &mut fresh());
+                ended = write(&mut keeper, panel).is_ok();
                 cuts += u64::from(!ended);
                 let after = keeper.flash().powered();
                 let now = found(&after, &context);
@@ -107,8 +107,8 @@ fn at_any_step_the_old_settings_are_there_or_the_new_ones() {
                 new_found += u64::from(now == new);
                 // Going on from there.
                 let mut keeper = SettingsStore::new(after.clone());
-                keeper.restore(&mut fresh());
-                assert_eq!(keeper.write(panel), Ok(()), "{context}");
+                restore(&mut keeper, &mut fresh());
+                assert_eq!(write(&mut keeper, panel), Ok(()), "{context}");
                 assert_eq!(found(&keeper.flash().powered(), &context), new, "{context}");
                 if random.below(40) == 0 {
                     survivor = Some(after);

@@ -8,8 +8,10 @@ use firmware::motion::{Constraints, Position, plan_line};
 use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use hal_sim::front::Host;
+use hal_sim::machine::devices::StageParameters;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use hal_sim::rig::{with_machine_told, with_ripple_told};
 
 const MOVES: usize = 200;
 const UNIT: f64 = 4_294_967_296.0;
@@ -19,19 +21,91 @@ const PATIENCE: u64 = 4_000;
 /// Ticks at rest that are looked at after every tenth move: half a second, begun half a second after settling.
 const REST: u64 = 10_000;
 
+/// A machine so far off the reference, and what the controller knows of it.
+#[derive(Clone, Copy)]
+struct Case {
+    mismatch_percent: f64,
+    payload_kg: f64,
+    told: Told,
+}
+
+#[derive(Clone, Copy)]
+enum Told {
+    Nothing,
+    Machine,
+    MachineAndRipple,
+}
+
+const CASES: [Case; 12] = {
+    use Told::{Machine, MachineAndRipple, Nothing};
+    [
+        Case::new(0.0, 0.0, Nothing),
+        Case::new(20.0, 0.0, Nothing),
+        Case::new(0.0, 0.0, Machine),
+        Case::new(20.0, 0.0, Machine),
+        Case::new(-20.0, 0.0, Machine),
+        Case::new(35.0, 0.0, Machine),
+        Case::new(20.0, 5.0, Machine),
+        Case::new(35.0, 5.0, Machine),
+        Case::new(20.0, 0.0, MachineAndRipple),
+        Case::new(-20.0, 0.0, MachineAndRipple),
+        Case::new(35.0, 0.0, MachineAndRipple),
+        Case::new(35.0, 5.0, MachineAndRipple),
+    ]
+};
+
+impl Case {
+    const fn new(mismatch_percent: f64, payload_kg: f64, told: Told) -> Self {
+        Self {
+            mismatch_percent,
+            payload_kg,
+            told,
+        }
+    }
+
+    fn words(&self) -> String {
+        let told = match self.told {
+            Told::Nothing => "nothing",
+            Told::Machine => "machine",
+            Told::MachineAndRipple => "machine and ripple",
+        };
+        format!(
+            "{} % off | {} | {told}",
+            self.mismatch_percent, self.payload_kg
+        )
+    }
+
+    fn stage_and_controller(&self) -> (StageParameters, Parameters) {
+        let options = RunOptions {
+            mismatch_percent: self.mismatch_percent,
+            payload_kg: self.payload_kg,
+            ..RunOptions::default()
+        };
+        let (stage, parameters) = (stage_parameters(&options), controller_parameters(&options));
+        let told = match self.told {
+            Told::Nothing => parameters,
+            Told::Machine => with_machine_told(&parameters, &stage),
+            Told::MachineAndRipple => {
+                with_ripple_told(&with_machine_told(&parameters, &stage), &stage)
+            }
+        };
+        (stage, told)
+    }
+}
+
 fn main() {
     println!(
-        "| plant | settling, ms after the profile | of the profile, median | 90 % | worst | within 10 % | settled told within 10 % |"
+        "| plant | load, kg | told | settling, ms after the profile: median / 90 % / 99 % / worst | of the profile: median / 90 % / 99 % / worst | within 10 % | settled told within 10 % |"
     );
     println!("|---|---|---|---|---|---|---|");
-    let quiet: Vec<_> = [0.0, 20.0].map(moves).into();
+    let quiet: Vec<_> = CASES.iter().map(moves).collect();
     println!();
     println!(
-        "| plant at rest | true position, nm rms | theta, nrad rms | pivots, LSB rms / peak | duty, % rms about its mean |"
+        "| plant at rest | load, kg | told | true position, nm rms | theta, nrad rms | pivots, LSB rms / peak | duty, % rms about its mean |"
     );
-    println!("|---|---|---|---|---|");
-    for (mismatch, rest) in [0.0, 20.0].into_iter().zip(quiet) {
-        rest.print(mismatch);
+    println!("|---|---|---|---|---|---|---|");
+    for (case, rest) in CASES.iter().zip(quiet) {
+        rest.print(case);
     }
 }
 
@@ -139,10 +213,11 @@ impl Rest {
         self.times += 1.0;
     }
 
-    fn print(&self, mismatch: f64) {
+    fn print(&self, case: &Case) {
         let rms = |sum: f64| (sum / self.times).sqrt();
         println!(
-            "| {mismatch} % off | {:.2} | {:.1} | {:.2} / {:.1} | {:.3} |",
+            "| {} | {:.2} | {:.1} | {:.2} / {:.1} | {:.3} |",
+            case.words(),
             rms(self.way) * 1e9,
             rms(self.turn) * 1e9,
             rms(self.pivots),
@@ -152,18 +227,14 @@ impl Rest {
     }
 }
 
-/// Moves of a plant so far off its model.
-fn moves(mismatch_percent: f64) -> Rest {
-    let options = RunOptions {
-        mismatch_percent,
-        ..RunOptions::default()
-    };
-    let parameters: Parameters = controller_parameters(&options);
+/// Moves of a machine.
+fn moves(case: &Case) -> Rest {
+    let (stage, parameters) = case.stage_and_controller();
     let ground = Constraints::new(parameters.limits, parameters.geometry);
     let mut queues = Queues::new();
     let (tick_queues, commands) = queues.split();
     let mut bench = Bench {
-        host: Host::new(&stage_parameters(&options), &parameters),
+        host: Host::new(&stage, &parameters),
         tick_queues,
         commands,
         record: TickRecord::default(),
@@ -205,24 +276,25 @@ fn moves(mismatch_percent: f64) -> Rest {
             rest.look(&mut bench, f64::from(parameters.power.pwm_counts));
         }
     }
-    print(mismatch_percent, inside, &told, after_ms);
+    print(case, inside, &told, after_ms);
     rest
 }
 
-fn print(mismatch: f64, mut inside: Vec<f64>, told: &[f64], mut after_ms: Vec<f64>) {
+fn print(case: &Case, mut inside: Vec<f64>, told: &[f64], mut after_ms: Vec<f64>) {
     inside.sort_by(f64::total_cmp);
     after_ms.sort_by(f64::total_cmp);
     let at = |values: &[f64], part: f64| values[((values.len() - 1) as f64 * part) as usize];
     let within = |values: &[f64]| {
         values.iter().filter(|&&share| share <= 1.1).count() as f64 / values.len() as f64 * 100.0
     };
+    let [ms, share] = [(&after_ms, 1), (&inside, 3)].map(|(values, digits)| {
+        [0.5, 0.9, 0.99, 1.0]
+            .map(|part| format!("{:.digits$}", at(values, part)))
+            .join(" / ")
+    });
     println!(
-        "| {mismatch} % off | {:.1} median, {:.1} worst | {:.3} | {:.3} | {:.3} | {:.1} % | {:.1} % |",
-        at(&after_ms, 0.5),
-        at(&after_ms, 1.0),
-        at(&inside, 0.5),
-        at(&inside, 0.9),
-        at(&inside, 1.0),
+        "| {} | {ms} | {share} | {:.1} % | {:.1} % |",
+        case.words(),
         within(&inside),
         within(told)
     );

@@ -56,11 +56,17 @@ impl Bench {
     /// A stage that has just been switched on.
     #[must_use]
     pub fn new(stage: &StageParameters) -> Self {
+        Self::told(stage, &Parameters::REFERENCE)
+    }
+
+    /// The same with a controller whose machine comes with these parameters.
+    #[must_use]
+    pub fn told(stage: &StageParameters, parameters: &Parameters) -> Self {
         // A test has a few of them.
         let memory = ControllerMemory::endless();
         let flash = SettingsFlash::in_memory();
         Self {
-            rig: Rig::simulated(memory, stage, &Parameters::REFERENCE, flash),
+            rig: Rig::simulated(memory, stage, parameters, flash),
             outputs: Outputs::default(),
             session: Session::new(),
             record: TickRecord::default(),

@@ -6,7 +6,7 @@ use tests::repeated::{BACK, OUT};
 /// The motors' ripple as it is: 26 periods a motor turn behind a gear of 50.
 const RIPPLE: &str = "SPA 1 0x54500A00 1300 1 0x54500A01 0.03\n";
 
-/// Of the last trial, as it is told: mean over each point's time.
+/// Of the last trial, as it is told.
 fn last_counts(told: &str) -> f64 {
     let mut words = told
         .split(' ')
@@ -38,29 +38,33 @@ fn after_five_trials_little_is_left() {
     }
 }
 
-/// A correction of the wrong size: a trial may be worse, the next one is not, and in the end none is.
+/// A correction of the wrong size: too small it takes longer; too large a trial may be worse than the best, which is followed again
+/// then, and in the end it stays.
 #[test]
 fn it_stops_where_it_grows() {
-    // A model of the drive with a sixth of its inertia and resistance: the inverse is far from one.
-    let mut bench = Bench::repeating(20.0, "SPA 1 0x54500807 0.001 1 0x54500802 0.3\n");
-    assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
-    let errors: Vec<f64> = (0..20).map(|_| bench.way_out()).collect();
-    println!("{errors:.3?}, {}", bench.table("OUT"));
-    let better = |pair: &[f64]| pair[1] < 1.05 * errors[0];
-    assert!(
-        errors
-            .windows(2)
-            .all(|pair| better(pair) || pair[0] < 1.05 * errors[0])
-    );
-    assert!(
-        errors[16..].iter().all(|error| *error < 0.8 * errors[0]),
-        "{errors:?}"
-    );
-    // 1.66 times at worst.
-    assert!(
-        errors.iter().all(|error| *error < 1.83 * errors[0]),
-        "{errors:?}"
-    );
+    // A model of the drive with a sixth of its inertia and resistance, and one with five times its inertia: the inverse is far from one.
+    for (told, state, largest, last) in [
+        (
+            "SPA 1 0x54500807 0.001 1 0x54500802 0.3\n",
+            "learning",
+            1.0,
+            0.65,
+        ),
+        ("SPA 1 0x54500807 0.2\n", "stopped", 1.35, 0.42),
+    ] {
+        let mut bench = Bench::repeating(20.0, told);
+        assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
+        let errors: Vec<f64> = (0..16).map(|_| bench.way_out()).collect();
+        let table = bench.table("OUT");
+        println!("{errors:.3?}, {table}");
+        assert!(table.starts_with(&format!("OUT={state} ")), "{table}");
+        // 0.886 and 1.223 of the first one at most, 0.579 and 0.375 in the end.
+        assert!(errors[1..].iter().all(|error| *error < largest * errors[0]));
+        assert!(errors[9..].iter().all(|error| *error < last * errors[0]));
+        // After a trial that was worse the best is followed.
+        let grows = |three: &[f64]| three[1] > 1.05 * three[0] && three[2] > 1.05 * three[0];
+        assert!(!errors.windows(3).any(grows), "{errors:?}");
+    }
 }
 
 #[test]
@@ -118,13 +122,61 @@ fn waves_learn_as_moves_do() {
         bench.settle();
     }
     println!("{errors:.3?}, {}", bench.table("CIRCLE"));
-    // 8.37 and 0.50.
-    assert!(errors[0] > 5.0 && errors[5] < 0.55, "{errors:?}");
+    // 7.74 and 0.69, the encoders' noise in it.
+    assert!(errors[0] > 5.0 && errors[5] < 0.76, "{errors:?}");
     // Stopped in the middle it teaches nothing.
     bench.say("WGO 1 1 2 1\n");
     bench.run(4_000);
     bench.say("HLT\nERR?\n");
     bench.settle();
     assert!(bench.table("CIRCLE").contains("TRIALS=6 "));
+    assert_eq!(bench.fault(), None);
+}
+
+/// What was learnt is there after a restart, the servos' part of it too: the first way out is as good as the last was. What is not kept
+/// is gone, and so is what was forgotten.
+#[test]
+fn a_table_that_is_kept_outlives_a_restart() {
+    let mut bench = Bench::repeating(20.0, "");
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "17");
+    assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
+    // It has no move yet.
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "17");
+    let errors: Vec<f64> = (0..6).map(|_| bench.way_out()).collect();
+    assert_eq!(bench.error_after("ILC LEARN BACK"), "0");
+    bench.there_and_back();
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "0");
+    let told = bench.table("OUT");
+    assert!(told.contains(" KEPT=1"), "{told}");
+    assert!(bench.table("BACK").contains(" KEPT=0"));
+    let restart = |bench: &mut Bench| {
+        bench.reset("the watchdog: the control loop stood still");
+        bench.run(20);
+        bench.say("FLC\nFRF\nCCL 1 ADVANCED\n");
+        bench.settle();
+        // Where it stood is not where it was sent: to the very beginning of the way.
+        bench.say("MOV X 1\n");
+        bench.settle();
+        bench.say(BACK);
+        bench.settle();
+    };
+    restart(&mut bench);
+    assert_eq!(bench.say("ILC?\n"), format!("{}\n", told.trim_end()));
+    let (first, second) = (bench.way_out(), bench.way_out());
+    println!(
+        "{errors:.3?}; {first:.3}, {second:.3} after a restart; {}",
+        bench.table("OUT")
+    );
+    // 66.9 at first; 1.70 and 1.33 now.
+    assert!(first < 1.88 && second < 1.47, "{first}, {second}");
+    assert!(bench.table("OUT").starts_with("OUT=learning TRIALS="));
+    // A macro that is recorded does not lose it, and what is forgotten is so over a restart.
+    bench.say("MAC BEG A\nMOV X 1\nMAC END\n");
+    restart(&mut bench);
+    assert!(bench.table("OUT").contains(" KEPT=1"));
+    assert_eq!(bench.error_after("ILC FORGET OUT"), "0");
+    bench.run(10);
+    restart(&mut bench);
+    assert_eq!(bench.say("ILC?\n"), "\n");
     assert_eq!(bench.fault(), None);
 }

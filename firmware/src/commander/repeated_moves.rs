@@ -3,7 +3,9 @@
 use super::sent_plan::SentPlan;
 use super::state::Commander;
 use super::wave::GeneratorRun;
-use crate::iterative_learning::{LearningError, Repeated, TableName, TableReport};
+use crate::iterative_learning::{
+    KeptTable, LearningError, Point, Repeated, TableName, TableReport, TrialControl,
+};
 use crate::motion::{Plan, PlanStart};
 use crate::queues::CommandQueues;
 
@@ -47,6 +49,47 @@ impl Commander {
         queues.trial.cancel();
         queues.trial.hold_model(!self.tables.is_empty());
         Ok(())
+    }
+
+    /// A table is kept over a restart from now on, or no more.
+    ///
+    /// # Errors
+    /// See [`LearningError`].
+    pub fn keep_move(&mut self, name: &TableName, kept: bool) -> Result<(), LearningError> {
+        self.tables.keep(name, kept)
+    }
+
+    /// Whether there is such a table (any, when none is named) and it is kept.
+    pub fn is_move_kept(&self, name: Option<&TableName>) -> bool {
+        self.tables.is_kept(name)
+    }
+
+    /// The tables to be kept, each at its best.
+    pub fn kept_moves<'a>(
+        &'a self,
+        trial: &'a TrialControl<'_>,
+    ) -> impl Iterator<Item = (KeptTable, &'a [Point])> {
+        self.tables.kept(trial)
+    }
+
+    /// A table is what was stored; `None` when it is none that was, or `points` has not as many.
+    pub fn restore_move(
+        &mut self,
+        kept: KeptTable,
+        points: impl FnMut() -> Option<Point>,
+        trial: &mut TrialControl<'_>,
+    ) -> Option<()> {
+        self.tables.restore(kept, points, trial)?;
+        trial.hold_model(true);
+        Some(())
+    }
+
+    /// Forgets all tables that were stored: what was stored is not whole.
+    pub fn forget_moves(&mut self, trial: &mut TrialControl<'_>) {
+        let Ok(()) = self.tables.forget(None, trial) else {
+            return;
+        };
+        trial.hold_model(false);
     }
 
     /// What is told of the tables.

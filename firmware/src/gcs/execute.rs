@@ -52,7 +52,7 @@ impl Interpreter {
             Action::Own(value, name) => self.own(value, name, session),
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
-            Action::Repeat(action) => self.change_repeated_moves(&action, queues),
+            Action::Repeat(action) => self.change_repeated_moves(&action, session, queues),
             Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
             Action::SoftLowest(values) => {
                 Ok((self.commander).set_soft_limits(&SoftLimitChange::Lowest(values))?)
@@ -176,7 +176,7 @@ impl Interpreter {
         Ok(())
     }
 
-    fn wait(&self, session: &mut Session, what: Awaited) {
+    pub(super) fn wait(&self, session: &mut Session, what: Awaited) {
         session.wait = Some(Wait {
             what,
             stops: self.stops,

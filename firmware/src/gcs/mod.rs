@@ -96,7 +96,7 @@ pub use parameter::{
     Address, Addresses, Item, Kind, MAX_ADDRESSES, PARAMETERS, Parameter, Settings, When,
 };
 pub use parse::parse;
-pub use persistence::STORED_BYTES;
+pub use persistence::{Contents, STORED_BYTES};
 pub use recorder::{Channel, RecordAction, RecordQuery, SignalSource, TableList, Trigger};
 pub use request::{Action, Condition, Operand, Operator, Property, Query, Request};
 pub use session::Session;

@@ -161,6 +161,11 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     own("ILC FREEZE", learning::freeze, "<move> learn no more of it"),
     own(
+        "ILC KEEP",
+        learning::keep,
+        "<move> keep what was learnt of it over a restart",
+    ),
+    own(
         "ILC LEARN",
         learning::learn,
         "<move> learn the next move from rest, and each time it is repeated",

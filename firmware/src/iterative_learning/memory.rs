@@ -23,10 +23,10 @@ const OPEN: u8 = 1;
 const DONE: u8 = 2;
 
 /// Points of all tables together: each has two of them for a point of its motion, the best one and the one that is tried next.
-pub(super) const POOL_POINTS: usize = 2 * TRIAL_POINTS;
+pub const POOL_POINTS: usize = 2 * TRIAL_POINTS;
 
 /// A point: volts in the memory's unit, of each pivot.
-pub(super) type Point = [i16; 3];
+pub type Point = [i16; 3];
 
 /// The memory of iterative learning. All zero at first: as a static it costs no flash. What is kept of the tables stands here too:
 /// among the rest of the command side it would stand on the stack when that is made.
@@ -50,7 +50,7 @@ struct SharedTrial {
     corrections: Points,
     /// Points that the tick has left.
     recorded: AtomicU32,
-    /// Sum of the squares of the pivots' mean errors over them, encoder counts, as the bits of a float.
+    /// Sum of the pivots' mean squares over them, encoder counts, as the bits of a float.
     square_sum: AtomicU32,
 }
 

@@ -12,8 +12,9 @@
 //! drive's and the body's inertia, `P^-1 e = R J / (Kt N) e'' + (Kt N + R b / (Kt N)) e'`, as much later as winding and latency take. It is
 //! the inverse of the loop as far as the points reach, some 350 Hz where they are half a millisecond apart (Bristow, Tharayil, Alleyne,
 //! A survey of iterative learning control, 2006). Where a trial was worse than the best, the best is followed
-//! once more, for it may have started from another state of the friction, and then the step from it is halved, as are
-//! those to come; three times in a row, and the best is what stays.
+//! once more, for it may have started from another state of the friction; if it still is the best, the step from it is halved, as are
+//! those to come; three times in a row, and the best is what stays. Where a trial is hardly better, what is left is noise, and the step is
+//! halved as well.
 //!
 //! The tick adds up and keeps one number a point and pivot; all else is done beside it, after the move. At the end of the table what it
 //! holds goes over to the integral, without a step.
@@ -23,11 +24,18 @@
 //! | `memory` | what the tick and the command side share: the table that is followed, and what the feedback had to add |
 //! | `trial` | the tick's part |
 //! | `tables` | the tables by their names, and what they learn |
+//! | `kept` | tables that outlive a restart |
 
+mod kept;
 mod memory;
 mod tables;
 mod trial;
 
-pub use memory::{TRIAL_POINTS, TrialControl, TrialMemory, TrialResult, TrialTable};
-pub use tables::{LearningError, Repeated, TableName, TableReport, TableState, Tables};
+pub use kept::KeptTable;
+pub use memory::{
+    POOL_POINTS, Point, TRIAL_POINTS, TrialControl, TrialMemory, TrialResult, TrialTable,
+};
+pub use tables::{
+    LearningError, MOST_TABLES, Repeated, TableName, TableReport, TableState, Tables,
+};
 pub use trial::{InversePlant, ServoStep, Trial};

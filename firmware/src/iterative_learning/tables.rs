@@ -8,17 +8,19 @@ use heapless::{String, Vec};
 pub type TableName = String<16>;
 
 /// Most tables.
-const TABLES: usize = 8;
+pub const MOST_TABLES: usize = 8;
 /// Ticks from point to point are a multiple of this.
-const SPACING_TICKS: u32 = 10;
+pub(super) const SPACING_TICKS: u32 = 10;
 /// Ticks for which a table goes on behind the end of its motion: less than a stage takes to settle.
-const TAIL_TICKS: u64 = 40;
+pub(super) const TAIL_TICKS: u64 = 40;
 /// Error of a trial over the best one from which on it was worse: what noise makes of the same again.
 const WORSE: f32 = 1.02;
+/// Error of a trial over the best one from which on it was hardly better: what is left is noise, of which less is learnt the smaller the step.
+const LITTLE_BETTER: f32 = 0.8;
 /// Trials worse than the best, in a row, after which the best is what stays.
 const MOST_WORSE: u8 = 3;
 /// What is learnt at a time is never less than this power of a half.
-const MOST_HALVINGS: u8 = 4;
+pub(super) const MOST_HALVINGS: u8 = 4;
 
 /// What makes a motion the same: its plan, from where, about which point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +59,8 @@ pub struct TableReport {
     pub points: usize,
     /// See there.
     pub spacing_ticks: u32,
+    /// It is kept over a restart, as it is when something is stored.
+    pub kept: bool,
 }
 
 /// Why a table can not be had; nothing has changed.
@@ -71,23 +75,23 @@ pub enum LearningError {
 }
 
 #[derive(Clone, Debug)]
-struct Table {
-    report: TableReport,
-    key: u64,
-    ticks: u64,
+pub(super) struct Table {
+    pub report: TableReport,
+    pub key: u64,
+    pub ticks: u64,
     /// Where its points begin in the pool: the best, and behind them those that are tried next.
-    first: usize,
+    pub first: usize,
     /// Trials worse than the best, in a row; and all of them: each halves what is learnt at a time.
-    worse: u8,
-    halvings: u8,
-    /// The best one is followed once more: was it so good, or was the start another one?
-    checks_best: bool,
+    pub worse: u8,
+    pub halvings: u8,
+    /// The best one is followed once more, after a trial of this error: was it so good, or was the start another one?
+    pub checks_best: Option<f32>,
 }
 
 /// All tables; their points are in the pool of [`TrialControl`].
 #[derive(Debug)]
 pub struct Tables {
-    tables: Vec<Table, TABLES>,
+    pub(super) tables: Vec<Table, MOST_TABLES>,
     /// The one that the trial under way is of.
     tried: Option<usize>,
 }
@@ -131,13 +135,14 @@ impl Tables {
                 error_counts: [0.0; 3],
                 points: 0,
                 spacing_ticks: 0,
+                kept: false,
             },
             key: 0,
             ticks: 0,
             first: self.used(),
             worse: 0,
             halvings: 0,
-            checks_best: false,
+            checks_best: None,
         };
         self.tables.push(table).map_err(|_| LearningError::TooMany)
     }
@@ -147,13 +152,17 @@ impl Tables {
     /// # Errors
     /// [`LearningError::Unknown`], also for one that waits for its move.
     pub fn freeze(&mut self, name: &TableName) -> Result<(), LearningError> {
-        let i = self.place(name).ok_or(LearningError::Unknown)?;
-        let report = &mut self.tables[i].report;
-        if report.state == TableState::Waiting {
-            return Err(LearningError::Unknown);
-        }
-        report.state = TableState::Frozen;
+        self.learnt_mut(name)?.report.state = TableState::Frozen;
         Ok(())
+    }
+
+    /// The table of this name, if it has its move.
+    pub(super) fn learnt_mut(&mut self, name: &TableName) -> Result<&mut Table, LearningError> {
+        let mut tables = self.tables.iter_mut();
+        let named = tables.find(|table| table.report.name == *name);
+        named
+            .filter(|table| table.report.state != TableState::Waiting)
+            .ok_or(LearningError::Unknown)
     }
 
     /// Forgets a table, or all.
@@ -204,7 +213,7 @@ impl Tables {
             ..
         } = &self.tables[i];
         let next = match report.state {
-            TableState::Learning if !checks_best => first + report.points,
+            TableState::Learning if checks_best.is_none() => first + report.points,
             _ => *first,
         };
         trial.open(plan, report.spacing_ticks, next..next + report.points);
@@ -273,19 +282,19 @@ impl Tables {
             (*without, *best_counts) = (*last, *last);
         }
         report.trials += 1;
-        if core::mem::take(checks_best) {
-            *best_counts = *last;
-            return;
-        }
         let points = report.points;
         let (best, tried) = (
             *first..*first + points,
             *first + points..*first + 2 * points,
         );
-        if *last > WORSE * *best_counts {
+        if let Some(tried_counts) = checks_best.take() {
+            *best_counts = *last;
+            if tried_counts <= WORSE * *best_counts {
+                // The start was another one: what was tried is tried again.
+                return;
+            }
             *worse += 1;
             *halvings = (*halvings + 1).min(MOST_HALVINGS);
-            *checks_best = true;
             if *worse >= MOST_WORSE {
                 report.state = TableState::Stopped;
             }
@@ -295,7 +304,14 @@ impl Tables {
             }
             return;
         }
+        if *last > WORSE * *best_counts {
+            *checks_best = Some(*last);
+            return;
+        }
         *worse = 0;
+        if report.trials > 1 && *last > LITTLE_BETTER * *best_counts {
+            *halvings = (*halvings + 1).min(MOST_HALVINGS);
+        }
         *best_counts = best_counts.min(*last);
         (trial.pool).copy_within(tried.clone(), best.start);
         for (point, place) in tried.enumerate() {
@@ -305,14 +321,14 @@ impl Tables {
         }
     }
 
-    fn place(&self, name: &TableName) -> Option<usize> {
+    pub(super) fn place(&self, name: &TableName) -> Option<usize> {
         self.tables
             .iter()
             .position(|table| table.report.name == *name)
     }
 
     /// Points of the pool that are taken.
-    fn used(&self) -> usize {
+    pub(super) fn used(&self) -> usize {
         self.tables
             .iter()
             .map(|table| 2 * table.report.points)

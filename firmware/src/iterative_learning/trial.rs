@@ -54,6 +54,7 @@ struct PivotTrial {
     to_end: u32,
     feedback_sum: f32,
     error_sum: f32,
+    square_sum: f32,
     /// The integral when the trial started.
     offset: Option<f32>,
     /// Means of the last points, the latest first.
@@ -191,23 +192,25 @@ impl Trial {
             }
             // Beyond the integral at the start: what holds the stage at rest is none of the motion's.
             pivot.feedback_sum += step.feedback - pivot.offset.unwrap_or(step.integral);
-            pivot.error_sum += step.error as f32;
+            let error = step.error as f32;
+            pivot.error_sum += error;
+            pivot.square_sum += error * error;
             pivot.to_end -= 1;
             if pivot.to_end > 0 {
                 continue;
             }
             pivot.to_end = self.spacing_ticks;
             // The first point has the ticks by which a pivot is later, too; the setpoint hardly moves in them.
-            let [feedback, error] =
-                [pivot.feedback_sum, pivot.error_sum].map(|sum| sum * self.per_tick);
-            (pivot.feedback_sum, pivot.error_sum) = (0.0, 0.0);
+            let sums = [pivot.feedback_sum, pivot.error_sum, pivot.square_sum];
+            let [feedback, error, square] = sums.map(|sum| sum * self.per_tick);
+            (pivot.feedback_sum, pivot.error_sum, pivot.square_sum) = (0.0, 0.0, 0.0);
             let [f0, f1, _] = pivot.feedbacks;
             let [e0, e1, e2, _] = pivot.errors;
             pivot.feedbacks = [feedback, f0, f1];
             pivot.errors = [error, e0, e1, e2];
             if pivot.point < self.points {
-                let counts = error * COUNTS_PER_UNIT;
-                self.square_sum += counts * counts;
+                // Of the ticks, not of their mean: what oscillates faster than the points are apart grows too.
+                self.square_sum += square * (COUNTS_PER_UNIT * COUNTS_PER_UNIT);
             }
             let correction = pivot.correction(&inverse[i], self.per_tick, self.point_hz);
             // Two points later, since it looks as far ahead. The last two look at nothing.

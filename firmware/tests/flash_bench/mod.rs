@@ -8,9 +8,11 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read,
     check_write,
 };
+use firmware::fault::FaultKind;
 use firmware::gcs::{Identity, Interpreter, PARAMETERS};
+use firmware::iterative_learning::TrialMemory;
 use firmware::parameters::Parameters;
-use firmware::settings_store::SettingsStore;
+use firmware::settings_store::{SettingsStore, StoreError};
 use gcs_bench::Bench;
 
 pub const SECTORS: usize = 4;
@@ -195,6 +197,24 @@ pub fn kept(panel: &Interpreter, parameters: &Parameters) -> Kept {
     }
 }
 
+/// Gives a command side what is stored; tables of repeated moves are left.
+pub fn restore<F: NorFlash>(
+    keeper: &mut SettingsStore<F>,
+    panel: &mut Interpreter,
+) -> Option<FaultKind> {
+    let mut memory = Box::new(TrialMemory::new());
+    keeper.restore(&mut panel.contents(&mut memory.split().0))
+}
+
+/// Stores what a command side has besides tables of repeated moves.
+pub fn write<F: NorFlash>(
+    keeper: &mut SettingsStore<F>,
+    panel: &mut Interpreter,
+) -> Result<(), StoreError> {
+    let mut memory = Box::new(TrialMemory::new());
+    keeper.write(&panel.contents(&mut memory.split().0))
+}
+
 pub fn fresh() -> Interpreter {
     let identity = Identity {
         serial: "4711",
@@ -214,7 +234,7 @@ impl<const SECTOR: usize> KeptBench<SECTOR> {
     pub fn start(flash: Flash<SECTOR>) -> Self {
         let mut panel = fresh();
         let mut keeper = SettingsStore::new(flash);
-        assert_eq!(keeper.restore(&mut panel), None);
+        assert_eq!(restore(&mut keeper, &mut panel), None);
         let mut bench = Bench::with(panel);
         bench.run(2);
         bench.say("FRF\n");
@@ -227,7 +247,7 @@ impl<const SECTOR: usize> KeptBench<SECTOR> {
         assert!(self.bench.offer(0, bytes.as_bytes()), "no room");
         for _ in 0..6 {
             self.bench.run(1);
-            self.keeper.store_pending(self.bench.panel_mut());
+            self.keeper.store_pending(&mut self.bench.contents());
         }
         let answers = self.bench.answers_of(0);
         answers.iter().map(|&byte| char::from(byte)).collect()

@@ -166,6 +166,11 @@ impl<'q> BenchBetween<'q> {
         &self.panel
     }
 
+    /// What is stored of it.
+    pub fn contents(&mut self) -> firmware::gcs::Contents<'_, 'q> {
+        self.panel.contents(&mut self.queues.trial)
+    }
+
     pub fn panel_mut(&mut self) -> &mut Interpreter {
         &mut self.panel
     }

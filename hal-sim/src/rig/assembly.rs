@@ -97,7 +97,7 @@ impl<'a, F: Front> Rig<'a, F> {
     /// comes with; if the parameters are not commissioned, it stays empty. `front` is told with which parameters it starts.
     #[must_use]
     pub fn new(
-        (tick_queues, command_queues): (TickQueues<'a>, CommandQueues<'a>),
+        (tick_queues, mut command_queues): (TickQueues<'a>, CommandQueues<'a>),
         parameters: &Parameters,
         flash: SettingsFlash,
         front: impl FnOnce(&Parameters) -> F,
@@ -105,7 +105,7 @@ impl<'a, F: Front> Rig<'a, F> {
         let flash = with_machine_settings(flash, parameters);
         let own = parameters.clone().uncommissioned();
         let mut settings_store = SettingsStore::new(flash);
-        let (interpreter, fault) = started(&own, &mut settings_store);
+        let (interpreter, fault) = started(&own, &mut settings_store, &mut command_queues);
         let mut front = front(interpreter.parameters());
         front.restart(interpreter.parameters(), fault, motor_heat(&command_queues));
         Self {
@@ -148,7 +148,8 @@ impl<'a, F: Front> Rig<'a, F> {
 
     /// Goes on keeping settings.
     pub fn keep(&mut self) {
-        self.settings_store.store_pending(&mut *self.interpreter);
+        let trial = &mut self.command_queues.trial;
+        (self.settings_store).store_pending(&mut self.interpreter.contents(trial));
     }
 
     /// Starts the controller again if it was told to (`RBT`); whether it was. The connections' sessions are the caller's to
@@ -168,12 +169,13 @@ impl<'a, F: Front> Rig<'a, F> {
     }
 
     fn start(&mut self) {
-        let (interpreter, fault) = started(&self.own, &mut self.settings_store);
+        self.tick_queues.clear();
+        self.command_queues.clear();
+        let queues = &mut self.command_queues;
+        let (interpreter, fault) = started(&self.own, &mut self.settings_store, queues);
         self.interpreter = interpreter;
         let motor_heat = motor_heat(&self.command_queues);
         (self.front).restart(self.interpreter.parameters(), fault, motor_heat);
-        self.tick_queues.clear();
-        self.command_queues.clear();
     }
 }
 
@@ -190,7 +192,9 @@ pub fn with_machine_settings(flash: SettingsFlash, parameters: &Parameters) -> S
     interpreter.start_with(parameters.clone());
     let mut settings_store = SettingsStore::new(flash);
     // One that does not take them leaves the controller uncommissioned, or its settings damaged: it says so itself.
-    let _ = settings_store.write(&*interpreter);
+    let mut queues = ControllerMemory::new();
+    let (_, mut queues) = queues.split();
+    let _ = settings_store.write(&interpreter.contents(&mut queues.trial));
     settings_store.into_flash()
 }
 
@@ -203,9 +207,10 @@ fn motor_heat(queues: &CommandQueues<'_>) -> [f32; 3] {
 fn started(
     parameters: &Parameters,
     settings_store: &mut SettingsStore<SettingsFlash>,
+    queues: &mut CommandQueues<'_>,
 ) -> (Box<Interpreter>, Option<FaultKind>) {
     let mut interpreter = Box::new(Interpreter::new(parameters, IDENTITY));
     interpreter.set_board(&SimulatedBoard);
-    let fault = settings_store.restore(&mut *interpreter);
+    let fault = settings_store.restore(&mut interpreter.contents(&mut queues.trial));
     (interpreter, fault)
 }

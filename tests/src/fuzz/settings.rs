@@ -6,11 +6,12 @@
 use crc::{CRC_32_ISO_HDLC, Crc};
 use firmware::fault::FaultKind;
 use firmware::gcs::{Interpreter, PARAMETERS};
+use firmware::iterative_learning::TrialControl;
 use firmware::parameters::Parameters;
 use firmware::settings_store::SettingsStore;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::random::Random;
-use hal_sim::rig::IDENTITY;
+use hal_sim::rig::{ControllerMemory, IDENTITY};
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const SECTOR: usize = 16 << 10;
@@ -34,10 +35,13 @@ pub fn run(seed: u64) {
         content[at] = random.bits() as u8;
     }
     let mut settings_store = SettingsStore::new(SettingsFlash::holding(&content));
-    let (interpreter, problem) = started(&mut settings_store);
+    let [mut memory, mut other] = [ControllerMemory::new(), ControllerMemory::new()];
+    let (mut trial, mut other) = (memory.split().1.trial, other.split().1.trial);
+    let (mut interpreter, problem) = started(&mut settings_store, &mut trial);
     check(&interpreter, problem);
-    assert_eq!(settings_store.write(&interpreter), Ok(()));
-    let (again, problem) = started(&mut settings_store);
+    let contents = interpreter.contents(&mut trial);
+    assert_eq!(settings_store.write(&contents), Ok(()));
+    let (again, problem) = started(&mut settings_store, &mut other);
     assert_eq!(problem, None);
     for parameter in PARAMETERS {
         let [now, before] =
@@ -47,9 +51,12 @@ pub fn run(seed: u64) {
     assert!(again.macros().eq(interpreter.macros()));
 }
 
-fn started(settings_store: &mut SettingsStore<SettingsFlash>) -> (Interpreter, Option<FaultKind>) {
+fn started(
+    settings_store: &mut SettingsStore<SettingsFlash>,
+    trial: &mut TrialControl<'_>,
+) -> (Interpreter, Option<FaultKind>) {
     let mut interpreter = Interpreter::new(&Parameters::REFERENCE, IDENTITY);
-    let problem = settings_store.restore(&mut interpreter);
+    let problem = settings_store.restore(&mut interpreter.contents(trial));
     (interpreter, problem)
 }
 
@@ -94,7 +101,7 @@ fn image(random: &mut Random) -> Vec<u8> {
     let version = if random.once_in(10) {
         random.bits() as u16
     } else {
-        1
+        1 + random.index(3) as u16
     };
     let mut image = version.to_le_bytes().to_vec();
     let count = random.index(12);
@@ -127,9 +134,40 @@ fn image(random: &mut Random) -> Vec<u8> {
         image.extend((text.len() as u16).to_le_bytes());
         image.extend(text.as_bytes());
     }
+    if version == 3 {
+        moves(random, &mut image);
+    }
     for _ in 0..random.index(2) {
         let at = random.index(image.len());
         image[at] = random.bits() as u8;
     }
     image
+}
+
+/// Tables of repeated moves, nearly as they are stored.
+fn moves(random: &mut Random, image: &mut Vec<u8>) {
+    let count = random.index(10);
+    image.push(count as u8);
+    for number in 0..count {
+        let (ticks, spacing) = (
+            random.index(3_000) as u64,
+            10 * (1 + random.index(9)) as u32,
+        );
+        let points = (ticks + 40).div_ceil(spacing.into());
+        let name = format!("move_{number}");
+        image.push(name.len() as u8);
+        image.extend(name.as_bytes());
+        image.extend([random.index(3) as u8, random.index(5) as u8]);
+        image.extend(7_u32.to_le_bytes());
+        for counts in [5.0_f32, 1.0, 1.5] {
+            image.extend(counts.to_le_bytes());
+        }
+        image.extend(random.bits().to_le_bytes());
+        image.extend(ticks.to_le_bytes());
+        image.extend(spacing.to_le_bytes());
+        image.extend((points as u16).to_le_bytes());
+        for _ in 0..3 * points {
+            image.extend((random.bits() as u16).to_le_bytes());
+        }
+    }
 }

@@ -140,13 +140,13 @@ pub const SECTIONS: &[Section] = &[
         name: "settle",
         title: "Move and settle, and at rest",
         group: Group::Motion,
-        about: "200 random moves of 1 mm and more on the simulated stage: time from the command to within +-2 encoder LSB, after the \
+        about: "200 random moves of 1 mm and more on the simulated stage, as the controller comes and told the machine's numbers by parameters: time from the command to within +-2 encoder LSB, after the \
                 profile and as a multiple of it, and the share of moves within 1.1 of it. Then the stage at rest, half a second at a \
                 time: what moves, and how the motors' duty does.",
         command: "cargo bench --bench settle",
         short: None,
         kind: Kind::Deterministic,
-        seconds: 15,
+        seconds: 170,
         without: &[],
     },
     Section {
@@ -181,6 +181,18 @@ pub const SECTIONS: &[Section] = &[
         short: None,
         kind: Kind::Deterministic,
         seconds: 45,
+        without: &[],
+    },
+    Section {
+        name: "repeated",
+        title: "Moves that are repeated",
+        group: Group::Motion,
+        about: "Iterative learning (`ILC`) of 40 random moves: following error of the pivots over a move and 5 ms after it, without a table and \
+                after five trials, and the worst of all trials beside that without a table.",
+        command: "cargo bench -p tests --bench repeated_moves",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 150,
         without: &[],
     },
     Section {

@@ -162,7 +162,7 @@ mod app {
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
         let mut core = context.core;
-        let (mut tick_queues, command_queues) =
+        let (mut tick_queues, mut command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
         let identity = Identity {
             serial: context.local.serial_place.write(identity::serial()),
@@ -185,7 +185,8 @@ mod app {
             .for_each(|notice| interpreter.add_board_notice(notice));
         // Before anything can move.
         let mut settings_store = SettingsStore::new(flash);
-        let unusable_settings = settings_store.restore(interpreter);
+        let unusable_settings =
+            settings_store.restore(&mut interpreter.contents(&mut command_queues.trial));
         let damaged = self_check.image_damaged.then_some(FaultKind::ImageDamaged);
         let no_crystal = without_crystal.then_some(FaultKind::CrystalFailed);
         let config = Config::new(interpreter.parameters());
@@ -317,7 +318,8 @@ mod app {
                     .service(local.session, local.command_queues, local.transmitter);
             TRACE.record_service(received, local.interpreter.tick() as u32);
             local.transmitter.send();
-            local.settings_store.store_pending(&mut **local.interpreter);
+            let trial = &mut local.command_queues.trial;
+            (local.settings_store).store_pending(&mut local.interpreter.contents(trial));
             if local.interpreter.wants_restart() {
                 restart::now();
             }

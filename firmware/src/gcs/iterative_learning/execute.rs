@@ -3,33 +3,52 @@
 use super::request::LearnAction;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
+use crate::gcs::session::{Awaited, Session};
 use crate::gcs::text::Name;
 use crate::iterative_learning::{LearningError, TableName};
 use crate::queues::CommandQueues;
 
 impl Interpreter {
-    /// `ILC LEARN`, `ILC FREEZE`, `ILC FORGET`. Not in motion: the table under way is what the motion was sent with.
+    /// `ILC LEARN`, `ILC FREEZE`, `ILC KEEP`, `ILC FORGET`. Not in motion: the table under way is what the motion was sent with.
     pub(in crate::gcs) fn change_repeated_moves(
         &mut self,
         action: &LearnAction,
+        session: &mut Session,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         if self.commander.is_motion_commanded() {
             return Err(ErrorCode::InMotion);
         }
+        if let LearnAction::Keep(name) = action {
+            self.store_move(table_name(name), queues)?;
+            self.wait(session, Awaited::Stored);
+            return Ok(());
+        }
         let commander = &mut self.commander;
         let done = match action {
             LearnAction::Learn(name) => commander.learn_move(table_name(name), queues),
             LearnAction::Freeze(name) => commander.freeze_move(&table_name(name)),
+            LearnAction::Keep(_) => Ok(()),
             LearnAction::Forget(name) => {
-                commander.forget_move(name.as_ref().map(table_name).as_ref(), queues)
+                let name = name.as_ref().map(table_name);
+                // What is forgotten is stored no more.
+                if commander.is_move_kept(name.as_ref()) {
+                    self.persistence.mark_changed();
+                }
+                commander.forget_move(name.as_ref(), queues)
             }
         };
-        done.map_err(|error| match error {
-            LearningError::TooMany => ErrorCode::NoMemory,
-            LearningError::Unknown => ErrorCode::OutOfRange,
-            LearningError::OtherWaits => ErrorCode::Busy,
-        })
+        Ok(done?)
+    }
+}
+
+impl From<LearningError> for ErrorCode {
+    fn from(error: LearningError) -> Self {
+        match error {
+            LearningError::TooMany => Self::NoMemory,
+            LearningError::Unknown => Self::OutOfRange,
+            LearningError::OtherWaits => Self::Busy,
+        }
     }
 }
 

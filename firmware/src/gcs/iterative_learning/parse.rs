@@ -19,6 +19,11 @@ pub(in crate::gcs) fn freeze(scanner: &mut Scanner<'_>) -> Parsed {
     act(LearnAction::Freeze(name(scanner)?))
 }
 
+/// `ILC KEEP`: a name.
+pub(in crate::gcs) fn keep(scanner: &mut Scanner<'_>) -> Parsed {
+    act(LearnAction::Keep(name(scanner)?))
+}
+
 /// `ILC FORGET`: a name or nothing.
 pub(in crate::gcs) fn forget(scanner: &mut Scanner<'_>) -> Parsed {
     let name = if scanner.is_at_end() {

@@ -14,8 +14,13 @@ impl Interpreter {
         for table in self.commander.repeated_moves() {
             let [without, best, last] = table.error_counts;
             reply.line(format_args!(
-                "{}={} TRIALS={} FIRST={without:.3} BEST={best:.3} LAST={last:.3} POINTS={} TICKS={}",
-                table.name, table.state, table.trials, table.points, table.spacing_ticks
+                "{}={} TRIALS={} FIRST={without:.3} BEST={best:.3} LAST={last:.3} POINTS={} TICKS={} KEPT={}",
+                table.name,
+                table.state,
+                table.trials,
+                table.points,
+                table.spacing_ticks,
+                u8::from(table.kept)
             ))?;
         }
         reply.end()

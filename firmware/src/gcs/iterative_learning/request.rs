@@ -9,6 +9,8 @@ pub enum LearnAction {
     Learn(Name),
     /// `ILC FREEZE`: it stays as it is at its best.
     Freeze(Name),
+    /// `ILC KEEP`: it is kept over a restart.
+    Keep(Name),
     /// `ILC FORGET`: this one, or all.
     Forget(Option<Name>),
 }

@@ -33,7 +33,7 @@ impl Interpreter {
         };
         let changes = matches!(request, MacroRequest::End | MacroRequest::Delete(_));
         match result {
-            Ok(()) if changes => self.persistence.mark_macros_changed(),
+            Ok(()) if changes => self.persistence.mark_changed(),
             Ok(()) => {}
             Err(code) => session.error = code,
         }

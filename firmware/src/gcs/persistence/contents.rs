@@ -1,4 +1,5 @@
-//! What is stored: the parameters that are not what the controller has by itself, and all macros.
+//! What is stored: the parameters that are not what the controller has by itself, all macros, and the tables of repeated moves that are
+//! to be kept.
 //!
 //! | bytes | what |
 //! |---|---|
@@ -7,22 +8,27 @@
 //! | each 4, 8 | id, value as a 64-bit float |
 //! | 1 | number of macros |
 //! | each 1, n, 2, n | length of the name, name, length of the text, text |
+//! | from version 3 on | tables, see `stored_moves` |
 //!
 //! Numbers begin with their lowest byte.
 
 use super::state::{KeptParameters, UnusableValues};
+use super::stored_moves::{self, MOVES_BYTES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::macros::{MACRO_BYTES, MAX_MACROS};
 use crate::gcs::parameter::{PARAMETERS, Parameter};
 use crate::gcs::text::{NAME_BYTES, Name};
+use crate::iterative_learning::TrialControl;
 use crate::parameters::Parameters;
 use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, envelope_bytes};
 use embedded_storage::nor_flash::NorFlash;
 
 /// Version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
-/// would take its own for those of a machine whose zeros are 0.
-const VERSION: u16 = 2;
+/// would take its own for those of a machine whose zeros are 0; since 3 there are tables of repeated moves.
+const VERSION: u16 = 3;
+/// The first with tables.
+const VERSION_WITH_MOVES: u16 = 3;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
 
@@ -30,10 +36,33 @@ const CHUNK_BYTES: usize = 64;
 pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
 /// Bytes of the longest contents.
 const MAX_CONTENTS_BYTES: usize =
-    5 + PARAMETERS.len() * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES;
+    5 + PARAMETERS.len() * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES + MOVES_BYTES;
+
+/// All that is stored: of the command side, and the points of the tables, which lie with those of the trial.
+pub struct Contents<'a, 't> {
+    interpreter: &'a mut Interpreter,
+    trial: &'a mut TrialControl<'t>,
+}
+
+impl Interpreter {
+    /// What a [`SettingsStore`](crate::settings_store::SettingsStore) stores; the memory of trials is [`CommandQueues::trial`].
+    pub const fn contents<'a, 't>(
+        &'a mut self,
+        trial: &'a mut TrialControl<'t>,
+    ) -> Contents<'a, 't> {
+        Contents {
+            interpreter: self,
+            trial,
+        }
+    }
+}
 
 /// Writes what is to be stored.
-fn write<S: Sink>(interpreter: &Interpreter, sink: &mut S) -> Result<(), S::Error> {
+fn write<S: Sink>(
+    interpreter: &Interpreter,
+    trial: &TrialControl<'_>,
+    sink: &mut S,
+) -> Result<(), S::Error> {
     sink.put(&VERSION.to_le_bytes())?;
     let (stored, defaults) = (
         interpreter.parameters_to_store(),
@@ -54,7 +83,7 @@ fn write<S: Sink>(interpreter: &Interpreter, sink: &mut S) -> Result<(), S::Erro
         sink.put(&(text.len() as u16).to_le_bytes())?;
         sink.put(text)?;
     }
-    Ok(())
+    stored_moves::write(&interpreter.commander, trial, sink)
 }
 
 /// The parameters in which `stored` is not what the controller has by itself.
@@ -66,18 +95,27 @@ fn settings(stored: &Parameters, defaults: &Parameters) -> impl Iterator<Item = 
     })
 }
 
-/// Takes what is stored. With an error it has the default parameters and no macros.
+/// Takes what is stored. With an error it has the default parameters, no macros and no tables.
 fn read<F: NorFlash>(
     reader: &mut Reader<'_, F>,
     interpreter: &mut Interpreter,
+    trial: &mut TrialControl<'_>,
 ) -> Result<(), Unusable> {
     let version = u16::from_le_bytes(reader.take().ok_or(Unusable::Damaged)?);
     if version > VERSION {
         return Err(Unusable::Newer);
     }
     let kept = read_parameters(reader, interpreter).ok_or(Unusable::Damaged)?;
-    if read_macros(reader, interpreter).is_none() || !reader.is_at_end() {
+    let mut rest = || {
+        read_macros(reader, interpreter)?;
+        if version >= VERSION_WITH_MOVES {
+            stored_moves::read(reader, &mut interpreter.commander, trial)?;
+        }
+        reader.is_at_end().then_some(())
+    };
+    if rest().is_none() {
         interpreter.forget_macros();
+        interpreter.commander.forget_moves(trial);
         return Err(Unusable::Damaged);
     }
     interpreter.restore_parameters(kept);
@@ -136,29 +174,30 @@ fn read_macros<F: NorFlash>(
     Some(())
 }
 
-impl StoredSettings for Interpreter {
+impl StoredSettings for Contents<'_, '_> {
     fn needs_storing(&self) -> bool {
-        let persistence = &self.persistence;
-        let macros = persistence.macros_changed && !persistence.stored_is_invalid;
+        let persistence = &self.interpreter.persistence;
+        let unasked = persistence.has_changed && !persistence.stored_is_invalid;
         persistence.has_store
-            && (persistence.before.is_some() || macros)
-            && !self.commander.is_motion_commanded()
+            && (persistence.is_pending() || unasked)
+            && !self.interpreter.commander.is_motion_commanded()
     }
 
     fn write<S: Sink>(&self, sink: &mut S) -> Result<(), S::Error> {
-        write(self, sink)
+        write(self.interpreter, self.trial, sink)
     }
 
     fn read<F: NorFlash>(&mut self, reader: &mut Reader<'_, F>) -> Result<(), Unusable> {
-        read(reader, self)
+        read(reader, self.interpreter, self.trial)
     }
 
     fn attach_store(&mut self, usable: bool) {
-        self.persistence.has_store = true;
-        self.persistence.stored_is_invalid = !usable;
+        let persistence = &mut self.interpreter.persistence;
+        persistence.has_store = true;
+        persistence.stored_is_invalid = !usable;
     }
 
     fn finish_storing(&mut self, result: Result<(), StoreError>) {
-        self.storing_finished(result);
+        self.interpreter.storing_finished(result);
     }
 }

@@ -1,11 +1,12 @@
 //! `WPA` and `RPA`.
 
-use super::state::KeptParameters;
+use super::state::{Keeping, KeptParameters};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::parameter::{Addresses, Parameter};
 use crate::gcs::text::Name;
+use crate::iterative_learning::TableName;
 use crate::parameters::{MAX_RECORD_ROWS, Parameters};
 use crate::queues::CommandQueues;
 use crate::settings_store::StoreError;
@@ -18,13 +19,14 @@ impl Interpreter {
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.check_store()?;
-        if self.persistence.before.is_some() {
+        if self.persistence.is_pending() {
             return Err(ErrorCode::Busy);
         }
         self.take_over_learnt(queues)?;
         let wanted = replaced(&self.persistence.stored, &self.parameters, addresses)?;
         let before = core::mem::replace(&mut self.persistence.stored, wanted);
         self.persistence.before = Some(before);
+        self.persistence.drops_unusable = true;
         Ok(())
     }
 
@@ -42,10 +44,33 @@ impl Interpreter {
         Ok(())
     }
 
+    /// `ILC KEEP`: a table of a repeated move is stored, with those that are kept already; and what the servos have learnt, since a table
+    /// is what lacks besides that.
+    pub(in crate::gcs) fn store_move(
+        &mut self,
+        name: TableName,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), ErrorCode> {
+        self.check_store()?;
+        // Settings that could not be used are overwritten by `WPA` alone.
+        if self.persistence.is_pending() || self.persistence.stored_is_invalid {
+            return Err(ErrorCode::Busy);
+        }
+        let was_kept = self.commander.is_move_kept(Some(&name));
+        self.commander.keep_move(&name, true)?;
+        if let Err(error) = self.take_over_learnt(queues) {
+            self.commander.keep_move(&name, was_kept)?;
+            return Err(error);
+        }
+        self.store_learnt();
+        self.persistence.keeping = Some(Keeping { name, was_kept });
+        Ok(())
+    }
+
     /// Whether something may be stored that nobody has asked for.
     pub(in crate::gcs) fn may_store_by_itself(&self) -> bool {
         let persistence = &self.persistence;
-        !persistence.stored_is_invalid && persistence.before.is_none() && self.check_store().is_ok()
+        !persistence.stored_is_invalid && !persistence.is_pending() && self.check_store().is_ok()
     }
 
     /// What was learnt, beside what is stored as it is.
@@ -68,20 +93,26 @@ impl Interpreter {
     /// What came of it.
     pub(super) fn storing_finished(&mut self, result: Result<(), StoreError>) {
         let persistence = &mut self.persistence;
-        let asked_for = persistence.before.take();
-        persistence.macros_changed = false;
+        let before = persistence.before.take();
+        let drops_unusable = core::mem::take(&mut persistence.drops_unusable);
+        let keeping = persistence.keeping.take();
+        persistence.has_changed = false;
         persistence.result = result.map_err(ErrorCode::from);
         let code = persistence.result.err();
-        match (code, asked_for) {
-            (None, asked_for) => {
+        match (code, before) {
+            (None, _) => {
                 persistence.stored_is_invalid = false;
-                if asked_for.is_some() {
+                if drops_unusable {
                     persistence.unusable.clear();
                 }
             }
             (Some(_), Some(before)) => persistence.stored = before,
             // Who recorded the macro does not wait for it.
             (Some(code), None) => self.report_to_all(code),
+        }
+        if let (Some(_), Some(Keeping { name, was_kept })) = (code, keeping) {
+            // It may be gone meanwhile, and is not kept then either.
+            let _ = self.commander.keep_move(&name, was_kept);
         }
         let event = code.map_or(Event::Stored, |code| Event::StoreFailed(code.number()));
         self.events.add(self.commander.tick(), event);
@@ -119,9 +150,10 @@ impl Interpreter {
 
     /// Values that are not in force and stay stored all the same, as long as nobody asks for others.
     pub(super) fn unusable_to_store(&self) -> &[(u32, f64)] {
-        match self.persistence.before {
-            Some(_) => &[],
-            None => &self.persistence.unusable,
+        if self.persistence.drops_unusable {
+            &[]
+        } else {
+            &self.persistence.unusable
         }
     }
 

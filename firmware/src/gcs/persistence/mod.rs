@@ -8,11 +8,13 @@
 //! |---|---|
 //! | `state` | what is stored, and what is to be |
 //! | `contents` | what stands in the store |
+//! | `stored_moves` | and of the tables of repeated moves |
 //! | `execute` | `WPA` and `RPA` |
 
 mod contents;
 mod execute;
 mod state;
+mod stored_moves;
 
-pub use contents::STORED_BYTES;
+pub use contents::{Contents, STORED_BYTES};
 pub(super) use state::Persistence;

@@ -1,6 +1,7 @@
 //! What is stored, and what is to be.
 
 use crate::gcs::error::ErrorCode;
+use crate::iterative_learning::TableName;
 use crate::parameters::Parameters;
 use heapless::Vec;
 
@@ -17,6 +18,13 @@ pub(super) struct KeptParameters {
     pub unusable: UnusableValues,
 }
 
+/// A table of a repeated move that is to be kept.
+pub(super) struct Keeping {
+    pub name: TableName,
+    /// It was before: what is stored of it stays when nothing can be stored now.
+    pub was_kept: bool,
+}
+
 /// What is stored, and what is to be.
 pub(in crate::gcs) struct Persistence {
     /// The parameters that the controller has when nothing is stored.
@@ -29,11 +37,15 @@ pub(in crate::gcs) struct Persistence {
     pub(super) has_store: bool,
     /// What was stored could not be used: `WPA` alone may overwrite it.
     pub(super) stored_is_invalid: bool,
-    /// `WPA` waits for its end, and what to go back to if it fails.
+    /// Parameters are about to be stored: what to go back to if that fails.
     pub(super) before: Option<Parameters>,
-    /// Macros have changed since they were stored.
-    pub(super) macros_changed: bool,
-    /// What came of the last `WPA`.
+    /// `WPA` waits for its end: what is not allowed is stored no more.
+    pub(super) drops_unusable: bool,
+    /// The table of a repeated move that somebody wants kept, and waits for.
+    pub(super) keeping: Option<Keeping>,
+    /// Macros have changed since they were stored, or a table that is stored was forgotten.
+    pub(super) has_changed: bool,
+    /// What came of the last `WPA` or `ILC KEEP`.
     pub(super) result: Result<(), ErrorCode>,
 }
 
@@ -47,21 +59,29 @@ impl Persistence {
             has_store: false,
             stored_is_invalid: false,
             before: None,
-            macros_changed: false,
+            drops_unusable: false,
+            keeping: None,
+            has_changed: false,
             result: Ok(()),
         }
     }
 
-    /// The macros have changed.
-    pub const fn mark_macros_changed(&mut self) {
-        self.macros_changed = true;
+    /// Something is to be stored that nobody waits for: a macro, or that a table is no more.
+    pub const fn mark_changed(&mut self) {
+        self.has_changed = true;
     }
 
-    /// What came of `WPA`; nothing as long as it is under way.
+    /// Whether parameters are about to be stored.
+    pub const fn is_pending(&self) -> bool {
+        self.before.is_some()
+    }
+
+    /// What came of `WPA` or `ILC KEEP`; nothing as long as it is under way.
     pub const fn result(&self) -> Option<Result<(), ErrorCode>> {
-        match self.before {
-            Some(_) => None,
-            None => Some(self.result),
+        if self.is_pending() {
+            None
+        } else {
+            Some(self.result)
         }
     }
 }
