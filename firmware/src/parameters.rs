@@ -289,6 +289,8 @@ pub struct Supervision {
     pub separation_margin_rad: f64,
     /// Duration of a fault's controlled stop.
     pub stop_s: f64,
+    /// Whether the stage may be driven with a debugger attached.
+    pub debugger_allowed: bool,
     /// Longest silence of the host; 0 when any is allowed.
     pub host_silence_ms: f64,
 }
@@ -421,6 +423,7 @@ impl Parameters {
             // An unstable loop swings by more than half of the supply; a stable one that rings on a machine it was not told of by a third
             // at most.
             oscillation_v: 20.0,
+            debugger_allowed: false,
             max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,

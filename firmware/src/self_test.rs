@@ -11,6 +11,11 @@ pub trait Board: Sync {
 
     /// Tells every reading that it can take with the bridges asleep, at once: nothing here waits.
     fn readings(&self, tell: &mut dyn FnMut(&Reading));
+
+    /// Whether a debugger is attached: it can halt the processor, and with it the loop, at any time.
+    fn has_debugger(&self) -> bool {
+        false
+    }
 }
 
 /// Something that a board has read about itself.

@@ -65,3 +65,38 @@ fn it_is_refused_with_the_servo_on() {
     assert_eq!(bench.error_after("SVO X 0"), "0");
     assert!(bench.say("TST?\n").starts_with("BOARD=unknown"));
 }
+
+/// A board with a debugger attached.
+struct Debugged;
+
+impl Board for Debugged {
+    fn name(&self) -> &'static str {
+        "debugged"
+    }
+
+    fn readings(&self, _tell: &mut dyn FnMut(&Reading)) {}
+
+    fn has_debugger(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn nothing_drives_with_a_debugger_attached_unless_that_is_allowed() {
+    let mut bench = Bench::new();
+    bench.panel_mut().set_board(&Debugged);
+    bench.run(2);
+    for line in ["FRF", "SVO X 1", "MOV X 1", "RCV 1"] {
+        assert_eq!(bench.say(&format!("{line}\nERR?\n")), "4006\n", "{line}");
+    }
+    assert!(bench.tick.log.is_empty(), "{:?}", bench.tick.log);
+    // What drives nothing is no matter, and who may loosen the supervision may allow this.
+    let lines = "SVO X 0\nSTP\nVLS 20\nSPA 1 0x54500512 1\nERR?\n";
+    assert_eq!(bench.say(lines), "60\n");
+    bench.say("CCL 1 ADVANCED\nSPA 1 0x54500512 1\n");
+    bench.run(2);
+    assert_eq!(bench.say("ERR?\n"), "0\n");
+    bench.reference();
+    let events = bench.say("EVT?\n");
+    assert!(events.contains("54500512"), "{events}");
+}

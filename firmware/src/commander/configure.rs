@@ -57,13 +57,20 @@ impl Commander {
         core::mem::take(&mut self.configuration_refused)
     }
 
+    /// A debugger is attached, or is no more: nothing that is held lets go of that.
+    pub const fn set_debugged(&mut self, is_debugged: bool) {
+        self.is_debugged = is_debugged;
+    }
+
     /// # Errors
-    /// [`CommandError::NotCommissioned`]: nothing may drive.
-    pub(super) const fn check_commissioned(&self) -> Result<(), CommandError> {
-        if self.commissioned {
-            Ok(())
-        } else {
+    /// [`CommandError::NotCommissioned`], [`CommandError::Debugged`]: nothing may drive.
+    pub(super) const fn check_may_drive(&self) -> Result<(), CommandError> {
+        if !self.commissioned {
             Err(CommandError::NotCommissioned)
+        } else if self.is_debugged {
+            Err(CommandError::Debugged)
+        } else {
+            Ok(())
         }
     }
 

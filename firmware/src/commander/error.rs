@@ -15,6 +15,8 @@ pub enum CommandError {
     NotReady,
     /// Nobody has said yet how this machine is set up, so nothing may drive.
     NotCommissioned,
+    /// A debugger is attached, which can halt the loop while the motors drive.
+    Debugged,
     /// A fault is latched, which has to be acknowledged first.
     Faulted,
     /// The stage moves, or is about to.
@@ -96,6 +98,7 @@ impl fmt::Display for CommandError {
             Self::Busy => f.write_str("a command is on its way"),
             Self::NotReady => f.write_str("not referenced, or the servo is off"),
             Self::NotCommissioned => f.write_str("not commissioned"),
+            Self::Debugged => f.write_str("a debugger is attached"),
             Self::Faulted => f.write_str("a fault is latched"),
             Self::InMotion => f.write_str("in motion"),
             Self::Streaming => f.write_str("targets are being streamed"),

@@ -32,7 +32,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
-        self.check_commissioned()?;
+        self.check_may_drive()?;
         if self.is_recovering() {
             return Err(CommandError::InMotion);
         }

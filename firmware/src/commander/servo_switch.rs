@@ -12,8 +12,8 @@ impl Commander {
     /// comes about with referencing.
     ///
     /// # Errors
-    /// [`CommandError::Faulted`], [`CommandError::NotCommissioned`], and [`CommandError::InMotion`] for a stage that has been let go and has not come to rest: the
-    /// servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one that is out of its reach, where the
+    /// [`CommandError::Faulted`], [`CommandError::NotCommissioned`], [`CommandError::Debugged`], and [`CommandError::InMotion`] for a stage
+    /// that has been let go and has not come to rest: the servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one that is out of its reach, where the
     /// supervisor would end it at once.
     pub fn set_servo(
         &mut self,
@@ -34,17 +34,18 @@ impl Commander {
         }
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
-            (true, _) if !self.commissioned => Err(CommandError::NotCommissioned),
-            (true, Mode::Off) if snapshot.referenced && self.rest.is_fast => {
-                Err(CommandError::InMotion)
-            }
             (true, Mode::Off) if snapshot.referenced => {
+                self.check_may_drive()?;
+                if self.rest.is_fast {
+                    return Err(CommandError::InMotion);
+                }
                 if let Some(pose) = self.reach_margins.pose_outside(snapshot) {
                     return Err(CommandError::ReferenceOutside(pose));
                 }
                 self.send(Command::Servo(true), InFlight::Other, queues)
             }
             (true, _) => {
+                self.check_may_drive()?;
                 self.off_at_rest = false;
                 Ok(())
             }

@@ -41,6 +41,8 @@ pub struct Commander {
     pub(super) targets: Targets,
     /// Whether the machine is commissioned: if not, nothing drives.
     pub(super) commissioned: bool,
+    /// Whether a debugger is attached that is not allowed to be: then nothing drives either.
+    pub(super) is_debugged: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) frames: FrameTree,
@@ -95,6 +97,7 @@ impl Commander {
             velocities: AxisValues::default(),
             targets: parameters.targets,
             commissioned: parameters.commissioned,
+            is_debugged: false,
             cycle_ms: DEFAULT_CYCLE_MS,
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,

@@ -115,6 +115,8 @@ pub enum ErrorCode {
     NothingToRecover = 4004,
     /// Nobody has said yet how this machine is set up (`CMS`): nothing drives.
     NotCommissioned = 4005,
+    /// A debugger is attached, which can halt the loop while the motors drive: nothing drives unless a parameter allows it.
+    Debugged = 4006,
 }
 
 impl ErrorCode {
@@ -144,6 +146,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
             CommandError::NotReady => Self::NotReady,
             CommandError::NotCommissioned => Self::NotCommissioned,
+            CommandError::Debugged => Self::Debugged,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,

@@ -14,6 +14,7 @@ use super::variables::expand;
 use super::wave::reply_waves;
 use crate::commander::Quantity;
 use crate::queues::CommandQueues;
+use crate::self_test::Board;
 use embedded_io::Write;
 
 impl Interpreter {
@@ -63,6 +64,9 @@ impl Interpreter {
         if let Some(retained_memory) = queues.retained_memory {
             self.events.retain(retained_memory);
         }
+        let may_be_halted = self.board.is_some_and(Board::has_debugger)
+            && !self.parameters.supervision.debugger_allowed;
+        self.commander.set_debugged(may_be_halted);
         self.revert_if_refused();
         self.commander.advance_pending(queues);
         self.keep_learnt(queues);

@@ -69,6 +69,7 @@ error_words! {
     OwnedByAnother: "another connection owns the stage: OWN? tells which; only stopping is possible",
     NothingToRecover: "nothing to recover: the measured pose is in reach, or the servo is on",
     NotCommissioned: "the machine is not commissioned, so nothing drives: CMS? says what is missing",
+    Debugged: "a debugger is attached, which can halt the loop under load: nothing drives unless parameter 0x54500512 is 1",
     ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros (EVT? has the pose), then RCV 1 drives it slowly back in",
 }
 

@@ -33,6 +33,10 @@ impl Board for StageBoard {
         "reference board, STM32F427"
     }
 
+    fn has_debugger(&self) -> bool {
+        cortex_m::peripheral::DCB::is_debugger_attached()
+    }
+
     fn readings(&self, tell: &mut dyn FnMut(&Reading)) {
         let mut say = |name, value: f64, unit, good| {
             tell(&Reading {

@@ -40,7 +40,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
-        self.check_commissioned()?;
+        self.check_may_drive()?;
         if self.is_motion_commanded() || self.rest.is_fast {
             return Err(CommandError::InMotion);
         }

@@ -56,14 +56,23 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
     Err(CliError::Grown(format!("{}\n{hint}", found.join("\n"))))
 }
 
-/// The functions and the lines that wait most.
+/// What the files take, and the functions and the lines that wait most.
 fn print_top(nominal: &Tally, image: &Path, top: usize) -> Result<(), CliError> {
     let lines = lines(image)?;
     let ticks = nominal.rows.iter().find(|row| row.used == Use::Moving);
     let ticks = ticks.map_or(0, |row| row.cycles.len());
-    for (by, title) in [
-        (Place::Function, "functions that wait most, moving, nominal"),
-        (Place::Line, "lines that wait most"),
+    for (by, title, of) in [
+        (
+            Place::File,
+            "files that take most, moving, nominal",
+            Cycles::all as fn(&Cycles) -> u64,
+        ),
+        (
+            Place::Function,
+            "functions that wait most, moving, nominal",
+            Cycles::stalls,
+        ),
+        (Place::Line, "lines that wait most", Cycles::stalls),
     ] {
         let mut places: BTreeMap<String, Cycles> = BTreeMap::new();
         for (at, cycles) in &nominal.places {
@@ -73,7 +82,7 @@ fn print_top(nominal: &Tally, image: &Path, top: usize) -> Result<(), CliError> 
                 .add(cycles);
         }
         let mut places: Vec<_> = places.into_iter().collect();
-        places.sort_by_key(|(_, cycles)| std::cmp::Reverse(cycles.stalls()));
+        places.sort_by_key(|(_, cycles)| std::cmp::Reverse(of(cycles)));
         places.truncate(top);
         println!("{}", print_places(title, &places, ticks));
     }

@@ -8,9 +8,9 @@ use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
 use firmware::control::rest_mode::Stiffness;
-use firmware::control::servo::{LoopSetpoint, PivotServo, PivotSetpoint};
+use firmware::control::servo::{LoopSetpoint, PivotServo, PivotSetpoint, carried_inertia};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
-use firmware::parameters::Parameters;
+use firmware::parameters::{Harmonic, Lead, Notch, Parameters};
 use firmware_cost::random::Random;
 use frames::frames;
 use kinematics::Angle;
@@ -22,11 +22,50 @@ const SUPPLY_COUNTS: u16 = 2979;
 #[inline(never)]
 pub fn run(bench: &mut Bench) {
     let config = Config::new(&Parameters::REFERENCE);
-    // Derived from parameters, as far as the compiler knows.
     let config = black_box(&config);
     decoding(bench, config);
-    servo(bench, config);
+    servo(bench, "servo, three", config);
+    servo(bench, "servo, three, notches, lead, ripple", &shaped());
+    scheduled(bench, config);
     tick::run(bench, config);
+}
+
+/// All that shapes a loop in force: two notches and a lead, four sines of ripple.
+fn shaped() -> Config {
+    let mut parameters = Parameters::REFERENCE;
+    let servo = &mut parameters.servo;
+    for filters in &mut servo.filters {
+        filters.notches = [1_425.0, 1_680.0].map(|frequency_hz| Notch {
+            frequency_hz,
+            width_hz: 450.0,
+            gain: 0.3,
+        });
+        filters.lead = Lead {
+            from_hz: 480.0,
+            to_hz: 3_000.0,
+        };
+    }
+    for ripple in &mut servo.ripple {
+        ripple.harmonics = [325.0, 650.0, 1_300.0, 2_600.0].map(|periods| Harmonic {
+            periods,
+            amplitude_n_m: 0.03,
+            phase_deg: 30.0,
+        });
+    }
+    Config::new(&parameters)
+}
+
+/// What one pivot of three is asked in a tick where gains go by the inertia.
+fn scheduled(bench: &mut Bench, config: &Config) {
+    let body = &config.servo.body;
+    bench.part_with(
+        "inertia at a pivot, for its gains",
+        Bench::SHORT,
+        &mut (),
+        |(), random| [0; 6].map(|_| random.within(0.6, 1.3) as f32),
+        |(), &[a, b, c, d, e, f]| carried_inertia(body, &[a, b, c], &[d, e, f], 1),
+        no_result,
+    );
 }
 
 fn decoding(bench: &mut Bench, config: &Config) {
@@ -66,9 +105,11 @@ impl Rings {
     }
 }
 
-fn servo(bench: &mut Bench, config: &Config) {
+fn servo(bench: &mut Bench, name: &'static str, config: &Config) {
+    // Derived from parameters, as far as the compiler knows.
+    let config = black_box(config);
     bench.part_with(
-        "servo, three",
+        name,
         Bench::SHORT,
         &mut [PivotServo::default(); 3],
         |_, random| [0; 3].map(|_| pivot(random)),
