@@ -53,7 +53,7 @@ impl Tables {
     }
 
     /// A table is what was stored. It is followed at its best first: the machine may have changed. `None` when it is none that
-    /// [`Self::kept`] gives, or `points` has not as many; nothing has changed then.
+    /// [`Self::kept`] gives, or `points` has not as many: there is no such table then.
     pub fn restore(
         &mut self,
         kept: KeptTable,

@@ -17,6 +17,8 @@ pub(super) const TAIL_TICKS: u64 = 40;
 const WORSE: f32 = 1.02;
 /// Error of a trial over the best one from which on it was hardly better: what is left is noise, of which less is learnt the smaller the step.
 const LITTLE_BETTER: f32 = 0.8;
+/// Error of the best one, followed again, over what it was, from which on the machine is another one.
+const OTHER: f32 = 1.5;
 /// Trials worse than the best, in a row, after which the best is what stays.
 const MOST_WORSE: u8 = 3;
 /// What is learnt at a time is never less than this power of a half.
@@ -118,9 +120,12 @@ impl Tables {
     pub fn learn(&mut self, name: TableName) -> Result<(), LearningError> {
         if let Some(i) = self.place(&name) {
             let table = &mut self.tables[i];
-            if table.report.state != TableState::Waiting {
-                table.report.state = TableState::Learning;
-                table.worse = 0;
+            match table.report.state {
+                TableState::Waiting | TableState::Learning => {}
+                TableState::Frozen | TableState::Stopped => {
+                    table.report.state = TableState::Learning;
+                    (table.worse, table.halvings) = (0, 0);
+                }
             }
             return Ok(());
         }
@@ -281,13 +286,17 @@ impl Tables {
         if report.trials == 0 {
             (*without, *best_counts) = (*last, *last);
         }
-        report.trials += 1;
+        report.trials = report.trials.saturating_add(1);
         let points = report.points;
         let (best, tried) = (
             *first..*first + points,
             *first + points..*first + 2 * points,
         );
         if let Some(tried_counts) = checks_best.take() {
+            if *last > OTHER * *best_counts {
+                // It is another machine than it was: what it needs now is more than noise.
+                *halvings = 0;
+            }
             *best_counts = *last;
             if tried_counts <= WORSE * *best_counts {
                 // The start was another one: what was tried is tried again.
@@ -312,12 +321,14 @@ impl Tables {
         if report.trials > 1 && *last > LITTLE_BETTER * *best_counts {
             *halvings = (*halvings + 1).min(MOST_HALVINGS);
         }
-        *best_counts = best_counts.min(*last);
-        (trial.pool).copy_within(tried.clone(), best.start);
+        if *last < *best_counts {
+            *best_counts = *last;
+            (trial.pool).copy_within(tried.clone(), best.start);
+        }
         for (point, place) in tried.enumerate() {
             let correction = smoothed(trial, point, result.points);
             let volts = &mut trial.pool[place];
-            *volts = [0, 1, 2].map(|i| volts[i].saturating_add(correction[i] >> *halvings));
+            *volts = [0, 1, 2].map(|i| volts[i].saturating_add(halved(correction[i], *halvings)));
         }
     }
 
@@ -344,6 +355,12 @@ fn smoothed(trial: &TrialControl<'_>, point: usize, points: usize) -> Point {
         let sum = i32::from(before[i]) + 2 * i32::from(now[i]) + i32::from(after[i]);
         (sum / 4) as i16
     })
+}
+
+/// Halved so many times, to the nearest.
+fn halved(correction: i16, halvings: u8) -> i16 {
+    let half = (1_i32 << halvings) >> 1;
+    ((i32::from(correction) + half) >> halvings) as i16
 }
 
 fn halfway(a: i16, b: i16) -> i16 {

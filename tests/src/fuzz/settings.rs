@@ -49,6 +49,7 @@ pub fn run(seed: u64) {
         assert_eq!(now, before, "{:x}", parameter.id);
     }
     assert!(again.macros().eq(interpreter.macros()));
+    assert!((again.repeated_moves()).eq(interpreter.repeated_moves()));
 }
 
 fn started(
@@ -77,6 +78,7 @@ fn check(interpreter: &Interpreter, problem: Option<FaultKind>) {
     if problem.is_some() {
         assert_eq!(*parameters, Parameters::REFERENCE);
         assert_eq!(interpreter.macros().count(), 0);
+        assert_eq!(interpreter.repeated_moves().count(), 0);
     }
 }
 

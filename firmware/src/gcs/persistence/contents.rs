@@ -24,11 +24,12 @@ use crate::parameters::Parameters;
 use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, envelope_bytes};
 use embedded_storage::nor_flash::NorFlash;
 
-/// Version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
+/// Newest version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
 /// would take its own for those of a machine whose zeros are 0; since 3 there are tables of repeated moves.
 const VERSION: u16 = 3;
-/// The first with tables.
+/// The first with tables, and the last without.
 const VERSION_WITH_MOVES: u16 = 3;
+const VERSION_WITHOUT_MOVES: u16 = 2;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
 
@@ -63,7 +64,14 @@ fn write<S: Sink>(
     trial: &TrialControl<'_>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    sink.put(&VERSION.to_le_bytes())?;
+    // An older firmware can read what has no tables.
+    let has_moves = interpreter.commander.is_move_kept(None);
+    let version = if has_moves {
+        VERSION_WITH_MOVES
+    } else {
+        VERSION_WITHOUT_MOVES
+    };
+    sink.put(&version.to_le_bytes())?;
     let (stored, defaults) = (
         interpreter.parameters_to_store(),
         interpreter.default_parameters(),
@@ -83,7 +91,10 @@ fn write<S: Sink>(
         sink.put(&(text.len() as u16).to_le_bytes())?;
         sink.put(text)?;
     }
-    stored_moves::write(&interpreter.commander, trial, sink)
+    if has_moves {
+        stored_moves::write(&interpreter.commander, trial, sink)?;
+    }
+    Ok(())
 }
 
 /// The parameters in which `stored` is not what the controller has by itself.

@@ -6,7 +6,7 @@ use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::parameter::{Addresses, Parameter};
 use crate::gcs::text::Name;
-use crate::iterative_learning::TableName;
+use crate::iterative_learning::{TableName, TableReport};
 use crate::parameters::{MAX_RECORD_ROWS, Parameters};
 use crate::queues::CommandQueues;
 use crate::settings_store::StoreError;
@@ -136,6 +136,11 @@ impl Interpreter {
     /// All macros, with their lines, each ended by LF.
     pub fn macros(&self) -> impl Iterator<Item = (Name, &[u8])> {
         self.macros.all()
+    }
+
+    /// What is told of repeated moves that have tables.
+    pub fn repeated_moves(&self) -> impl Iterator<Item = &TableReport> {
+        self.commander.repeated_moves()
     }
 
     /// Starts with these parameters, as if they had been stored: the settings that a machine comes with. To be called before anything
