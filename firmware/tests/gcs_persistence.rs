@@ -200,6 +200,56 @@ fn a_flash_that_takes_nothing_is_told() {
     assert_eq!(bench.say("MAC?\n"), "A\n");
 }
 
+/// A move from rest whose table has so many trials behind it: none.
+fn with_a_table(bench: &mut KeptBench<SECTOR>) {
+    assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
+    bench.say("MOV X 1\n");
+    bench.bench.run(4_000);
+    assert!(bench.say("ILC?\n").starts_with("OUT=learning "));
+}
+
+#[test]
+fn a_table_is_told_as_kept_only_when_it_is() {
+    let mut bench = start();
+    with_a_table(&mut bench);
+    let good = bench.keeper.flash().powered();
+    // A flash that takes nothing, and then one that takes everything.
+    bench.keeper.flash().cut_in(0, 1);
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "4001");
+    assert!(bench.say("ILC?\n").contains("KEPT=0"));
+    *bench.keeper.flash() = good;
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "0");
+    assert!(bench.say("ILC?\n").contains("KEPT=1"));
+    // What is stored of it stays when it can not be stored again, and is told so.
+    let good = bench.keeper.flash().powered();
+    bench.keeper.flash().cut_in(0, 2);
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "4001");
+    assert!(bench.say("ILC?\n").contains("KEPT=1"));
+    // Forgetting that can not be stored is told to all; the next store does it.
+    assert_eq!(bench.error_after("ILC FORGET OUT"), "0");
+    assert_eq!(bench.error_after(""), "4001");
+    *bench.keeper.flash() = good;
+    let mut bench = {
+        assert_eq!(bench.error_after("WPA 100"), "0");
+        bench.restart()
+    };
+    assert_eq!(bench.say("ILC?\n"), "\n");
+}
+
+#[test]
+fn a_table_is_kept_at_rest_and_over_nothing_that_is_damaged() {
+    let mut bench = start();
+    with_a_table(&mut bench);
+    bench.say("MOV X 20\n");
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "53");
+    let mut bench = Bench::ready();
+    assert_eq!(bench.error_after("ILC LEARN OUT\nMOV X 1"), "0");
+    bench.run(4_000);
+    // Nobody keeps settings.
+    assert_eq!(bench.error_after("ILC KEEP OUT"), "34");
+    assert!(bench.say("ILC?\n").contains("KEPT=0"));
+}
+
 #[test]
 fn without_a_keeper_it_is_refused() {
     let mut bench = Bench::ready();
