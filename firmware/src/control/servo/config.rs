@@ -1,7 +1,7 @@
 //! Constants of the servo, derived from the parameters.
 
 use super::filter::FilterConfig;
-use super::inertia::carried_inertia;
+use super::inertia::{carried_inertia, largest_carried_inertia};
 use super::learnt::{FEATURES, Learnt};
 use super::platform_torque::Body;
 use super::ripple::RippleConfig;
@@ -161,8 +161,18 @@ impl PivotServoConfig {
         let middle_inertia = drive.inertia_kg_m2 + f64::from(carried);
         // What a change of one count in a tick is worth grows with the gain, and the thresholds with it.
         let filters = FilterConfig::new(&servo.filters[pivot], limits.rate_hz);
+        // Where gains go by the inertia, with what it is at most.
+        let largest_share = match servo.scheduled_inertia_kg_m2 {
+            scheduled if scheduled > 0.0 => {
+                let radius = parameters.geometry.usable_radius();
+                let carried = largest_carried_inertia(&Body::new(parameters), radius, pivot);
+                (drive.inertia_kg_m2 + carried) / scheduled
+            }
+            _ => 1.0,
+        };
+        let largest_gain = gains.velocity_v_s_rad * largest_share;
         let volt_per_count =
-            gains.velocity_v_s_rad * f64::from(filters.noise_gain()) * COUNT_RAD * limits.rate_hz;
+            largest_gain * f64::from(filters.noise_gain()) * COUNT_RAD * limits.rate_hz;
         let frozen_v = supervision.frozen_v.max(FROZEN_COUNTS * volt_per_count);
         let oscillation_v = supervision
             .oscillation_v
@@ -201,6 +211,38 @@ impl PivotServoConfig {
             learnt_weight_limit: scale.map(|scale| (power.supply_v * 0.25 * scale) as f32),
             learnt: Learnt::new(&parameters.learnt[pivot]),
             middle_inertia: middle_inertia as f32,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With 5 kg and gains that go by the inertia a count is worth as much more as the gains are at most; without, as before.
+    #[test]
+    fn thresholds_follow_scheduled_gains() {
+        let mut parameters = Parameters::REFERENCE;
+        // What is set is below what a count's noise asks for.
+        parameters.supervision.frozen_v = 0.01;
+        parameters.supervision.oscillation_v = 0.01;
+        let thresholds = |parameters: &Parameters| {
+            let pivot = PivotServoConfig::new(parameters, 1);
+            [f64::from(pivot.frozen_duty), pivot.oscillation_swing.into()]
+        };
+        let fixed = thresholds(&parameters);
+        parameters.platform.payload_kg = 5.0;
+        parameters.platform.payload_inertia_kg_m2 = 0.02;
+        assert_eq!(thresholds(&parameters), fixed);
+        parameters.servo.scheduled_inertia_kg_m2 = 0.04;
+        let config = ServoConfig::new(&parameters);
+        let middle = config.scheduled_share(&[1.0; 3], &[1.0; 3], 1);
+        for (scheduled, fixed) in thresholds(&parameters).into_iter().zip(fixed) {
+            let share = scheduled / fixed;
+            assert!(
+                share > 1.2 * f64::from(middle) && share < 4.0,
+                "{share} of {middle}"
+            );
         }
     }
 }

@@ -2,6 +2,12 @@
 
 use super::platform_torque::Body;
 
+const HALF_ROOT: f32 = 0.866_025_4;
+/// Of the guides, in the platform's axes, as in `platform_torque`.
+const NORMALS: [[f32; 2]; 3] = [[0.5, HALF_ROOT], [-1.0, 0.0], [0.5, -HALF_ROOT]];
+/// Places on the edge of the disk that the largest inertia is looked for at: between two it is less than 1 % more.
+const PLACES: u16 = 48;
+
 /// Moment of inertia of the carried body as a pivot feels it, kg m^2: the diagonal of `J^-T M J^-1`, M the body's mass matrix and J
 /// the pivots' Jacobian.
 ///
@@ -10,9 +16,6 @@ use super::platform_torque::Body;
 /// kinetic energy of that motion.
 #[inline]
 pub fn carried_inertia(body: &Body, lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> f32 {
-    const HALF_ROOT: f32 = 0.866_025_4;
-    // In the platform's axes, as in `platform_torque`.
-    const NORMALS: [[f32; 2]; 3] = [[0.5, HALF_ROOT], [-1.0, 0.0], [0.5, -HALF_ROOT]];
     let [a, b, c] = *lengths;
     let (Some(&[x, y]), Some(&cosine)) = (NORMALS.get(pivot), cosines.get(pivot)) else {
         return 0.0;
@@ -28,4 +31,53 @@ pub fn carried_inertia(body: &Body, lengths: &[f32; 3], cosines: &[f32; 3], pivo
     body.mass * (v[0] * v[0] + v[1] * v[1])
         + 2.0 * turn * (moment[0] * v[1] - moment[1] * v[0])
         + body.inertia * turn * turn
+}
+
+/// The most that [`carried_inertia`] of a pivot is in a disk of this radius (track radii): the body's energy grows towards the edge, and
+/// so that is where it is looked for.
+pub(super) fn largest_carried_inertia(body: &Body, radius: f64, pivot: usize) -> f64 {
+    let mut largest = f64::from(carried_inertia(body, &[1.0; 3], &[1.0; 3], pivot));
+    for place in 0..PLACES {
+        let direction = core::f64::consts::TAU * f64::from(place) / f64::from(PLACES);
+        let (sin, cos) = libm::sincos(direction);
+        let (mut lengths, mut cosines) = ([0.0; 3], [0.0; 3]);
+        for (normal, (length, cosine)) in NORMALS.iter().zip(lengths.iter_mut().zip(&mut cosines)) {
+            let [x, y] = normal.map(f64::from);
+            // Of the place along the guide and across it: the guide meets the track where both make a radius.
+            let (along, across) = (radius * (cos * y - sin * x), radius * (cos * x + sin * y));
+            let to_track = libm::sqrt(1.0 - across * across);
+            (*length, *cosine) = ((to_track - along) as f32, to_track as f32);
+        }
+        largest = largest.max(carried_inertia(body, &lengths, &cosines, pivot).into());
+    }
+    largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Parameters;
+
+    /// A finer look, at all radii: what is found at the edge is the most, for a load off the centre too.
+    #[test]
+    fn the_largest_inertia_is_at_the_edge() {
+        let mut parameters = Parameters::REFERENCE;
+        parameters.platform.payload_kg = 5.0;
+        parameters.platform.payload_inertia_kg_m2 = 0.02;
+        parameters.platform.payload_centre_mm = [30.0, -10.0];
+        let body = Body::new(&parameters);
+        for pivot in 0..3 {
+            let largest = largest_carried_inertia(&body, 0.8, pivot);
+            let mut most = 0.0_f64;
+            for step in 0..=40 {
+                most = most.max(largest_carried_inertia(
+                    &body,
+                    0.02 * f64::from(step),
+                    pivot,
+                ));
+            }
+            assert!(most <= 1.01 * largest, "{pivot}: {most} of {largest}");
+            assert!(largest > 1.2 * largest_carried_inertia(&body, 0.0, pivot));
+        }
+    }
 }
