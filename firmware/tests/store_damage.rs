@@ -231,6 +231,13 @@ fn a_value_out_of_its_range_is_told_and_the_others_are_taken() {
     let mut bench = KeptBench::start(bench.keeper.flash().powered());
     assert_eq!(bench.say("MAC?\n"), "a\n");
     assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
+    // Nor by a table of a repeated move.
+    assert_eq!(bench.error_after("ILC LEARN a\nMOV X 0.1"), "0");
+    bench.bench.run(2_000);
+    assert_eq!(bench.error_after("ILC KEEP a"), "0");
+    let mut bench = KeptBench::start(bench.keeper.flash().powered());
+    assert!(bench.say("ILC?\n").starts_with("a=learning "));
+    assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
     // What is in force is kept when somebody asks for that, and then that is all.
     assert_eq!(bench.bench.error_after("WPA 100"), "");
     bench.say("");
