@@ -202,3 +202,73 @@ fn larger(a: f32, b: f32) -> f32 {
 fn smaller(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MEAN_TICKS: usize = 20;
+    const TICKS_A_SECOND: usize = 20_000;
+    const MILLISECOND: usize = 20;
+
+    fn update(
+        state: &mut RestMode,
+        config: &RestModeConfig,
+        moving: bool,
+        counts: f64,
+    ) -> Stiffness {
+        let sum = (counts * UNITS_PER_COUNT * MEAN_TICKS as f64) as i32;
+        state.update(config, moving, &[0, sum, 0])
+    }
+
+    /// The shares after ten seconds at rest, and the largest change of one from tick to tick on the way.
+    fn rested(config: &RestModeConfig) -> (RestMode, f32) {
+        let (mut state, mut last, mut step) = (RestMode::default(), Stiffness::FULL, 0.0_f32);
+        for _ in 0..10 * TICKS_A_SECOND {
+            let now = update(&mut state, config, false, 0.0);
+            step = larger(step, (now.gains - last.gains).abs());
+            step = larger(step, (now.integral_rate - last.integral_rate).abs());
+            last = now;
+        }
+        (state, step)
+    }
+
+    /// A mean error of so many counts that it is a push while the loop is on its way too, or a motion: the full loop within a millisecond,
+    /// a tenth of it in a tick at most.
+    #[test]
+    fn a_push_and_a_motion_bring_the_full_loop_back_within_a_millisecond() {
+        let parameters = Parameters::REFERENCE;
+        let config = RestModeConfig::new(&parameters, MEAN_TICKS);
+        for (moving, counts) in [
+            (false, HUNTING * parameters.servo.rest.wake_counts + 1.0),
+            (true, 0.0),
+        ] {
+            let (mut state, step) = rested(&config);
+            // Slowly: a thousandth of the full gains in a tick.
+            assert!(step < 1e-3, "{step}");
+            let mut last = state.stiffness;
+            assert!(last.gains < 0.14 && last.integral_rate < 0.4, "{last:?}");
+            let ticks = (1..).take(1_000).find(|_| {
+                let now = update(&mut state, &config, moving, counts);
+                assert!(now.gains - last.gains < 0.101 && now.gains >= last.gains);
+                last = now;
+                now == Stiffness::FULL
+            });
+            assert!(
+                ticks.is_some_and(|ticks| ticks <= MILLISECOND),
+                "{moving}: {ticks:?}, {last:?}"
+            );
+        }
+        // Less than a push: nothing comes back.
+        let (mut state, _) = rested(&config);
+        for _ in 0..MILLISECOND {
+            update(
+                &mut state,
+                &config,
+                false,
+                parameters.servo.rest.wake_counts - 1.0,
+            );
+        }
+        assert!(state.stiffness.gains < 0.14);
+    }
+}
