@@ -35,13 +35,30 @@ struct Case {
     tuning: Tuning,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
+struct Gains {
+    velocity_v_s_rad: f64,
+    position_1_s: f64,
+    integral_1_s: f64,
+}
+
+const SHAPED: Tuning = Tuning::Shaped(Gains {
+    velocity_v_s_rad: 43.0,
+    position_1_s: 650.0,
+    integral_1_s: 720.0,
+});
+/// For a load of 5 kg: what a ring moves is another part of it in every place, and the resonance comes closer.
+const SHAPED_FOR_LOAD: Tuning = Tuning::Shaped(Gains {
+    velocity_v_s_rad: 33.0,
+    position_1_s: 520.0,
+    integral_1_s: 560.0,
+});
+
+#[derive(Clone, Copy)]
 enum Tuning {
     Reference,
     /// Faster, with a notch at the resonance, a lead over the winding's corner, and gains scheduled by the inertia.
-    Shaped,
-    /// The same for a load of 5 kg: what a ring moves is another part of it in every place, and the resonance comes closer.
-    ShapedForLoad,
+    Shaped(Gains),
     /// For a soft transmission: half the velocity gain, and a notch.
     Soft,
 }
@@ -77,21 +94,21 @@ fn main() {
             1_500.0,
             Tuning::Reference,
         ),
-        case("shaped, centre", 0.0, 0.0, 1_500.0, Tuning::Shaped),
-        case("shaped, 76 mm out", 0.0, 76.0, 1_500.0, Tuning::Shaped),
+        case("shaped, centre", 0.0, 0.0, 1_500.0, SHAPED),
+        case("shaped, 76 mm out", 0.0, 76.0, 1_500.0, SHAPED),
         case(
             "shaped, 5 kg told, centre",
             5.0,
             0.0,
             1_500.0,
-            Tuning::ShapedForLoad,
+            SHAPED_FOR_LOAD,
         ),
         case(
             "shaped, 5 kg told, 76 mm out",
             5.0,
             76.0,
             1_500.0,
-            Tuning::ShapedForLoad,
+            SHAPED_FOR_LOAD,
         ),
         case(
             "resonance at 600 Hz, notch, half the gain",
@@ -139,14 +156,10 @@ impl Case {
         for (gains, filters) in servo.gains.iter_mut().zip(&mut servo.filters) {
             match self.tuning {
                 Tuning::Reference => {}
-                Tuning::Shaped | Tuning::ShapedForLoad => {
-                    let [velocity, position, integral] = match self.tuning {
-                        Tuning::Shaped => [43.0, 650.0, 720.0],
-                        _ => [33.0, 520.0, 560.0],
-                    };
-                    gains.velocity_v_s_rad = velocity;
-                    gains.position_1_s = position;
-                    gains.integral_v_rad = velocity * integral;
+                Tuning::Shaped(shaped) => {
+                    gains.velocity_v_s_rad = shaped.velocity_v_s_rad;
+                    gains.position_1_s = shaped.position_1_s;
+                    gains.integral_v_rad = shaped.velocity_v_s_rad * shaped.integral_1_s;
                     filters.notches = notches;
                     filters.lead = Lead {
                         from_hz: 2.1 / 0.7e-3 / TAU,
@@ -161,7 +174,7 @@ impl Case {
                 }
             }
         }
-        if matches!(self.tuning, Tuning::Shaped | Tuning::ShapedForLoad) {
+        if matches!(self.tuning, Tuning::Shaped(_)) {
             parameters = with_inertia_scheduled(&parameters);
         }
         (stage, parameters)

@@ -9,9 +9,9 @@ use firmware::parameters::Parameters;
 use firmware::queues::{Command, CommandQueues, Queues, Snapshot, TickQueues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::Told;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{with_machine_told, with_ripple_told};
 
 const MOVES: usize = 200;
 const UNIT: f64 = 4_294_967_296.0;
@@ -27,13 +27,6 @@ struct Case {
     mismatch_percent: f64,
     payload_kg: f64,
     told: Told,
-}
-
-#[derive(Clone, Copy)]
-enum Told {
-    Nothing,
-    Machine,
-    MachineAndRipple,
 }
 
 const CASES: [Case; 12] = {
@@ -64,14 +57,9 @@ impl Case {
     }
 
     fn words(&self) -> String {
-        let told = match self.told {
-            Told::Nothing => "nothing",
-            Told::Machine => "machine",
-            Told::MachineAndRipple => "machine and ripple",
-        };
         format!(
-            "{} % off | {} | {told}",
-            self.mismatch_percent, self.payload_kg
+            "{} % off | {} | {}",
+            self.mismatch_percent, self.payload_kg, self.told
         )
     }
 
@@ -81,14 +69,8 @@ impl Case {
             payload_kg: self.payload_kg,
             ..RunOptions::default()
         };
-        let (stage, parameters) = (stage_parameters(&options), controller_parameters(&options));
-        let told = match self.told {
-            Told::Nothing => parameters,
-            Told::Machine => with_machine_told(&parameters, &stage),
-            Told::MachineAndRipple => {
-                with_ripple_told(&with_machine_told(&parameters, &stage), &stage)
-            }
-        };
+        let stage = stage_parameters(&options);
+        let told = (self.told).parameters(&controller_parameters(&options), &stage);
         (stage, told)
     }
 }

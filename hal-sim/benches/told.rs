@@ -6,9 +6,9 @@
 
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
-use hal_sim::rig::{with_machine_told, with_ripple_told};
 
 fn main() {
     println!(
@@ -31,15 +31,10 @@ fn main() {
         };
         let stage = stage_parameters(&options);
         let as_it_comes = controller_parameters(&options);
-        let told = with_machine_told(&as_it_comes, &stage);
-        let with_ripple = with_ripple_told(&told, &stage);
-        for (words, parameters) in [
-            ("nothing", as_it_comes),
-            ("machine", told),
-            ("machine and ripple", with_ripple),
-        ] {
+        for told in [Told::Nothing, Told::Machine, Told::MachineAndRipple] {
+            let parameters = told.parameters(&as_it_comes, &stage);
             let figures = demonstration(&parameters, &stage, &options);
-            println!("| {mismatch_percent} % off | {payload_kg} | {words} | {figures} |");
+            println!("| {mismatch_percent} % off | {payload_kg} | {told} | {figures} |");
         }
     }
 }

@@ -4,10 +4,9 @@
 //! the first time on. The first trial is the one without. An error is the root mean square over the pivots and the ticks of the move and of
 //! 5 ms after it.
 
-use firmware::parameters::Parameters;
 use hal_sim::random::Random;
+use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{with_machine_told, with_ripple_told};
 use tests::Bench;
 
 const MOVES: usize = 40;
@@ -21,15 +20,15 @@ fn main() {
     );
     println!("|---|---|---|---|---|---|---|");
     for (mismatch_percent, payload_kg, told) in [
-        (0.0, 0.0, "nothing"),
-        (20.0, 0.0, "nothing"),
-        (-20.0, 0.0, "nothing"),
-        (0.0, 0.0, "machine"),
-        (20.0, 0.0, "machine"),
-        (-20.0, 0.0, "machine"),
-        (20.0, 0.0, "machine and ripple"),
-        (-20.0, 0.0, "machine and ripple"),
-        (35.0, 5.0, "machine and ripple"),
+        (0.0, 0.0, Told::Nothing),
+        (20.0, 0.0, Told::Nothing),
+        (-20.0, 0.0, Told::Nothing),
+        (0.0, 0.0, Told::Machine),
+        (20.0, 0.0, Told::Machine),
+        (-20.0, 0.0, Told::Machine),
+        (20.0, 0.0, Told::MachineAndRipple),
+        (-20.0, 0.0, Told::MachineAndRipple),
+        (35.0, 5.0, Told::MachineAndRipple),
     ] {
         let options = RunOptions {
             mismatch_percent,
@@ -37,13 +36,7 @@ fn main() {
             ..RunOptions::default()
         };
         let stage = stage_parameters(&options);
-        let mut parameters: Parameters = controller_parameters(&options);
-        if told != "nothing" {
-            parameters = with_machine_told(&parameters, &stage);
-        }
-        if told == "machine and ripple" {
-            parameters = with_ripple_told(&parameters, &stage);
-        }
+        let parameters = told.parameters(&controller_parameters(&options), &stage);
         let mut bench = Bench::told(&stage, &parameters);
         assert_eq!(bench.error_after("FRF"), "0");
         bench.settle();
@@ -95,14 +88,13 @@ fn errors(bench: &mut Bench, number: usize, random: &mut Random) -> Vec<f64> {
         let mut has_started = false;
         while after < AFTER {
             bench.tick();
-            let sample = bench.sample();
-            for (pivot, setpoint) in sample.pivots.iter().zip(&sample.pivot_setpoints) {
-                let counts = (*pivot - *setpoint).units() as f64 / 64.0;
+            for counts in bench.following_errors() {
                 sum += counts * counts;
                 count += 1.0;
             }
-            let moves = sample.pivot_setpoints != last;
-            last = sample.pivot_setpoints;
+            let setpoints = bench.sample().pivot_setpoints;
+            let moves = setpoints != last;
+            last = setpoints;
             has_started |= moves;
             after = if moves || !has_started { 0 } else { after + 1 };
         }

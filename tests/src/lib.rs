@@ -187,6 +187,29 @@ impl Bench {
         self.record.sample.as_ref().expect("a tick has run")
     }
 
+    /// Following errors of the pivots in the last tick, encoder counts.
+    #[must_use]
+    pub fn following_errors(&self) -> [f64; 3] {
+        let sample = self.sample();
+        [0, 1, 2].map(|i| {
+            (sample.pivots[i] - sample.pivot_setpoints[i]).units() as f64 / UNITS_PER_COUNT as f64
+        })
+    }
+
+    /// Their root mean square over so many ticks.
+    pub fn rms_error(&mut self, ticks: u32) -> f64 {
+        let mut sum = 0.0;
+        for _ in 0..ticks {
+            self.tick();
+            sum += self
+                .following_errors()
+                .map(|error| error * error)
+                .iter()
+                .sum::<f64>();
+        }
+        (sum / f64::from(3 * ticks)).sqrt()
+    }
+
     /// State of the supervisor.
     #[must_use]
     pub fn mode(&self) -> Mode {

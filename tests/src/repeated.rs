@@ -39,20 +39,11 @@ impl Bench {
     /// Root mean square of the pivots' following errors over the way out, tick by tick, encoder counts; then it comes back.
     pub fn way_out(&mut self) -> f64 {
         self.send(OUT);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for _ in 0..5_000 {
-            self.tick();
-            let sample = self.sample();
-            for (pivot, setpoint) in sample.pivots.iter().zip(&sample.pivot_setpoints) {
-                let counts = (*pivot - *setpoint).units() as f64 / 64.0;
-                sum += counts * counts;
-                count += 1.0;
-            }
-        }
+        let error = self.rms_error(5_000);
         self.settle();
         self.say(BACK);
         self.settle();
-        (sum / count).sqrt()
+        error
     }
 
     /// The line of `ILC?` about a table.

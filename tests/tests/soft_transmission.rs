@@ -65,12 +65,8 @@ fn with_notches_it_neither_hunts_nor_rings() {
         let (mut errors, mut duties) = (Vec::new(), Vec::new());
         for _ in 0..1_000 {
             bench.tick();
-            let sample = bench.sample();
-            errors.push(
-                [0, 1, 2]
-                    .map(|i| (sample.pivots[i] - sample.pivot_setpoints[i]).units() as f64 / 64.0),
-            );
-            duties.push(sample.duty.map(|duty| duty.0));
+            errors.push(bench.following_errors());
+            duties.push(bench.sample().duty.map(|duty| duty.0));
         }
         for i in 0..3 {
             let mean = errors.iter().map(|all| all[i]).sum::<f64>() / 1e3;

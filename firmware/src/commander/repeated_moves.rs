@@ -43,11 +43,11 @@ impl Commander {
     pub fn forget_move(
         &mut self,
         name: Option<&TableName>,
-        queues: &mut CommandQueues<'_>,
+        trial: &mut TrialControl<'_>,
     ) -> Result<(), LearningError> {
-        self.tables.forget(name, &mut queues.trial)?;
-        queues.trial.cancel();
-        queues.trial.hold_model(!self.tables.is_empty());
+        self.tables.forget(name, trial)?;
+        trial.cancel();
+        trial.hold_model(!self.tables.is_empty());
         Ok(())
     }
 
@@ -82,14 +82,6 @@ impl Commander {
         self.tables.restore(kept, points, trial)?;
         trial.hold_model(true);
         Some(())
-    }
-
-    /// Forgets all tables that were stored: what was stored is not whole.
-    pub fn forget_moves(&mut self, trial: &mut TrialControl<'_>) {
-        let Ok(()) = self.tables.forget(None, trial) else {
-            return;
-        };
-        trial.hold_model(false);
     }
 
     /// What is told of the tables.

@@ -13,8 +13,8 @@ impl Commander {
     ///
     /// # Errors
     /// [`CommandError::Faulted`], [`CommandError::NotCommissioned`], [`CommandError::Debugged`], and [`CommandError::InMotion`] for a stage
-    /// that has been let go and has not come to rest: the servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one that is out of its reach, where the
-    /// supervisor would end it at once.
+    /// that has been let go and has not come to rest: the servo would try to stop it within a tick; [`CommandError::ReferenceOutside`] for one
+    /// that is out of its reach, where the supervisor would end it at once.
     pub fn set_servo(
         &mut self,
         on: bool,

@@ -3,6 +3,42 @@
 use crate::machine::devices::StageParameters;
 use firmware::control::servo::{ServoConfig, carried_inertia};
 use firmware::parameters::{Harmonic, Parameters};
+use std::fmt;
+
+/// What a controller is told of the machine before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// It is as it comes.
+    Nothing,
+    /// [`with_machine_told`].
+    Machine,
+    /// And [`with_ripple_told`].
+    MachineAndRipple,
+}
+
+impl Told {
+    /// The controller's parameters with what it is told.
+    #[must_use]
+    pub fn parameters(self, parameters: &Parameters, stage: &StageParameters) -> Parameters {
+        match self {
+            Self::Nothing => parameters.clone(),
+            Self::Machine => with_machine_told(parameters, stage),
+            Self::MachineAndRipple => {
+                with_ripple_told(&with_machine_told(parameters, stage), stage)
+            }
+        }
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Nothing => "nothing",
+            Self::Machine => "machine",
+            Self::MachineAndRipple => "machine and ripple",
+        })
+    }
+}
 
 /// The controller's parameters with the drives and the platform as they are on this machine, and gains that fit its motors. Payload
 /// and everything else stay what the controller takes them for.

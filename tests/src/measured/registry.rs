@@ -140,7 +140,8 @@ pub const SECTIONS: &[Section] = &[
         name: "settle",
         title: "Move and settle, and at rest",
         group: Group::Motion,
-        about: "200 random moves of 1 mm and more on the simulated stage, as the controller comes and told the machine's numbers by parameters: time from the command to within +-2 encoder LSB, after the \
+        about: "200 random moves of 1 mm and more on the simulated stage, as the controller comes and told the machine's numbers by parameters: \
+                time from the command to within +-2 encoder LSB, after the \
                 profile and as a multiple of it, and the share of moves within 1.1 of it. Then the stage at rest, half a second at a \
                 time: what moves, and how the motors' duty does.",
         command: "cargo bench --bench settle",

@@ -35,7 +35,7 @@ impl Interpreter {
                 if commander.is_move_kept(name.as_ref()) {
                     self.persistence.mark_changed();
                 }
-                commander.forget_move(name.as_ref(), queues)
+                commander.forget_move(name.as_ref(), &mut queues.trial)
             }
         };
         Ok(done?)

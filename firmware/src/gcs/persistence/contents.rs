@@ -27,8 +27,7 @@ use embedded_storage::nor_flash::NorFlash;
 /// Newest version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
 /// would take its own for those of a machine whose zeros are 0; since 3 there are tables of repeated moves.
 const VERSION: u16 = 3;
-/// The first with tables, and the last without.
-const VERSION_WITH_MOVES: u16 = 3;
+/// The newest without tables.
 const VERSION_WITHOUT_MOVES: u16 = 2;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
@@ -67,7 +66,7 @@ fn write<S: Sink>(
     // An older firmware can read what has no tables.
     let has_moves = interpreter.commander.is_move_kept(None);
     let version = if has_moves {
-        VERSION_WITH_MOVES
+        VERSION
     } else {
         VERSION_WITHOUT_MOVES
     };
@@ -85,9 +84,7 @@ fn write<S: Sink>(
     }
     sink.put(&[interpreter.macros().count() as u8])?;
     for (name, text) in interpreter.macros() {
-        let name = name.as_bytes();
-        sink.put(&[name.len() as u8])?;
-        sink.put(name)?;
+        write_name(name.as_str(), sink)?;
         sink.put(&(text.len() as u16).to_le_bytes())?;
         sink.put(text)?;
     }
@@ -119,14 +116,15 @@ fn read<F: NorFlash>(
     let kept = read_parameters(reader, interpreter).ok_or(Unusable::Damaged)?;
     let mut rest = || {
         read_macros(reader, interpreter)?;
-        if version >= VERSION_WITH_MOVES {
+        if version > VERSION_WITHOUT_MOVES {
             stored_moves::read(reader, &mut interpreter.commander, trial)?;
         }
         reader.is_at_end().then_some(())
     };
     if rest().is_none() {
         interpreter.forget_macros();
-        interpreter.commander.forget_moves(trial);
+        // All of them can be forgotten, whatever there is.
+        let _ = interpreter.commander.forget_move(None, trial);
         return Err(Unusable::Damaged);
     }
     interpreter.restore_parameters(kept);
@@ -161,17 +159,28 @@ fn read_parameters<F: NorFlash>(
     kept.parameters.are_sound().then_some(kept)
 }
 
+/// A name with its length.
+pub(super) fn write_name<S: Sink>(name: &str, sink: &mut S) -> Result<(), S::Error> {
+    sink.put(&[name.len() as u8])?;
+    sink.put(name.as_bytes())
+}
+
+/// What [`write_name`] has written.
+pub(super) fn read_name<F: NorFlash>(reader: &mut Reader<'_, F>) -> Option<Name> {
+    let [length] = reader.take()?;
+    let mut name = [0; NAME_BYTES];
+    let name = name.get_mut(..usize::from(length))?;
+    reader.fill(name)?;
+    Name::named(name)
+}
+
 fn read_macros<F: NorFlash>(
     reader: &mut Reader<'_, F>,
     interpreter: &mut Interpreter,
 ) -> Option<()> {
     let [count] = reader.take()?;
     for _ in 0..count {
-        let [length] = reader.take()?;
-        let mut name = [0; NAME_BYTES];
-        let name = name.get_mut(..usize::from(length))?;
-        reader.fill(name)?;
-        let name = Name::named(name)?;
+        let name = read_name(reader)?;
         let mut left = usize::from(u16::from_le_bytes(reader.take()?));
         while left > 0 {
             let mut piece = [0; CHUNK_BYTES];

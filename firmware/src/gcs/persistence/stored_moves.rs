@@ -11,6 +11,7 @@
 //! | 4, 2 | ticks from point to point; points |
 //! | each 2, 2, 2 | volts of the pivots in units of 2 mV, two's complement |
 
+use super::contents::{read_name, write_name};
 use crate::commander::Commander;
 use crate::gcs::text::NAME_BYTES;
 use crate::iterative_learning::{
@@ -29,22 +30,15 @@ pub(super) fn write<S: Sink>(
 ) -> Result<(), S::Error> {
     sink.put(&[commander.kept_moves(trial).count() as u8])?;
     for (kept, points) in commander.kept_moves(trial) {
-        let KeptTable {
-            report,
-            key,
-            ticks,
-            halvings,
-        } = kept;
-        let name = report.name.as_bytes();
-        sink.put(&[name.len() as u8])?;
-        sink.put(name)?;
-        sink.put(&[code(report.state), halvings])?;
+        let report = &kept.report;
+        write_name(&report.name, sink)?;
+        sink.put(&[code(report.state), kept.halvings])?;
         sink.put(&report.trials.to_le_bytes())?;
         for counts in report.error_counts {
             sink.put(&counts.to_le_bytes())?;
         }
-        sink.put(&key.to_le_bytes())?;
-        sink.put(&ticks.to_le_bytes())?;
+        sink.put(&kept.key.to_le_bytes())?;
+        sink.put(&kept.ticks.to_le_bytes())?;
         sink.put(&report.spacing_ticks.to_le_bytes())?;
         sink.put(&(points.len() as u16).to_le_bytes())?;
         for volts in points.iter().flatten() {
@@ -76,11 +70,7 @@ pub(super) fn read<F: NorFlash>(
 }
 
 fn read_table<F: NorFlash>(reader: &mut Reader<'_, F>) -> Option<KeptTable> {
-    let [length] = reader.take()?;
-    let mut name = [0; NAME_BYTES];
-    let name = name.get_mut(..usize::from(length))?;
-    reader.fill(name)?;
-    let name = crate::gcs::text::Name::named(name)?;
+    let name = read_name(reader)?;
     let [state, halvings] = reader.take()?;
     let trials = u32::from_le_bytes(reader.take()?);
     let mut error_counts = [0.0; 3];
