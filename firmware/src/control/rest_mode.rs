@@ -116,6 +116,8 @@ pub struct RestMode {
     slow_sums: [f32; 3],
     lasting_sums: [f32; 3],
     quiet_ticks: u32,
+    /// A push has woken the loop: on its way to the full one.
+    woken: bool,
     stiffness: Stiffness,
 }
 
@@ -139,7 +141,9 @@ impl RestMode {
             fast = sum.unsigned_abs().max(fast);
         }
         let is_soft = self.stiffness.gains <= config.stiffness;
-        if fast > config.wake_sums[usize::from(is_soft)] {
+        // What has begun is finished: on its way the loop counts as not quite slow, and would ask for a larger push.
+        self.woken |= fast > config.wake_sums[usize::from(is_soft)];
+        if self.woken {
             self.stiffen(config);
         } else if slow > config.quiet_sum {
             self.quiet_ticks = 0;
@@ -183,6 +187,7 @@ impl RestMode {
         } = &mut self.stiffness;
         *gains = smaller(*gains + config.stiffening, 1.0);
         *integral_rate = smaller(*integral_rate + config.stiffening, 1.0);
+        self.woken &= *gains < 1.0 || *integral_rate < 1.0;
     }
 
     /// The full loop, from now on.
@@ -233,14 +238,15 @@ mod tests {
         (state, step)
     }
 
-    /// A mean error of so many counts that it is a push while the loop is on its way too, or a motion: the full loop within a millisecond,
-    /// a tenth of it in a tick at most.
+    /// A small push, one so large that it would be one while the loop is on its way too, or a motion: the full loop within a
+    /// millisecond, a tenth of it in a tick at most.
     #[test]
     fn a_push_and_a_motion_bring_the_full_loop_back_within_a_millisecond() {
         let parameters = Parameters::REFERENCE;
         let config = RestModeConfig::new(&parameters, MEAN_TICKS);
         for (moving, counts) in [
             (false, HUNTING * parameters.servo.rest.wake_counts + 1.0),
+            (false, parameters.servo.rest.wake_counts + 1.0),
             (true, 0.0),
         ] {
             let (mut state, step) = rested(&config);
