@@ -26,7 +26,7 @@ fn decode(frame: u64) -> (u32, bool, bool) {
 }
 
 fn ideal(parameters: EncoderParameters) -> Encoder {
-    Encoder::new(parameters, 1, false, false)
+    Encoder::new(parameters, 1, &Imperfections::NONE)
 }
 
 fn reading(encoder: &mut Encoder, angle_rad: f64) -> u32 {
@@ -167,7 +167,14 @@ fn noise_and_eccentricity_have_their_size() {
         ..EncoderParameters::REFERENCE
     };
     let lsb_rad = TAU / f64::from(COUNTS_PER_TURN);
-    let mut noisy = Encoder::new(parameters, 3, true, false);
+    let mut noisy = Encoder::new(
+        parameters,
+        3,
+        &Imperfections {
+            encoder_noise: true,
+            ..Imperfections::NONE
+        },
+    );
     let centre = 1.0 / lsb_rad;
     let squares: f64 = (0..10_000)
         .map(|_| (f64::from(reading(&mut noisy, 1.0)) - centre).powi(2))
@@ -177,7 +184,14 @@ fn noise_and_eccentricity_have_their_size() {
         (deviation_rad / 1e-6 - 1.0).abs() < 0.05,
         "{deviation_rad:e}"
     );
-    let mut eccentric = Encoder::new(parameters, 3, false, true);
+    let mut eccentric = Encoder::new(
+        parameters,
+        3,
+        &Imperfections {
+            encoder_eccentricity: true,
+            ..Imperfections::NONE
+        },
+    );
     let error_rad = f64::from(reading(&mut eccentric, TAU / 4.0)) * lsb_rad - TAU / 4.0;
     assert!((error_rad - 5e-6).abs() < lsb_rad, "{error_rad:e}");
 }

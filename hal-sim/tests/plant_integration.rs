@@ -329,8 +329,13 @@ fn stage_behaves_alike_when_its_parts_trade_places() {
 fn stage_behaves_alike_in_every_direction() {
     let end = |turn: f64| {
         let imperfections = Imperfections {
+            // Places on gears, commutators and balls, and the floor's directions, make one direction unlike another.
             torque_ripple: false,
-            // Centres of rings are fixed in the base: they make one direction unlike another.
+            commutation_ripple: false,
+            gear_error: false,
+            ball_runout: false,
+            floor_vibration: false,
+            // Centres of rings are fixed in the base.
             geometry: false,
             // After a thousand turns an angle's last digit moves a guide by 0.1 pm, which its stiffness makes a force.
             guide_compliance: false,

@@ -1,5 +1,10 @@
 //! What the controller's 12 bit ADC (3.3 V) reads of the bridges.
 
+use serde::{Deserialize, Serialize};
+
+use crate::machine::plant::AXES;
+use crate::random::Random;
+
 /// Largest count.
 pub const FULL_SCALE_COUNTS: u16 = 4095;
 
@@ -12,20 +17,65 @@ pub const SUPPLY_V_V: f64 = 1.0 / 20.0;
 
 const REFERENCE_V: f64 = 3.3;
 
-/// Counts of a motor current.
-#[must_use]
-pub fn current_counts(current_a: f64) -> u16 {
-    counts(current_a.abs() * CURRENT_V_A)
+/// What the analog inputs are off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AnalogParameters {
+    /// Standard deviation of a sample, counts.
+    pub noise_counts: f64,
+    /// What the current inputs read at no current, counts.
+    pub current_offset_counts: [f64; AXES],
+    /// What the current inputs read over what flows.
+    pub current_gain: [f64; AXES],
+    /// The same of the supply.
+    pub supply_gain: f64,
 }
 
-/// Counts of the supply voltage.
-#[must_use]
-pub fn supply_counts(supply_v: f64) -> u16 {
-    counts(supply_v * SUPPLY_V_V)
+impl AnalogParameters {
+    /// What a 12 bit converter beside switching bridges has for noise; offsets of some 5 mA and gains within 3 %, as makers state of
+    /// current mirrors; a divider of 1 % resistors.
+    pub const REFERENCE: Self = Self {
+        noise_counts: 1.5,
+        current_offset_counts: [3.0, -2.0, 4.0],
+        current_gain: [1.02, 0.97, 1.01],
+        supply_gain: 0.995,
+    };
+
+    /// Without errors.
+    pub const EXACT: Self = Self {
+        noise_counts: 0.0,
+        current_offset_counts: [0.0; AXES],
+        current_gain: [1.0; AXES],
+        supply_gain: 1.0,
+    };
+
+    /// Counts of the motor currents and of the supply, in a sample with a number of its own: the same number, the same noise.
+    #[must_use]
+    pub fn sample(
+        &self,
+        currents_a: [f64; AXES],
+        supply_v: f64,
+        number: u64,
+    ) -> ([u16; AXES], u16) {
+        let mut random = Random::new(number);
+        let mut noise = || {
+            if self.noise_counts == 0.0 {
+                0.0
+            } else {
+                self.noise_counts * random.normal()
+            }
+        };
+        let currents = [0, 1, 2].map(|axis| {
+            let input_v = currents_a[axis].abs() * CURRENT_V_A * self.current_gain[axis];
+            counts(input_v, self.current_offset_counts[axis] + noise())
+        });
+        let supply = counts(supply_v * SUPPLY_V_V * self.supply_gain, noise());
+        (currents, supply)
+    }
 }
 
-fn counts(input_v: f64) -> u16 {
-    let scaled = input_v / REFERENCE_V * f64::from(FULL_SCALE_COUNTS);
+fn counts(input_v: f64, more_counts: f64) -> u16 {
+    let scaled = input_v / REFERENCE_V * f64::from(FULL_SCALE_COUNTS) + more_counts;
     // The cast saturates, and takes NaN for zero.
     (scaled.round() as u16).min(FULL_SCALE_COUNTS)
 }
@@ -36,9 +86,30 @@ mod tests {
 
     #[test]
     fn counts_scale_and_saturate() {
-        assert_eq!(supply_counts(48.0), 2978);
-        assert_eq!(current_counts(-1.0), 558);
-        assert_eq!(current_counts(22.9), FULL_SCALE_COUNTS);
-        assert_eq!(supply_counts(-1.0), 0);
+        let exact = |currents_a, supply_v| AnalogParameters::EXACT.sample(currents_a, supply_v, 0);
+        let full = FULL_SCALE_COUNTS;
+        assert_eq!(exact([-1.0, 22.9, 0.0], 48.0), ([558, full, 0], 2978));
+        assert_eq!(exact([0.0; AXES], -1.0), ([0; AXES], 0));
+    }
+
+    #[test]
+    fn errors_are_as_large_as_they_are_said_to_be() {
+        let parameters = AnalogParameters::REFERENCE;
+        let samples = 20_000_u32;
+        let (mut mean, mut square) = (0.0, 0.0);
+        for number in 0..samples {
+            let ([_, counts, _], _) = parameters.sample([0.0, 2.0, 0.0], 48.0, u64::from(number));
+            mean += f64::from(counts) / f64::from(samples);
+            square += f64::from(counts).powi(2) / f64::from(samples);
+        }
+        let expected = 2.0 * CURRENT_V_A * 0.97 / REFERENCE_V * f64::from(FULL_SCALE_COUNTS) - 2.0;
+        assert!((mean - expected).abs() < 0.05, "{mean} {expected}");
+        let deviation = (square - mean * mean).sqrt();
+        // A count's own rounding adds its twelfth.
+        let with_rounding = (1.5_f64.powi(2) + 1.0 / 12.0).sqrt();
+        assert!(
+            (deviation / with_rounding - 1.0).abs() < 0.03,
+            "{deviation}"
+        );
     }
 }

@@ -11,6 +11,7 @@ use embedded_hal::spi::{ErrorType, SpiBus};
 use kinematics::Scalar;
 
 use super::biss::{self, COUNTS_PER_TURN, Preamble};
+use crate::machine::plant::Imperfections;
 use crate::random::Random;
 
 /// What an encoder is made and mounted like.
@@ -27,6 +28,14 @@ pub struct EncoderParameters {
     pub eccentricity_rad: f64,
     /// Ring angle at which that error is zero and rising, rad.
     pub eccentricity_phase_rad: f64,
+    /// Cosine and sine of two to twelve times the ring's angle in its error, rad.
+    pub harmonics_rad: [[f64; 2]; 11],
+    /// Amplitude of its error within a period of the scale, rad.
+    pub subdivisional_error_rad: f64,
+    /// Periods of the scale in a turn.
+    pub scale_periods_per_turn: u32,
+    /// Share of the bits on its line that are wrong.
+    pub bit_error_rate: f64,
     /// Age of the sample when it is latched, s.
     pub latency_s: f64,
     /// Idle and acknowledge clocks of its frames.
@@ -35,13 +44,18 @@ pub struct EncoderParameters {
 
 impl EncoderParameters {
     /// Noise of a third of an LSB (makers of 26 bit rings state some nanometres; this is 3 nm on the track), 5 urad
-    /// of eccentricity (0.25 um between disc and bearing on a disc of 50 mm radius), and no extra latency.
+    /// of eccentricity (0.25 um between disc and bearing on a disc of 50 mm radius), an error of 40 nm within the 20 um that the
+    /// lines of such a disc are apart, a wrong bit in ten million, and no extra latency.
     pub const REFERENCE: Self = Self {
         zero_counts: 0,
         reversed: false,
         noise_rad: 30e-9,
         eccentricity_rad: 5e-6,
         eccentricity_phase_rad: 0.0,
+        harmonics_rad: [[0.0; 2]; 11],
+        subdivisional_error_rad: 0.8e-6,
+        scale_periods_per_turn: 15_708,
+        bit_error_rate: 1e-7,
         latency_s: 0.0,
         preamble: Preamble::DEFAULT,
     };
@@ -81,9 +95,9 @@ pub enum EncoderFault {
 #[derive(Clone, Debug)]
 pub struct Encoder {
     parameters: EncoderParameters,
-    with_noise: bool,
-    with_eccentricity: bool,
+    imperfections: Imperfections,
     noise: Random,
+    line_noise: Random,
     fault: Option<EncoderFault>,
     offset_rad: f64,
     position: u32,
@@ -91,19 +105,15 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder whose noise depends on the seed alone. Noise and eccentricity can be left out.
+    /// An encoder whose noise depends on the seed alone, with these of its imperfections.
     #[must_use]
-    pub fn new(
-        parameters: EncoderParameters,
-        seed: u64,
-        with_noise: bool,
-        with_eccentricity: bool,
-    ) -> Self {
+    pub fn new(parameters: EncoderParameters, seed: u64, imperfections: &Imperfections) -> Self {
         Self {
             parameters,
-            with_noise,
-            with_eccentricity,
+            imperfections: *imperfections,
             noise: Random::new(seed),
+            // Another sequence: wrong bits do not change the noise.
+            line_noise: Random::new(!seed),
             fault: None,
             offset_rad: 0.0,
             position: parameters.zero_counts % COUNTS_PER_TURN,
@@ -132,7 +142,7 @@ impl Encoder {
         if self.fault != Some(EncoderFault::Frozen) {
             self.position = self.sample(angle_rad, rate_rad_s);
         }
-        self.frame = self.line();
+        self.frame = self.line() ^ self.wrong_bits();
         if let Some(EncoderFault::BadFrame { .. }) = self.fault {
             self.fault = None;
         }
@@ -162,7 +172,7 @@ impl Encoder {
             _ => 0.0,
         };
         let seen_rad = angle_rad - rate_rad_s * (self.parameters.latency_s + late_s);
-        let read_rad = seen_rad + self.eccentricity(seen_rad) + self.noise() + self.offset_rad;
+        let read_rad = seen_rad + self.error_rad(seen_rad) + self.noise() + self.offset_rad;
         let counts = (read_rad * (f64::from(COUNTS_PER_TURN) / TAU)).round() as i64;
         let counts = if self.parameters.reversed {
             -counts
@@ -177,16 +187,37 @@ impl Encoder {
         (counts + i64::from(self.parameters.zero_counts) + jump) as u32 & (COUNTS_PER_TURN - 1)
     }
 
-    fn eccentricity(&self, angle_rad: f64) -> f64 {
-        if !self.with_eccentricity {
-            return 0.0;
+    /// What it reads too much at an angle of the ring, rad: that which every turn repeats.
+    #[must_use]
+    pub fn error_rad(&self, angle_rad: f64) -> f64 {
+        let (parameters, on) = (&self.parameters, &self.imperfections);
+        let mut error_rad = 0.0;
+        if on.encoder_eccentricity {
+            let (sin, _) = <f64 as Scalar>::sin_cos(angle_rad - parameters.eccentricity_phase_rad);
+            error_rad += parameters.eccentricity_rad * sin;
         }
-        let (sin, _) = <f64 as Scalar>::sin_cos(angle_rad - self.parameters.eccentricity_phase_rad);
-        self.parameters.eccentricity_rad * sin
+        if on.encoder_harmonics {
+            error_rad += harmonics(&parameters.harmonics_rad, angle_rad);
+        }
+        if on.subdivisional_error {
+            let periods = f64::from(parameters.scale_periods_per_turn);
+            let (sin, _) = <f64 as Scalar>::sin_cos(angle_rad * periods);
+            error_rad += parameters.subdivisional_error_rad * sin;
+        }
+        error_rad
+    }
+
+    /// Bits that the line turns over. Two in one frame are so rare that one is enough.
+    fn wrong_bits(&mut self) -> u64 {
+        if !self.imperfections.bit_errors {
+            return 0;
+        }
+        let hit = self.line_noise.between(0.0, 1.0) / self.parameters.bit_error_rate;
+        if hit < 64.0 { 1 << (hit as u32) } else { 0 }
     }
 
     fn noise(&mut self) -> f64 {
-        if self.with_noise {
+        if self.imperfections.encoder_noise {
             self.parameters.noise_rad * self.noise.normal()
         } else {
             0.0
@@ -205,6 +236,21 @@ impl Encoder {
             _ => good(false, false),
         }
     }
+}
+
+/// Sum of the second to the twelfth harmonic.
+fn harmonics(sizes_rad: &[[f64; 2]; 11], angle_rad: f64) -> f64 {
+    let (sin, cos) = <f64 as Scalar>::sin_cos(angle_rad);
+    let (mut harmonic_sin, mut harmonic_cos) = (sin, cos);
+    let mut sum_rad = 0.0;
+    for [in_phase_rad, across_rad] in sizes_rad {
+        (harmonic_sin, harmonic_cos) = (
+            harmonic_sin * cos + harmonic_cos * sin,
+            harmonic_cos * cos - harmonic_sin * sin,
+        );
+        sum_rad += in_phase_rad * harmonic_cos + across_rad * harmonic_sin;
+    }
+    sum_rad
 }
 
 impl ErrorType for Encoder {

@@ -15,6 +15,7 @@ mod encoder;
 mod flash;
 mod stage;
 
+pub use analog::AnalogParameters;
 pub use bridge::{
     Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
     PwmPin, SleepPin,

@@ -11,10 +11,10 @@
 //! The PWM runs at twice the control rate and takes a new duty over with the second period that begins after the tick
 //! that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
 
-use super::analog;
+use super::analog::AnalogParameters;
 use super::bridge::{BridgeParameters, BridgeState};
 use super::encoder::{Encoder, EncoderParameters};
-use crate::machine::plant::{AXES, Drive, Plant, PlantParameters};
+use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
 use serde::{Deserialize, Serialize};
 
 /// Substeps before the new drive acts, in parts of the period.
@@ -36,6 +36,8 @@ pub struct StageParameters {
     pub encoders: [EncoderParameters; AXES],
     /// The bridges; their supply is the plant's.
     pub bridge: BridgeParameters,
+    /// The analog inputs.
+    pub analog: AnalogParameters,
     /// Seed of every random number. It is a run's, and no part of a machine's file.
     #[serde(skip, default = "reference_seed")]
     pub seed: u64,
@@ -51,22 +53,26 @@ impl StageParameters {
                 zero_counts: 12_345_678,
                 reversed: false,
                 eccentricity_phase_rad: 0.4,
+                harmonics_rad: ENCODER_HARMONICS_RAD[0],
                 ..EncoderParameters::REFERENCE
             },
             EncoderParameters {
                 zero_counts: 50_331_649,
                 reversed: true,
                 eccentricity_phase_rad: 2.9,
+                harmonics_rad: ENCODER_HARMONICS_RAD[1],
                 ..EncoderParameters::REFERENCE
             },
             EncoderParameters {
                 zero_counts: 67_000_000,
                 reversed: false,
                 eccentricity_phase_rad: 5.1,
+                harmonics_rad: ENCODER_HARMONICS_RAD[2],
                 ..EncoderParameters::REFERENCE
             },
         ],
         bridge: BridgeParameters::REFERENCE,
+        analog: AnalogParameters::REFERENCE,
         seed: REFERENCE_SEED,
     };
 }
@@ -92,6 +98,9 @@ pub struct Stage {
     pub encoders: [Encoder; AXES],
     period_s: f64,
     bridge: BridgeParameters,
+    analog: AnalogParameters,
+    seed: u64,
+    periods: u64,
     acting: [BridgeState; AXES],
     latched_pose: [f64; 3],
 }
@@ -106,12 +115,7 @@ impl Stage {
             axis += 1;
             // Any mixing will do: the generator spreads neighbouring seeds over its whole range.
             let seed = parameters.seed.wrapping_mul(8).wrapping_add(axis);
-            Encoder::new(
-                encoder,
-                seed,
-                flags.encoder_noise,
-                flags.encoder_eccentricity,
-            )
+            Encoder::new(encoder, seed, &flags)
         });
         let mut bridge = parameters.bridge;
         bridge.supply_v = parameters.plant.supply_v;
@@ -123,6 +127,13 @@ impl Stage {
             encoders,
             period_s: parameters.period_s,
             bridge,
+            analog: if flags.analog_errors {
+                parameters.analog
+            } else {
+                AnalogParameters::EXACT
+            },
+            seed: parameters.seed,
+            periods: 0,
             acting: [BridgeState::RESET; AXES],
             latched_pose: [0.0; 3],
         };
@@ -138,6 +149,7 @@ impl Stage {
 
     /// Runs one control period: the pins as the last call left them until the tick's duty acts, `pins` from there on.
     pub fn advance_period(&mut self, pins: [BridgeState; AXES]) {
+        self.periods += 1;
         for part in OLD_DRIVE {
             self.substep(part);
         }
@@ -154,8 +166,12 @@ impl Stage {
     /// ADC counts of the motor currents and of the supply.
     #[must_use]
     pub fn analog(&self) -> ([u16; AXES], u16) {
-        let currents = self.plant.currents_a().map(analog::current_counts);
-        (currents, analog::supply_counts(self.bridge.supply_v))
+        // Any mixing will do, as for the encoders.
+        let number = self
+            .seed
+            .wrapping_mul(0x9e37_79b9)
+            .wrapping_add(self.periods);
+        (self.analog).sample(self.plant.currents_a(), self.bridge.supply_v, number)
     }
 
     /// Changes the supply, V, from now on.

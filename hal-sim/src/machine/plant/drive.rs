@@ -1,6 +1,8 @@
 //! One ring drive: bridge terminals, winding, motor side of the transmission, spring.
 
 use super::parameters::PlantParameters;
+use super::pivot_geometry::AXES;
+use kinematics::Scalar;
 
 /// What the bridge does to the motor terminals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,15 +22,31 @@ const CONTACT_STRAIN_RAD: f64 = 10e-9;
 #[derive(Clone, Copy, Debug)]
 pub struct DriveModel {
     torque_constant_n_m_a: f64,
-    resistance_ohm: f64,
+    /// Amplitude of the torque constant's ripple over itself.
+    commutation_ripple: f64,
     inverse_inductance_1_h: f64,
     supply_v: f64,
     inverse_inertia_1_kg_m2: f64,
     stiffness_n_m_rad: f64,
     damping_n_m_s_rad: f64,
     half_backlash_rad: f64,
+    /// Strain at which the preload opens, and how far it then gives way.
+    preload_strain_rad: f64,
+    preload_way_rad: f64,
+    cyclic_error_rad: f64,
+    cyclic_phase_rad: [f64; AXES],
+    gear_ratio: f64,
     ripple_n_m: f64,
     ripple_periods_per_rad: f64,
+}
+
+/// Cyclic error of a gear where its motor stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CyclicError {
+    /// By how much the motor is ahead of the ring while nothing strains the transmission, rad.
+    pub angle_rad: f64,
+    /// Its derivative by the motor's angle.
+    pub slope: f64,
 }
 
 impl DriveModel {
@@ -43,15 +61,26 @@ impl DriveModel {
         } else {
             (16.0, 4.0)
         };
+        let gear = &parameters.gear;
+        let stiffness_n_m_rad = parameters.transmission_stiffness_n_m_rad * stiffer;
         Self {
             torque_constant_n_m_a: parameters.ring_torque_constant_n_m_a(),
-            resistance_ohm: parameters.resistance_ohm,
+            commutation_ripple: gate(flags.commutation_ripple, parameters.commutation_ripple),
             inverse_inductance_1_h: 1.0 / parameters.inductance_h,
             supply_v: parameters.supply_v,
             inverse_inertia_1_kg_m2: 1.0 / parameters.motor_inertia_kg_m2,
-            stiffness_n_m_rad: parameters.transmission_stiffness_n_m_rad * stiffer,
+            stiffness_n_m_rad,
             damping_n_m_s_rad: parameters.transmission_damping_n_m_s_rad * more_damped,
             half_backlash_rad: gate(flags.backlash, 0.5 * parameters.backlash_rad),
+            preload_strain_rad: if flags.preload {
+                gear.preload_n_m / stiffness_n_m_rad
+            } else {
+                f64::INFINITY
+            },
+            preload_way_rad: gear.preload_way_rad,
+            cyclic_error_rad: gate(flags.gear_error, gear.cyclic_error_rad),
+            cyclic_phase_rad: gear.cyclic_phase_rad,
+            gear_ratio: parameters.gear_ratio,
             ripple_n_m: gate(flags.torque_ripple, parameters.ripple_n_m),
             ripple_periods_per_rad: parameters.ripple_periods_per_motor_turn
                 * parameters.gear_ratio
@@ -59,10 +88,40 @@ impl DriveModel {
         }
     }
 
-    /// Time derivative of the current, A/s. `rate_rad_s` is the motor's, seen at the ring.
+    /// Torque for each ampere, N m/A, and back-EMF for each rad/s, V s/rad, where the motor stands. Both ripple alike: what
+    /// the current gives is what the motion takes.
     #[must_use]
-    pub fn current_rate(&self, drive: Drive, current_a: f64, rate_rad_s: f64) -> f64 {
-        let back_emf_v = self.torque_constant_n_m_a * rate_rad_s;
+    pub fn torque_constant(&self, angle_rad: f64) -> f64 {
+        if self.commutation_ripple == 0.0 {
+            return self.torque_constant_n_m_a;
+        }
+        let ripple = sine_of_turns(angle_rad * self.ripple_periods_per_rad);
+        self.torque_constant_n_m_a * (1.0 + self.commutation_ripple * ripple)
+    }
+
+    /// Cyclic error of the gear of drive `i` with its motor at an angle, rad.
+    #[must_use]
+    pub fn cyclic_error(&self, i: usize, motor_rad: f64) -> CyclicError {
+        if self.cyclic_error_rad == 0.0 {
+            return CyclicError::default();
+        }
+        let (sin, cos) =
+            <f64 as Scalar>::sin_cos(self.gear_ratio * motor_rad + self.cyclic_phase_rad[i]);
+        CyclicError {
+            angle_rad: self.cyclic_error_rad * sin,
+            slope: self.cyclic_error_rad * self.gear_ratio * cos,
+        }
+    }
+
+    /// Time derivative of the current, A/s, with the back-EMF and the resistance that the winding has.
+    #[must_use]
+    pub fn current_rate(
+        &self,
+        drive: Drive,
+        current_a: f64,
+        back_emf_v: f64,
+        resistance_ohm: f64,
+    ) -> f64 {
         let terminal_v = match drive {
             Drive::Voltage(volts) => volts.clamp(-self.supply_v, self.supply_v),
             Drive::Brake => 0.0,
@@ -71,7 +130,7 @@ impl DriveModel {
             Drive::Coast if current_a == 0.0 => self.supply_v.copysign(back_emf_v),
             Drive::Coast => -self.supply_v.copysign(current_a),
         };
-        (terminal_v - self.resistance_ohm * current_a - back_emf_v) * self.inverse_inductance_1_h
+        (terminal_v - resistance_ohm * current_a - back_emf_v) * self.inverse_inductance_1_h
     }
 
     /// The current at the end of a step in which it went from `before_a` to `after_a`: diodes block its reversal.
@@ -84,11 +143,16 @@ impl DriveModel {
         }
     }
 
-    /// Acceleration of the motor side, rad/s^2, under the torque that the transmission passes on to the ring.
+    /// Torque of a motor, N m, at an angle and with a torque constant.
     #[must_use]
-    pub fn motor_acceleration(&self, current_a: f64, angle_rad: f64, transmitted_n_m: f64) -> f64 {
-        let torque_n_m = self.torque_constant_n_m_a * current_a + self.ripple(angle_rad);
-        (torque_n_m - transmitted_n_m) * self.inverse_inertia_1_kg_m2
+    pub fn motor_torque(&self, torque_constant_n_m_a: f64, current_a: f64, angle_rad: f64) -> f64 {
+        torque_constant_n_m_a * current_a + self.ripple(angle_rad)
+    }
+
+    /// Acceleration of the motor side, rad/s^2, under a torque.
+    #[must_use]
+    pub fn motor_acceleration(&self, torque_n_m: f64) -> f64 {
+        torque_n_m * self.inverse_inertia_1_kg_m2
     }
 
     /// Torque on the ring, N m, for a windup (motor minus ring angle, rad) and its rate (rad/s). Where there is a gap its flanks push
@@ -113,12 +177,28 @@ impl DriveModel {
     #[must_use]
     pub fn spring_energy_j(&self, windup_rad: f64) -> f64 {
         let strain_rad = self.strain(windup_rad);
-        0.5 * self.stiffness_n_m_rad * strain_rad * strain_rad
+        let spring_j = 0.5 * self.stiffness_n_m_rad * strain_rad * strain_rad;
+        let opened_rad = self.preload_opening(self.beyond_backlash(windup_rad));
+        if opened_rad == 0.0 {
+            return spring_j;
+        }
+        spring_j + self.stiffness_n_m_rad * self.preload_strain_rad * opened_rad
+    }
+
+    /// What of a windup strains the transmission.
+    fn strain(&self, windup_rad: f64) -> f64 {
+        let beyond_rad = self.beyond_backlash(windup_rad);
+        beyond_rad - self.preload_opening(beyond_rad).copysign(beyond_rad)
     }
 
     /// Windup beyond the dead zone.
-    fn strain(&self, windup_rad: f64) -> f64 {
+    fn beyond_backlash(&self, windup_rad: f64) -> f64 {
         windup_rad - windup_rad.clamp(-self.half_backlash_rad, self.half_backlash_rad)
+    }
+
+    /// How far the preload has opened: it holds up to its torque, gives way, and is hard again at its end.
+    fn preload_opening(&self, beyond_rad: f64) -> f64 {
+        (beyond_rad.abs() - self.preload_strain_rad).clamp(0.0, self.preload_way_rad)
     }
 
     fn ripple(&self, angle_rad: f64) -> f64 {
@@ -196,14 +276,14 @@ mod tests {
     fn a_quick_motor_charges_a_supply_that_has_sagged() {
         let mut model = DriveModel::new(&PlantParameters::REFERENCE);
         model.supply_v = 12.0;
-        // 15 V of back-EMF at 5 rad/s: 3 V drive the current against the motor.
-        let rate_a_s = model.current_rate(Drive::Coast, 0.0, 5.0);
+        // 3 V of the back-EMF drive the current against the motor.
+        let rate_a_s = model.current_rate(Drive::Coast, 0.0, 15.0, 2.1);
         assert!((rate_a_s + 3.0 / 0.7e-3).abs() < 1e-9, "{rate_a_s}");
         assert_eq!(model.settle_current(Drive::Coast, 0.0, -0.1), -0.1);
-        assert_eq!(model.current_rate(Drive::Coast, 0.0, 3.9), 0.0);
+        assert_eq!(model.current_rate(Drive::Coast, 0.0, 11.7, 2.1), 0.0);
         // It goes on while the back-EMF exceeds the supply, and ends at (15 - 12) / 2.1 A.
         let settled_a = -3.0 / 2.1;
-        assert!(model.current_rate(Drive::Coast, settled_a, 5.0).abs() < 1e-9);
+        assert!(model.current_rate(Drive::Coast, settled_a, 15.0, 2.1).abs() < 1e-9);
     }
 
     #[test]
@@ -211,6 +291,66 @@ mod tests {
         let model = DriveModel::new(&PlantParameters::REFERENCE);
         assert_eq!(model.settle_current(Drive::Coast, 0.1, -0.2), 0.0);
         assert_eq!(model.settle_current(Drive::Brake, 0.1, -0.2), -0.2);
-        assert_eq!(model.current_rate(Drive::Coast, 0.0, 5.0), 0.0);
+        assert_eq!(model.current_rate(Drive::Coast, 0.0, 15.0, 2.1), 0.0);
+    }
+
+    fn with_everything() -> DriveModel {
+        let mut parameters = PlantParameters::REFERENCE;
+        parameters.imperfections = super::super::Imperfections::ALL;
+        DriveModel::new(&parameters)
+    }
+
+    /// Torque in the transmission is the slope of its energy, through the gap, the preload and what lies beyond its end.
+    #[test]
+    fn torque_is_the_slope_of_the_energy() {
+        let model = with_everything();
+        let (mut most_n_m, step_rad) = (0.0_f64, 1e-9);
+        for step in -8_000..8_000 {
+            let windup_rad = f64::from(step) * 0.05e-6 + 1e-8;
+            let [after_j, before_j] =
+                [0.5, -0.5].map(|part: f64| model.spring_energy_j(windup_rad + part * step_rad));
+            let slope_n_m = (after_j - before_j) / step_rad;
+            let torque_n_m = model.transmitted_torque(windup_rad, 0.0);
+            assert!(
+                (slope_n_m - torque_n_m).abs() < 1e-4,
+                "{windup_rad}: {slope_n_m} {torque_n_m}"
+            );
+            most_n_m = most_n_m.max(torque_n_m);
+        }
+        // 9 N m are reached after 12 urad, the end after 302; 98 urad further are 73 N m more.
+        let expected_n_m = 9.0 + (400e-6 - 0.05e-6 - 0.15e-6 - 290e-6) * 7.46e5 - 9.0;
+        assert!(
+            (most_n_m - expected_n_m).abs() < 0.05,
+            "{most_n_m} {expected_n_m}"
+        );
+    }
+
+    #[test]
+    fn a_preload_holds_its_torque_and_gives_way_beyond() {
+        let model = with_everything();
+        let at = |windup_rad: f64| model.transmitted_torque(windup_rad, 0.0);
+        assert!((at(10e-6) - 7.46e5 * (10e-6 - 0.15e-6)).abs() < 1e-9);
+        for windup_rad in [13e-6, 100e-6, 300e-6] {
+            assert!((at(windup_rad) - 9.0).abs() < 1e-9 && (at(-windup_rad) + 9.0).abs() < 1e-9);
+        }
+        assert!(at(310e-6) > 9.1);
+        // What is switched off bears everything.
+        let parameters = PlantParameters::REFERENCE;
+        assert!(DriveModel::new(&parameters).transmitted_torque(300e-6, 0.0) > 200.0);
+    }
+
+    #[test]
+    fn a_cyclic_error_has_the_slope_that_it_says() {
+        let model = with_everything();
+        for i in 0..AXES {
+            for step in 0..500 {
+                let motor_rad = f64::from(step) * 3e-4;
+                let [after, before] =
+                    [0.5e-7, -0.5e-7].map(|way| model.cyclic_error(i, motor_rad + way).angle_rad);
+                let error = model.cyclic_error(i, motor_rad);
+                assert!(((after - before) / 1e-7 - error.slope).abs() < 1e-6);
+                assert!(error.angle_rad.abs() <= 100e-6);
+            }
+        }
     }
 }

@@ -51,10 +51,15 @@ const TORN_OFF_M: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct Dynamics {
     ring_inertia_kg_m2: f64,
-    gravity_m_s2: [f64; 2],
+    /// Acceleration that everything feels in the plane, base frame: gravity less the floor's.
+    pub gravity_m_s2: [f64; 2],
+    /// Of the three windings, as warm as they are.
+    pub resistance_ohm: [f64; AXES],
     pub body: Body,
     pub drive: DriveModel,
     pub ring_friction: Friction,
+    pub motor_friction: Friction,
+    cable_stiffness_n_m: f64,
     pub guides: Guides,
     pub geometry: Geometry,
 }
@@ -71,6 +76,7 @@ impl Dynamics {
         Self {
             ring_inertia_kg_m2: parameters.ring_inertia_kg_m2,
             gravity_m_s2: parameters.gravity_m_s2,
+            resistance_ohm: [parameters.resistance_ohm; AXES],
             body: Body::new(parameters),
             drive: DriveModel::new(parameters),
             ring_friction: Friction::new(
@@ -78,6 +84,12 @@ impl Dynamics {
                 flags.dry_friction,
                 flags.viscous_friction,
             ),
+            motor_friction: Friction::new(&parameters.motor_friction, flags.motor_friction, true),
+            cable_stiffness_n_m: if flags.cable_drag {
+                parameters.cable_stiffness_n_m
+            } else {
+                0.0
+            },
             guides: Guides::new(parameters),
             geometry: Geometry::new(parameters),
         }
@@ -150,10 +162,11 @@ impl Dynamics {
                     + JAM_N_M_S_RAD * state.ring_rad_s[i];
             }
         }
-        Forces {
-            platform: body + Vector3::new(x_n, y_n, external.torque_n_m),
-            ring_n_m,
+        let mut platform = body + Vector3::new(x_n, y_n, external.torque_n_m);
+        if self.cable_stiffness_n_m > 0.0 {
+            platform -= self.cable_stiffness_n_m * Vector3::new(state.pose.x, state.pose.y, 0.0);
         }
+        Forces { platform, ring_n_m }
     }
 
     /// One drive: its current, its motor, and what it passes on to the ring; and the ring's friction.
@@ -167,18 +180,31 @@ impl Dynamics {
         rate: &mut State,
     ) {
         let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
+        let error = self.drive.cyclic_error(i, motor_rad);
         let transmitted_n_m = self.drive.transmitted_torque(
-            motor_rad - state.ring_rad[i],
-            motor_rad_s - state.ring_rad_s[i],
+            motor_rad - error.angle_rad - state.ring_rad[i],
+            motor_rad_s - error.slope * motor_rad_s - state.ring_rad_s[i],
         );
         let friction =
             (self.ring_friction).evaluate(state.ring_rad_s[i], state.bristle_rad[i], step_s);
         forces.ring_n_m[i] += transmitted_n_m - friction.force;
         rate.bristle_rad[i] = friction.bristle_rate;
+        let motor_friction =
+            (self.motor_friction).evaluate(motor_rad_s, state.motor_bristle_rad[i], step_s);
+        rate.motor_bristle_rad[i] = motor_friction.bristle_rate;
         let current_a = state.current_a[i];
+        let constant_n_m_a = self.drive.torque_constant(motor_rad);
+        let motor_n_m = (self.drive).motor_torque(constant_n_m_a, current_a, motor_rad);
+        // What a gear that is not even passes on, it takes by the same ratio.
+        let taken_n_m = transmitted_n_m - error.slope * transmitted_n_m;
         rate.motor_rad_s[i] =
-            (self.drive).motor_acceleration(current_a, motor_rad, transmitted_n_m);
-        rate.current_a[i] = self.drive.current_rate(drive, current_a, motor_rad_s);
+            (self.drive).motor_acceleration(motor_n_m - taken_n_m - motor_friction.force);
+        rate.current_a[i] = (self.drive).current_rate(
+            drive,
+            current_a,
+            constant_n_m_a * motor_rad_s,
+            self.resistance_ohm[i],
+        );
     }
 
     /// One guide, between platform and ring.

@@ -27,6 +27,10 @@ const GUIDE_RAD: [f64; AXES] = {
 const STRAIGHTNESS_SPAN: f64 = 0.8;
 /// A guide that lies closer to the ring's tangent's normal than this, as the cosine of the angle between pivot and guide, has come loose.
 const LEAST_COSINE: f64 = 0.01;
+/// Periods of a ring's run-out by its balls in one of its turns: the cage's, and the balls' in it. Neither is a whole number, nor are
+/// both after any number of turns: it does not repeat. The second is a third of the first.
+const BALL_PERIODS: [f64; 2] = [0.486_713, 30.790_41];
+const BALL_SHARES: [f64; 2] = [1.0, 1.0 / 3.0];
 /// Newton's steps from a pivot straight on its guide; twelve are enough at a cosine of 0.01.
 const MAX_STEPS: u32 = 30;
 /// A step so small, over the size of the angle, is the last: the next would be its square.
@@ -53,6 +57,8 @@ struct Pivot {
     built: PivotGeometry,
     has_runout: bool,
     has_straightness: bool,
+    ball_runout_m: f64,
+    ball_phase_rad: f64,
     radius_m: f64,
     /// Sine and cosine of the guide's direction in the platform.
     direction: (f64, f64),
@@ -87,9 +93,8 @@ impl Geometry {
     /// Takes the constants; with the errors of geometry switched off, those of the drawing.
     #[must_use]
     pub fn new(parameters: &PlantParameters) -> Self {
-        let mut guides = parameters.pivots.iter().zip(GUIDE_RAD);
-        let pivots = [(); AXES].map(|()| {
-            let (&built, direction_rad) = guides.next().unwrap_or((&PivotGeometry::IDEAL, 0.0));
+        let pivots = [0, 1, 2].map(|i: usize| {
+            let (built, direction_rad) = (parameters.pivots[i], GUIDE_RAD[i]);
             let built = if parameters.imperfections.geometry {
                 built
             } else {
@@ -100,6 +105,12 @@ impl Geometry {
                 built,
                 has_runout: built.runout_m != PivotGeometry::IDEAL.runout_m,
                 has_straightness: built.straightness_m != PivotGeometry::IDEAL.straightness_m,
+                ball_runout_m: if parameters.imperfections.ball_runout {
+                    parameters.ball_runout_m
+                } else {
+                    0.0
+                },
+                ball_phase_rad: parameters.ball_phase_rad[i],
                 radius_m: parameters.track_radius_m + built.radius_error_m,
                 direction: <f64 as Scalar>::sin_cos(direction_rad),
                 direction_rad,
@@ -185,7 +196,9 @@ impl Geometry {
         );
         let runout = pivot.runout(ring_sin, ring_cos);
         let radius_m = pivot.radius_m + runout.value;
-        let place = Vector2::from(pivot.built.ring_centre_m) + radius_m * outwards - pose.xy();
+        let shift = pivot.ball_runout(ring_rad);
+        let centre_m = Vector2::from(pivot.built.ring_centre_m) + shift[0];
+        let place = centre_m + radius_m * outwards - pose.xy();
         let (rho_m, side_m) = (u.dot(&place), n.dot(&place));
         let straightness = pivot.straightness(rho_m, self.track_radius_m);
         GuideState {
@@ -195,9 +208,10 @@ impl Geometry {
             rho_m,
             side_m,
             straightness,
-            pivot_slope_m: runout.slope * outwards + radius_m * onwards,
+            pivot_slope_m: runout.slope * outwards + radius_m * onwards + shift[1],
             pivot_curvature_m: (runout.curvature - radius_m) * outwards
-                + 2.0 * runout.slope * onwards,
+                + 2.0 * runout.slope * onwards
+                + shift[2],
         }
     }
 }
@@ -222,6 +236,22 @@ impl Pivot {
             curve.curvature -= times * times * value;
         }
         curve
+    }
+
+    /// Shift of the ring's centre by its balls, m, and its first two derivatives by the ring's angle.
+    fn ball_runout(&self, ring_rad: f64) -> [Vector2<f64>; 3] {
+        let mut shift = [Vector2::zeros(); 3];
+        if self.ball_runout_m == 0.0 {
+            return shift;
+        }
+        for (periods, share) in BALL_PERIODS.into_iter().zip(BALL_SHARES) {
+            let (sin, cos) = <f64 as Scalar>::sin_cos(periods * ring_rad + self.ball_phase_rad);
+            let size_m = share * self.ball_runout_m;
+            shift[0] += size_m * Vector2::new(cos, sin);
+            shift[1] += size_m * periods * Vector2::new(-sin, cos);
+            shift[2] -= size_m * periods * periods * Vector2::new(cos, sin);
+        }
+        shift
     }
 
     /// Straightness of the guide by the place on it, m.

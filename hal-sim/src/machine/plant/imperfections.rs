@@ -33,6 +33,30 @@ pub struct Imperfections {
     pub guide_compliance: bool,
     /// Errors of the geometry: [`pivots`](super::PlantParameters::pivots).
     pub geometry: bool,
+    /// Cyclic error of the gears.
+    pub gear_error: bool,
+    /// A preload of the transmission that opens under torque. Off, it bears everything.
+    pub preload: bool,
+    /// Friction on the motors' side of the gears.
+    pub motor_friction: bool,
+    /// Torque ripple that grows with the current.
+    pub commutation_ripple: bool,
+    /// Run-out of the rings that does not repeat.
+    pub ball_runout: bool,
+    /// Cables that draw the platform to the centre.
+    pub cable_drag: bool,
+    /// Second to twelfth harmonic error of the encoders.
+    pub encoder_harmonics: bool,
+    /// Error of the encoders within a period of their scale.
+    pub subdivisional_error: bool,
+    /// Bits that are wrong on the encoders' lines.
+    pub bit_errors: bool,
+    /// Noise, offset and gain errors of the analog inputs.
+    pub analog_errors: bool,
+    /// Floor that shakes.
+    pub floor_vibration: bool,
+    /// Windings that become warm, and have more resistance then.
+    pub winding_heat: bool,
     /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
     pub pwm_quantisation: bool,
 }
@@ -51,10 +75,23 @@ impl Imperfections {
         guide_friction: false,
         guide_compliance: false,
         geometry: false,
+        gear_error: false,
+        preload: false,
+        motor_friction: false,
+        commutation_ripple: false,
+        ball_runout: false,
+        cable_drag: false,
+        encoder_harmonics: false,
+        subdivisional_error: false,
+        bit_errors: false,
+        analog_errors: false,
+        floor_vibration: false,
+        winding_heat: false,
         pwm_quantisation: false,
     };
 
-    /// A kind machine: guides without friction, rigid and exact, and encoders that have been calibrated.
+    /// A kind machine: guides without friction, rigid and exact, gears and bearings that are exact, quiet surroundings, and encoders
+    /// that have been calibrated.
     pub const CALIBRATED: Self = Self {
         dry_friction: true,
         viscous_friction: true,
@@ -67,6 +104,18 @@ impl Imperfections {
         guide_friction: false,
         guide_compliance: false,
         geometry: false,
+        gear_error: false,
+        preload: false,
+        motor_friction: false,
+        commutation_ripple: false,
+        ball_runout: false,
+        cable_drag: false,
+        encoder_harmonics: false,
+        subdivisional_error: false,
+        bit_errors: false,
+        analog_errors: false,
+        floor_vibration: false,
+        winding_heat: false,
         pwm_quantisation: true,
     };
 
@@ -76,6 +125,18 @@ impl Imperfections {
         guide_friction: true,
         guide_compliance: true,
         geometry: true,
+        gear_error: true,
+        preload: true,
+        motor_friction: true,
+        commutation_ripple: true,
+        ball_runout: true,
+        cable_drag: true,
+        encoder_harmonics: true,
+        subdivisional_error: true,
+        bit_errors: true,
+        analog_errors: true,
+        floor_vibration: true,
+        winding_heat: true,
         ..Self::CALIBRATED
     };
 }
@@ -89,7 +150,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 12] = [
+pub const NAMED: [Named; 24] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -101,6 +162,18 @@ pub const NAMED: [Named; 12] = [
     named("guide-friction", |on| &mut on.guide_friction),
     named("guide-compliance", |on| &mut on.guide_compliance),
     named("geometry", |on| &mut on.geometry),
+    named("gear-error", |on| &mut on.gear_error),
+    named("preload", |on| &mut on.preload),
+    named("motor-friction", |on| &mut on.motor_friction),
+    named("commutation-ripple", |on| &mut on.commutation_ripple),
+    named("ball-runout", |on| &mut on.ball_runout),
+    named("cable-drag", |on| &mut on.cable_drag),
+    named("encoder-harmonics", |on| &mut on.encoder_harmonics),
+    named("subdivisional-error", |on| &mut on.subdivisional_error),
+    named("bit-errors", |on| &mut on.bit_errors),
+    named("analog-errors", |on| &mut on.analog_errors),
+    named("floor-vibration", |on| &mut on.floor_vibration),
+    named("winding-heat", |on| &mut on.winding_heat),
     named("pwm-quantisation", |on| &mut on.pwm_quantisation),
 ];
 

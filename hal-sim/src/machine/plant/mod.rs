@@ -15,6 +15,7 @@
 //! | `geometry` | where a pivot lies on its guide, with every error of that |
 //! | `guide` | a guide's forces: across it, along it, at its ends |
 //! | `friction`, `stops` | friction by bristles, of rings and of guides; ends of the guides |
+//! | `surroundings` | the floor's shaking, the windings' warmth |
 //! | `dynamics` | the equations of motion |
 
 mod body;
@@ -29,14 +30,18 @@ mod parameters;
 mod pivot_geometry;
 mod state;
 mod stops;
+mod surroundings;
 
 pub use body::Body;
-pub use drive::{Drive, DriveModel};
+pub use built::ENCODER_HARMONICS_RAD;
+pub use drive::{CyclicError, Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
 pub use geometry::OffGuide;
 pub use imperfections::{Imperfections, NAMED, Named};
-pub use parameters::{FrictionParameters, Payload, PlantParameters};
+pub use parameters::{
+    FrictionParameters, GearParameters, Payload, PlantParameters, WindingParameters,
+};
 pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
 
@@ -44,6 +49,7 @@ use dynamics::Dynamics;
 use geometry::GuideState;
 use nalgebra::{Matrix3, Vector3};
 use state::State;
+use surroundings::Surroundings;
 
 /// Why the plant stands still: its equations no longer hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +72,7 @@ pub struct Plant {
     dynamics: Dynamics,
     state: State,
     external: External,
+    surroundings: Surroundings,
     broken: Option<Broken>,
 }
 
@@ -79,6 +86,7 @@ impl Plant {
             dynamics,
             state: State::zeros(),
             external: External::default(),
+            surroundings: Surroundings::new(&parameters),
             broken: None,
         };
         plant.set_pose_at_rest([0.0; 3]);
@@ -93,6 +101,13 @@ impl Plant {
             Ok(ring_rad) => {
                 self.broken = None;
                 self.state = State::at_rest(pose, ring_rad);
+                for i in 0..AXES {
+                    // The motor's angle is the ring's and the error, which is that of the motor's angle: closer than a nanorad.
+                    for _ in 0..3 {
+                        let error = self.dynamics.drive.cyclic_error(i, self.state.motor_rad[i]);
+                        self.state.motor_rad[i] = ring_rad[i] + error.angle_rad;
+                    }
+                }
             }
             Err(reason) => self.break_down(reason),
         }
@@ -122,11 +137,20 @@ impl Plant {
         if self.broken.is_some() {
             return;
         }
+        self.meet_surroundings(step_s);
         match self.runge_kutta(step_s, drives) {
             Ok(next) if next.is_finite() => self.state = next,
             Ok(_) => self.broken = Some(Broken::NotFinite),
             Err(reason) => self.break_down(reason),
         }
+    }
+
+    /// What the surroundings are over the next step.
+    fn meet_surroundings(&mut self, step_s: f64) {
+        self.surroundings.step(step_s, self.state.current_a.into());
+        let (floor, gravity) = (self.surroundings.floor_m_s2(), self.parameters.gravity_m_s2);
+        self.dynamics.gravity_m_s2 = [gravity[0] + floor[0], gravity[1] + floor[1]];
+        self.dynamics.resistance_ohm = self.surroundings.resistance_ohm();
     }
 
     /// Why the plant stands still, if it is broken.
@@ -189,6 +213,12 @@ impl Plant {
         self.state.motor_rad_s.into()
     }
 
+    /// How much warmer the windings are than where their resistance was measured, K.
+    #[must_use]
+    pub const fn windings_warmer_k(&self) -> [f64; AXES] {
+        self.surroundings.warmer_k()
+    }
+
     /// Winding currents, A.
     #[must_use]
     pub fn currents_a(&self) -> [f64; AXES] {
@@ -231,9 +261,11 @@ impl Plant {
         let guides = self.guides();
         (0..AXES)
             .map(|i| {
-                let windup_rad = state.motor_rad[i] - state.ring_rad[i];
+                let error = self.dynamics.drive.cyclic_error(i, state.motor_rad[i]);
+                let windup_rad = state.motor_rad[i] - error.angle_rad - state.ring_rad[i];
                 self.dynamics.drive.spring_energy_j(windup_rad)
                     + self.dynamics.ring_friction.energy_j(state.bristle_rad[i])
+                    + (self.dynamics.motor_friction).energy_j(state.motor_bristle_rad[i])
                     + (self.dynamics.guides).energy_j(&guides[i], state.guide_bristle_m[i])
             })
             .sum()

@@ -50,6 +50,34 @@ pub struct FrictionParameters {
     pub viscous: f64,
 }
 
+/// What a gear is off the drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GearParameters {
+    /// Amplitude of the cyclic error, once a turn of the motor, seen at the ring, rad.
+    pub cyclic_error_rad: f64,
+    /// Phase of it for each drive, rad of the motor's turn.
+    pub cyclic_phase_rad: [f64; AXES],
+    /// Torque that the preload of the transmission bears, seen at the ring, N m.
+    pub preload_n_m: f64,
+    /// How far the transmission gives way where more torque opens the preload, rad.
+    pub preload_way_rad: f64,
+}
+
+/// How a winding becomes warm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WindingParameters {
+    /// How much warmer it settles for each watt that is lost in it, K/W.
+    pub thermal_resistance_k_w: f64,
+    /// Time in which it has gone two thirds of the way there, s.
+    pub time_constant_s: f64,
+    /// Growth of its resistance, 1/K.
+    pub resistance_per_k: f64,
+    /// How much warmer it is at the start than where the resistance was measured, K.
+    pub start_k: f64,
+}
+
 /// The machine behind the bridges' terminals. See [`PlantParameters::REFERENCE`] for the origin of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -77,6 +105,8 @@ pub struct PlantParameters {
     pub resistance_ohm: f64,
     /// Winding inductance, H.
     pub inductance_h: f64,
+    /// Warmth of the windings.
+    pub winding: WindingParameters,
     /// Supply of the bridges, V.
     pub supply_v: f64,
     /// Stiffness of one transmission, seen at the ring, N m/rad.
@@ -85,12 +115,18 @@ pub struct PlantParameters {
     pub transmission_damping_n_m_s_rad: f64,
     /// Full width of the transmission's dead zone, seen at the ring, rad.
     pub backlash_rad: f64,
+    /// Cyclic error and preload of the transmission.
+    pub gear: GearParameters,
     /// Friction of one ring: N m, rad.
     pub ring_friction: FrictionParameters,
+    /// Friction of one motor and its side of the gear, seen at the ring: N m, rad.
+    pub motor_friction: FrictionParameters,
     /// Amplitude of the torque ripple, seen at the ring, N m.
     pub ripple_n_m: f64,
     /// Periods of the ripple in one turn of the motor.
     pub ripple_periods_per_motor_turn: f64,
+    /// Amplitude of the ripple that grows with the current, over the torque.
+    pub commutation_ripple: f64,
     /// Range of rho between a guide's two ends, m.
     pub guide_range_m: [f64; 2],
     /// Stiffness of a guide's end stop, N/m.
@@ -103,6 +139,14 @@ pub struct PlantParameters {
     pub guide_damping_n_s_m: f64,
     /// Friction of a carriage along its guide: N, m.
     pub guide_friction: FrictionParameters,
+    /// Acceleration of the floor along x and along y, 2 to 20 Hz, m/s^2 rms.
+    pub floor_acceleration_m_s2: f64,
+    /// Stiffness of the cables to the platform, which draw it to the centre, N/m.
+    pub cable_stiffness_n_m: f64,
+    /// Amplitude of the run-out of a ring that its balls make and that does not repeat, m.
+    pub ball_runout_m: f64,
+    /// Phase of it for each ring, rad.
+    pub ball_phase_rad: [f64; AXES],
     /// How pivots, rings and guides are built.
     pub pivots: [PivotGeometry; AXES],
     /// What of all this is simulated.
@@ -128,6 +172,15 @@ impl PlantParameters {
         torque_constant_n_m_a: 0.06,
         resistance_ohm: 2.1,
         inductance_h: 0.7e-3,
+        winding: WindingParameters {
+            // Chosen: 4 A, which the motor bears, make it 100 K warmer at 33 W.
+            thermal_resistance_k_w: 3.0,
+            // Chosen: the winding of a servo of the 35 mm class, without its housing.
+            time_constant_s: 40.0,
+            // Copper.
+            resistance_per_k: 0.0039,
+            start_k: 0.0,
+        },
         supply_v: 48.0,
         // Reference stage: first resonance at 1.5 kHz. Derived for the lowest mode of the assembled stage, empty and
         // centred. That mode is a translation: its ring-side inertia a drive is I_ring + m R^2 / 1.5 (J^T J = 1.5/R^2
@@ -139,6 +192,15 @@ impl PlantParameters {
         // Chosen: 30 nm on the track, what a preloaded transmission keeps. The reference stage does not name a value. With more
         // an unloaded pivot hunts in the gap, by about 4 encoder LSB for each urad: nothing but the ring has friction.
         backlash_rad: 0.3e-6,
+        gear: GearParameters {
+            // Reference stage: 50 to 300 urad.
+            cyclic_error_rad: 100e-6,
+            cyclic_phase_rad: [0.3, 2.2, 4.9],
+            // Reference stage: 9 N m, 16 with hard stops.
+            preload_n_m: 9.0,
+            // Reference stage: a gear with its gap open runs free by this.
+            preload_way_rad: 290e-6,
+        },
         // Reference stage.
         ring_friction: FrictionParameters {
             coulomb: 0.1,
@@ -150,10 +212,25 @@ impl PlantParameters {
             // Chosen: a tenth of critical for the ring on its bristles, 2 * 0.1 * sqrt(1000 * 0.02).
             bristle_damping: 0.9,
         },
+        motor_friction: FrictionParameters {
+            // Reference stage: 0.15 to 0.3 N m, brushes and bearings times the gear ratio.
+            coulomb: 0.2,
+            // Chosen: bearings that turn fifty times as far have no more stiction than rings.
+            stiction_ratio: 1.2,
+            // Chosen: as the ring's, which is 1 deg of the motor's shaft in presliding and 2.4 rpm of it in rate.
+            presliding: 100e-6,
+            stribeck_rate: 5e-3,
+            // Chosen: a tenth of critical for the motor on its bristles, 2 * 0.1 * sqrt(2000 * 0.012).
+            bristle_damping: 0.98,
+            // What grows with the rate is in the ring's.
+            viscous: 0.0,
+        },
         // Reference stage.
         ripple_n_m: 0.03,
         // Chosen: a commutator of 13 bars, each brush passing each bar.
         ripple_periods_per_motor_turn: 26.0,
+        // Reference stage: 1 to 3 %.
+        commutation_ripple: 0.02,
         // Reference stage: the guides reach their ends with the centre at 84 mm, so rho ends at 100 -+ 84 mm.
         guide_range_m: [0.016, 0.184],
         // Chosen: a hard rubber buffer. At full speed (0.2 m/s, 8 kg) it is pressed in by 0.6 mm ...
@@ -177,6 +254,13 @@ impl PlantParameters {
             // Chosen: as much again as the Coulomb friction at 0.2 m/s.
             viscous: 5.0,
         },
+        // Reference stage: what a stage at rest may be asked to bear. A workshop's floor shakes ten times as much.
+        floor_acceleration_m_s2: 0.1e-3,
+        // Reference stage: 0.1 to 1 N. 0.5 N at the rim.
+        cable_stiffness_n_m: 6.0,
+        // Reference stage: 20 to 100 nm.
+        ball_runout_m: 40e-9,
+        ball_phase_rad: [1.1, 3.4, 5.6],
         pivots: BUILT,
         imperfections: Imperfections::CALIBRATED,
     };

@@ -21,6 +21,8 @@ pub(super) struct State {
     pub current_a: Vector3<f64>,
     /// Bristle deflections of the rings' friction, rad.
     pub bristle_rad: Vector3<f64>,
+    /// Bristle deflections of the motors' friction, rad.
+    pub motor_bristle_rad: Vector3<f64>,
     /// Bristle deflections of the guides' friction, m.
     pub guide_bristle_m: Vector3<f64>,
 }
@@ -47,6 +49,7 @@ impl State {
             motor_rad_s: zeros,
             current_a: zeros,
             bristle_rad: zeros,
+            motor_bristle_rad: zeros,
             guide_bristle_m: zeros,
         }
     }
@@ -63,6 +66,7 @@ impl State {
             motor_rad_s: self.motor_rad_s + factor * rate.motor_rad_s,
             current_a: self.current_a + factor * rate.current_a,
             bristle_rad: self.bristle_rad + factor * rate.bristle_rad,
+            motor_bristle_rad: self.motor_bristle_rad + factor * rate.motor_bristle_rad,
             guide_bristle_m: self.guide_bristle_m + factor * rate.guide_bristle_m,
         }
     }
@@ -77,6 +81,7 @@ impl State {
             + self.motor_rad_s.sum()
             + self.current_a.sum()
             + self.bristle_rad.sum()
+            + self.motor_bristle_rad.sum()
             + self.guide_bristle_m.sum();
         sum.is_finite()
     }
