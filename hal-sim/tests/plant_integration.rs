@@ -359,11 +359,11 @@ fn stage_behaves_alike_in_every_direction() {
         [x * cos + y * sin, y * cos - x * sin, theta - turn]
     };
     let here = end(0.0);
-    // After a thousand turns the last digit of an angle is 0.9 prad, and the rings' angles are integrated.
+    // After a thousand turns the last digit of an angle is 0.9 prad, and angles of rings and motors are integrated.
     for (turn, bound) in [
         (TAU / 3.0, 4.4e-12),
         (-2.0, 4.4e-12),
-        (1000.0 * TAU + 1.0, 2.6e-11),
+        (1000.0 * TAU + 1.0, 3.3e-11),
     ] {
         let there = end(turn);
         for i in 0..3 {
