@@ -86,6 +86,8 @@ pub struct PowerStage {
     pub voltage_limit_v: f64,
     /// The same while the stage is recovered from out of its reach.
     pub recovery_voltage_v: f64,
+    /// Largest current of a motor.
+    pub current_limit_a: f64,
 }
 
 /// A brushed DC motor behind a gear, as seen at the ring.
@@ -349,6 +351,8 @@ impl Parameters {
             voltage_limit_v: 60.0,
             // 8.6 N m at rest, a third of what the reference motion asks for; 5 mm/s and friction need half a volt.
             recovery_voltage_v: 6.0,
+            // Twice what the reference motion asks for, and what its urgent stop does.
+            current_limit_a: 6.0,
         },
         drives: [Drive {
             torque_constant_n_m_a: 0.06,

@@ -57,7 +57,7 @@ fn help() {
          70=commanded velocity of axis or pivot, mm/s or deg/s \n\
          71=commanded acceleration of axis, mm/s^2 or deg/s^2 \n\
          73=motor output of pivot, duty from -1 to 1 \n\
-         200=motor current of pivot, its size, A \n\
+         200=motor current of pivot, A \n\
          201=supply, V \n\
          202=state: 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault \n\
          203=fault: kind of the latched one, 0 for none \n\

@@ -194,7 +194,7 @@ fn a_value_that_is_crossed_downwards() {
         setup.level_triggers.push(watch).unwrap();
         bench.panel.start(&setup).unwrap();
         for now in 1..=70_u64 {
-            let counts = (80 - now).min(start) as u16;
+            let counts = (80 - now).min(start) as i16;
             bench.feed(&Sample {
                 current_counts: [counts; 3],
                 ..sample(now)

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use firmware::control::Inputs;
 use firmware::drivers::biss::RawFrame;
+use firmware::drivers::power_stage::signed_current_counts;
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 use hal_sim::front::{ControlLoop, Front, Host};
@@ -88,12 +89,12 @@ fn recorded_inputs() -> Vec<Inputs> {
         .map(|index| {
             commanded.command(index);
             let stage = &mut commanded.rig.front.stage;
-            let (current_counts, supply_counts) = stage.analog();
+            let (currents, supply_counts) = stage.analog();
             let inputs = Inputs {
                 frames: stage.frames().map(RawFrame),
                 bridge_fault: [false; 3],
                 emergency_stop: false,
-                current_counts,
+                current_counts: currents.map(signed_current_counts),
                 supply_counts,
                 tick_cycles: 0,
                 late: false,

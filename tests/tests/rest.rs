@@ -53,7 +53,8 @@ fn quiet(bench: &mut Bench, ticks: u32) -> [f64; 2] {
     [(variance[0] + variance[1]).sqrt(), variance[2].sqrt()]
 }
 
-/// It hunted from some second on, with 7 nm and 36 to 134 nrad; the second looked at here is the twelfth.
+/// It hunted from some second on, with 7 nm and 36 to 134 nrad; the second looked at here is the twelfth. The worst of six hundred seconds
+/// has 3 nm and 20 nrad on these machines (MEASURED.md, ten minutes): a slow walk, and no hunting.
 #[test]
 fn a_stage_at_rest_does_not_hunt() {
     for mismatch_percent in [0.0, -20.0, 20.0] {
@@ -64,7 +65,7 @@ fn a_stage_at_rest_does_not_hunt() {
         let [way_nm, turn_nrad] = quiet(&mut bench, 20_000);
         println!("{mismatch_percent} %: {way_nm} nm, {turn_nrad} nrad");
         assert!(
-            way_nm < 2.0 && turn_nrad < 10.0,
+            way_nm < 3.3 && turn_nrad < 22.0,
             "{way_nm} nm, {turn_nrad} nrad"
         );
     }

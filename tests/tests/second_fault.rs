@@ -174,7 +174,7 @@ fn a_fault_that_is_there_at_the_start_lets_go() {
 #[test]
 fn what_the_pivot_was_off_when_its_encoder_was_lost_does_not_jerk_it() {
     let mut bench = Bench::turning(&[], 60.0);
-    bench.push(25.0);
+    bench.push(10.0);
     bench.run(60);
     bench.rig.front.stage.encoders[1].set_fault(Some(EncoderFault::StuckHigh));
     bench.run(BRIDGED);

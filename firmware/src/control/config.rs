@@ -7,11 +7,14 @@ use crate::control::oscillation::MEMORY_S;
 use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::drivers::power_stage::BUS;
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
 /// Share of the limits of a pivot's motion under which its setpoint hardly moves.
 const SLOW: f64 = 0.1;
+/// Supply that is too high, ADC counts.
+pub(super) const MAX_SUPPLY_COUNTS: u16 = (BUS.too_high_v / SUPPLY_V_PER_COUNT) as u16;
 /// Most ticks of the settling window's mean.
 pub(super) const MAX_MEAN_TICKS: usize = 32;
 
@@ -77,6 +80,14 @@ pub struct SupervisionConfig {
     pub oscillation_memory: f32,
     /// Ticks in a second.
     pub rate_hz: f32,
+}
+
+impl SupervisionConfig {
+    /// Whether the supply is neither too low nor too high.
+    #[inline]
+    pub(super) const fn has_good_supply(&self, counts: u16) -> bool {
+        counts >= self.min_supply_counts && counts <= MAX_SUPPLY_COUNTS
+    }
 }
 
 impl Config {

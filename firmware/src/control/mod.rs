@@ -11,6 +11,7 @@
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
+//! | `brake_resistor` | what takes the energy that the motors give back |
 //! | `trial` | trials of iterative learning |
 //! | `rest_mode` | slower loops while the setpoint rests |
 //! | `settling` | whether the stage has settled |
@@ -23,6 +24,7 @@
 //! | `observers` | the recorders, which observe every tick and may run behind it |
 //! | `loop_counters` | what the loop counts between two snapshots |
 
+mod brake_resistor;
 mod command;
 pub mod config;
 pub mod encoder;

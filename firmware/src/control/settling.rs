@@ -6,7 +6,8 @@ use crate::control::units::UNITS_PER_RAD;
 /// Errors count as no more than this, 2^-32 turns (0.05 rad), so that the sums fit.
 const MOST: i32 = 1 << 25;
 
-/// Settled means at rest, and every pivot inside the window for the dwell time.
+/// Settled means at rest, and every pivot inside the window for the dwell time. What has settled is so until a pivot is out of twice
+/// the window: noise near its edge does not take it away.
 ///
 /// What is held against the window is the mean error of the last ticks, so that the window may be smaller than the
 /// encoders' noise.
@@ -59,7 +60,8 @@ impl Settling {
             }
         }
         self.peak_error = self.peak_error.max(worst);
-        if moving || largest > limits.settling_window {
+        let window = limits.settling_window << u32::from(self.settled);
+        if moving || largest > window {
             self.ticks_inside = 0;
         } else if self.ticks_inside < limits.settling_ticks {
             self.ticks_inside += 1;
@@ -81,5 +83,30 @@ impl Settling {
     /// Largest following error of a pivot since [`start`](Self::start), rad.
     pub fn peak_error_rad(&self) -> f32 {
         self.peak_error as f32 * (1.0 / UNITS_PER_RAD) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::config::Config;
+    use crate::control::rest_mode::UNITS_PER_COUNT;
+    use crate::parameters::Parameters;
+
+    #[test]
+    fn what_has_settled_is_so_until_a_pivot_is_out_of_twice_the_window() {
+        let parameters = Parameters::REFERENCE;
+        let limits = Config::new(&parameters).limits;
+        let mut settling = Settling::default();
+        let mut settled_with = |windows: f64| {
+            let counts = windows * (parameters.window.counts + 0.5);
+            let error = (counts * UNITS_PER_COUNT) as i32;
+            for _ in 0..2 * limits.settling_ticks + 64 {
+                settling.update(&limits, &[0, error, -error], error.unsigned_abs(), false);
+            }
+            settling.settled()
+        };
+        let seen = [1.1, 0.9, 1.1, 1.9, 2.1, 1.9, 0.9].map(&mut settled_with);
+        assert_eq!(seen, [false, true, true, true, false, false, true]);
     }
 }

@@ -1,5 +1,6 @@
 //! What a tick is given, what it gives, and what the loop remembers between ticks.
 
+use super::brake_resistor::BrakeResistor;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::PivotWatch;
@@ -23,8 +24,8 @@ pub struct Inputs {
     pub bridge_fault: [bool; 3],
     /// Emergency stop pressed.
     pub emergency_stop: bool,
-    /// Motor currents, ADC counts.
-    pub current_counts: [u16; 3],
+    /// Motor currents, ADC counts with their sign.
+    pub current_counts: [i16; 3],
     /// Supply, ADC counts.
     pub supply_counts: u16,
     /// Cost of the tick before, processor cycles; 0 where nobody counts them.
@@ -40,6 +41,8 @@ pub struct Outputs {
     pub duty: [Duty; 3],
     /// Sleep pins: false lets the motors coast whatever the duty.
     pub awake: bool,
+    /// Pin of the brake resistor.
+    pub brake_resistor: bool,
 }
 
 /// All that the loop remembers.
@@ -73,8 +76,9 @@ pub struct State {
     pub(super) reported_servo: usize,
     /// Late ticks, a hundred each, less those forgiven.
     pub(super) lateness: u32,
-    /// Ticks in a row with a low supply.
-    pub(super) low_supply_ticks: u8,
+    /// Ticks in a row with a supply that is too low, or too high.
+    pub(super) bad_supply_ticks: u8,
+    pub(super) brake_resistor: BrakeResistor,
     /// Square of how far out the setpoint may be, track radii.
     pub(super) max_radius_squared: f32,
     /// The pivot that is inspected in this tick; in [`SNAPSHOT_SLOT`](super::inspection::SNAPSHOT_SLOT) none is.

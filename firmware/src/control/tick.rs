@@ -78,6 +78,7 @@ pub fn tick_and_drive(
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
     state.check_inputs(config, inputs);
+    state.update_brake_resistor(config, inputs.supply_counts);
     state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);
@@ -99,6 +100,7 @@ pub fn tick_and_drive(
     drive(Outputs {
         duty,
         awake: state.bridges_awake(),
+        brake_resistor: state.brake_resistor.is_on(),
     });
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
@@ -178,7 +180,7 @@ impl State {
         config: &Config,
         setpoint: &Setpoint,
         pivots: &mut [Angle; 3],
-        currents: &[u16; 3],
+        currents: &[i16; 3],
     ) -> Option<DriveOutputs> {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
@@ -247,7 +249,7 @@ impl State {
         errors: &[i32; 3],
         wanted: &PivotSetpoints,
         stiffness: Stiffness,
-        current_counts: &[u16; 3],
+        current_counts: &[i16; 3],
     ) -> ([Duty; 3], f32) {
         let servos = &config.servo;
         let common = LoopSetpoint {

@@ -1,4 +1,4 @@
-//! Phase/enable H-bridge (DRV8874 class): a PWM, a direction, a sleep and a fault pin.
+//! Phase/enable H-bridge: a PWM, a direction, a sleep and a fault pin.
 //!
 //! PWM low brakes (both low sides on), so a duty of zero holds the motor by its own back-EMF; only sleep low lets it
 //! coast.

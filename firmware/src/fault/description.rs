@@ -107,13 +107,13 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::Stalled,
-        detection: "a bridge at its largest duty without a pause; each pivot every fourth tick while driven",
+        detection: "a bridge at its largest duty, or a motor at its largest current (0x5450080F), without a pause; each pivot every fourth tick while driven",
         thresholds: &[0x5450_0508],
         reason: "something holds the pivot, or the supply or the motor is too weak for the motion: a stop under control would need the same drive",
     },
     FaultDescription {
         kind: FaultKind::MotorHot,
-        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 7.3 A the current is measured as 7.3 A",
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 8.2 A the current is measured as 8.2 A",
         thresholds: &[0x5450_0509, 0x5450_050A],
         reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
     },
@@ -158,5 +158,17 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it; at the start, before anything drives. An image that was not sealed is not checked, which `EVT?` tells",
         thresholds: &[],
         reason: "nothing has moved yet; what a damaged program does nobody knows: `FLC` does not take the fault away",
+    },
+    FaultDescription {
+        kind: FaultKind::SupplyHigh,
+        detection: "the supply over 58 V in four ticks in a row while driven; the brake resistor has been on from 54 V",
+        thresholds: &[],
+        reason: "what comes back from a motor is what raises it: shorted, the windings keep it to themselves. The bridges bear 60 V, 70 V at the very most",
+    },
+    FaultDescription {
+        kind: FaultKind::BrakeResistorHot,
+        detection: "356 W while it is on less the 50 W that it can give away, summed up to 500 J; every tick, in every state. It is then switched off until half of that is gone, some 5 s",
+        thresholds: &[],
+        reason: "a supply of more than 54 V, or a motion that brakes without end: shorted windings give nothing back",
     },
 ];

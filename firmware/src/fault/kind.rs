@@ -49,6 +49,10 @@ pub enum FaultKind {
     CrystalFailed,
     /// The program in flash does not have its checksum.
     ImageDamaged,
+    /// The supply is over what the bridges may have; value and limit in V.
+    SupplyHigh,
+    /// The brake resistor has taken more than it bears; value and limit in J.
+    BrakeResistorHot,
 }
 
 /// What a fault does to the motors.
@@ -76,6 +80,8 @@ impl FaultKind {
             Self::FollowingError
             | Self::EmergencyStop
             | Self::SupplyLow
+            | Self::SupplyHigh
+            | Self::BrakeResistorHot
             | Self::ImpossibleSetpoint
             | Self::Overspeed
             | Self::PivotsTooClose
@@ -121,6 +127,8 @@ impl FaultKind {
             Self::BridgeFault => "bridge reports a fault",
             Self::EmergencyStop => "emergency stop pressed",
             Self::SupplyLow => "supply voltage too low",
+            Self::SupplyHigh => "supply voltage too high",
+            Self::BrakeResistorHot => "brake resistor too hot",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
             Self::EncoderFrozen => "encoder repeats one reading",
             Self::Overspeed => "pivot too fast",
@@ -147,7 +155,8 @@ impl FaultKind {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::FollowingError | Self::PivotsTooClose => "rad",
-            Self::SupplyLow | Self::Oscillation => "V",
+            Self::SupplyLow | Self::SupplyHigh | Self::Oscillation => "V",
+            Self::BrakeResistorHot => "J",
             Self::Overspeed => "rad/s",
             Self::GuideRange | Self::WorkspaceLeft => "track radii",
             Self::Stalled => "s",

@@ -22,8 +22,8 @@ pub struct FaultRecordRow {
     pub errors: [i32; 3],
     /// Duties, PWM counts.
     pub duty: [i16; 3],
-    /// Motor currents, ADC counts; the lowest two bits are left out.
-    pub current_counts: [u16; 3],
+    /// Motor currents, ADC counts with their sign; the lowest two bits are left out.
+    pub current_counts: [i16; 3],
     /// Supply, ADC counts.
     pub supply_counts: u16,
     /// What the tick before cost, cycles, as far as 16 bits hold it.
@@ -36,7 +36,7 @@ pub(super) fn words(sample: &Sample, start: u32) -> [u32; WORDS] {
     let fault = sample.fault.map_or(0, |kind| kind as u32 + 1);
     let supply = u32::from(sample.supply_counts) & 0xFFF;
     let [a, b, c] = sample.duty.map(|duty| u32::from(duty.0 as u16));
-    let [i, j, k] = (sample.current_counts).map(|counts| u32::from(counts) >> CURRENT_CUT & 0x3FF);
+    let [i, j, k] = (sample.current_counts).map(|counts| (counts >> CURRENT_CUT) as u32 & 0x3FF);
     let [p, q, r] = sample.pivots;
     let errors = [0, 1, 2].map(|i| (sample.pivots[i] - sample.pivot_setpoints[i]).units() as u32);
     [
@@ -62,7 +62,8 @@ pub(super) const fn start_number(words: &[u32; WORDS]) -> u8 {
 
 /// The row in its words.
 pub(super) fn row(words: &[u32; WORDS]) -> FaultRecordRow {
-    let counts = |shift: u32| ((words[10] >> shift & 0x3FF) << CURRENT_CUT) as u16;
+    // The sign is the highest of the ten bits.
+    let counts = |shift: u32| ((words[10] >> shift << 22) as i32 >> (22 - CURRENT_CUT)) as i16;
     FaultRecordRow {
         tick: words[0],
         mode: (words[1] >> 20 & 0xF) as u8,

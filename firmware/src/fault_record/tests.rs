@@ -163,7 +163,7 @@ fn a_row_is_what_the_tick_was() {
     sample.pivots = [10, 2_000, -30].map(angle);
     sample.pivot_setpoints = [11, 2_200, -33].map(angle);
     sample.duty = [-100, 200, -300].map(crate::drivers::bridge::Duty);
-    sample.current_counts = [4, 800, 1_200];
+    sample.current_counts = [4, -800, 1_200];
     sample.tick_cycles = 70_000;
     let row = row::row(&row::words(&sample, 1));
     assert_eq!(
@@ -173,6 +173,6 @@ fn a_row_is_what_the_tick_was() {
     assert_eq!(row.pivots, [10, 2_000, 30_u32.wrapping_neg()]);
     assert_eq!(row.errors, [-1, -200, 3]);
     assert_eq!(row.duty, [-100, 200, -300]);
-    assert_eq!(row.current_counts, [4, 800, 1_200]);
+    assert_eq!(row.current_counts, [4, -800, 1_200]);
     assert_eq!((row.supply_counts, row.tick_cycles), (2_978, 0xFFFF));
 }

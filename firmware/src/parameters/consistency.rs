@@ -62,6 +62,8 @@ impl Parameters {
             && supervision.guide_margin < self.geometry.guide_start
             && silence_fits
             && supervision.supply_min_v < power.supply_v
+            // What a motor may carry for long it may carry for a moment.
+            && supervision.motor_current_a <= power.current_limit_a
             // Four times the dead time is what a bridge needs to put out anything at all in both directions.
             && (self.drives.iter()).all(|drive| drive.dead_time_s * power.pwm_hz < 0.25)
     }

@@ -28,7 +28,7 @@ pub struct Sample {
     /// Duties.
     pub duty: [Duty; 3],
     /// Motor currents, ADC counts.
-    pub current_counts: [u16; 3],
+    pub current_counts: [i16; 3],
     /// Supply, ADC counts.
     pub supply_counts: u16,
     /// What the tick before cost, cycles.

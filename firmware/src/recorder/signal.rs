@@ -25,7 +25,7 @@ pub enum RawSignal {
     PivotRate(u8),
     /// Duty of a bridge, PWM counts.
     Duty(u8),
-    /// Size of a motor's current, ADC counts.
+    /// A motor's current, ADC counts.
     Current(u8),
     /// Supply, ADC counts.
     Supply,

@@ -21,6 +21,9 @@ const SAME_TICKS: u64 = 20;
 const MOVING_RAD_S: f64 = 0.01;
 /// Ticks from one look at a pivot to the next: longer than that over a threshold, and it has been looked at.
 const LOOK_TICKS: u64 = 4;
+/// Share of a motor's largest current from which it is held at its limit for certain, and from which it may be.
+const LIMITED: f64 = 0.995;
+const NEARLY_LIMITED: f64 = 0.9;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
 /// Largest duty, as a share of the PWM's counts.
@@ -64,7 +67,7 @@ pub struct Now<'a> {
     /// The encoders, and the motors' currents (ADC counts), as the tick has read them.
     pub shown: &'a [Encoder; AXES],
     /// See `shown`.
-    pub current_counts: [u16; AXES],
+    pub current_counts: [i16; AXES],
     /// What the tick has computed: the platform's setpoint, the rates of the pivots' setpoints, the duties.
     pub position: Position,
     /// See `position`.
@@ -129,10 +132,13 @@ impl<'a> Effects<'a> {
             self.same[i] = goes_on(self.same[i], step == 0);
             self.fast[i] = goes_on(self.fast[i], f64::from(step) > most_counts);
             let duty = f64::from(now.duty[i]).abs();
-            self.at_end[i] = goes_on(self.at_end[i], duty >= full - 0.5);
-            self.pause[i] = goes_on(self.pause[i], duty < full - 1.0);
-            self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LOOK_TICKS);
             let current_a = f64::from(now.current_counts[i]) * CURRENT_A_PER_COUNT;
+            let most_a = self.parameters.power.current_limit_a;
+            let is_limited = |share: f64| current_a.abs() >= share * most_a;
+            self.at_end[i] = goes_on(self.at_end[i], duty >= full - 0.5 || is_limited(LIMITED));
+            let pauses = duty < full - 1.0 && !is_limited(NEARLY_LIMITED);
+            self.pause[i] = goes_on(self.pause[i], pauses);
+            self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LOOK_TICKS);
             self.heat[i] += (current_a * current_a - self.heat[i]) * part;
         }
     }

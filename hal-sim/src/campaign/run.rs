@@ -11,6 +11,7 @@ use crate::machine::devices::{BridgeState, SettingsFlash};
 use crate::machine::plant::AXES;
 use crate::random::Random;
 use crate::rig::{ControllerMemory, Rig};
+use firmware::drivers::power_stage::signed_current_counts;
 use firmware::gcs::{START_CAUSES, Session};
 use firmware::mode::Mode;
 use firmware::queues::Command;
@@ -65,7 +66,8 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             watch.outcome.told = refused.then_some(tick);
         }
         let shown = rig.front.stage.encoders.clone();
-        let (current_counts, _) = rig.front.stage.analog();
+        let (currents, _) = rig.front.stage.analog();
+        let current_counts = currents.map(signed_current_counts);
         let outputs = rig.tick(&mut seen);
         watch.look(tick, &rig.front, (&shown, current_counts), &seen);
         if seen

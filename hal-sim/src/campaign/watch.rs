@@ -81,7 +81,7 @@ impl<'a> Watch<'a> {
         &mut self,
         tick: u64,
         host: &Host,
-        read: (&[Encoder; AXES], [u16; AXES]),
+        read: (&[Encoder; AXES], [i16; AXES]),
         seen: &Seen,
     ) {
         let Some(sample) = seen.sample() else {

@@ -8,6 +8,7 @@ use crate::machine::plant::AXES;
 use firmware::control::{Inputs, Outputs};
 use firmware::drivers::biss::{RawFrame, read};
 use firmware::drivers::bridge;
+use firmware::drivers::power_stage::signed_current_counts;
 use firmware::fault::{Fault, FaultKind};
 use firmware::parameters::Parameters;
 use firmware::queues::TickQueues;
@@ -104,6 +105,7 @@ impl Host {
             };
             sure(done);
         }
+        self.stage.set_brake_resistor(outputs.brake_resistor);
         self.stage.advance_period(self.pins());
         outputs
     }
@@ -153,12 +155,14 @@ impl Host {
             .drivers
             .each_mut()
             .map(|driver| driver.reports_fault().unwrap_or(true));
-        let (current_counts, supply_counts) = self.stage.analog();
+        let tripped = self.stage.tripped();
+        let bridge_fault = [0, 1, 2].map(|axis| bridge_fault[axis] || tripped[axis]);
+        let (currents, supply_counts) = self.stage.analog();
         Inputs {
             frames,
             bridge_fault,
             emergency_stop: self.emergency_stop,
-            current_counts,
+            current_counts: currents.map(signed_current_counts),
             supply_counts,
             tick_cycles: 0,
             late: self.late | std::mem::take(&mut self.missed),

@@ -3,6 +3,7 @@
 //! The four channels are the converter's injected group, which has a result register for each: no DMA, nothing to
 //! wait for, nothing to overrun. Started with the latch they are ready 7.6 us later, in the middle of a PWM period.
 
+use firmware::drivers::power_stage::signed_current_counts;
 use stm32f4xx_hal::{
     pac,
     rcc::{Enable, Rcc},
@@ -21,8 +22,8 @@ pub struct Analog {
 /// What one group says, in counts of 12 bits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
-    /// Size of the motor currents.
-    pub current: [u16; 3],
+    /// Motor currents, with their sign.
+    pub current: [i16; 3],
     /// Supply voltage.
     pub supply: u16,
 }
@@ -63,9 +64,9 @@ impl Analog {
     pub fn counts(&self) -> Counts {
         Counts {
             current: [
-                self.adc.jdr1().read().jdata().bits(),
-                self.adc.jdr2().read().jdata().bits(),
-                self.adc.jdr3().read().jdata().bits(),
+                signed_current_counts(self.adc.jdr1().read().jdata().bits()),
+                signed_current_counts(self.adc.jdr2().read().jdata().bits()),
+                signed_current_counts(self.adc.jdr3().read().jdata().bits()),
             ],
             supply: self.adc.jdr4().read().jdata().bits(),
         }

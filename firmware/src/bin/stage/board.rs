@@ -57,6 +57,8 @@ pub struct Board {
     pub bridges: Bridges,
     /// Bytes of the command interface.
     pub receiver: Receiver,
+    /// The switch of the brake resistor.
+    pub brake_resistor: BrakeResistorSwitch,
     /// Answers of the command interface.
     pub transmitter: Transmitter,
     /// Where settings are kept.
@@ -81,6 +83,17 @@ type Axis<const CHANNEL: u8, const DIRECTION: u8, const SLEEP: u8, const FAULT: 
     Pin<'D', SLEEP, Output>,
     Pin<'D', FAULT, Input>,
 >;
+
+/// The switch of the brake resistor.
+pub struct BrakeResistorSwitch(Pin<'D', 3, Output>);
+
+impl BrakeResistorSwitch {
+    /// On or off.
+    #[inline(always)]
+    pub fn set(&mut self, on: bool) {
+        self.0.set_state(on.into());
+    }
+}
 
 /// The three bridges, pivot 1 first.
 pub struct Bridges(Axis<1, 0, 4, 8>, Axis<2, 1, 5, 9>, Axis<3, 2, 6, 10>);
@@ -212,6 +225,7 @@ impl Board {
             sensors: Sensors { encoders, analog },
             pwm,
             bridges,
+            brake_resistor: BrakeResistorSwitch(port_d.pd3.into_push_pull_output()),
             receiver,
             transmitter,
             flash: SettingsFlash::new(peripherals.FLASH, peripherals.PWR, &self_check, &mut rcc),

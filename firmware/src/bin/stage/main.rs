@@ -13,7 +13,8 @@
 //! | PA5, PA6 | SPI1 clock, data in | encoder 1: MA, SLO (through RS-422) |
 //! | PB13, PB14 | SPI2 clock, data in | encoder 2 |
 //! | PC10, PC11 | SPI3 clock, data in | encoder 3 |
-//! | PC0, PC1, PC2 | ADC1 channels 10 to 12 | current mirrors of the bridges (0.45 V/A) |
+//! | PD3 | output | switch of the brake resistor, high: on |
+//! | PC0, PC1, PC2 | ADC1 channels 10 to 12 | shunt amplifiers of the motors (0.2 V/A around 1.65 V) |
 //! | PC3 | ADC1 channel 13 | supply through 19 k over 1 k |
 //! | PA9, PA10 | USART1 transmit, receive | command interface, 921,600 baud, 8N1 |
 //! | PH0, PH1 | crystal, 8 MHz | |
@@ -78,7 +79,7 @@ use defmt_rtt as _;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use crate::{
-        board::{Board, Bridges, Sensors},
+        board::{Board, BrakeResistorSwitch, Bridges, Sensors},
         flash::SettingsFlash,
         identity,
         latch::LatchTimer,
@@ -117,6 +118,7 @@ mod app {
         tick_event: TickEvent,
         pwm: PwmTimer,
         bridges: Bridges,
+        brake_resistor: BrakeResistorSwitch,
         config: Config,
         state: &'static mut State,
         sample_sender: SampleSender,
@@ -149,6 +151,7 @@ mod app {
             sensors,
             mut pwm,
             bridges,
+            brake_resistor,
             receiver,
             transmitter,
             flash,
@@ -206,6 +209,7 @@ mod app {
             tick_event,
             pwm,
             bridges,
+            brake_resistor,
             config,
             state: context.local.state_place.write(state),
             sample_sender: SampleSender(sample_sender),
@@ -243,10 +247,11 @@ mod app {
     /// comes late, and if it never ends, the watchdog resets the chip.
     #[task(
         binds = TIM1_CC, priority = 14, shared = [sensors],
-        local = [pwm, bridges, config, state, tick_queues, sample_sender, tick_timing]
+        local = [pwm, bridges, brake_resistor, config, state, tick_queues, sample_sender, tick_timing]
     )]
     fn control(mut context: control::Context) {
         let (pwm, bridges) = (context.local.pwm, context.local.bridges);
+        let brake_resistor = context.local.brake_resistor;
         pwm.disarm_tick();
         let (tick_cycles, late) = context.local.tick_timing.begin(pwm.counts_since_tick());
         // The latch is 35 us off: nobody waits for this.
@@ -269,6 +274,7 @@ mod app {
             context.local.sample_sender,
             |outputs| {
                 bridges.set(outputs.duty, outputs.awake);
+                brake_resistor.set(outputs.brake_resistor);
                 pwm.connect(outputs.awake);
                 context.local.tick_timing.end();
                 // What follows has no deadline.

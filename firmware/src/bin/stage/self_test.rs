@@ -3,6 +3,7 @@
 use crate::clocks;
 use core::ops::RangeInclusive;
 use firmware::control::units::SUPPLY_V_PER_COUNT;
+use firmware::drivers::power_stage::signed_current_counts;
 use firmware::self_test::{Board, Reading};
 use stm32f4xx_hal::pac;
 
@@ -15,8 +16,8 @@ const DBGMCU_IDCODE: *const u32 = 0xE004_2000 as *const u32;
 const FLASH_KIB: *const u16 = 0x1FFF_7A22 as *const u16;
 /// The bridges' supply at which the stage runs, V.
 const SUPPLY_V: RangeInclusive<f64> = 45.6..=50.4;
-/// Counts of a current's input with the bridge asleep: 20 mV.
-const NO_CURRENT: RangeInclusive<f64> = 0.0..=25.0;
+/// Counts of a current with the bridge asleep: 30 mA, twice what shunt amplifier, reference and converter may be off.
+const NO_CURRENT: RangeInclusive<f64> = -8.0..=8.0;
 /// Pins: emergency stop (PE15) released; sleep (PD4 to PD6) low.
 const RELEASED: u32 = 1 << 15;
 const SLEEP_PINS: u32 = 0b111 << 4;
@@ -115,7 +116,8 @@ impl Board for StageBoard {
             adc.jdr1().read().jdata().bits(),
             adc.jdr2().read().jdata().bits(),
             adc.jdr3().read().jdata().bits(),
-        ];
+        ]
+        .map(signed_current_counts);
         for (name, counts) in ["CURRENT1", "CURRENT2", "CURRENT3"].into_iter().zip(counts) {
             say(name, f64::from(counts), "counts", NO_CURRENT);
         }

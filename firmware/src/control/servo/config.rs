@@ -1,5 +1,6 @@
 //! Constants of the servo, derived from the parameters.
 
+use super::current_limit::CurrentLimitConfig;
 use super::filter::FilterConfig;
 use super::inertia::{carried_inertia, largest_carried_inertia};
 use super::learnt::{FEATURES, Learnt};
@@ -69,6 +70,7 @@ pub struct PivotServoConfig {
     pub(super) motor_constant_limit: f32,
     /// Share of the way to its final value that the current goes in a tick.
     pub(super) current_step: f32,
+    pub(super) current_limit: CurrentLimitConfig,
     /// What the dead time takes of a pulse, PWM counts.
     pub(super) dead_time_counts: f32,
     /// Largest duty, PWM counts.
@@ -203,6 +205,12 @@ impl PivotServoConfig {
             motor_constant_limit: (0.5 * torque_per_ampere) as f32,
             current_step: (1.0 - libm::exp(-period_s * drive.resistance_ohm / drive.inductance_h))
                 as f32,
+            current_limit: CurrentLimitConfig::new(
+                power.current_limit_a,
+                drive.inductance_h,
+                drive.dead_time_knee_a,
+                limits.rate_hz,
+            ),
             dead_time_counts: (drive.dead_time_s * power.pwm_hz * full) as f32,
             max_counts: (limit_share * full) as f32,
             frozen_duty: (frozen_v / power.supply_v * full).min(full) as u16,

@@ -3,7 +3,7 @@
 //! ```text
 //!  setpoint --> feedforward: torque model, back-EMF, friction; scaled by what has been learnt ----+
 //!      |                                                                                          v
-//!      +--(-)--> e --> r = e' + Kp e --> Kv r + Ki integral(r) ------------------------------(+)--> volts --> duty
+//!      +--(-)--> e --> r = e' + Kp e --> Kv r + Ki integral(r) ------------------------------(+)--> volts --> current limit --> duty
 //!      measured                    \--> learning
 //! ```
 //!
@@ -24,11 +24,13 @@
 //! | `inertia` | what a pivot moves, for the gains' schedule |
 //! | `ripple` | compensation of torque ripple |
 //! | `learnt` | what is learnt, as it is told and kept |
+//! | `current_limit` | the limit of the motors' currents |
 //! | `dead_time` | compensation of the bridges' dead time |
 //! | `presliding` | friction before a ring slides |
 //! | `platform_torque` | torque that platform and payload ask of the pivots |
 
 mod config;
+mod current_limit;
 mod dead_time;
 mod filter;
 mod inertia;

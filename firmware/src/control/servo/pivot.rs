@@ -1,6 +1,7 @@
 //! The servo of one pivot.
 
 use super::config::PivotServoConfig;
+use super::current_limit::CurrentLimit;
 use super::dead_time::{compensate_dead_time, dead_time_share};
 use super::filter::Filters;
 use super::learnt::{FEATURES, Learnt};
@@ -26,8 +27,8 @@ pub struct PivotSetpoint {
     pub platform_torque: f32,
     /// Angle.
     pub angle: Angle,
-    /// Size of the motor's current as it was measured, ADC counts.
-    pub current_counts: u16,
+    /// The motor's current as it was measured, ADC counts.
+    pub current_counts: i16,
     /// What iterative learning adds, V.
     pub learnt_volts: f32,
 }
@@ -65,6 +66,7 @@ pub struct PivotServo {
     scheduled_excess: f32,
     /// What it asked for last, PWM counts.
     requested_counts: f32,
+    current_limit: CurrentLimit,
 }
 
 impl PivotServo {
@@ -123,10 +125,10 @@ impl PivotServo {
         self.requested_counts
     }
 
-    /// Whether it asked for as much as the bridge can give, or more.
+    /// Whether it asked for as much as the bridge can give or the motor may carry, or more.
     #[inline]
     pub fn is_saturated(&self, config: &PivotServoConfig) -> bool {
-        self.requested_counts.abs() > config.max_counts
+        self.requested_counts.abs() > config.max_counts || self.current_limit.is_active()
     }
 
     /// Duty for this tick.
@@ -176,8 +178,8 @@ impl PivotServo {
         // Without the back-EMF: what the current follows. A weight that the rate has learnt is a motor constant that is
         // off. It follows the voltage that is wanted, since what the dead time takes of it is made up for.
         let measured = f32::from(setpoint.current_counts) * config.knee_currents_per_count;
-        if measured > LEAST_MEASURED {
-            let missing = measured.copysign(self.current) - self.current;
+        if measured.abs() > LEAST_MEASURED {
+            let missing = measured - self.current;
             let excess = self.learnt.motor_constant_excess
                 - config.motor_constant_step * missing * rate / (1.0 + rate * rate);
             self.learnt.motor_constant_excess =
@@ -194,15 +196,22 @@ impl PivotServo {
         );
         self.requested_counts = counts;
         let limited = clamp_symmetric(counts, config.max_counts);
+        let taken = self.current_limit.volts(&config.current_limit, measured);
 
-        // Anti-windup: collecting stops while the bridge is saturated and the error asks for more.
-        if counts == limited || counts * r < 0.0 {
+        // Anti-windup: collecting stops while the bridge or the motor's current is saturated and the error asks for more.
+        let (is_free, drive) = if taken == 0.0 {
+            (counts == limited, counts)
+        } else {
+            (false, measured)
+        };
+        if is_free || drive * r < 0.0 {
             self.integral = clamp_symmetric(
                 self.integral + share * integral_rate * (config.integral_gain * r),
                 config.integral_limit,
             );
         }
-        self.quantise(limited)
+        let allowed = limited - taken * common.counts_per_volt;
+        self.quantise(clamp_symmetric(allowed, config.max_counts))
     }
 
     /// Volts that somebody else has given until now: the integral's from now on. Nothing is learnt from that.

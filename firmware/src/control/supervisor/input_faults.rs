@@ -1,13 +1,13 @@
 //! Faults that the inputs show.
 
-use crate::control::config::Config;
+use crate::control::config::{Config, MAX_SUPPLY_COUNTS};
 use crate::control::state::{Inputs, State};
 use crate::control::units::SUPPLY_V_PER_COUNT;
 use crate::fault::{FaultKind, Reaction};
 use crate::mode::Mode;
 
-/// Ticks in a row that a low supply is one: 0.2 ms, over which a converter's noise is none.
-const LOW_SUPPLY_TICKS: u8 = 4;
+/// Ticks in a row that a bad supply is one: 0.2 ms, over which a converter's noise is none.
+const BAD_SUPPLY_TICKS: u8 = 4;
 /// Ticks over which one late tick is forgiven.
 const LATE_RECOVERY_TICKS: u32 = 100;
 
@@ -17,10 +17,10 @@ impl State {
     pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
         let [one, two, three] = inputs.bridge_fault;
         let reported = inputs.emergency_stop | inputs.late | one | two | three;
-        let pending = self.lateness | u32::from(self.low_supply_ticks);
+        let pending = self.lateness | u32::from(self.bad_supply_ticks);
         let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
-        let has_power = inputs.supply_counts >= config.limits.min_supply_counts;
-        if reported || pending != 0 || !is_well || !has_power || self.mode == Mode::Fault {
+        let is_fed = config.limits.has_good_supply(inputs.supply_counts);
+        if reported || pending != 0 || !is_well || !is_fed || self.mode == Mode::Fault {
             self.check_unusual_inputs(config, inputs);
         }
     }
@@ -64,21 +64,21 @@ impl State {
                 self.raise_fault(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
             }
         }
-        if inputs.supply_counts >= config.limits.min_supply_counts {
-            self.low_supply_ticks = 0;
+        let (counts, limits) = (inputs.supply_counts, &config.limits);
+        if limits.has_good_supply(counts) {
+            self.bad_supply_ticks = 0;
             return;
         }
-        self.low_supply_ticks += 1;
-        if self.low_supply_ticks >= LOW_SUPPLY_TICKS {
-            self.low_supply_ticks = 0;
+        self.bad_supply_ticks += 1;
+        if self.bad_supply_ticks >= BAD_SUPPLY_TICKS {
+            self.bad_supply_ticks = 0;
+            let (kind, limit) = if counts < limits.min_supply_counts {
+                (FaultKind::SupplyLow, limits.min_supply_counts)
+            } else {
+                (FaultKind::SupplyHigh, MAX_SUPPLY_COUNTS)
+            };
             let volts = |counts: u16| f32::from(counts) * SUPPLY_V_PER_COUNT as f32;
-            let limit = config.limits.min_supply_counts;
-            self.raise_fault(
-                FaultKind::SupplyLow,
-                None,
-                volts(inputs.supply_counts),
-                volts(limit),
-            );
+            self.raise_fault(kind, None, volts(counts), volts(limit));
         }
     }
 

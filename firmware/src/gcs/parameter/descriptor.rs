@@ -152,7 +152,7 @@ impl Parameter {
     }
 
     /// Whether it is kept under this number: not where three others keep the same.
-    pub fn is_stored(&self) -> bool {
+    pub const fn is_stored(&self) -> bool {
         !self.is_read_only() && !matches!(self.source, ValueSource::AllPivots(..))
     }
 }

@@ -12,7 +12,7 @@
 //!
 //! Numbers begin with their lowest byte.
 
-use super::state::{KeptParameters, UnusableValues};
+use super::state::{KeptParameters, MAX_UNUSABLE, UnusableValues};
 use super::stored_moves::{self, MOVES_BYTES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
@@ -36,7 +36,18 @@ const CHUNK_BYTES: usize = 64;
 pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
 /// Bytes of the longest contents.
 const MAX_CONTENTS_BYTES: usize =
-    5 + PARAMETERS.len() * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES + MOVES_BYTES;
+    5 + MOST_SETTINGS * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES + MOVES_BYTES;
+/// Parameters that can be stored, and stored values that are no such ones.
+const MOST_SETTINGS: usize = {
+    let (mut count, mut i) = (MAX_UNUSABLE, 0);
+    while i < PARAMETERS.len() {
+        if PARAMETERS[i].is_stored() {
+            count += 1;
+        }
+        i += 1;
+    }
+    count
+};
 
 /// All that is stored: of the command side, and the points of the tables, which lie with those of the trial.
 pub struct Contents<'a, 't> {

@@ -8,7 +8,7 @@ use heapless::Vec;
 /// Values that are stored and that this firmware does not allow, with their parameters' numbers.
 pub(in crate::gcs) type UnusableValues = Vec<(u32, f64), MAX_UNUSABLE>;
 /// More of them are no settings of this stage.
-const MAX_UNUSABLE: usize = 8;
+pub(super) const MAX_UNUSABLE: usize = 8;
 
 /// What was read of the parameters that are stored.
 pub(super) struct KeptParameters {

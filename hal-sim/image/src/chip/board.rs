@@ -36,6 +36,7 @@ const PORT_E: usize = 4;
 const DIRECTION: [u8; 3] = [0, 1, 2];
 const SLEEP: [u8; 3] = [4, 5, 6];
 const BRIDGE_FAULT: [u8; 3] = [8, 9, 10];
+const BRAKE_RESISTOR: u8 = 3;
 /// Pin of port E.
 const EMERGENCY_STOP: u8 = 15;
 const TIM3_CR1: u64 = 0x4000_0400;
@@ -172,6 +173,12 @@ impl ChipBoard {
             awake: level(SLEEP[axis]),
             fault: faults[axis],
         })
+    }
+
+    /// Whether the brake resistor is switched on.
+    pub fn brake_resistor(&mut self) -> bool {
+        let (port, registers) = self.mcu.port(PORT_D);
+        Pin::new(BRAKE_RESISTOR).is_some_and(|pin| port.level(pin, registers) == Level::High)
     }
 
     /// Counts of the PWM pulses of the period under way, or `None` while the outputs are cut.

@@ -172,6 +172,7 @@ where
         let board = session.board_mut();
         let pins = board.bridges(now, self.bridge_faults);
         if self.tick > 0 {
+            (self.stage).set_brake_resistor(board.brake_resistor());
             self.stage.advance_period(pins);
         }
         board.set_frames(self.stage.frames());
@@ -192,9 +193,9 @@ where
             following: &mut self.following,
             ends: [self.landmarks.tick_begin, self.landmarks.tick_end],
         });
-        session
-            .board_mut()
-            .set_bridge_faults(now, self.bridge_faults);
+        let tripped = self.stage.tripped();
+        let faults = [0, 1, 2].map(|axis| self.bridge_faults[axis] || tripped[axis]);
+        session.board_mut().set_bridge_faults(now, faults);
         self.tick += 1;
         flow
     }

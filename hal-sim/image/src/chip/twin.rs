@@ -18,6 +18,7 @@
 use super::period::{Period, Service, Trace};
 use firmware::control::Inputs;
 use firmware::drivers::biss::{RawFrame, decode};
+use firmware::drivers::power_stage::signed_current_counts;
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 use firmware::queues::{CommandQueues, Snapshot, TickQueues};
@@ -175,7 +176,7 @@ impl Twin {
         self.services
             .extend(services.ok_or(Divergence::Interpreter { ticks: trace.ticks })?);
         self.served = trace.served;
-        let (current_counts, supply_counts) = period.stage.analog();
+        let (currents, supply_counts) = period.stage.analog();
         let mut frames = period.stage.frames();
         if self.flip_at == Some(period.tick) {
             frames[0] = with_flipped_bit(frames[0]);
@@ -185,7 +186,7 @@ impl Twin {
                 frames: frames.map(RawFrame),
                 bridge_fault: [false; 3],
                 emergency_stop: false,
-                current_counts,
+                current_counts: currents.map(signed_current_counts),
                 supply_counts,
                 tick_cycles: 0,
                 late: false,

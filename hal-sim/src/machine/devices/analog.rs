@@ -8,9 +8,11 @@ use crate::random::Random;
 /// Largest count.
 pub const FULL_SCALE_COUNTS: u16 = 4095;
 
-/// Volts at the input for each ampere of motor current: 450 uA/A out of the bridge's current mirror into 1 kohm. The
-/// mirror gives the size of the current, not its sign; full scale is 7.33 A.
-pub const CURRENT_V_A: f64 = 0.45;
+/// Volts at the input for each ampere of motor current: a shunt of 10 mohm and an amplifier of 20, which see the current with its
+/// sign in every state of the bridge. Full scale is +-8.25 A.
+pub const CURRENT_V_A: f64 = 0.2;
+/// Volts at the input at no current.
+pub const CURRENT_ZERO_V: f64 = 1.65;
 
 /// Volts at the input for each volt of supply: 19 kohm over 1 kohm. Full scale is 66 V.
 pub const SUPPLY_V_V: f64 = 1.0 / 20.0;
@@ -32,12 +34,12 @@ pub struct AnalogParameters {
 }
 
 impl AnalogParameters {
-    /// What a 12 bit converter beside switching bridges has for noise; offsets of some 5 mA and gains within 3 %, as makers state of
-    /// current mirrors; a divider of 1 % resistors.
+    /// What a 12 bit converter beside switching bridges has for noise; offsets of some 10 mA from amplifier and reference, gains within
+    /// 1 % from shunts; a divider of 1 % resistors.
     pub const REFERENCE: Self = Self {
         noise_counts: 1.5,
         current_offset_counts: [3.0, -2.0, 4.0],
-        current_gain: [1.02, 0.97, 1.01],
+        current_gain: [1.01, 0.99, 1.004],
         supply_gain: 0.995,
     };
 
@@ -66,7 +68,7 @@ impl AnalogParameters {
             }
         };
         let currents = [0, 1, 2].map(|axis| {
-            let input_v = currents_a[axis].abs() * CURRENT_V_A * self.current_gain[axis];
+            let input_v = CURRENT_ZERO_V + currents_a[axis] * CURRENT_V_A * self.current_gain[axis];
             counts(input_v, self.current_offset_counts[axis] + noise())
         });
         let supply = counts(supply_v * SUPPLY_V_V * self.supply_gain, noise());
@@ -75,7 +77,7 @@ impl AnalogParameters {
 }
 
 fn counts(input_v: f64, more_counts: f64) -> u16 {
-    let scaled = input_v / REFERENCE_V * f64::from(FULL_SCALE_COUNTS) + more_counts;
+    let scaled = input_v / REFERENCE_V * f64::from(FULL_SCALE_COUNTS + 1) + more_counts;
     // The cast saturates, and takes NaN for zero.
     (scaled.round() as u16).min(FULL_SCALE_COUNTS)
 }
@@ -88,8 +90,8 @@ mod tests {
     fn counts_scale_and_saturate() {
         let exact = |currents_a, supply_v| AnalogParameters::EXACT.sample(currents_a, supply_v, 0);
         let full = FULL_SCALE_COUNTS;
-        assert_eq!(exact([-1.0, 22.9, 0.0], 48.0), ([558, full, 0], 2978));
-        assert_eq!(exact([0.0; AXES], -1.0), ([0; AXES], 0));
+        assert_eq!(exact([-1.0, 22.9, 0.0], 48.0), ([1800, full, 2048], 2979));
+        assert_eq!(exact([-22.9; AXES], -1.0), ([0; AXES], 0));
     }
 
     #[test]
@@ -102,7 +104,7 @@ mod tests {
             mean += f64::from(counts) / f64::from(samples);
             square += f64::from(counts).powi(2) / f64::from(samples);
         }
-        let expected = 2.0 * CURRENT_V_A * 0.97 / REFERENCE_V * f64::from(FULL_SCALE_COUNTS) - 2.0;
+        let expected = (1.65 + 2.0 * CURRENT_V_A * 0.99) / REFERENCE_V * 4096.0 - 2.0;
         assert!((mean - expected).abs() < 0.05, "{mean} {expected}");
         let deviation = (square - mean * mean).sqrt();
         // A count's own rounding adds its twelfth.

@@ -13,6 +13,7 @@ use embedded_hal::digital::{self, InputPin, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 
 use crate::machine::plant::Drive;
+use firmware::drivers::power_stage::BRIDGE;
 
 /// Counts of the reference stage's PWM: 168 MHz over 40 kHz.
 pub const MAX_DUTY: u16 = 4200;
@@ -30,6 +31,10 @@ pub struct BridgeParameters {
     pub pwm_hz: f64,
     /// Dead time of the switching leg, s; zero switches its effect off.
     pub dead_time_s: f64,
+    /// Current at which it opens all switches and pulls its fault pin, until it has slept, A.
+    pub trip_a: f64,
+    /// Time from its sleep pin to its first pulse, s.
+    pub wake_s: f64,
     /// Current from which the whole dead time counts, A. Below, the PWM's current ripple crosses zero within the
     /// period and part of the loss turns into gain.
     pub dead_time_knee_a: f64,
@@ -37,12 +42,15 @@ pub struct BridgeParameters {
 
 impl BridgeParameters {
     /// 48 V and 40 kHz of the reference stage; 200 ns dead time is what makers of such bridges state, and the knee is
-    /// a tenth of the largest ripple (48 V / (4 * 0.7 mH * 40 kHz) = 0.43 A), since near rest the pulses are short.
+    /// a tenth of the largest ripple (48 V / (4 * 0.7 mH * 40 kHz) = 0.43 A), since near rest the pulses are short. Trip and wake-up are
+    /// those of the part that the board has.
     pub const REFERENCE: Self = Self {
         supply_v: 48.0,
         pwm_hz: 40e3,
         dead_time_s: 200e-9,
         dead_time_knee_a: 0.043,
+        trip_a: BRIDGE.trip_a,
+        wake_s: BRIDGE.wake_s,
     };
 }
 
@@ -86,6 +94,17 @@ impl BridgeState {
         Drive::Voltage(volts - self.dead_time_loss(parameters, current_a))
     }
 
+    /// What it draws from the bus for a motor that carries this current, A; less than 0: gives back.
+    #[must_use]
+    pub fn drawn_a(&self, current_a: f64) -> f64 {
+        if !self.awake || self.fault {
+            // Through the diodes.
+            return -current_a.abs();
+        }
+        let sign = if self.forward { 1.0 } else { -1.0 };
+        sign * self.pulse.clamp(0.0, 1.0) * current_a
+    }
+
     /// While both switches of a leg are off, a diode carries the current and the leg lies on the wrong rail.
     fn dead_time_loss(&self, parameters: &BridgeParameters, current_a: f64) -> f64 {
         if self.pulse >= 1.0 {
@@ -95,6 +114,44 @@ impl BridgeState {
         let lost = (parameters.dead_time_s * parameters.pwm_hz).min(self.pulse);
         let direction = (current_a / parameters.dead_time_knee_a).clamp(-1.0, 1.0);
         lost * parameters.supply_v * direction
+    }
+}
+
+/// What a bridge does by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Protection {
+    tripped: bool,
+    awake_s: f64,
+}
+
+impl Protection {
+    /// Looks at pins and current over a step, and says what the bridge then does with its pins.
+    #[must_use]
+    pub fn pass(
+        &mut self,
+        pins: BridgeState,
+        parameters: &BridgeParameters,
+        current_a: f64,
+        step_s: f64,
+    ) -> BridgeState {
+        if !pins.awake {
+            *self = Self::default();
+            return pins;
+        }
+        self.tripped |= current_a.abs() > parameters.trip_a;
+        let is_up = self.awake_s >= parameters.wake_s;
+        self.awake_s += step_s;
+        BridgeState {
+            awake: is_up,
+            fault: pins.fault || self.tripped,
+            ..pins
+        }
+    }
+
+    /// Whether it pulls its fault pin.
+    #[must_use]
+    pub const fn is_tripped(&self) -> bool {
+        self.tripped
     }
 }
 

@@ -5,12 +5,14 @@
 //! | `stage` | the whole stage behind the wires, and the timeline of a period |
 //! | `encoder`, `biss` | an absolute encoder, and the bits of its frame |
 //! | `bridge` | an H-bridge: pins in, voltage out |
+//! | `bus` | what lies between supply and bridges |
 //! | `analog` | what the ADC reads |
 //! | `flash` | where settings are kept |
 
 pub mod analog;
 pub mod biss;
 mod bridge;
+mod bus;
 mod encoder;
 mod flash;
 mod stage;
@@ -20,6 +22,7 @@ pub use bridge::{
     Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
     PwmPin, SleepPin,
 };
+pub use bus::{Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
 pub use stage::{Stage, StageParameters};

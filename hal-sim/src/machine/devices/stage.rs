@@ -12,7 +12,8 @@
 //! that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
 
 use super::analog::AnalogParameters;
-use super::bridge::{BridgeParameters, BridgeState};
+use super::bridge::{BridgeParameters, BridgeState, Protection};
+use super::bus::{Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
 use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,8 @@ pub struct StageParameters {
     pub encoders: [EncoderParameters; AXES],
     /// The bridges; their supply is the plant's.
     pub bridge: BridgeParameters,
+    /// The bus from the supply to the bridges.
+    pub bus: BusParameters,
     /// The analog inputs.
     pub analog: AnalogParameters,
     /// Seed of every random number. It is a run's, and no part of a machine's file.
@@ -72,6 +75,7 @@ impl StageParameters {
             },
         ],
         bridge: BridgeParameters::REFERENCE,
+        bus: BusParameters::REFERENCE,
         analog: AnalogParameters::REFERENCE,
         seed: REFERENCE_SEED,
     };
@@ -98,6 +102,12 @@ pub struct Stage {
     pub encoders: [Encoder; AXES],
     period_s: f64,
     bridge: BridgeParameters,
+    /// Where the supply is not ideal; `source_v` feeds it.
+    bus: Option<Bus>,
+    source_v: f64,
+    brake_resistor_is_on: bool,
+    /// Where bridges have limits.
+    protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
     seed: u64,
     periods: u64,
@@ -127,6 +137,10 @@ impl Stage {
             encoders,
             period_s: parameters.period_s,
             bridge,
+            bus: (flags.bus).then(|| Bus::new(parameters.bus, parameters.plant.supply_v)),
+            source_v: parameters.plant.supply_v,
+            brake_resistor_is_on: false,
+            protection: flags.bridge_limits.then(Default::default),
             analog: if flags.analog_errors {
                 parameters.analog
             } else {
@@ -176,8 +190,34 @@ impl Stage {
 
     /// Changes the supply, V, from now on.
     pub fn set_supply_v(&mut self, supply_v: f64) {
-        self.bridge.supply_v = supply_v;
-        self.plant.set_supply_v(supply_v);
+        self.source_v = supply_v;
+        if self.bus.is_none() {
+            self.set_bus_v(supply_v);
+        }
+    }
+
+    fn set_bus_v(&mut self, volts: f64) {
+        self.bridge.supply_v = volts;
+        self.plant.set_supply_v(volts);
+    }
+
+    /// The pin of the brake resistor, from the next period on.
+    pub fn set_brake_resistor(&mut self, is_on: bool) {
+        self.brake_resistor_is_on = is_on;
+    }
+
+    /// The bus, where the supply is not ideal.
+    #[must_use]
+    pub const fn bus(&self) -> Option<&Bus> {
+        self.bus.as_ref()
+    }
+
+    /// Which bridges have switched themselves off.
+    #[must_use]
+    pub fn tripped(&self) -> [bool; AXES] {
+        (self.protection).map_or([false; AXES], |bridges| {
+            bridges.map(|bridge| bridge.is_tripped())
+        })
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
@@ -199,10 +239,23 @@ impl Stage {
     }
 
     fn substep(&mut self, part_of_period: f64) {
+        let step_s = part_of_period * self.period_s;
         let currents_a = self.plant.currents_a();
+        let mut pins = self.acting;
+        if let Some(bridges) = &mut self.protection {
+            for (axis, bridge) in bridges.iter_mut().enumerate() {
+                pins[axis] = bridge.pass(pins[axis], &self.bridge, currents_a[axis], step_s);
+            }
+        }
         let drives: [Drive; AXES] =
-            [0, 1, 2].map(|axis| self.acting[axis].drive(&self.bridge, currents_a[axis]));
-        self.plant.step(part_of_period * self.period_s, &drives);
+            [0, 1, 2].map(|axis| pins[axis].drive(&self.bridge, currents_a[axis]));
+        self.plant.step(step_s, &drives);
+        if let Some(bus) = &mut self.bus {
+            let drawn_a: f64 = (0..AXES).map(|i| pins[i].drawn_a(currents_a[i])).sum();
+            bus.step(step_s, self.source_v, drawn_a, self.brake_resistor_is_on);
+            let volts = bus.volts();
+            self.set_bus_v(volts);
+        }
     }
 
     fn latch(&mut self) {

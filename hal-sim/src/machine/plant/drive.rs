@@ -88,6 +88,11 @@ impl DriveModel {
         }
     }
 
+    /// Changes the supply, V.
+    pub const fn set_supply_v(&mut self, supply_v: f64) {
+        self.supply_v = supply_v;
+    }
+
     /// Torque for each ampere, N m/A, and back-EMF for each rad/s, V s/rad, where the motor stands. Both ripple alike: what
     /// the current gives is what the motion takes.
     #[must_use]

@@ -57,6 +57,10 @@ pub struct Imperfections {
     pub floor_vibration: bool,
     /// Windings that become warm, and have more resistance then.
     pub winding_heat: bool,
+    /// A bus behind a diode, with a capacitor. Off, the supply gives and takes any current.
+    pub bus: bool,
+    /// Bridges that trip, and that need time to wake up.
+    pub bridge_limits: bool,
     /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
     pub pwm_quantisation: bool,
 }
@@ -87,6 +91,8 @@ impl Imperfections {
         analog_errors: false,
         floor_vibration: false,
         winding_heat: false,
+        bus: false,
+        bridge_limits: false,
         pwm_quantisation: false,
     };
 
@@ -116,6 +122,8 @@ impl Imperfections {
         analog_errors: false,
         floor_vibration: false,
         winding_heat: false,
+        bus: false,
+        bridge_limits: false,
         pwm_quantisation: true,
     };
 
@@ -137,6 +145,8 @@ impl Imperfections {
         analog_errors: true,
         floor_vibration: true,
         winding_heat: true,
+        bus: true,
+        bridge_limits: true,
         ..Self::CALIBRATED
     };
 }
@@ -150,7 +160,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 24] = [
+pub const NAMED: [Named; 26] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -174,6 +184,8 @@ pub const NAMED: [Named; 24] = [
     named("analog-errors", |on| &mut on.analog_errors),
     named("floor-vibration", |on| &mut on.floor_vibration),
     named("winding-heat", |on| &mut on.winding_heat),
+    named("bus", |on| &mut on.bus),
+    named("bridge-limits", |on| &mut on.bridge_limits),
     named("pwm-quantisation", |on| &mut on.pwm_quantisation),
 ];
 

@@ -128,7 +128,7 @@ impl Plant {
     /// Changes the supply that cuts voltages and against which currents die, V.
     pub fn set_supply_v(&mut self, supply_v: f64) {
         self.parameters.supply_v = supply_v;
-        self.dynamics.drive = DriveModel::new(&self.parameters);
+        self.dynamics.drive.set_supply_v(supply_v);
     }
 
     /// Integrates over `step_s` (3 to 16 us is what the parameters are made for) with constant drives: one classic

@@ -9,6 +9,7 @@ mod pivots;
 use super::descriptor::{Kind, Parameter, ValueSource, When};
 use crate::commander::axis::Axis;
 use crate::drivers::biss::POSITION_BITS;
+use crate::drivers::power_stage::MOST_MEASURED_A;
 use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
@@ -199,7 +200,7 @@ const COMMON: &[Parameter] = &[
 #[rustfmt::skip]
 const AFTER_GAINS: &[Parameter] = &[
 
-    WINDOW.float(0x5450_0400, "settling window", "encoder counts", [0.5, 1_000.0], at!(window.counts)),
+    WINDOW.float(0x5450_0400, "settling window; what has settled is so until it is out of twice that", "encoder counts", [0.5, 1_000.0], at!(window.counts)),
     WINDOW.float(0x5450_0401, "settling dwell", "s", [5e-5, 10.0], at!(window.dwell_s)),
     WINDOW.float(0x5450_0402, "time over whose mean the error is taken, at most 32 ticks", "s", [5e-5, 1.6e-3], at!(window.mean_s)),
 
@@ -242,11 +243,15 @@ const AFTER_GAINS: &[Parameter] = &[
     PLATFORM.float(0x5450_0705, "y of the payload's centre on the platform", "mm", [-500.0, 500.0], at!(platform.payload_centre_mm[1])),
 
 ];
+/// Largest limit of a motor's current, A: what goes beyond it must still be seen.
+const CURRENT_LIMIT_A: f64 = 7.0;
+const _: () = assert!(CURRENT_LIMIT_A < MOST_MEASURED_A);
 #[rustfmt::skip]
 const POWER: &[Parameter] = &[
     DRIVE.float(0x5450_0806, "nominal supply", "V", [6.0, 60.0], at!(power.supply_v)),
     DRIVE.float(0x5450_080D, "largest voltage of a motor; the bridge gives 98 % of the supply at most", "V", [1.0, 60.0], at!(power.voltage_limit_v)),
     DRIVE.float(0x5450_080E, "largest voltage of a motor in recovery (RCV)", "V", [1.0, 24.0], at!(power.recovery_voltage_v)),
+    DRIVE.float(0x5450_080F, "largest current of a motor", "A", [0.5, CURRENT_LIMIT_A], at!(power.current_limit_a)),
     Parameter { when: When::Never, ..DRIVE.float(0x5450_080B, "PWM frequency", "Hz", [0.0; 2], ValueSource::ReadOnly(|p| p.power.pwm_hz)) },
     Parameter { when: When::Never, ..DRIVE.int(0x5450_080C, "counts of a PWM period", [0.0; 2], ValueSource::ReadOnly(|p| f64::from(p.power.pwm_counts))) },
 ];

@@ -138,7 +138,7 @@ fn pivot(random: &mut Random) -> PivotSetpoint {
         acceleration: random.within(-100.0, 100.0) as f32,
         platform_torque: random.within(-6.0, 6.0) as f32,
         angle: Angle::from_units(random.within(-2e9, 2e9) as i64),
-        current_counts: random.within(0.0, 2_000.0) as u16,
+        current_counts: random.within(-1_400.0, 1_400.0) as i16,
         learnt_volts: 0.0,
     }
 }
