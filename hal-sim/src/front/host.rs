@@ -146,11 +146,8 @@ impl Host {
     }
 
     fn inputs(&mut self) -> Inputs {
-        let frames = self
-            .stage
-            .encoders
-            .each_mut()
-            .map(|encoder| read(encoder).unwrap_or(RawFrame::MISSING));
+        let frames =
+            [0, 1, 2].map(|port| read(self.stage.encoder_at(port)).unwrap_or(RawFrame::MISSING));
         let bridge_fault = self
             .drivers
             .each_mut()

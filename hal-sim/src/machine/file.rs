@@ -43,6 +43,12 @@ pub enum MachineError {
         /// What it may be.
         most: f64,
     },
+    /// Two plugs in one socket.
+    #[error("{key}: must have each of 0, 1 and 2 once")]
+    Wiring {
+        /// Where.
+        key: &'static str,
+    },
     /// Not `KEY=VALUE`.
     #[error("{0}: must be KEY=VALUE, as in plant.platform_mass_kg=3.5")]
     Setting(String),
@@ -125,6 +131,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("brake_resistor_ohm", 0.1, 1e3),
     ("trip_a", 1.0, 1e3),
     ("wake_s", 0.0, 0.1),
+    ("bridge_of_ring", 0.0, 2.0),
+    ("port_of_ring", 0.0, 2.0),
 ];
 
 /// A machine as a file.
@@ -154,7 +162,18 @@ pub fn from_text(text: &str, settings: &[String]) -> Result<StageParameters, Mac
         set(&mut machine, setting)?;
     }
     check("", &machine)?;
-    (machine.try_into()).map_err(|error| MachineError::Syntax(error.to_string()))
+    let machine: StageParameters =
+        (machine.try_into()).map_err(|error| MachineError::Syntax(error.to_string()))?;
+    for (key, mut places) in [
+        ("wiring.bridge_of_ring", machine.wiring.bridge_of_ring),
+        ("wiring.port_of_ring", machine.wiring.port_of_ring),
+    ] {
+        places.sort_unstable();
+        if places != [0, 1, 2] {
+            return Err(MachineError::Wiring { key });
+        }
+    }
+    Ok(machine)
 }
 
 /// Puts what is given in the place of what is there, all of which is known.
@@ -335,6 +354,10 @@ mod tests {
         assert_eq!(
             error("[plant]\nplatform_mass_kg = \"heavy\""),
             "plant.platform_mass_kg: \"heavy\" is not a number"
+        );
+        assert_eq!(
+            error("[wiring]\nport_of_ring = [0, 0, 1]"),
+            "wiring.port_of_ring: must have each of 0, 1 and 2 once"
         );
         assert_eq!(
             error("[plant]\ngravity_m_s2 = [1.0]"),

@@ -4,8 +4,12 @@
 //! |---|---|
 //! | [`plant`] | bodies, drives, friction and stops, integrated |
 //! | [`file`] | a machine as a file of numbers |
+//! | `unknown` | a machine drawn by the sizes that workshops keep |
 //! | [`devices`] | what the controller sees of it: encoders, bridges, converters, flash |
 
 pub mod devices;
 pub mod file;
 pub mod plant;
+mod unknown;
+
+pub use unknown::unknown;

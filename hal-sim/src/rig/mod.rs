@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `assembly` | [`Rig`]: both, put together in one place |
 //! | [`run`] | a script, from its first line to the report |
+//! | [`sensitivity`] | what each imperfection of the machine decides |
 //! | `conditions` | what a run is made under |
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
@@ -16,6 +17,7 @@ mod conditions;
 pub mod exercise;
 pub mod observer;
 pub mod run;
+pub mod sensitivity;
 mod simulated_board;
 mod told;
 

@@ -55,6 +55,29 @@ fn a_machine_is_printed_changed_and_run() {
     );
 }
 
+/// Every number is another one's, and nobody has told the controller: it refuses to drive.
+#[test]
+fn an_unknown_machine_is_not_driven() {
+    let folder = folder("unknown-machine");
+    fs::write(folder.join("step.gcs"), "FRF\nMOV X 1\n").unwrap();
+    let printed = |seed: &str| tripivot(&folder, &["machine", "--unknown", seed]).stdout;
+    assert_ne!(printed("1"), printed("2"));
+    fs::write(folder.join("first.toml"), printed("1")).unwrap();
+    assert_eq!(
+        tripivot(&folder, &["machine", "--machine", "first.toml"]).stdout,
+        printed("1")
+    );
+    let run = tripivot(&folder, &["run", "step.gcs", "--unknown", "1", "--quiet"]);
+    assert_eq!(run.status.code(), Some(1), "{run:?}");
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert!(said.contains("4005"), "{said}");
+    let both = tripivot(
+        &folder,
+        &["machine", "--unknown", "1", "--machine", "first.toml"],
+    );
+    assert_eq!(both.status.code(), Some(2));
+}
+
 #[test]
 fn a_wrong_machine_is_refused_by_name() {
     let folder = folder("wrong-machine");

@@ -7,6 +7,7 @@
 //! | `bridge` | an H-bridge: pins in, voltage out |
 //! | `bus` | what lies between supply and bridges |
 //! | `analog` | what the ADC reads |
+//! | `wiring` | which plug is in which socket |
 //! | `flash` | where settings are kept |
 
 pub mod analog;
@@ -16,8 +17,10 @@ mod bus;
 mod encoder;
 mod flash;
 mod stage;
+mod wiring;
 
 pub use analog::AnalogParameters;
+pub use biss::COUNTS_PER_TURN;
 pub use bridge::{
     Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
     PwmPin, SleepPin,
@@ -26,3 +29,4 @@ pub use bus::{Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
 pub use stage::{Stage, StageParameters};
+pub use wiring::WiringParameters;

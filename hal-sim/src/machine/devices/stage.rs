@@ -15,6 +15,7 @@ use super::analog::AnalogParameters;
 use super::bridge::{BridgeParameters, BridgeState, Protection};
 use super::bus::{Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
+use super::wiring::WiringParameters;
 use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,8 @@ pub struct StageParameters {
     pub bus: BusParameters,
     /// The analog inputs.
     pub analog: AnalogParameters,
+    /// The wires between machine and controller.
+    pub wiring: WiringParameters,
     /// Seed of every random number. It is a run's, and no part of a machine's file.
     #[serde(skip, default = "reference_seed")]
     pub seed: u64,
@@ -77,6 +80,7 @@ impl StageParameters {
         bridge: BridgeParameters::REFERENCE,
         bus: BusParameters::REFERENCE,
         analog: AnalogParameters::REFERENCE,
+        wiring: WiringParameters::REFERENCE,
         seed: REFERENCE_SEED,
     };
 }
@@ -109,6 +113,7 @@ pub struct Stage {
     /// Where bridges have limits.
     protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
+    wiring: WiringParameters,
     seed: u64,
     periods: u64,
     acting: [BridgeState; AXES],
@@ -146,6 +151,7 @@ impl Stage {
             } else {
                 AnalogParameters::EXACT
             },
+            wiring: parameters.wiring,
             seed: parameters.seed,
             periods: 0,
             acting: [BridgeState::RESET; AXES],
@@ -171,10 +177,15 @@ impl Stage {
         self.substep(AFTER_LATCH);
     }
 
-    /// The frames that the next tick reads, as an SPI master stores them.
+    /// The frames that the next tick reads at the three ports, as an SPI master stores them.
     #[must_use]
     pub fn frames(&self) -> [[u8; 8]; AXES] {
-        [0, 1, 2].map(|axis| self.encoders[axis].frame_bytes())
+        [0, 1, 2].map(|port| self.encoders[self.wiring.ring_at_port(port)].frame_bytes())
+    }
+
+    /// The encoder at a port.
+    pub fn encoder_at(&mut self, port: usize) -> &mut Encoder {
+        &mut self.encoders[self.wiring.ring_at_port(port)]
     }
 
     /// ADC counts of the motor currents and of the supply.
@@ -185,7 +196,11 @@ impl Stage {
             .seed
             .wrapping_mul(0x9e37_79b9)
             .wrapping_add(self.periods);
-        (self.analog).sample(self.plant.currents_a(), self.bridge.supply_v, number)
+        (self.analog).sample(
+            self.wiring.at_bridges(self.plant.currents_a()),
+            self.bridge.supply_v,
+            number,
+        )
     }
 
     /// Changes the supply, V, from now on.
@@ -215,9 +230,10 @@ impl Stage {
     /// Which bridges have switched themselves off.
     #[must_use]
     pub fn tripped(&self) -> [bool; AXES] {
-        (self.protection).map_or([false; AXES], |bridges| {
-            bridges.map(|bridge| bridge.is_tripped())
-        })
+        let Some(protection) = &self.protection else {
+            return [false; AXES];
+        };
+        [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].is_tripped())
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
@@ -241,7 +257,7 @@ impl Stage {
     fn substep(&mut self, part_of_period: f64) {
         let step_s = part_of_period * self.period_s;
         let currents_a = self.plant.currents_a();
-        let mut pins = self.acting;
+        let mut pins = self.wiring.at_rings(self.acting);
         if let Some(bridges) = &mut self.protection {
             for (axis, bridge) in bridges.iter_mut().enumerate() {
                 pins[axis] = bridge.pass(pins[axis], &self.bridge, currents_a[axis], step_s);

@@ -74,6 +74,8 @@ pub(super) enum Command {
     Board(BoardRun),
     /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
     Machine(Machine),
+    /// How much each imperfection of the simulated machine decides: the demonstration with one more or less at a time, as a table.
+    Sensitivity(SensitivityRun),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
     /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.
@@ -122,6 +124,20 @@ pub(super) struct Serve {
     pub(super) settings: Option<PathBuf>,
     #[command(flatten)]
     pub(super) stage: SimulatedStage,
+}
+
+/// The demonstration on many machines.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SensitivityRun {
+    /// By how much the machines depart from the controller's model.
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(-80.0..=80.0))]
+    pub(super) mismatch: f64,
+    /// Load on the platform that the controller knows nothing of, 0 to 5 kg.
+    #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=5.0))]
+    pub(super) payload: f64,
+    /// Threads [default: as many as there are processors].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(1..=1024_usize))]
+    pub(super) jobs: Option<usize>,
 }
 
 /// A campaign of faults.

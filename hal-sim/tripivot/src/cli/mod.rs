@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `arguments`, `number`, `usage`, `error` | what is typed, and what is said of it where it is wrong |
 //! | `stage`, `machine`, `simulate`, `serve` | the simulated stage: its options, its numbers, a run, in real time |
+//! | `sensitivity` | what each of its imperfections decides |
 //! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
@@ -30,6 +31,7 @@ mod pages;
 
 mod record;
 mod rows;
+mod sensitivity;
 mod serve;
 mod settings;
 pub mod signal;
@@ -83,6 +85,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Board(arguments)) => board::run(&arguments),
         Some(Command::Machine(arguments)) => machine::run(&arguments),
+        Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Settings(command)) => settings::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),

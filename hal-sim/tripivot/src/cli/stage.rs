@@ -7,8 +7,9 @@ use std::{fs, io};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hal_sim::machine::devices::StageParameters;
-use hal_sim::machine::file::{MachineError, from_text};
+use hal_sim::machine::file::{MachineError, from_text, to_text};
 use hal_sim::machine::plant::{Imperfections, NAMED};
+use hal_sim::machine::unknown;
 use hal_sim::report::DEFAULT_EVERY;
 use hal_sim::rig::run::RunOptions;
 
@@ -68,6 +69,9 @@ pub struct Machine {
     /// File of the machine's numbers; `tripivot machine` prints one to start from [default: the reference stage].
     #[arg(id = "machine", long = "machine", value_name = "FILE")]
     pub file: Option<PathBuf>,
+    /// A machine as a workshop builds it, every number drawn by its usual size, plugs and zeros as they came: what a first start meets.
+    #[arg(long, value_name = "SEED", conflicts_with = "machine", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub unknown: Option<u64>,
     /// Set one number of the machine, as in plant.platform_mass_kg=3.5; again for more.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -75,7 +79,7 @@ pub struct Machine {
 
 impl Machine {
     const fn is_reference(&self) -> bool {
-        self.file.is_none() && self.set.is_empty()
+        self.file.is_none() && self.unknown.is_none() && self.set.is_empty()
     }
 
     /// Its numbers.
@@ -83,12 +87,15 @@ impl Machine {
     /// # Errors
     /// [`StageError`]: the file, or what is set, is no machine.
     pub fn parameters(&self) -> Result<StageParameters, StageError> {
-        let text = match &self.file {
-            Some(file) => fs::read_to_string(file).map_err(|error| StageError::Unreadable {
-                file: file.clone(),
-                error,
-            })?,
-            None => String::new(),
+        let text = match (&self.file, self.unknown) {
+            (Some(file), _) => {
+                fs::read_to_string(file).map_err(|error| StageError::Unreadable {
+                    file: file.clone(),
+                    error,
+                })?
+            }
+            (None, Some(seed)) => to_text(&unknown(seed)),
+            (None, None) => String::new(),
         };
         from_text(&text, &self.set).map_err(|error| StageError::Machine {
             origin: (self.file.as_ref())
@@ -99,9 +106,10 @@ impl Machine {
 
     /// What to call it.
     fn name(&self) -> String {
-        let mut name = match &self.file {
-            Some(file) => format!("machine of {}", file.display()),
-            None => "reference stage".to_owned(),
+        let mut name = match (&self.file, self.unknown) {
+            (Some(file), _) => format!("machine of {}", file.display()),
+            (None, Some(seed)) => format!("unknown machine {seed}"),
+            (None, None) => "reference stage".to_owned(),
         };
         for setting in &self.set {
             name += " with ";
@@ -178,7 +186,8 @@ pub fn stage_options(arguments: &SimulatedStage) -> Result<RunOptions, StageErro
         imperfections: imperfections(arguments, machine.plant.imperfections),
         machine,
         machine_name: arguments.machine.name(),
-        uncommissioned: arguments.uncommissioned,
+        // Nobody knows its zeros.
+        uncommissioned: arguments.uncommissioned || arguments.machine.unknown.is_some(),
         ..RunOptions::default()
     })
 }
