@@ -14,6 +14,7 @@
 //! | [`mod@jacobian`] | the Jacobian, its inverse, dexterity |
 //! | [`mod@feasibility`] | whether a pose keeps to the mechanism's limits, and by how much |
 //! | [`geometry`] | sizes of the mechanism, and what follows from them |
+//! | [`coefficients`] | what a built machine is off the drawing |
 //! | [`guide`], [`pose`] | a guide; pose, twist, acceleration |
 //! | [`angle`] | multi-turn angles without rounding |
 //! | [`scalar`], `float` | what a number type must do; `f32` and `f64` |
@@ -85,6 +86,7 @@
 //! it as its angle.
 
 pub mod angle;
+pub mod coefficients;
 pub mod direct;
 pub mod feasibility;
 mod float;
@@ -97,6 +99,7 @@ pub mod rates;
 pub mod scalar;
 
 pub use angle::Angle;
+pub use coefficients::{COEFFICIENTS, PivotCoefficients};
 pub use direct::{DirectError, direct, direct_rates};
 pub use feasibility::{Infeasible, Margins, feasibility, margins};
 pub use geometry::{
