@@ -43,14 +43,13 @@ impl core::error::Error for InverseError {}
 /// [`InverseError`] for a pose that is not finite or whose centre is not inside the track.
 pub fn inverse<T: Scalar>(pose: &Pose<T>) -> Result<Inverse<T>, InverseError> {
     let [at_1, at_2, at_3] = meet_track(pose)?;
+    let [angle_1, angle_2, angle_3] = guide_angles::<T>();
     // The small angles are summed first: theta may be many turns, and a float rounds by its size.
-    let to_guide_2 = T::ANGLE_120 - T::ANGLE_30;
-    let to_guide_3 = to_guide_2 + T::ANGLE_120;
     Ok(Inverse {
         pivots: [
-            pose.theta + (at_1.swing - T::ANGLE_30),
-            pose.theta + (at_2.swing + to_guide_2),
-            pose.theta + (at_3.swing + to_guide_3),
+            pose.theta + (at_1.swing + angle_1),
+            pose.theta + (at_2.swing + angle_2),
+            pose.theta + (at_3.swing + angle_3),
         ],
         guides: [at_1.guide, at_2.guide, at_3.guide],
     })
@@ -66,6 +65,37 @@ pub(crate) struct Meeting<T: Scalar> {
 /// Where the guides of a pose meet the track.
 #[inline]
 pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], InverseError> {
+    let seen = see_guides(pose)?;
+    // A centre inside the track by less than a rounding can still give an offset of one.
+    let swings = T::asin_cos(seen.offsets).ok_or(InverseError::OutsideTrack)?;
+    Ok([0, 1, 2].map(|i| {
+        let ((cos, sin), (swing, cosine)) = (seen.directions[i], swings[i]);
+        let guide = Guide {
+            cos,
+            sin,
+            offset: seen.offsets[i],
+            cosine,
+            projection: seen.projections[i],
+        };
+        Meeting { swing, guide }
+    }))
+}
+
+/// The drawn guides of a pose, as the track's centre sees them.
+pub(crate) struct GuidesSeen<T> {
+    /// Cosine and sine of theta.
+    pub(crate) platform: [T; 2],
+    /// Cosine and sine of each guide's direction.
+    pub(crate) directions: [(T, T); 3],
+    /// d_i.
+    pub(crate) offsets: [T; 3],
+    /// q_i.
+    pub(crate) projections: [T; 3],
+}
+
+/// The drawn guides of a pose inside the track.
+#[inline]
+pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<GuidesSeen<T>, InverseError> {
     if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
         return Err(InverseError::NotFinite);
     }
@@ -76,21 +106,21 @@ pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], I
     // The centre in the platform's own axes, in which the guides always point the same way.
     let x = T::sum_of_products((pose.x, cos), (pose.y, sin));
     let y = T::sum_of_products((pose.y, cos), (-pose.x, sin));
-    let directions = guide_directions(sin, cos);
     let (offsets, projections) = seen_by_guides(x, y);
-    // A centre inside the track by less than a rounding can still give an offset of one.
-    let swings = T::asin_cos(offsets).ok_or(InverseError::OutsideTrack)?;
-    Ok([0, 1, 2].map(|i| {
-        let ((cos, sin), (swing, cosine)) = (directions[i], swings[i]);
-        let guide = Guide {
-            cos,
-            sin,
-            offset: offsets[i],
-            cosine,
-            projection: projections[i],
-        };
-        Meeting { swing, guide }
-    }))
+    Ok(GuidesSeen {
+        platform: [cos, sin],
+        directions: guide_directions(sin, cos),
+        offsets,
+        projections,
+    })
+}
+
+/// theta_i - theta: the guides' angles in the platform, -30, 90 and 210 deg.
+#[inline]
+pub(crate) fn guide_angles<T: Scalar>() -> [T::Angle; 3] {
+    let first = T::ANGLE_ZERO - T::ANGLE_30;
+    let second = T::ANGLE_120 - T::ANGLE_30;
+    [first, second, second + T::ANGLE_120]
 }
 
 /// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose centre is at
@@ -112,9 +142,10 @@ pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[
     }))
 }
 
-/// d_i and q_i of a centre at (`x`, `y`) along the platform's own axes, in which the guides always point the same way.
+/// The parts across (to the left) and along each guide of a vector (`x`, `y`) along the platform's own axes, in which the guides
+/// always point the same way: of the centre, d_i and q_i.
 #[inline]
-fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
+pub(crate) fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
     let (x_half, y_half) = (x.half(), y.half());
     let (x_wide, y_wide) = (x * T::SIN_60, y * T::SIN_60);
     (

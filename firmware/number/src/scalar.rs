@@ -1,8 +1,9 @@
 //! [`Fixed`] as the number of the kinematics: rounding and the elementary functions.
 
 use super::fixed::{Fixed, HALF_LSB};
+use super::float::{i64_to_f32_fast, round_i32};
 use super::{arcsine, polar, trigonometric};
-use kinematics::{Angle, Scalar};
+use kinematics::{Angle, CorrectedScalar, Scalar};
 
 impl Scalar for Fixed {
     type Angle = Angle;
@@ -54,5 +55,45 @@ impl Scalar for Fixed {
     #[inline]
     fn angle_is_finite(_: Angle) -> bool {
         true
+    }
+}
+
+/// Units of angle in a radian, and back.
+const UNITS_PER_RADIAN: f32 = (4_294_967_296.0 / core::f64::consts::TAU) as f32;
+const RADIANS_PER_UNIT: f32 = (core::f64::consts::TAU / 4_294_967_296.0) as f32;
+/// 2^29.
+const BITS_PER_ONE: f32 = (1u32 << Fixed::FRACTION_BITS) as f32;
+
+impl CorrectedScalar for Fixed {
+    type Correction = f32;
+
+    #[inline]
+    fn to_correction(self) -> f32 {
+        self.to_f32()
+    }
+
+    #[inline]
+    fn from_correction(correction: f32) -> Self {
+        Self(round_i32(correction * BITS_PER_ONE))
+    }
+
+    #[inline]
+    fn angle_to_correction(angle: Angle) -> f32 {
+        i64_to_f32_fast(angle.units()) * RADIANS_PER_UNIT
+    }
+
+    /// Within half a turn; the nearest end beyond.
+    #[inline]
+    fn angle_from_correction(rad: f32) -> Angle {
+        Angle::from_units(i64::from(round_i32(rad * UNITS_PER_RADIAN)))
+    }
+
+    fn length_from_f64(length: f64) -> Self {
+        Self::from_f64(length)
+    }
+
+    /// No angle for what is no number.
+    fn angle_from_f64(rad: f64) -> Angle {
+        Angle::from_radians(rad).unwrap_or(Angle::ZERO)
     }
 }
