@@ -1,5 +1,6 @@
-//! The tick's calibration: tables against exact series, encoder setpoints and measured poses of built machines against double precision
-//! and against poses and readings computed elsewhere, and that no correction changes a bit where there is none.
+//! The tick's calibration: tables against exact series, encoder setpoints and measured poses of built machines against
+//! double precision and against poses and readings computed elsewhere, and that no correction changes a bit where there
+//! is none.
 
 #[path = "../../kinematics/tests/built_machine/mod.rs"]
 mod built_machine;
@@ -10,8 +11,8 @@ use firmware::calibration::{Calibration, IDEAL, PivotTables, calibrate};
 use firmware::number::Fixed;
 use kinematics::{
     Acceleration, Angle, Corrections, Curves, Guide, GuideError, PivotCoefficients, Pose, Series,
-    Twist, corrected_direct, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes,
-    inverse, pivot_motion,
+    Twist, corrected_direct, corrected_inverse, corrected_pivot_motion, direct, in_axes, inverse,
+    pivot_motion,
 };
 use proptest::prelude::*;
 use proptest_settings::settings;
@@ -20,7 +21,8 @@ use std::sync::LazyLock;
 
 /// All told; a quarter of an encoder LSB is 2.3e-8 rad.
 const GOAL_RAD: f64 = 2.0e-8;
-/// What it does: pinned, so that a loss of digits is seen before the goal. Against the vectors, and over the whole disk.
+/// What it does: pinned, so that a loss of digits is seen before the goal. Against the vectors, and over the whole
+/// disk.
 const SETPOINT_RAD: f64 = 1.25e-8;
 const SETPOINT_ON_DISK_RAD: f64 = 1.7e-8;
 /// Of a measured pose, in track radii and rad.
@@ -89,8 +91,8 @@ fn poses(radius: f64) -> impl Strategy<Value = Pose<f64>> {
     (0.0..radius, -PI..PI, -PI..PI).prop_map(|(r, direction, theta)| at(r, direction, theta))
 }
 
-/// Largest errors of the encoder setpoints (rad) of a machine's poses: against the rows, whose poses fixed point has to round, and
-/// against double precision from the rounded poses.
+/// Largest errors of the encoder setpoints (rad) of a machine's poses: against the rows, whose poses fixed point has to
+/// round, and against double precision from the rounded poses.
 fn setpoint_errors(machine: &BuiltMachine) -> [f64; 2] {
     let calibration = calibration(&machine.pivots);
     let exact = exact(&machine.pivots);
@@ -246,7 +248,7 @@ proptest! {
         let guides = ideal.guides.map(|guide: Guide<Fixed>| guide.map(Fixed::to_f32));
         let twist = Twist { x: speed[0], y: speed[1], theta: speed[2] };
         let push = Acceleration { x: push[0], y: push[1], theta: push[2] };
-        let (seen, pushed) = in_platform_axes(&guides, &twist, &push);
+        let (seen, pushed) = in_axes(built.platform.map(Fixed::to_f32), &twist, &push);
         let errors = IDEAL.lines.map(|line| GuideError::to_correction(line.guide));
         let motion = corrected_pivot_motion(&guides, &errors, &built.encoder_slopes, &seen, &pushed);
         prop_assert_eq!(motion, pivot_motion(&guides, &twist, &push));

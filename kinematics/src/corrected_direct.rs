@@ -1,7 +1,7 @@
 //! Direct position of a built machine: the pose that its encoders' readings mean.
 //!
-//! The ideal solution, and from there Newton's method on [`corrected_inverse`]: what the encoders would read there against what they
-//! do. The same function both ways makes the setpoint of a measured pose the reading.
+//! The ideal solution, and from there Newton's method on [`corrected_inverse`]: what the encoders would read there
+//! against what they do. The same function both ways makes the setpoint of a measured pose the reading.
 
 use crate::corrected_inverse::corrected_inverse;
 use crate::corrected_rates::corrected_direct_rates;
@@ -13,8 +13,9 @@ use crate::guide::Guide;
 use crate::inverse::InverseError;
 use crate::pose::Pose;
 
-/// The pose in which the encoders read `encoders` (multi-turn), after `steps` of Newton's method. On a machine of the usual sizes two
-/// leave less than 1e-8 track radii and rad, three less than 1e-11. With zero corrections it has the bits of [`direct`].
+/// The pose in which the encoders read `encoders` (multi-turn), after `steps` of Newton's method. On a machine of the
+/// usual sizes two leave less than 1e-8 track radii and rad, three less than 1e-11. With zero corrections it has the
+/// bits of [`direct`].
 ///
 /// # Errors
 /// [`DirectError`] for readings that are not finite or that no platform inside the track can make.

@@ -1,7 +1,7 @@
 //! Inverse position of a built machine: what its encoders read in a pose.
 //!
-//! Closed but for runout and straightness. These are one Newton step from the closed form's ring angle, with the curves' slopes
-//! and half a second step for the ring's curvature, on
+//! Closed but for runout and straightness. These are one Newton step from the closed form's ring angle, with the
+//! curves' slopes and half a second step for the ring's curvature, on
 //!
 //! ```text
 //! f(psi) = (R + r) sin(psi - t) - n . (C - a) - d0 - S(rho),    rho = (R + r) cos(psi - t) - u . (C - a)
@@ -24,8 +24,8 @@ pub struct CorrectedInverse<T: CorrectedScalar> {
     pub encoders: [T::Angle; 3],
     /// psi_1 to psi_3: the rings' true angles, multi-turn.
     pub rings: [T::Angle; 3],
-    /// Guides 1 to 3 in their true directions, seen from their rings' centres. Offset and cosine are lengths here, R D and R c, so that
-    /// rates and Jacobian hold as they are. Without runout and straightness.
+    /// Guides 1 to 3 in their true directions, seen from their rings' centres. Offset and cosine are lengths here, R D
+    /// and R c, so that rates and Jacobian hold as they are. Without runout and straightness.
     pub guides: [Guide<T>; 3],
     /// dE / dpsi: by so much of itself an encoder's rate is more than its ring's.
     pub encoder_slopes: [T::Correction; 3],
@@ -33,11 +33,12 @@ pub struct CorrectedInverse<T: CorrectedScalar> {
     pub platform: [T; 2],
 }
 
-/// What the encoders read when the platform is in `pose`. With zero corrections it has the bits of [`inverse`](crate::inverse()).
+/// What the encoders read when the platform is in `pose`. With zero corrections it has the bits of
+/// [`inverse`](crate::inverse()).
 ///
 /// # Errors
-/// [`InverseError`] for a pose that is not finite, or whose centre is not inside the track or so close to it that a built guide
-/// misses its ring.
+/// [`InverseError`] for a pose that is not finite, or whose centre is not inside the track or so close to it that a
+/// built guide misses its ring.
 #[inline]
 pub fn corrected_inverse<T: CorrectedScalar, C: Curves<T>>(
     pose: &Pose<T>,

@@ -1,7 +1,7 @@
 //! Rates and accelerations of a built machine's encoders from those of the platform, and back.
 //!
-//! Guides and slopes are those of [`corrected_inverse`](crate::corrected_inverse()). Runout and straightness do not enter: their slopes are some
-//! 1e-4.
+//! Guides and slopes are those of [`corrected_inverse`](crate::corrected_inverse()). Runout and straightness do not
+//! enter: their slopes are some 1e-4.
 
 use crate::guide::Guide;
 use crate::guide_error::GuideError;
@@ -10,8 +10,9 @@ use crate::pose::{Acceleration, Twist};
 use crate::rates::{MotionSeen, PivotMotion, pivot_motion_seen};
 use crate::scalar::Real;
 
-/// Rates (rad/s) and accelerations (rad/s^2) of the encoders, from a twist and an acceleration along the platform's axes. With zero errors
-/// and slopes it has the values of [`pivot_motion_in_platform_axes`](crate::pivot_motion_in_platform_axes).
+/// Rates (rad/s) and accelerations (rad/s^2) of the encoders, from a twist and an acceleration along the platform's
+/// axes. With zero errors and slopes it has the values of
+/// [`pivot_motion_in_platform_axes`](crate::pivot_motion_in_platform_axes).
 #[inline]
 pub fn corrected_pivot_motion<T: Real>(
     guides: &[Guide<T>; 3],
@@ -40,8 +41,9 @@ pub fn corrected_pivot_motion<T: Real>(
     }
 }
 
-/// The platform's velocity from the encoders' `rates` in rad/s. Guides may point anywhere: Cramer's rule on
-/// `-sin t_i x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where [`direct_rates`](crate::direct_rates) needs them 120 deg apart.
+/// The platform's velocity from the encoders' `rates` in rad/s. Guides may point anywhere: Cramer's rule on `-sin t_i
+/// x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where [`direct_rates`](crate::direct_rates) needs them 120 deg
+/// apart.
 pub fn corrected_direct_rates<T: Real>(
     guides: &[Guide<T>; 3],
     encoder_slopes: &[T; 3],

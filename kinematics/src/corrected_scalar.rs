@@ -2,8 +2,8 @@
 
 use crate::scalar::{Real, Scalar};
 
-/// A [`Scalar`] with the float that its small corrections are computed in. What a machine is off the drawing is some thousandths:
-/// there a float's range is worth more than a fixed-point number's last bits.
+/// A [`Scalar`] with the float that its small corrections are computed in. What a machine is off the drawing is some
+/// thousandths: there a float's range is worth more than a fixed-point number's last bits.
 pub trait CorrectedScalar: Scalar {
     /// The float. A [`Real`] is its own.
     type Correction: Real;

@@ -74,8 +74,8 @@ const LINE_LIMIT: f64 = 0.02;
 /// Of a curve: the step onto a curved guide is good to the square of it.
 const CURVE_LIMIT: f64 = 2e-3;
 
-/// Whether the corrected kinematics hold for these numbers: 20 mrad of direction and 0.02 track radii of lengths, 2 mrad and 0.002
-/// track radii of curves.
+/// Whether the corrected kinematics hold for these numbers: 20 mrad of direction and 0.02 track radii of lengths, 2
+/// mrad and 0.002 track radii of curves.
 ///
 /// # Errors
 /// [`CoefficientError`] names the first number that is not within its limit.

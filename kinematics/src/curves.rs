@@ -1,4 +1,5 @@
-//! The three curves of a pivot as the corrected kinematics ask for them: exact series on a host, tables in a control loop.
+//! The three curves of a pivot as the corrected kinematics ask for them: exact series on a host, tables in a control
+//! loop.
 
 use crate::corrected_scalar::CorrectedScalar;
 

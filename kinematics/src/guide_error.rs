@@ -3,8 +3,9 @@
 use crate::corrected_scalar::CorrectedScalar;
 use crate::scalar::Scalar;
 
-/// A guide's small angle e off its drawn direction, and its line's distance from the platform's centre. What is turned by the angle is
-/// changed by products with its sine and versine, which are exactly zero where they are: an ideal machine keeps its bits.
+/// A guide's small angle e off its drawn direction, and its line's distance from the platform's centre. What is turned
+/// by the angle is changed by products with its sine and versine, which are exactly zero where they are: an ideal
+/// machine keeps its bits.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct GuideError<T> {
     /// sin e.

@@ -1,4 +1,5 @@
-//! The six numbers of a pivot that have a closed form: ring's centre and radius, guide's direction and offset, encoder's zero.
+//! The six numbers of a pivot that have a closed form: ring's centre and radius, guide's direction and offset,
+//! encoder's zero.
 //!
 //! With `u` and `n` along and across the guide's true direction `t = theta + g + e`:
 //!
@@ -6,8 +7,8 @@
 //! D = (n . (C - a) + d0) / R,    psi = t + asin D,    rho = R cos(psi - t) - u . (C - a)
 //! ```
 //!
-//! Nothing is computed anew: every error enters as a sum of products that is exactly zero where the error is. So an ideal
-//! machine has the bits of [`inverse`](crate::inverse()), in every number type.
+//! Nothing is computed anew: every error enters as a sum of products that is exactly zero where the error is. So an
+//! ideal machine has the bits of [`inverse`](crate::inverse()), in every number type.
 
 use crate::coefficients::PivotCoefficients;
 use crate::corrected_scalar::CorrectedScalar;
@@ -80,7 +81,8 @@ impl<T: Scalar> Line<T> {
 }
 
 impl<T: CorrectedScalar> Line<T> {
-    /// The nearest to these coefficients, which are within their limits ([`check_coefficients`](crate::check_coefficients)).
+    /// The nearest to these coefficients, which are within their limits
+    /// ([`check_coefficients`](crate::check_coefficients)).
     #[must_use]
     pub fn new(coefficients: &PivotCoefficients) -> Self {
         let radius_error = coefficients.radius_error;

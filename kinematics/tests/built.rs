@@ -9,7 +9,8 @@ fn corrections(machine: &BuiltMachine) -> Corrections<f64, Series<f64>> {
     Corrections::new(&machine.pivots, Series::new).expect("within the limits")
 }
 
-/// Largest errors over a machine's poses: rings and encoders (rad), and rho (track radii), whose closed form is without curves.
+/// Largest errors over a machine's poses: rings and encoders (rad), and rho (track radii), whose closed form is without
+/// curves.
 fn worst_errors(machine: &BuiltMachine) -> [f64; 3] {
     let corrections = corrections(machine);
     let mut worst = [0.0_f64; 3];

@@ -1,4 +1,5 @@
-//! The kinematics of built machines by their own laws: there and back, zero corrections, the definition, rates against differences.
+//! The kinematics of built machines by their own laws: there and back, zero corrections, the definition, rates against
+//! differences.
 
 mod common;
 
@@ -9,13 +10,14 @@ use kinematics::{
     Acceleration, CorrectedInverse, CorrectedScalar, Corrections, Curves, DirectError,
     InverseError, PivotCoefficients, Pose, Real, Series, Twist, check_coefficients,
     corrected_direct, corrected_direct_rates, corrected_inverse, corrected_pivot_motion, direct,
-    in_platform_axes, inverse, pivot_motion,
+    in_axes, inverse, pivot_motion,
 };
 use proptest::prelude::*;
 
 type Machine = Corrections<f64, Series<f64>>;
 
-/// Of a pivot, by the sizes that a workshop keeps: some mrad, 0.2 mm, 400 urad of eccentricity and 5 um on a track of 100 mm.
+/// Of a pivot, by the sizes that a workshop keeps: some mrad, 0.2 mm, 400 urad of eccentricity and 5 um on a track of
+/// 100 mm.
 fn pivot() -> impl Strategy<Value = PivotCoefficients> {
     let unit = || -1.0..1.0_f64;
     let lines = prop::array::uniform6(unit());
@@ -196,23 +198,14 @@ fn motion(
     twist: &Twist<f64>,
     acceleration: &Acceleration<f64>,
 ) -> kinematics::PivotMotion<f64> {
-    let [cos, sin] = at.platform;
-    let turned = |x: f64, y: f64| (x * cos + y * sin, y * cos - x * sin);
-    let ((x, y), (x_2, y_2)) = (
-        turned(twist.x, twist.y),
-        turned(acceleration.x, acceleration.y),
-    );
+    let (twist, acceleration) = in_axes(at.platform, twist, acceleration);
     let errors = machine.lines.map(|line| line.guide);
     corrected_pivot_motion(
         &at.guides,
         &errors,
         &at.encoder_slopes,
-        &Twist { x, y, ..*twist },
-        &Acceleration {
-            x: x_2,
-            y: y_2,
-            ..*acceleration
-        },
+        &twist,
+        &acceleration,
     )
 }
 
@@ -247,7 +240,7 @@ where
         y: t(push.y),
         theta: t(push.theta),
     };
-    let (seen, pushed) = in_platform_axes(&built.guides, &twist, &push);
+    let (seen, pushed) = in_axes(built.platform, &twist, &push);
     let errors = zero.lines.map(|line| line.guide);
     let motion = corrected_pivot_motion(
         &built.guides,

@@ -1,7 +1,7 @@
 //! What a built machine's pivots are off the drawing, as the tick takes it.
 //!
-//! Six numbers of a pivot have a closed form and are constants of the corrected kinematics. Encoder, runout and straightness are
-//! curves: too long to be summed in a tick, so they are tables, made outside of it.
+//! Six numbers of a pivot have a closed form and are constants of the corrected kinematics. Encoder, runout and
+//! straightness are curves: too long to be summed in a tick, so they are tables, made outside of it.
 //!
 //! | file | idea |
 //! |---|---|
@@ -25,8 +25,9 @@ pub const IDEAL: Calibration = Calibration {
     curves: [PivotTables::ZERO; 3],
 };
 
-/// Makes `calibration` that of these coefficients, in place: it is too long for a stack. It computes in f64 with functions that give
-/// the same bits everywhere, some 6,000 sums of series: outside the tick, and of a calibration that no tick uses.
+/// Makes `calibration` that of these coefficients, in place: it is too long for a stack. It computes in f64 with
+/// functions that give the same bits everywhere, some 6,000 sums of series: outside the tick, and of a calibration that
+/// no tick uses.
 ///
 /// # Errors
 /// [`CoefficientError`] names the first number that is not within its limit; nothing is changed then.

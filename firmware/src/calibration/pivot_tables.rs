@@ -14,7 +14,8 @@ const REST_BITS: u32 = u32::BITS - RING_STEP_BITS;
 const REST_MASK: u32 = (1 << REST_BITS) - 1;
 const PER_REST: f32 = 1.0 / (1_u32 << REST_BITS) as f32;
 
-/// The part of the guide that has a table, track radii: some beyond both its mechanical ends. The ends are held further out.
+/// The part of the guide that has a table, track radii: some beyond both its mechanical ends. The ends are held further
+/// out.
 const GUIDE_FROM: f32 = 0.15;
 const GUIDE_TO: f32 = 1.85;
 /// Steps on it. Polynomials of order 9 bend most at the ends: 256 are off by 3e-8 there.

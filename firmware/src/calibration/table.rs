@@ -4,8 +4,8 @@ use kinematics::CurvePoint;
 
 /// The largest entry.
 const LARGEST: f64 = i16::MAX as f64;
-/// A straight line between two values is off in its middle by an eighth of their second difference. Values less a sixteenth of it are
-/// off by that everywhere, which is half as much.
+/// A straight line between two values is off in its middle by an eighth of their second difference. Values less a
+/// sixteenth of it are off by that everywhere, which is half as much.
 const OF_SECOND_DIFFERENCE: f64 = 1.0 / 16.0;
 
 /// `CURVES` curves at the same places: looked up together, one index serves all.

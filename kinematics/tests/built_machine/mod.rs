@@ -1,5 +1,5 @@
-//! The two built machines of `data/built-*.json` and their poses in `data/built-*.csv`, computed elsewhere by another formula. Lengths
-//! are in track radii, angles in rad.
+//! The two built machines of `data/built-*.json` and their poses in `data/built-*.csv`, computed elsewhere by another
+//! formula. Lengths are in track radii, angles in rad.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 use std::collections::HashMap;
