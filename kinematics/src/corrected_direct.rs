@@ -9,7 +9,6 @@ use crate::corrected_scalar::CorrectedScalar;
 use crate::corrections::Corrections;
 use crate::curves::Curves;
 use crate::direct::{DirectError, direct};
-use crate::guide::Guide;
 use crate::inverse::InverseError;
 use crate::pose::Pose;
 
@@ -50,9 +49,12 @@ pub fn refine<T: CorrectedScalar, C: Curves<T>>(
         InverseError::NotFinite => DirectError::NotFinite,
         InverseError::OutsideTrack => DirectError::OutsideTrack,
     })?;
-    let guides = at.guides.map(|guide: Guide<T>| guide.map(T::to_correction));
     let missing = [0, 1, 2].map(|i| T::angle_to_correction(encoders[i] - at.encoders[i]));
-    let step = corrected_direct_rates(&guides, &at.encoder_slopes, &missing);
+    let errors = corrections
+        .lines
+        .each_ref()
+        .map(|line| line.guide_for_rates);
+    let step = corrected_direct_rates(&at.guides, &errors, &at.encoder_slopes, &missing);
     Ok(Pose {
         x: pose.x + T::from_correction(step.x),
         y: pose.y + T::from_correction(step.y),

@@ -13,7 +13,8 @@ use crate::corrected_scalar::CorrectedScalar;
 use crate::corrections::Corrections;
 use crate::curves::{CurvePoint, Curves};
 use crate::guide::Guide;
-use crate::inverse::{GuidesSeen, InverseError, guide_angles, see_guides};
+use crate::inverse::{InverseError, guide_angles, see_guides};
+use crate::line::{Line, Sight};
 use crate::pose::Pose;
 use crate::scalar::Scalar;
 
@@ -22,15 +23,11 @@ use crate::scalar::Scalar;
 pub struct CorrectedInverse<T: CorrectedScalar> {
     /// m_1 to m_3: what the encoders read, multi-turn.
     pub encoders: [T::Angle; 3],
-    /// psi_1 to psi_3: the rings' true angles, multi-turn.
-    pub rings: [T::Angle; 3],
-    /// Guides 1 to 3 in their true directions, seen from their rings' centres. Offset and cosine are lengths here, R D
-    /// and R c, so that rates and Jacobian hold as they are. Without runout and straightness.
-    pub guides: [Guide<T>; 3],
+    /// Guides 1 to 3, of true places but in their drawn directions. As lengths from their rings' centres, so that rates
+    /// and Jacobian hold as they are: the offset is R D, the cosine R c. Without runout and straightness.
+    pub guides: [Guide<T::Correction>; 3],
     /// dE / dpsi: by so much of itself an encoder's rate is more than its ring's.
     pub encoder_slopes: [T::Correction; 3],
-    /// Cosine and sine of theta, the direction of the platform's x' axis.
-    pub platform: [T; 2],
 }
 
 /// What the encoders read when the platform is in `pose`. With zero corrections it has the bits of
@@ -39,68 +36,82 @@ pub struct CorrectedInverse<T: CorrectedScalar> {
 /// # Errors
 /// [`InverseError`] for a pose that is not finite, or whose centre is not inside the track or so close to it that a
 /// built guide misses its ring.
-#[inline]
+// Inlined, and so are the pivots: arguments and results through memory cost a control loop as much as half of the sums.
+#[inline(always)]
 pub fn corrected_inverse<T: CorrectedScalar, C: Curves<T>>(
     pose: &Pose<T>,
     corrections: &Corrections<T, C>,
 ) -> Result<CorrectedInverse<T>, InverseError> {
-    let GuidesSeen {
-        platform,
-        directions,
-        offsets,
-        projections,
-    } = see_guides(pose)?;
-    let lines = &corrections.lines;
-    let sights = [0, 1, 2].map(|i| lines[i].sight(directions[i], offsets[i], projections[i]));
-    let swings = T::asin_cos(sights.map(|sight| sight.sine)).ok_or(InverseError::OutsideTrack)?;
-    let guide_angles = guide_angles::<T>();
-    let pivots = [0, 1, 2].map(|i| {
-        let ((swing, cosine), sight, line) = (swings[i], &sights[i], &lines[i]);
-        let [cos, sin] = sight.direction;
-        let guide = Guide {
-            cos,
-            sin,
-            offset: sight.offset,
-            cosine: line.on_ring(cosine),
-            projection: sight.projection,
-        };
-        let ring = pose.theta + ((swing + guide_angles[i]) + line.guide_angle);
-        let errors = corrections.curves[i].ring_errors(ring);
-        let step = step_onto_guide::<T>(
-            &Closed {
-                sine: sight.sine.to_correction(),
-                cosine: cosine.to_correction(),
-                radius: T::Correction::ONE + line.radius_error.to_correction(),
-                projection: sight.projection.to_correction(),
-            },
-            &errors.runout,
-            |rho| corrections.curves[i].straightness(rho),
-        );
-        // E at the end of the step, by its slope: the ring's two curves are looked up once.
-        let encoder = errors.encoder.value + errors.encoder.slope * step;
-        let shift = T::angle_from_correction(step + encoder);
-        Pivot {
-            encoder: ring + (shift + line.encoder_zero),
-            ring: ring + T::angle_from_correction(step),
-            guide,
-            slope: errors.encoder.slope,
-        }
-    });
+    let guides = see_guides(pose)?;
+    // Pivot by pivot and not in loops, whose bounds a compiler checks.
+    let ([line_1, line_2, line_3], [guide_1, guide_2, guide_3]) = (&corrections.lines, &guides);
+    let sights = [
+        line_1.sight(guide_1),
+        line_2.sight(guide_2),
+        line_3.sight(guide_3),
+    ];
+    let sines = sights.each_ref().map(|sight| sight.sine);
+    let [swing_1, swing_2, swing_3] = T::asin_cos(sines).ok_or(InverseError::OutsideTrack)?;
+    let [sight_1, sight_2, sight_3] = &sights;
+    let [curves_1, curves_2, curves_3] = &corrections.curves;
+    let [angle_1, angle_2, angle_3] = guide_angles::<T>();
+    let pivots = [
+        Pivot::new(pose.theta, angle_1, sight_1, swing_1, line_1, curves_1),
+        Pivot::new(pose.theta, angle_2, sight_2, swing_2, line_2, curves_2),
+        Pivot::new(pose.theta, angle_3, sight_3, swing_3, line_3, curves_3),
+    ];
     Ok(CorrectedInverse {
         encoders: pivots.map(|pivot| pivot.encoder),
-        rings: pivots.map(|pivot| pivot.ring),
         guides: pivots.map(|pivot| pivot.guide),
         encoder_slopes: pivots.map(|pivot| pivot.slope),
-        platform,
     })
 }
 
+/// A pivot on its ring and on its guide.
 #[derive(Clone, Copy)]
 struct Pivot<T: CorrectedScalar> {
     encoder: T::Angle,
-    ring: T::Angle,
-    guide: Guide<T>,
+    guide: Guide<T::Correction>,
     slope: T::Correction,
+}
+
+impl<T: CorrectedScalar> Pivot<T> {
+    /// From the guide's line and where it meets its ring: the angle between the two and its cosine.
+    #[inline(always)]
+    fn new<C: Curves<T>>(
+        theta: T::Angle,
+        guide_angle: T::Angle,
+        sight: &Sight<T>,
+        (swing, cosine): (T::Angle, T),
+        line: &Line<T>,
+        curves: &C,
+    ) -> Self {
+        // Small angles first, as in `inverse`.
+        let ring = theta + ((swing + guide_angle) + line.guide_angle);
+        let errors = curves.ring_errors(ring);
+        let closed = Closed {
+            sine: sight.sine.to_correction(),
+            cosine: cosine.to_correction(),
+            radius: line.radius,
+            projection: sight.projection.to_correction(),
+        };
+        let step = step_onto_guide::<T>(&closed, &errors.runout, |rho| curves.straightness(rho));
+        // E at the end of the step, by its slope: the ring's two curves are looked up once.
+        let encoder = errors.encoder.value + errors.encoder.slope * step;
+        let shift = T::angle_from_correction(step + encoder);
+        let (cos, sin) = sight.direction;
+        Self {
+            encoder: ring + (shift + line.encoder_zero),
+            guide: Guide {
+                cos: cos.to_correction(),
+                sin: sin.to_correction(),
+                offset: sight.offset.to_correction(),
+                cosine: closed.radius * closed.cosine,
+                projection: closed.projection,
+            },
+            slope: errors.encoder.slope,
+        }
+    }
 }
 
 /// Where the closed form ends, as floats: sine and cosine of psi - t, R, and `u . (C - a)`.

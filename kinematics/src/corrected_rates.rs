@@ -41,15 +41,20 @@ pub fn corrected_pivot_motion<T: Real>(
     }
 }
 
-/// The platform's velocity from the encoders' `rates` in rad/s. Guides may point anywhere: Cramer's rule on `-sin t_i
-/// x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where [`direct_rates`](crate::direct_rates) needs them 120 deg
-/// apart.
+/// The platform's velocity, in the base frame, from the encoders' `rates` in rad/s. Guides may point anywhere: Cramer's
+/// rule on `-sin t_i x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where [`direct_rates`](crate::direct_rates) needs
+/// them 120 deg apart.
 pub fn corrected_direct_rates<T: Real>(
     guides: &[Guide<T>; 3],
+    guide_errors: &[GuideError<T>; 3],
     encoder_slopes: &[T; 3],
     rates: &[T; 3],
 ) -> Twist<T> {
-    let [row_1, row_2, row_3] = guides.map(|guide| [-guide.sin, guide.cos, guide.rho()]);
+    let [row_1, row_2, row_3] = [0, 1, 2].map(|i| {
+        let guide = &guides[i];
+        let [cos, sin] = guide_errors[i].turned([guide.cos, guide.sin]);
+        [-sin, cos, guide.rho()]
+    });
     let columns = [
         cross(row_2, row_3),
         cross(row_3, row_1),

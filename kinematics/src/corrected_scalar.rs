@@ -11,6 +11,12 @@ pub trait CorrectedScalar: Scalar {
     /// The number as a float.
     fn to_correction(self) -> Self::Correction;
 
+    /// The sum of four products, which a fixed-point number rounds once.
+    #[inline]
+    fn sum_of_four_products([one, two, three, four]: [(Self, Self); 4]) -> Self {
+        Self::sum_of_products(one, two) + Self::sum_of_products(three, four)
+    }
+
     /// The nearest number to a float of at most 1.
     fn from_correction(correction: Self::Correction) -> Self;
 

@@ -6,11 +6,10 @@ use crate::coefficients::PivotCoefficients;
 use crate::corrected_scalar::CorrectedScalar;
 use crate::curves::Curves;
 use crate::line::Line;
-use crate::scalar::Scalar;
 
 /// What the three pivots of a machine are off the drawing, as the corrected kinematics take it.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Corrections<T: Scalar, C> {
+pub struct Corrections<T: CorrectedScalar, C> {
     /// The six numbers of each pivot that have a closed form.
     pub lines: [Line<T>; 3],
     /// Encoder, runout and straightness of each pivot.

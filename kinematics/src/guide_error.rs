@@ -1,6 +1,5 @@
 //! What a guide is off the drawing: a small angle and a distance.
 
-use crate::corrected_scalar::CorrectedScalar;
 use crate::scalar::Scalar;
 
 /// A guide's small angle e off its drawn direction, and its line's distance from the platform's centre. What is turned
@@ -35,26 +34,27 @@ impl<T: Scalar> GuideError<T> {
     }
 }
 
-impl<T: CorrectedScalar> GuideError<T> {
-    /// The nearest to an angle in rad and a distance in track radii.
+impl GuideError<f64> {
+    /// Of an angle in rad and a distance in track radii.
     #[must_use]
     pub fn new(error_rad: f64, offset: f64) -> Self {
         let half_sine = libm::sin(0.5 * error_rad);
         Self {
-            sine: T::length_from_f64(libm::sin(error_rad)),
-            versine: T::length_from_f64(2.0 * half_sine * half_sine),
-            offset: T::length_from_f64(offset),
+            sine: libm::sin(error_rad),
+            versine: 2.0 * half_sine * half_sine,
+            offset,
         }
     }
+}
 
-    /// The same as floats: positions may be solved in one type and rates in another.
-    #[inline]
+impl<T> GuideError<T> {
+    /// The same in another number type: positions may be solved in one type and rates in another.
     #[must_use]
-    pub fn to_correction(self) -> GuideError<T::Correction> {
+    pub fn map<U>(self, cast: impl Fn(T) -> U) -> GuideError<U> {
         GuideError {
-            sine: self.sine.to_correction(),
-            versine: self.versine.to_correction(),
-            offset: self.offset.to_correction(),
+            sine: cast(self.sine),
+            versine: cast(self.versine),
+            offset: cast(self.offset),
         }
     }
 }

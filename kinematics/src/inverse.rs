@@ -67,35 +67,35 @@ pub(crate) struct Meeting<T: Scalar> {
 pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], InverseError> {
     let seen = see_guides(pose)?;
     // A centre inside the track by less than a rounding can still give an offset of one.
-    let swings = T::asin_cos(seen.offsets).ok_or(InverseError::OutsideTrack)?;
+    let swings =
+        T::asin_cos(seen.each_ref().map(|guide| guide.offset)).ok_or(InverseError::OutsideTrack)?;
     Ok([0, 1, 2].map(|i| {
-        let ((cos, sin), (swing, cosine)) = (seen.directions[i], swings[i]);
+        let (seen, (swing, cosine)) = (&seen[i], swings[i]);
+        let (cos, sin) = seen.direction;
         let guide = Guide {
             cos,
             sin,
-            offset: seen.offsets[i],
+            offset: seen.offset,
             cosine,
-            projection: seen.projections[i],
+            projection: seen.projection,
         };
         Meeting { swing, guide }
     }))
 }
 
-/// The drawn guides of a pose, as the track's centre sees them.
-pub(crate) struct GuidesSeen<T> {
-    /// Cosine and sine of theta.
-    pub(crate) platform: [T; 2],
-    /// Cosine and sine of each guide's direction.
-    pub(crate) directions: [(T, T); 3],
+/// A drawn guide's line.
+pub(crate) struct GuideSeen<T> {
+    /// Cosine and sine of its direction.
+    pub(crate) direction: (T, T),
     /// d_i.
-    pub(crate) offsets: [T; 3],
+    pub(crate) offset: T,
     /// q_i.
-    pub(crate) projections: [T; 3],
+    pub(crate) projection: T,
 }
 
-/// The drawn guides of a pose inside the track.
+/// The drawn guides of a pose inside the track, as the track's centre sees them.
 #[inline]
-pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<GuidesSeen<T>, InverseError> {
+pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<[GuideSeen<T>; 3], InverseError> {
     if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
         return Err(InverseError::NotFinite);
     }
@@ -106,13 +106,13 @@ pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<GuidesSeen<T>, Inv
     // The centre in the platform's own axes, in which the guides always point the same way.
     let x = T::sum_of_products((pose.x, cos), (pose.y, sin));
     let y = T::sum_of_products((pose.y, cos), (-pose.x, sin));
+    let directions = guide_directions(sin, cos);
     let (offsets, projections) = seen_by_guides(x, y);
-    Ok(GuidesSeen {
-        platform: [cos, sin],
-        directions: guide_directions(sin, cos),
-        offsets,
-        projections,
-    })
+    Ok([0, 1, 2].map(|i| GuideSeen {
+        direction: directions[i],
+        offset: offsets[i],
+        projection: projections[i],
+    }))
 }
 
 /// theta_i - theta: the guides' angles in the platform, -30, 90 and 210 deg.
@@ -123,9 +123,9 @@ pub(crate) fn guide_angles<T: Scalar>() -> [T::Angle; 3] {
     [first, second, second + T::ANGLE_120]
 }
 
-/// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose centre is at
-/// (`x`, `y`) along the platform's own axes, seen along these. `None` for a centre that is not inside the track. The square
-/// root is the caller's: on the chip there is an instruction for it, which this crate does not know.
+/// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose
+/// centre is at (`x`, `y`) along the platform's own axes, seen along these. `None` for a centre that is not inside the
+/// track. The square root is the caller's: on the chip there is an instruction for it, which this crate does not know.
 pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[Guide<T>; 3]> {
     // NaN is inside of nothing.
     if !inside_track(x, y) {
@@ -142,8 +142,8 @@ pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[
     }))
 }
 
-/// The parts across (to the left) and along each guide of a vector (`x`, `y`) along the platform's own axes, in which the guides
-/// always point the same way: of the centre, d_i and q_i.
+/// The parts across (to the left) and along each guide of a vector (`x`, `y`) along the platform's own axes, in which
+/// the guides always point the same way: of the centre, d_i and q_i.
 #[inline]
 pub(crate) fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
     let (x_half, y_half) = (x.half(), y.half());
@@ -154,7 +154,8 @@ pub(crate) fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
     )
 }
 
-/// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay small.
+/// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay
+/// small.
 fn inside_track<T: Scalar>(x: T, y: T) -> bool {
     let within = |coordinate: T| -T::ONE < coordinate && coordinate < T::ONE;
     within(x) && within(y) && T::sum_of_products((x, x), (y, y)) < T::ONE

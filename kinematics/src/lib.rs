@@ -133,7 +133,7 @@ pub use jacobian::{dexterity, jacobian, jacobian_inverse};
 pub use line::Line;
 pub use pose::{Acceleration, Pose, Twist};
 pub use rates::{
-    PivotMotion, in_axes, in_platform_axes, pivot_accelerations, pivot_motion,
+    PivotMotion, in_platform_axes, pivot_accelerations, pivot_motion,
     pivot_motion_in_platform_axes, pivot_rates,
 };
 pub use scalar::{Real, Scalar};

@@ -50,16 +50,7 @@ pub fn in_platform_axes<T: Real>(
     acceleration: &Acceleration<T>,
 ) -> (Twist<T>, Acceleration<T>) {
     // Guide 2 is the platform's y' axis.
-    in_axes([guides[1].sin, -guides[1].cos], twist, acceleration)
-}
-
-/// A twist and an acceleration of the base frame, seen along axes of which the first has this direction (cosine and sine).
-#[inline]
-pub fn in_axes<T: Real>(
-    [cos, sin]: [T; 2],
-    twist: &Twist<T>,
-    acceleration: &Acceleration<T>,
-) -> (Twist<T>, Acceleration<T>) {
+    let (cos, sin) = (guides[1].sin, -guides[1].cos);
     let turned = |x: T, y: T| (x * cos + y * sin, y * cos - x * sin);
     let (x, y) = turned(twist.x, twist.y);
     let (x_2, y_2) = turned(acceleration.x, acceleration.y);

@@ -72,6 +72,13 @@ impl CorrectedScalar for Fixed {
         self.to_f32()
     }
 
+    /// Rounded to nearest, once.
+    #[inline]
+    fn sum_of_four_products(products: [(Self, Self); 4]) -> Self {
+        let sum = (products.into_iter()).fold(HALF_LSB, |sum, (a, b)| Self::add_product(sum, a, b));
+        Self::from_product(sum)
+    }
+
     #[inline]
     fn from_correction(correction: f32) -> Self {
         Self(round_i32(correction * BITS_PER_ONE))
@@ -82,10 +89,12 @@ impl CorrectedScalar for Fixed {
         i64_to_f32_fast(angle.units()) * RADIANS_PER_UNIT
     }
 
-    /// Within half a turn; the nearest end beyond.
+    /// Rounded to nearest, but for a sixteenth of a unit, up to 0.19 rad; beyond, that.
     #[inline]
     fn angle_from_correction(rad: f32) -> Angle {
-        Angle::from_units(i64::from(round_i32(rad * UNITS_PER_RADIAN)))
+        // Cut to sixteenths, which is one instruction of the chip, and rounded as an integer.
+        let sixteenths = (rad * (16.0 * UNITS_PER_RADIAN)) as i32;
+        Angle::from_units(i64::from(((sixteenths >> 3) + 1) >> 1))
     }
 
     fn length_from_f64(length: f64) -> Self {

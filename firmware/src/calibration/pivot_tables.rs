@@ -2,7 +2,6 @@
 
 use super::table::Table;
 use crate::number::Fixed;
-use crate::number::float::FloatMinMax;
 use core::f64::consts::TAU;
 use kinematics::{Angle, CurvePoint, Curves, PivotCoefficients, RingErrors, Series};
 
@@ -14,15 +13,14 @@ const REST_BITS: u32 = u32::BITS - RING_STEP_BITS;
 const REST_MASK: u32 = (1 << REST_BITS) - 1;
 const PER_REST: f32 = 1.0 / (1_u32 << REST_BITS) as f32;
 
-/// The part of the guide that has a table, track radii: some beyond both its mechanical ends. The ends are held further
-/// out.
+/// The part of the guide that has a table, track radii: some beyond both its mechanical ends. It goes on
+/// straight further out.
 const GUIDE_FROM: f32 = 0.15;
 const GUIDE_TO: f32 = 1.85;
 /// Steps on it. Polynomials of order 9 bend most at the ends: 256 are off by 3e-8 there.
 const GUIDE_STEPS: usize = 512;
 const GUIDE_STEPS_PER_RADIUS: f32 = GUIDE_STEPS as f32 / (GUIDE_TO - GUIDE_FROM);
-/// So that the next entry is there.
-const LAST_PLACE: f32 = GUIDE_STEPS as f32 - 1.0 / 64.0;
+const LAST_GUIDE_STEP: u32 = GUIDE_STEPS as u32 - 1;
 
 /// Encoder, runout and straightness of one pivot.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -79,10 +77,9 @@ impl Curves<Fixed> for PivotTables {
 
     #[inline]
     fn straightness(&self, rho: f32) -> CurvePoint<f32> {
-        let place = ((rho - GUIDE_FROM) * GUIDE_STEPS_PER_RADIUS)
-            .fmax(0.0)
-            .fmin(LAST_PLACE);
-        let index = place as u32;
+        let place = (rho - GUIDE_FROM) * GUIDE_STEPS_PER_RADIUS;
+        // Straight on beyond the ends.
+        let index = (place as u32).min(LAST_GUIDE_STEP);
         let [straightness] = self.guide.at(index as usize, place - index as f32);
         straightness
     }
