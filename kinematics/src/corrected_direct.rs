@@ -12,9 +12,9 @@ use crate::direct::{DirectError, direct};
 use crate::inverse::InverseError;
 use crate::pose::Pose;
 
-/// The pose in which the encoders read `encoders` (multi-turn), after `steps` of Newton's method. On a machine of the
-/// usual sizes two leave less than 1e-8 track radii and rad, three less than 1e-11. With zero corrections it has the
-/// bits of [`direct`].
+/// The pose in which the encoders read `encoders`, of which the first tells the turn, after `steps` of Newton's method.
+/// On a machine of the usual sizes two leave less than 1e-8 track radii and rad, three less than 1e-11. With zero
+/// corrections it has the bits of [`direct`].
 ///
 /// # Errors
 /// [`DirectError`] for readings that are not finite or that no platform inside the track can make.
@@ -49,7 +49,11 @@ pub fn refine<T: CorrectedScalar, C: Curves<T>>(
         InverseError::NotFinite => DirectError::NotFinite,
         InverseError::OutsideTrack => DirectError::OutsideTrack,
     })?;
-    let missing = [0, 1, 2].map(|i| T::angle_to_correction(encoders[i] - at.encoders[i]));
+    // Readings of single-turn encoders may be whole turns apart.
+    let missing = [0, 1, 2].map(|i| {
+        let there = at.encoders[i];
+        T::angle_to_correction(T::near(encoders[i], there) - there)
+    });
     let errors = corrections
         .lines
         .each_ref()

@@ -122,6 +122,18 @@ proptest! {
         prop_assert!((back.theta - pose.theta).abs() < tolerance, "{back:?}");
     }
 
+    /// The first encoder tells the turn, as the first pivot does; the others need not know theirs.
+    #[test]
+    fn single_turn_readings_are_a_pose_too(pivots in pivots(), pose in poses(0.8, 0.5), turns in prop::array::uniform2(-3_i32..3)) {
+        let machine = machine(&pivots);
+        let [one, two, three] = solve_built(&pose, &machine).encoders;
+        let [two, three] = [two + f64::from(turns[0]) * TAU, three + f64::from(turns[1]) * TAU];
+        let back = corrected_direct::<f64, _>(&[one, two, three], &machine, 4).expect("a feasible pose");
+        prop_assert!((back.x - pose.x).abs() < 1e-13, "{back:?}");
+        prop_assert!((back.y - pose.y).abs() < 1e-13, "{back:?}");
+        prop_assert!((back.theta - pose.theta).abs() < 1e-13, "{back:?}");
+    }
+
     #[test]
     fn slopes_of_curves_are_their_derivatives(pivots in pivots(), psi in -9.0..9.0, rho in 0.16..1.84) {
         const H: f64 = 1e-5;
