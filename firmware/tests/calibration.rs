@@ -260,8 +260,7 @@ proptest! {
         let twist = Twist { x: speed[0], y: speed[1], theta: speed[2] };
         let push = Acceleration { x: push[0], y: push[1], theta: push[2] };
         let (seen, pushed) = in_platform_axes(&guides, &twist, &push);
-        let errors = IDEAL.lines.map(|line| line.guide_for_rates);
-        let motion = corrected_pivot_motion(&guides, &errors, &built.encoder_slopes, &seen, &pushed);
+        let motion = corrected_pivot_motion(&built, &IDEAL.lines, &seen, &pushed);
         prop_assert_eq!(motion, pivot_motion(&guides, &twist, &push));
         prop_assert_eq!(corrected_direct(&ideal.pivots, &IDEAL, 2), direct::<Fixed>(&ideal.pivots));
     }

@@ -54,11 +54,7 @@ pub fn refine<T: CorrectedScalar, C: Curves<T>>(
         let there = at.encoders[i];
         T::angle_to_correction(T::near(encoders[i], there) - there)
     });
-    let errors = corrections
-        .lines
-        .each_ref()
-        .map(|line| line.guide_for_rates);
-    let step = corrected_direct_rates(&at.guides, &errors, &at.encoder_slopes, &missing);
+    let step = corrected_direct_rates(&at, &corrections.lines, &missing);
     Ok(Pose {
         x: pose.x + T::from_correction(step.x),
         y: pose.y + T::from_correction(step.y),

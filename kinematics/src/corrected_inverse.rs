@@ -28,6 +28,9 @@ pub struct CorrectedInverse<T: CorrectedScalar> {
     pub guides: [Guide<T::Correction>; 3],
     /// dE / dpsi: by so much of itself an encoder's rate is more than its ring's.
     pub encoder_slopes: [T::Correction; 3],
+    /// 1 / (df/dpsi): ring's angle per way of the pivot across its guide, rad per track radius. 1 / (R c) but for the
+    /// curves.
+    pub over_travel: [T::Correction; 3],
 }
 
 /// What the encoders read when the platform is in `pose`. With zero corrections it has the bits of
@@ -63,7 +66,8 @@ pub fn corrected_inverse<T: CorrectedScalar, C: Curves<T>>(
     Ok(CorrectedInverse {
         encoders: pivots.map(|pivot| pivot.encoder),
         guides: pivots.map(|pivot| pivot.guide),
-        encoder_slopes: pivots.map(|pivot| pivot.slope),
+        encoder_slopes: pivots.map(|pivot| pivot.encoder_slope),
+        over_travel: pivots.map(|pivot| pivot.over_travel),
     })
 }
 
@@ -72,7 +76,8 @@ pub fn corrected_inverse<T: CorrectedScalar, C: Curves<T>>(
 struct Pivot<T: CorrectedScalar> {
     encoder: T::Angle,
     guide: Guide<T::Correction>,
-    slope: T::Correction,
+    encoder_slope: T::Correction,
+    over_travel: T::Correction,
 }
 
 impl<T: CorrectedScalar> Pivot<T> {
@@ -95,7 +100,8 @@ impl<T: CorrectedScalar> Pivot<T> {
             radius: line.radius,
             projection: sight.projection.to_correction(),
         };
-        let step = step_onto_guide::<T>(&closed, &errors.runout, |rho| curves.straightness(rho));
+        let (step, over_travel) =
+            step_onto_guide::<T>(&closed, &errors.runout, |rho| curves.straightness(rho));
         // E at the end of the step, by its slope: the ring's two curves are looked up once.
         let encoder = errors.encoder.value + errors.encoder.slope * step;
         let shift = T::angle_from_correction(step + encoder);
@@ -109,7 +115,8 @@ impl<T: CorrectedScalar> Pivot<T> {
                 cosine: closed.radius * closed.cosine,
                 projection: closed.projection,
             },
-            slope: errors.encoder.slope,
+            encoder_slope: errors.encoder.slope,
+            over_travel,
         }
     }
 }
@@ -122,13 +129,14 @@ struct Closed<R> {
     projection: R,
 }
 
-/// From the closed form's ring angle to where the pivot, with its runout, lies on the curved guide: rad.
+/// From the closed form's ring angle to where the pivot, with its runout, lies on the curved guide, rad; and 1 /
+/// (df/dpsi).
 #[inline]
 fn step_onto_guide<T: CorrectedScalar>(
     closed: &Closed<T::Correction>,
     runout: &CurvePoint<T::Correction>,
     straightness: impl Fn(T::Correction) -> CurvePoint<T::Correction>,
-) -> T::Correction {
+) -> (T::Correction, T::Correction) {
     let Closed { sine, cosine, .. } = *closed;
     let radius = closed.radius + runout.value;
     // The pivot from the ring's centre, along the guide and across; and its derivatives by the ring's angle.
@@ -136,7 +144,8 @@ fn step_onto_guide<T: CorrectedScalar>(
     let along_slope = runout.slope * cosine - across;
     let across_slope = runout.slope * sine + along;
     let straightness = straightness(along - closed.projection);
-    let over_slope = T::Correction::ONE / (across_slope - straightness.slope * along_slope);
-    let step = (straightness.value - runout.value * sine) * over_slope;
-    step + step * step * (across * over_slope).half()
+    let over_travel = T::Correction::ONE / (across_slope - straightness.slope * along_slope);
+    let step = (straightness.value - runout.value * sine) * over_travel;
+    let bent = step * step * (across * over_travel).half();
+    (step + bent, over_travel)
 }

@@ -1,58 +1,58 @@
 //! Rates and accelerations of a built machine's encoders from those of the platform, and back.
 //!
-//! Guides and slopes are those of [`corrected_inverse`](crate::corrected_inverse()). Runout and straightness do not
-//! enter: their slopes are some 1e-4.
+//! Runout and straightness enter by the pivot's travel along its ring, not by the guide's tilt: that is some 1e-4.
 
-use crate::guide::Guide;
-use crate::guide_error::GuideError;
+use crate::corrected_inverse::CorrectedInverse;
+use crate::corrected_scalar::CorrectedScalar;
 use crate::inverse::seen_by_guides;
+use crate::line::Line;
 use crate::pose::{Acceleration, Twist};
 use crate::rates::{MotionSeen, PivotMotion, pivot_motion_seen};
-use crate::scalar::Real;
+use crate::scalar::{Real, Scalar};
 
-/// Rates (rad/s) and accelerations (rad/s^2) of the encoders, from a twist and an acceleration along the platform's
-/// axes. With zero errors and slopes it has the values of
+/// Rates (rad/s) and accelerations (rad/s^2) of the encoders in a pose, from a twist and an acceleration along the
+/// platform's axes. With zero corrections it has the values of
 /// [`pivot_motion_in_platform_axes`](crate::pivot_motion_in_platform_axes).
 #[inline]
-pub fn corrected_pivot_motion<T: Real>(
-    guides: &[Guide<T>; 3],
-    guide_errors: &[GuideError<T>; 3],
-    encoder_slopes: &[T; 3],
-    twist: &Twist<T>,
-    acceleration: &Acceleration<T>,
-) -> PivotMotion<T> {
+pub fn corrected_pivot_motion<T: CorrectedScalar>(
+    at: &CorrectedInverse<T>,
+    lines: &[Line<T>; 3],
+    twist: &Twist<T::Correction>,
+    acceleration: &Acceleration<T::Correction>,
+) -> PivotMotion<T::Correction> {
     let [speeds, pushes] = [(twist.x, twist.y), (acceleration.x, acceleration.y)].map(|(x, y)| {
         let (across, along) = seen_by_guides(x, y);
-        [0, 1, 2].map(|i| guide_errors[i].turned([across[i], along[i]]))
+        [0, 1, 2].map(|i| lines[i].guide_for_rates.turned([across[i], along[i]]))
     });
     let seen = MotionSeen {
         speeds: speeds.map(|[across, _]| across),
         along: speeds.map(|[_, along]| along),
         pushes: pushes.map(|[across, _]| across),
         // The platform turns about its own centre: a guide's offset has no centripetal part.
-        distances: [0, 1, 2].map(|i| guides[i].offset - guide_errors[i].offset),
+        distances: [0, 1, 2].map(|i| at.guides[i].offset - lines[i].guide_for_rates.offset),
         turning: [twist.theta, acceleration.theta],
+        over_cosines: at.over_travel,
     };
-    let motion = pivot_motion_seen(guides, &seen);
-    let stretched = |of: [T; 3]| [0, 1, 2].map(|i| of[i] + of[i] * encoder_slopes[i]);
+    let motion = pivot_motion_seen(&at.guides, &seen);
+    let stretched =
+        |of: [T::Correction; 3]| [0, 1, 2].map(|i| of[i] + of[i] * at.encoder_slopes[i]);
     PivotMotion {
         rates: stretched(motion.rates),
         accelerations: stretched(motion.accelerations),
     }
 }
 
-/// The platform's velocity, in the base frame, from the encoders' `rates` in rad/s. Guides may point anywhere: Cramer's
-/// rule on `-sin t_i x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where [`direct_rates`](crate::direct_rates) needs
-/// them 120 deg apart.
-pub fn corrected_direct_rates<T: Real>(
-    guides: &[Guide<T>; 3],
-    guide_errors: &[GuideError<T>; 3],
-    encoder_slopes: &[T; 3],
-    rates: &[T; 3],
-) -> Twist<T> {
+/// The platform's velocity in the base frame from the encoders' `rates` in rad/s, in a pose. Guides may point anywhere:
+/// Cramer's rule on `-sin t_i x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where
+/// [`direct_rates`](crate::direct_rates) needs them 120 deg apart.
+pub fn corrected_direct_rates<T: CorrectedScalar>(
+    at: &CorrectedInverse<T>,
+    lines: &[Line<T>; 3],
+    rates: &[T::Correction; 3],
+) -> Twist<T::Correction> {
     let [row_1, row_2, row_3] = [0, 1, 2].map(|i| {
-        let guide = &guides[i];
-        let [cos, sin] = guide_errors[i].turned([guide.cos, guide.sin]);
+        let guide = &at.guides[i];
+        let [cos, sin] = lines[i].guide_for_rates.turned([guide.cos, guide.sin]);
         [-sin, cos, guide.rho()]
     });
     let columns = [
@@ -60,10 +60,10 @@ pub fn corrected_direct_rates<T: Real>(
         cross(row_3, row_1),
         cross(row_1, row_2),
     ];
-    let over_determinant = T::ONE / dot(row_1, columns[0]);
+    let determinant = dot(row_1, columns[0]);
     let speeds = [0, 1, 2].map(|i| {
-        let ring_rate = rates[i] / (T::ONE + encoder_slopes[i]);
-        guides[i].cosine * ring_rate * over_determinant
+        let per_speed = at.over_travel[i] * (T::Correction::ONE + at.encoder_slopes[i]);
+        rates[i] / (per_speed * determinant)
     });
     let [x, y, theta] = [0, 1, 2].map(|k| dot(speeds, columns.map(|column| column[k])));
     Twist { x, y, theta }

@@ -83,6 +83,7 @@ pub fn pivot_motion_in_platform_axes<T: Real>(
         pushes,
         distances: guides.map(|guide| guide.offset),
         turning: [twist.theta, acceleration.theta],
+        over_cosines: guides.map(|guide| T::ONE / guide.cosine),
     };
     pivot_motion_seen(guides, &seen)
 }
@@ -98,6 +99,8 @@ pub(crate) struct MotionSeen<T> {
     pub(crate) distances: [T; 3],
     /// theta' and theta''.
     pub(crate) turning: [T; 2],
+    /// 1 / c_i.
+    pub(crate) over_cosines: [T; 3],
 }
 
 /// [`pivot_motion`] of a motion that its guides see.
@@ -109,7 +112,7 @@ pub(crate) fn pivot_motion_seen<T: Real>(
     let [theta_1, theta_2] = seen.turning;
     let pivot = |i: usize| {
         let guide = &guides[i];
-        let over_cosine = T::ONE / guide.cosine;
+        let over_cosine = seen.over_cosines[i];
         let swing_rate = (seen.speeds[i] - theta_1 * guide.projection) * over_cosine;
         // Twice the Coriolis part, and the centripetal one: theta' (2 along + theta' d).
         let turning = theta_1 * (seen.along[i] + seen.along[i] + theta_1 * seen.distances[i]);

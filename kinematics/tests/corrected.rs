@@ -161,8 +161,7 @@ proptest! {
         let [before, after] = [-H, H]
             .map(|t_s| solve_built(&moved(&pose, &twist, &NO_ACCELERATION, t_s), &machine).encoders);
         let rates = [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * H));
-        let errors = machine.lines.map(|line| line.guide_for_rates);
-        let back = corrected_direct_rates(&at.guides, &errors, &at.encoder_slopes, &rates);
+        let back = corrected_direct_rates(&at, &machine.lines, &rates);
         for (got, want) in [(back.x, twist.x), (back.y, twist.y), (back.theta, twist.theta)] {
             prop_assert!((got - want).abs() < 1e-7, "{back:?}");
         }
@@ -213,14 +212,7 @@ fn motion(
     acceleration: &Acceleration<f64>,
 ) -> kinematics::PivotMotion<f64> {
     let (twist, acceleration) = in_platform_axes(&at.guides, twist, acceleration);
-    let errors = machine.lines.map(|line| line.guide_for_rates);
-    corrected_pivot_motion(
-        &at.guides,
-        &errors,
-        &at.encoder_slopes,
-        &twist,
-        &acceleration,
-    )
+    corrected_pivot_motion(at, &machine.lines, &twist, &acceleration)
 }
 
 /// Angles and poses bit for bit; guides and rates as numbers, whose zeros have no sign.
@@ -254,14 +246,7 @@ where
         theta: t(push.theta),
     };
     let (seen, pushed) = in_platform_axes(&built.guides, &twist, &push);
-    let errors = zero.lines.map(|line| line.guide_for_rates);
-    let motion = corrected_pivot_motion(
-        &built.guides,
-        &errors,
-        &built.encoder_slopes,
-        &seen,
-        &pushed,
-    );
+    let motion = corrected_pivot_motion(&built, &zero.lines, &seen, &pushed);
     assert_eq!(motion, pivot_motion(&ideal.guides, &twist, &push));
     let back = corrected_direct::<T, _>(&ideal.pivots, &zero, 2).expect("a feasible pose");
     let plain = direct::<T>(&ideal.pivots).expect("a feasible pose");

@@ -16,8 +16,10 @@ use kinematics::{CoefficientError, Corrections, Line, PivotCoefficients, check_c
 
 pub use pivot_tables::PivotTables;
 
-/// What the corrected kinematics take in the tick: the lines of the three pivots and their tables, 14 KB.
+/// What the corrected kinematics take in the tick: the lines of the three pivots and their tables, 16 KB.
 pub type Calibration = Corrections<Fixed, PivotTables>;
+
+const _: () = assert!(size_of::<Calibration>() <= 16 << 10);
 
 /// The calibration of a machine as drawn.
 pub const IDEAL: Calibration = Calibration {
