@@ -20,6 +20,7 @@
 //! | [`iterative_learning`] | tables of voltage that go with a move that is repeated, and what they learn |
 //! | [`fault_record`] | what is still there after a reset: events, and the ticks around a fault |
 //! | [`recorder`] | the data recorder, and a running hash of every tick |
+//! | [`calibration`] | what a built machine is off the drawing, as the tick takes it |
 //! | [`parameters`] | every tunable, in physical units |
 //! | [`motion`] | what a plan is, all planners, and the check that a plan is within every limit |
 //! | [`image_checksum`] | whether the program in flash is whole |
@@ -30,6 +31,7 @@
 //! | [`number`] | fixed point and the functions of the tick, the same bits on every machine |
 #![cfg_attr(not(test), no_std)]
 
+pub mod calibration;
 pub mod commander;
 pub mod control;
 pub mod drivers;

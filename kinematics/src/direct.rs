@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::guide::Guide;
+use crate::inverse::InverseError;
 use crate::jacobian::jacobian_inverse;
 use crate::pose::{Pose, Twist};
 use crate::scalar::{Real, Scalar};
@@ -20,6 +21,8 @@ pub enum DirectError {
         /// The guide, 1 to 3; the first if there are several.
         guide: usize,
     },
+    /// The pose of a built machine's encoders lies on or outside the track.
+    OutsideTrack,
 }
 
 impl fmt::Display for DirectError {
@@ -31,6 +34,7 @@ impl fmt::Display for DirectError {
                 f,
                 "the triangle of pivots is too wide at pivot {guide} (120 deg or more), or the pivots are out of order"
             ),
+            Self::OutsideTrack => InverseError::OutsideTrack.fmt(f),
         }
     }
 }

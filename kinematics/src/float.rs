@@ -2,6 +2,7 @@
 //!
 //! The elementary functions are `libm`'s on every platform, so that host and target agree to the bit.
 
+use crate::corrected_scalar::CorrectedScalar;
 use crate::scalar::{Real, Scalar};
 
 macro_rules! impl_float {
@@ -57,6 +58,34 @@ macro_rules! impl_float {
 
             fn angle_is_finite(angle: Self) -> bool {
                 angle.is_finite()
+            }
+        }
+
+        impl CorrectedScalar for $float {
+            type Correction = Self;
+
+            fn to_correction(self) -> Self {
+                self
+            }
+
+            fn from_correction(correction: Self) -> Self {
+                correction
+            }
+
+            fn angle_to_correction(angle: Self) -> Self {
+                angle
+            }
+
+            fn angle_from_correction(rad: Self) -> Self {
+                rad
+            }
+
+            fn length_from_f64(length: f64) -> Self {
+                length as $float
+            }
+
+            fn angle_from_f64(rad: f64) -> Self {
+                rad as $float
             }
         }
 

@@ -43,14 +43,13 @@ impl core::error::Error for InverseError {}
 /// [`InverseError`] for a pose that is not finite or whose centre is not inside the track.
 pub fn inverse<T: Scalar>(pose: &Pose<T>) -> Result<Inverse<T>, InverseError> {
     let [at_1, at_2, at_3] = meet_track(pose)?;
+    let [angle_1, angle_2, angle_3] = guide_angles::<T>();
     // The small angles are summed first: theta may be many turns, and a float rounds by its size.
-    let to_guide_2 = T::ANGLE_120 - T::ANGLE_30;
-    let to_guide_3 = to_guide_2 + T::ANGLE_120;
     Ok(Inverse {
         pivots: [
-            pose.theta + (at_1.swing - T::ANGLE_30),
-            pose.theta + (at_2.swing + to_guide_2),
-            pose.theta + (at_3.swing + to_guide_3),
+            pose.theta + (at_1.swing + angle_1),
+            pose.theta + (at_2.swing + angle_2),
+            pose.theta + (at_3.swing + angle_3),
         ],
         guides: [at_1.guide, at_2.guide, at_3.guide],
     })
@@ -66,6 +65,37 @@ pub(crate) struct Meeting<T: Scalar> {
 /// Where the guides of a pose meet the track.
 #[inline]
 pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], InverseError> {
+    let seen = see_guides(pose)?;
+    // A centre inside the track by less than a rounding can still give an offset of one.
+    let swings =
+        T::asin_cos(seen.each_ref().map(|guide| guide.offset)).ok_or(InverseError::OutsideTrack)?;
+    Ok([0, 1, 2].map(|i| {
+        let (seen, (swing, cosine)) = (&seen[i], swings[i]);
+        let (cos, sin) = seen.direction;
+        let guide = Guide {
+            cos,
+            sin,
+            offset: seen.offset,
+            cosine,
+            projection: seen.projection,
+        };
+        Meeting { swing, guide }
+    }))
+}
+
+/// A drawn guide's line.
+pub(crate) struct GuideSeen<T> {
+    /// Cosine and sine of its direction.
+    pub(crate) direction: (T, T),
+    /// d_i.
+    pub(crate) offset: T,
+    /// q_i.
+    pub(crate) projection: T,
+}
+
+/// The drawn guides of a pose inside the track, as the track's centre sees them.
+#[inline]
+pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<[GuideSeen<T>; 3], InverseError> {
     if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
         return Err(InverseError::NotFinite);
     }
@@ -78,24 +108,24 @@ pub(crate) fn meet_track<T: Scalar>(pose: &Pose<T>) -> Result<[Meeting<T>; 3], I
     let y = T::sum_of_products((pose.y, cos), (-pose.x, sin));
     let directions = guide_directions(sin, cos);
     let (offsets, projections) = seen_by_guides(x, y);
-    // A centre inside the track by less than a rounding can still give an offset of one.
-    let swings = T::asin_cos(offsets).ok_or(InverseError::OutsideTrack)?;
-    Ok([0, 1, 2].map(|i| {
-        let ((cos, sin), (swing, cosine)) = (directions[i], swings[i]);
-        let guide = Guide {
-            cos,
-            sin,
-            offset: offsets[i],
-            cosine,
-            projection: projections[i],
-        };
-        Meeting { swing, guide }
+    Ok([0, 1, 2].map(|i| GuideSeen {
+        direction: directions[i],
+        offset: offsets[i],
+        projection: projections[i],
     }))
 }
 
-/// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose centre is at
-/// (`x`, `y`) along the platform's own axes, seen along these. `None` for a centre that is not inside the track. The square
-/// root is the caller's: on the chip there is an instruction for it, which this crate does not know.
+/// theta_i - theta: the guides' angles in the platform, -30, 90 and 210 deg.
+#[inline]
+pub(crate) fn guide_angles<T: Scalar>() -> [T::Angle; 3] {
+    let first = T::ANGLE_ZERO - T::ANGLE_30;
+    let second = T::ANGLE_120 - T::ANGLE_30;
+    [first, second, second + T::ANGLE_120]
+}
+
+/// Where the guides of the pose (`x`, `y`, 0) meet the track, without the pivots' angles: those of any pose whose
+/// centre is at (`x`, `y`) along the platform's own axes, seen along these. `None` for a centre that is not inside the
+/// track. The square root is the caller's: on the chip there is an instruction for it, which this crate does not know.
 pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[Guide<T>; 3]> {
     // NaN is inside of nothing.
     if !inside_track(x, y) {
@@ -112,9 +142,10 @@ pub fn guides_along_axes<T: Real>(x: T, y: T, sqrt: impl Fn(T) -> T) -> Option<[
     }))
 }
 
-/// d_i and q_i of a centre at (`x`, `y`) along the platform's own axes, in which the guides always point the same way.
+/// The parts across (to the left) and along each guide of a vector (`x`, `y`) along the platform's own axes, in which
+/// the guides always point the same way: of the centre, d_i and q_i.
 #[inline]
-fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
+pub(crate) fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
     let (x_half, y_half) = (x.half(), y.half());
     let (x_wide, y_wide) = (x * T::SIN_60, y * T::SIN_60);
     (
@@ -123,7 +154,8 @@ fn seen_by_guides<T: Scalar>(x: T, y: T) -> ([T; 3], [T; 3]) {
     )
 }
 
-/// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay small.
+/// Whether the centre lies strictly inside the track. Each coordinate is compared first, so that the squares stay
+/// small.
 fn inside_track<T: Scalar>(x: T, y: T) -> bool {
     let within = |coordinate: T| -T::ONE < coordinate && coordinate < T::ONE;
     within(x) && within(y) && T::sum_of_products((x, x), (y, y)) < T::ONE

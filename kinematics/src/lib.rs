@@ -4,7 +4,8 @@
 //! through three linear guides set in a symmetric "Y". All three together turn the platform without end.
 //!
 //! No heap, no `std`, no I/O, no panics: bad input is an error that says what is bad. Generic over the number type: the
-//! position equations ([`inverse()`], [`direct()`]) need a [`Scalar`], which may be fixed-point; everything else a [`Real`].
+//! position equations ([`inverse()`], [`direct()`]) need a [`Scalar`], which may be fixed-point, those of a built machine a
+//! [`CorrectedScalar`]; everything else a [`Real`].
 //!
 //! | file | what is in it |
 //! |---|---|
@@ -14,9 +15,13 @@
 //! | [`mod@jacobian`] | the Jacobian, its inverse, dexterity |
 //! | [`mod@feasibility`] | whether a pose keeps to the mechanism's limits, and by how much |
 //! | [`geometry`] | sizes of the mechanism, and what follows from them |
+//! | [`coefficients`], [`corrections`] | what a built machine is off the drawing, and what may be corrected |
+//! | [`line`](mod@line), [`guide_error`] | the numbers of a pivot that have a closed form |
+//! | [`curves`], [`series`] | encoder, runout and straightness of a pivot, and their exact series |
+//! | [`mod@corrected_inverse`], [`mod@corrected_direct`], [`corrected_rates`] | the same of a built machine: pose to encoders, back, and rates |
 //! | [`guide`], [`pose`] | a guide; pose, twist, acceleration |
 //! | [`angle`] | multi-turn angles without rounding |
-//! | [`scalar`], `float` | what a number type must do; `f32` and `f64` |
+//! | [`scalar`], [`corrected_scalar`], `float` | what a number type must do; `f32` and `f64` |
 //!
 //! # Frames and symbols
 //!
@@ -62,6 +67,8 @@
 //!   `theta = arg(u) + 30 deg` and `C = (S0 - u^2 conj(S2)) / 3`. The three rho_i are the inverse transform of |S1|,
 //!   `u conj(S2)` and its conjugate. Singular only at S1 = 0; inside the track `|S1| >= sqrt(3)`.
 //! - The turn of theta: phi_1 lies within 90 deg of theta_1, so theta is the solution nearest to `phi_1 + 30 deg`.
+//! - A built machine: the same with each pivot's own ring and guide, [`corrected_inverse()`], and what its encoder reads there,
+//!   `m_i = psi_i + z_i + E_i(psi_i)`. Back by Newton's method, [`corrected_direct()`].
 //! - Dexterity (Fig. 5): `xi = 1 / (|J| |J^-1|)`, `|J| = sqrt(tr(J J^T) / 3)`.
 //!
 //! # Where the source paper is wrong or unclear
@@ -85,29 +92,49 @@
 //! it as its angle.
 
 pub mod angle;
+pub mod coefficients;
+pub mod corrected_direct;
+pub mod corrected_inverse;
+pub mod corrected_rates;
+pub mod corrected_scalar;
+pub mod corrections;
+pub mod curves;
 pub mod direct;
 pub mod feasibility;
 mod float;
 pub mod geometry;
 pub mod guide;
+pub mod guide_error;
 pub mod inverse;
 pub mod jacobian;
+pub mod line;
 pub mod pose;
 pub mod rates;
 pub mod scalar;
+pub mod series;
 
 pub use angle::Angle;
+pub use coefficients::{COEFFICIENTS, PivotCoefficients};
+pub use corrected_direct::{corrected_direct, refine};
+pub use corrected_inverse::{CorrectedInverse, corrected_inverse};
+pub use corrected_rates::{corrected_direct_rates, corrected_pivot_motion};
+pub use corrected_scalar::CorrectedScalar;
+pub use corrections::{CoefficientError, Corrections, check_coefficients};
+pub use curves::{CurvePoint, Curves, RingErrors};
 pub use direct::{DirectError, direct, direct_rates};
 pub use feasibility::{Infeasible, Margins, feasibility, margins};
 pub use geometry::{
     Geometry, GeometryError, closest_separation_rad, worst_rate_per_rotation, worst_rate_per_speed,
 };
 pub use guide::Guide;
+pub use guide_error::GuideError;
 pub use inverse::{Inverse, InverseError, guides_along_axes, inverse};
 pub use jacobian::{dexterity, jacobian, jacobian_inverse};
+pub use line::Line;
 pub use pose::{Acceleration, Pose, Twist};
 pub use rates::{
     PivotMotion, in_platform_axes, pivot_accelerations, pivot_motion,
     pivot_motion_in_platform_axes, pivot_rates,
 };
 pub use scalar::{Real, Scalar};
+pub use series::Series;

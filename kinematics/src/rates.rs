@@ -1,6 +1,7 @@
 //! Rates and accelerations of the pivots from those of the platform.
 
 use crate::guide::Guide;
+use crate::inverse::seen_by_guides;
 use crate::pose::{Acceleration, Twist};
 use crate::scalar::Real;
 
@@ -74,27 +75,51 @@ pub fn pivot_motion_in_platform_axes<T: Real>(
     twist: &Twist<T>,
     acceleration: &Acceleration<T>,
 ) -> PivotMotion<T> {
-    let across = |x: T, y: T| {
-        let (half, wide) = (x * T::HALF, y * T::SIN_60);
-        [half + wide, -x, half - wide]
+    let (speeds, along) = seen_by_guides(twist.x, twist.y);
+    let (pushes, _) = seen_by_guides(acceleration.x, acceleration.y);
+    let seen = MotionSeen {
+        speeds,
+        along,
+        pushes,
+        distances: guides.map(|guide| guide.offset),
+        turning: [twist.theta, acceleration.theta],
+        over_cosines: guides.map(|guide| T::ONE / guide.cosine),
     };
-    let (wide, half) = (twist.x * T::SIN_60, twist.y * T::HALF);
-    let along = [wide - half, twist.y, -(wide + half)];
-    let speeds = across(twist.x, twist.y);
-    let pushes = across(acceleration.x, acceleration.y);
+    pivot_motion_seen(guides, &seen)
+}
+
+/// The platform's motion as its guides see it.
+pub(crate) struct MotionSeen<T> {
+    /// The centre's velocity across each guide, and along.
+    pub(crate) speeds: [T; 3],
+    pub(crate) along: [T; 3],
+    /// The centre's acceleration across each guide.
+    pub(crate) pushes: [T; 3],
+    /// The centre across each guide's direction, from where the guide's ring turns: d_i.
+    pub(crate) distances: [T; 3],
+    /// theta' and theta''.
+    pub(crate) turning: [T; 2],
+    /// 1 / c_i.
+    pub(crate) over_cosines: [T; 3],
+}
+
+/// [`pivot_motion`] of a motion that its guides see.
+#[inline]
+pub(crate) fn pivot_motion_seen<T: Real>(
+    guides: &[Guide<T>; 3],
+    seen: &MotionSeen<T>,
+) -> PivotMotion<T> {
+    let [theta_1, theta_2] = seen.turning;
     let pivot = |i: usize| {
         let guide = &guides[i];
-        let over_cosine = T::ONE / guide.cosine;
-        let swing_rate = (speeds[i] - twist.theta * guide.projection) * over_cosine;
+        let over_cosine = seen.over_cosines[i];
+        let swing_rate = (seen.speeds[i] - theta_1 * guide.projection) * over_cosine;
         // Twice the Coriolis part, and the centripetal one: theta' (2 along + theta' d).
-        let turning = twist.theta * (along[i] + along[i] + twist.theta * guide.offset);
-        let offset_acceleration = pushes[i] - acceleration.theta * guide.projection - turning;
+        let turning = theta_1 * (seen.along[i] + seen.along[i] + theta_1 * seen.distances[i]);
+        let offset_acceleration = seen.pushes[i] - theta_2 * guide.projection - turning;
         let swing_acceleration =
             (offset_acceleration + swing_rate * swing_rate * guide.offset) * over_cosine;
-        (
-            twist.theta + swing_rate,
-            acceleration.theta + swing_acceleration,
-        )
+        (theta_1 + swing_rate, theta_2 + swing_acceleration)
     };
     let [motion_1, motion_2, motion_3] = [pivot(0), pivot(1), pivot(2)];
     PivotMotion {

@@ -7,7 +7,10 @@ use std::f64::consts::{PI, TAU};
 use std::ops::{Add, Mul, Neg, Sub};
 
 use common::*;
-use kinematics::{Angle, Pose, Scalar, direct, inverse};
+use kinematics::{
+    Angle, CorrectedScalar, Corrections, CurvePoint, Curves, PivotCoefficients, Pose, RingErrors,
+    Scalar, Series, corrected_direct, corrected_inverse, direct, inverse,
+};
 use proptest::prelude::*;
 
 #[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
@@ -90,6 +93,65 @@ impl Scalar for Ranged {
     }
 }
 
+impl CorrectedScalar for Ranged {
+    type Correction = f64;
+
+    fn to_correction(self) -> f64 {
+        self.0
+    }
+
+    fn from_correction(correction: f64) -> Self {
+        ranged(correction)
+    }
+
+    fn angle_to_correction(angle: Angle) -> f64 {
+        angle.radians()
+    }
+
+    fn angle_from_correction(rad: f64) -> Angle {
+        angle(rad)
+    }
+
+    fn length_from_f64(length: f64) -> Self {
+        ranged(length)
+    }
+
+    fn angle_from_f64(rad: f64) -> Angle {
+        angle(rad)
+    }
+}
+
+/// Exact curves over integer angles.
+struct RangedSeries(Series<f64>);
+
+impl Curves<Ranged> for RangedSeries {
+    fn are_zero(&self) -> bool {
+        Curves::<f64>::are_zero(&self.0)
+    }
+
+    fn ring_errors(&self, ring: Angle) -> RingErrors<f64> {
+        Curves::<f64>::ring_errors(&self.0, ring.near(Angle::ZERO).radians())
+    }
+
+    fn straightness(&self, rho: f64) -> CurvePoint<f64> {
+        Curves::<f64>::straightness(&self.0, rho)
+    }
+}
+
+/// As far off as the formulas take it, every number with this sign.
+fn worst(sign: f64) -> PivotCoefficients {
+    PivotCoefficients {
+        encoder_zero_rad: 3.0 * sign,
+        radius_error: 0.02 * sign,
+        ring_centre: [0.01 * sign, -0.01 * sign],
+        guide_error_rad: 0.02 * sign,
+        guide_offset: 0.02 * sign,
+        encoder_rad: [[8e-5 * sign; 2]; 12],
+        runout: [[1.99e-4 * sign; 2]; 5],
+        straightness: [2.49e-4 * sign; 8],
+    }
+}
+
 /// What is left of an angle's digits: its unit of 1.5 nrad, and not a fifteenth of a 26-bit encoder's LSB.
 const ANGLE_RAD: f64 = TAU / (1_u64 << 32) as f64;
 
@@ -123,5 +185,22 @@ proptest! {
     #[test]
     fn direct_stays_in_range(pivots in prop::array::uniform3(-PI..PI)) {
         let _ = direct::<Ranged>(&pivots.map(angle));
+    }
+
+    /// Of the worst machine at any pose that has one, many turns away: no equation leaves the range, and the pose comes back.
+    #[test]
+    fn corrected_positions_stay_in_range(
+        x in -1.0..1.0, y in -1.0..1.0, theta in -PI..PI, turns in -10_000_i64..10_000,
+        signs in prop::array::uniform3(prop::bool::ANY),
+    ) {
+        let pivots = signs.map(|sign| worst(if sign { 1.0 } else { -1.0 }));
+        let machine = Corrections::new(&pivots, |built| RangedSeries(Series::new(built))).expect("at the limits");
+        let far = Angle::from_units(turns << 32);
+        let pose = Pose { x: ranged(x), y: ranged(y), theta: angle(theta) + far };
+        if let Ok(there) = corrected_inverse(&pose, &machine) && x.hypot(y) < 0.8 {
+            let back = corrected_direct::<Ranged, _>(&there.encoders, &machine, 6).expect("a pose");
+            prop_assert!((back.x.0 - x).abs() < 4e-9 && (back.y.0 - y).abs() < 4e-9, "{back:?}");
+            prop_assert!((back.theta - pose.theta).radians().abs() < 4e-9);
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! [`Fixed`] as the number of the kinematics: rounding and the elementary functions.
 
 use super::fixed::{Fixed, HALF_LSB};
+use super::float::{i64_to_f32_fast, round_i32};
 use super::{arcsine, polar, trigonometric};
-use kinematics::{Angle, Scalar};
+use kinematics::{Angle, CorrectedScalar, Scalar};
 
 impl Scalar for Fixed {
     type Angle = Angle;
@@ -54,5 +55,54 @@ impl Scalar for Fixed {
     #[inline]
     fn angle_is_finite(_: Angle) -> bool {
         true
+    }
+}
+
+/// Units of angle in a radian, and back.
+const UNITS_PER_RADIAN: f32 = (4_294_967_296.0 / core::f64::consts::TAU) as f32;
+const RADIANS_PER_UNIT: f32 = (core::f64::consts::TAU / 4_294_967_296.0) as f32;
+/// 2^29.
+const BITS_PER_ONE: f32 = (1u32 << Fixed::FRACTION_BITS) as f32;
+
+impl CorrectedScalar for Fixed {
+    type Correction = f32;
+
+    #[inline]
+    fn to_correction(self) -> f32 {
+        self.to_f32()
+    }
+
+    /// Rounded to nearest, once.
+    #[inline]
+    fn sum_of_four_products(products: [(Self, Self); 4]) -> Self {
+        let sum = (products.into_iter()).fold(HALF_LSB, |sum, (a, b)| Self::add_product(sum, a, b));
+        Self::from_product(sum)
+    }
+
+    #[inline]
+    fn from_correction(correction: f32) -> Self {
+        Self(round_i32(correction * BITS_PER_ONE))
+    }
+
+    #[inline]
+    fn angle_to_correction(angle: Angle) -> f32 {
+        i64_to_f32_fast(angle.units()) * RADIANS_PER_UNIT
+    }
+
+    /// Rounded to nearest, but for a sixteenth of a unit, up to 0.19 rad; beyond, that.
+    #[inline]
+    fn angle_from_correction(rad: f32) -> Angle {
+        // Cut to sixteenths, which is one instruction of the chip, and rounded as an integer.
+        let sixteenths = (rad * (16.0 * UNITS_PER_RADIAN)) as i32;
+        Angle::from_units(i64::from(((sixteenths >> 3) + 1) >> 1))
+    }
+
+    fn length_from_f64(length: f64) -> Self {
+        Self::from_f64(length)
+    }
+
+    /// No angle for what is no number.
+    fn angle_from_f64(rad: f64) -> Angle {
+        Angle::from_radians(rad).unwrap_or(Angle::ZERO)
     }
 }

@@ -78,9 +78,9 @@ pub(super) enum Command {
     Sensitivity(SensitivityRun),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
-    /// Pivot angles (deg) of a pose (mm, mm, deg). Exit code 1 if it is out of reach.
+    /// Pivot angles (deg) of a pose (mm, mm, deg), or what the encoders of a built machine read. Exit code 1 if it is out of reach.
     Inverse(PoseRows),
-    /// Pose (mm, mm, deg) of three pivot angles (deg).
+    /// Pose (mm, mm, deg) of three pivot angles (deg), or of what the encoders of a built machine read.
     Direct(PivotRows),
     /// Whether the stage can take a pose, and how far it is from each limit. Exit code 1 if it cannot.
     Check(PoseArguments),

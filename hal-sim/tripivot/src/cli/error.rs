@@ -48,6 +48,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
     #[error(transparent)]
+    Calibration(#[from] super::calibration_file::CalibrationError),
+    #[error(transparent)]
     Page(#[from] desk::web::PageError),
     /// The stage faulted in a run, or refused a line.
     #[error("{0}")]

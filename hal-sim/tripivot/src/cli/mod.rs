@@ -11,16 +11,19 @@
 //! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
+//! | `calibration_file`, `flat_calibration` | a built machine's errors from a file |
 //! | `rows`, `units`, `json` | numbers in and out |
 //! | `pages` | completions and man pages |
 //! | `signal` | Ctrl-C |
 
 mod arguments;
 mod board;
+mod calibration_file;
 mod check;
 mod direct;
 mod error;
 mod faults;
+mod flat_calibration;
 mod inverse;
 mod json;
 mod machine;

@@ -6,16 +6,13 @@ use std::process::ExitCode;
 use super::error::CliError;
 use super::units::decimals;
 
-/// Turns one row of numbers into another, or says why it cannot.
-pub(super) type Convert = fn([f64; 3]) -> Result<[f64; 3], CliError>;
-
-/// Converts the `numbers` of the command line, or with `csv` every row of standard input. A header there stands as `header` in
-/// the output.
+/// Converts the `numbers` of the command line, or with `csv` every row of standard input. `convert` turns one row of numbers into
+/// another, or says why it cannot. A header in the input stands as `header` in the output.
 pub(super) fn convert(
     numbers: &[f64],
     csv: bool,
     header: &str,
-    convert: Convert,
+    convert: impl Fn([f64; 3]) -> Result<[f64; 3], CliError>,
 ) -> Result<ExitCode, CliError> {
     if csv {
         stream(io::stdin().lock(), io::stdout().lock(), header, convert)?;
@@ -34,7 +31,7 @@ fn stream(
     input: impl BufRead,
     output: impl Write,
     header: &str,
-    convert: Convert,
+    convert: impl Fn([f64; 3]) -> Result<[f64; 3], CliError>,
 ) -> Result<(), CliError> {
     let mut output = BufWriter::new(output);
     let mut is_first = true;
@@ -51,7 +48,7 @@ fn stream(
         let written = if std::mem::take(&mut is_first) && is_header(line) {
             header.to_owned()
         } else {
-            let results = numbers(line).and_then(convert).map_err(at_row)?;
+            let results = numbers(line).and_then(&convert).map_err(at_row)?;
             results.map(decimals).join(",")
         };
         writeln!(output, "{written}").map_err(CliError::output)

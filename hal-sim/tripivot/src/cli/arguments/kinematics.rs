@@ -27,6 +27,19 @@ pub(in super::super) struct PoseArguments {
     pub(in super::super) json: bool,
 }
 
+/// The machine as it was built.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct BuiltMachine {
+    /// What the machine is off the drawing: the angles are then those that its encoders read.
+    ///
+    /// A JSON object with "pivots", on a track of 100 mm: three objects with encoder_zero_rad, radius_error_mm, ring_centre_mm (x, y), guide_error_rad,
+    /// guide_offset_mm, encoder_rad (cosine and sine of 1 to 12 times the ring's angle), runout_mm (the same of 2 to 6 times),
+    /// straightness_mm (Legendre polynomials 2 to 9 over the guide from 20 to 180 mm). Or one object with the keys z0, dR0, ax0, ay0, e0, d0,
+    /// Ec1_0, Es1_0 and so on, in track radii and rad. A key too many or too few is an error.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) calibration: Option<PathBuf>,
+}
+
 /// One pose on the command line, or many on standard input.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
@@ -34,29 +47,33 @@ pub(in super::super) struct PoseRows {
     /// X and Y in mm, THETA in deg.
     #[arg(num_args = 3, value_names = ["X", "Y", "THETA"], required_unless_present = "csv", conflicts_with = "csv", value_parser = coordinate)]
     pub(in super::super) numbers: Vec<f64>,
-    /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3.
+    /// Read rows x,y,theta from standard input and write rows phi1,phi2,phi3; with a calibration m1,m2,m3.
     ///
     /// Empty rows and rows that begin with # are passed over. The first other row may be a header, which is three names that begin
     /// with a letter: the output has one too then. Everything else has to be three numbers: the first row that is not ends
     /// the command.
     #[arg(long)]
     pub(in super::super) csv: bool,
+    #[command(flatten)]
+    pub(in super::super) built: BuiltMachine,
 }
 
 /// Three pivots on the command line, or many rows of them on standard input.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(in super::super) struct PivotRows {
-    /// Angles of the pivots on the track, deg.
+    /// Angles of the pivots on the track, deg; with a calibration what the encoders read.
     #[arg(num_args = 3, value_names = ["PHI1", "PHI2", "PHI3"], required_unless_present = "csv", conflicts_with = "csv", value_parser = coordinate)]
     pub(in super::super) numbers: Vec<f64>,
-    /// Read rows phi1,phi2,phi3 from standard input and write rows x,y,theta.
+    /// Read rows phi1,phi2,phi3 (with a calibration m1,m2,m3) from standard input and write rows x,y,theta.
     ///
     /// Empty rows and rows that begin with # are passed over. The first other row may be a header, which is three names that begin
     /// with a letter: the output has one too then. Everything else has to be three numbers: the first row that is not ends
     /// the command.
     #[arg(long)]
     pub(in super::super) csv: bool,
+    #[command(flatten)]
+    pub(in super::super) built: BuiltMachine,
 }
 
 /// A contour picture.
