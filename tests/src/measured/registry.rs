@@ -174,6 +174,17 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "sensitivity",
+        title: "What each imperfection decides",
+        group: Group::Motion,
+        about: "The demonstration on the machine as modelled, with one imperfection more or less at a time.",
+        command: "cargo run --release -- sensitivity",
+        short: None,
+        kind: Kind::Deterministic,
+        seconds: 70,
+        without: &[],
+    },
+    Section {
         name: "loop",
         title: "The loop, measured on the simulated machine",
         group: Group::Motion,
