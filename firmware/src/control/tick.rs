@@ -58,7 +58,7 @@ pub fn tick_and_drive(
         .loop_counters
         .count_tick(inputs.tick_cycles, inputs.late);
     let mut pivots = decode(config, &mut state.encoders, inputs.frames);
-    // A slow average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
+    // An average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.supply == 0.0 {
         state.supply = supply;
@@ -167,8 +167,9 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
     motion.setpoint(&config.scale)
 }
 
-/// Of the measured supply, from one tick to the next.
-const SUPPLY_SMOOTHING: f32 = 1.0 / 256.0;
+/// Of the measured supply, from one tick to the next: half a millisecond, in which the bus answers to a load, and over which the noise of
+/// a sample is a third of it.
+const SUPPLY_SMOOTHING: f32 = 1.0 / 8.0;
 
 /// Setpoints of the pivots, their rates (rad/s), and the duties.
 type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
