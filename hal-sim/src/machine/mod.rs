@@ -5,7 +5,9 @@
 //! | [`plant`] | bodies, drives, friction and stops, integrated |
 //! | [`file`] | a machine as a file of numbers |
 //! | [`devices`] | what the controller sees of it: encoders, bridges, converters, flash |
+//! | [`instruments`] | what a metrologist sees of it, at rest |
 
 pub mod devices;
 pub mod file;
+pub mod instruments;
 pub mod plant;

@@ -34,14 +34,13 @@ pub use body::Body;
 pub use drive::{Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
-pub use geometry::OffGuide;
+pub use geometry::{Geometry, GuideState, OffGuide};
 pub use imperfections::{Imperfections, NAMED, Named};
 pub use parameters::{FrictionParameters, Payload, PlantParameters};
 pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
 
 use dynamics::Dynamics;
-use geometry::GuideState;
 use nalgebra::{Matrix3, Vector3};
 use state::State;
 
