@@ -1,8 +1,8 @@
 //! The fit: Gauss-Newton, robust, with some visits held out to see whether it holds where it was not made.
 //!
 //! First plain steps, since at the start every miss is large and says nothing; then steps in which a visit that misses by much counts
-//! less (soft L1); then visits beyond four standard deviations are left out. What was held out is judged by that fit and joins the
-//! last steps.
+//! less (soft L1), and those beyond four standard deviations are left out, the worst first. What was held out is judged by that fit
+//! and joins the last steps.
 
 use kinematics::COEFFICIENTS;
 use nalgebra::{DMatrix, DVector};
@@ -19,11 +19,13 @@ const MAX_STEPS: usize = 12;
 /// A step so small, over the uncertainty that stays, changes nothing.
 const SMALL_STEP: f64 = 0.02;
 /// Steps with soft L1.
-const SOFT_STEPS: usize = 3;
+const SOFT_STEPS: usize = 2;
 /// From so many standard deviations on, a miss counts less.
 const SOFT_FROM: f64 = 2.0;
 /// A miss beyond so many standard deviations is an outlier.
 const CUT: f64 = 4.0;
+/// While there are larger ones, only misses over this share of the largest are cut.
+const CUT_SHARE: f64 = 0.3;
 /// Share of visits that may be outliers.
 const MOST_OUTLIERS: f64 = 0.03;
 /// Visits of twenty that are held out: spread, since a plan has the most telling ones first.
@@ -90,6 +92,11 @@ pub enum FitError {
     NotFinite,
 }
 
+/// Whether a visit is held out, by its place in the list.
+fn is_held_out(visit: usize) -> bool {
+    HELD_OUT.contains(&(visit % 20))
+}
+
 /// Where Gauss-Newton stands: all unknowns, in their sizes.
 struct State<'a> {
     instrument: &'a Instrument,
@@ -105,45 +112,26 @@ struct State<'a> {
 pub fn fit(instrument: &Instrument, visits: &[Visit]) -> Result<Fit, FitError> {
     check(instrument, visits)?;
     let mut state = State::new(instrument);
-    let is_held_out = |visit: usize| HELD_OUT.contains(&(visit % 20));
     let mut weights: Vec<f64> = (0..visits.len())
         .map(|visit| f64::from(u8::from(!is_held_out(visit))))
         .collect();
     let mut steps = state.descend(visits, &weights)?;
-    for _ in 0..SOFT_STEPS {
-        let misses = state.misses(visits)?;
-        let soft: Vec<f64> = (weights.iter().zip(&misses))
-            .map(|(weight, miss)| weight / (1.0 + (miss / SOFT_FROM).powi(2)).sqrt().sqrt())
-            .collect();
-        state.step(visits, &soft)?;
-        steps += 1;
-    }
-    let (factor, _) = state.step(visits, &weights)?;
-    let mut outliers = state.outliers(visits, &weights, &factor)?;
-    for &visit in &outliers {
-        weights[visit] = 0.0;
-    }
+    steps += state.cut(visits, &mut weights)?;
     let (factor, more) = state.settle(visits, &weights)?;
     steps += more;
+    // A visit may come back, or go, now that outliers no longer pull.
+    let outliers = state.outliers(visits, &weights, &factor)?;
     let held_out: Vec<usize> = (0..visits.len())
-        .filter(|&visit| is_held_out(visit) && !outliers.contains(&visit))
+        .filter(|visit| is_held_out(*visit) && !outliers.contains(visit))
         .collect();
     let chi2_held_out = state.chi2_of_new(visits, &held_out, &factor)?;
-    // A visit may come back, or go, now that outliers no longer pull.
-    outliers = state.outliers(visits, &weights, &factor)?;
     let weights: Vec<f64> = (0..visits.len())
         .map(|visit| f64::from(u8::from(!outliers.contains(&visit))))
         .collect();
     let (factor, more) = state.settle(visits, &weights)?;
     steps += more;
     let chi2 = state.chi2(visits, &weights, &factor)?;
-    if outliers.len() as f64 > MOST_OUTLIERS * visits.len() as f64 {
-        return Err(FitError::TooManyOutliers {
-            outliers: outliers.len(),
-            visits: visits.len(),
-            chi2,
-        });
-    }
+    few(outliers.len(), visits.len(), chi2)?;
     let (machine, unknowns) = state.values();
     Ok(Fit {
         machine,
@@ -156,6 +144,18 @@ pub fn fit(instrument: &Instrument, visits: &[Visit]) -> Result<Fit, FitError> {
     })
 }
 
+/// Refuses too many outliers.
+fn few(outliers: usize, visits: usize, chi2: f64) -> Result<(), FitError> {
+    if outliers as f64 > MOST_OUTLIERS * visits as f64 {
+        return Err(FitError::TooManyOutliers {
+            outliers,
+            visits,
+            chi2,
+        });
+    }
+    Ok(())
+}
+
 /// Every visit is one that the instrument can make.
 fn check(instrument: &Instrument, visits: &[Visit]) -> Result<(), FitError> {
     const LEAST: usize = 12;
@@ -165,7 +165,11 @@ fn check(instrument: &Instrument, visits: &[Visit]) -> Result<(), FitError> {
             least: LEAST,
         });
     }
-    for (visit, Visit { seen, .. }) in visits.iter().enumerate() {
+    for (visit, Visit { readings_rad, seen }) in visits.iter().enumerate() {
+        if !readings_rad.iter().chain(seen.values()).all(|value| value.is_finite()) {
+            let reason = "a value is not finite";
+            return Err(FitError::Visit { visit, reason });
+        }
         if let Seen::Mark { mark, camera, .. } = *seen {
             if mark >= instrument.marks.len() {
                 let reason = "the plate has no such mark";
@@ -224,6 +228,38 @@ impl<'a> State<'a> {
         })
     }
 
+    /// Takes the weight of outliers away, the worst first: while one of 100 standard deviations pulls, others of 10 cannot be told from
+    /// good visits.
+    fn cut(&mut self, visits: &[Visit], weights: &mut [f64]) -> Result<usize, FitError> {
+        let mut steps = 0;
+        loop {
+            for _ in 0..SOFT_STEPS {
+                let misses = self.misses(visits)?;
+                let soft: Vec<f64> = (weights.iter().zip(&misses))
+                    .map(|(weight, miss)| weight / (1.0 + (miss / SOFT_FROM).powi(2)).sqrt().sqrt())
+                    .collect();
+                self.step(visits, &soft)?;
+                steps += 1;
+            }
+            let misses = self.misses(visits)?;
+            let kept = || (weights.iter().zip(&misses)).filter(|(weight, _)| **weight > 0.0);
+            let largest = kept().map(|(_, miss)| *miss).fold(0.0, f64::max);
+            if largest <= CUT {
+                return Ok(steps);
+            }
+            let square: f64 = kept().map(|(_, miss)| miss * miss).sum();
+            let chi2 = square / kept().count() as f64;
+            let limit = CUT.max(CUT_SHARE * largest);
+            let out = misses.iter().map(|&miss| !(miss <= limit));
+            let out = out.enumerate().filter(|&(visit, is_out)| is_out && !is_held_out(visit));
+            let out: Vec<usize> = out.map(|(visit, _)| visit).collect();
+            for &visit in &out {
+                weights[visit] = 0.0;
+            }
+            few(out.len(), visits.len(), chi2)?;
+        }
+    }
+
     /// As [`Self::descend`], with the last step's factor.
     fn settle(&mut self, visits: &[Visit], weights: &[f64]) -> Result<(Factor, usize), FitError> {
         let mut steps = 1;
@@ -250,7 +286,7 @@ impl<'a> State<'a> {
     /// The problem at this place: what is known before, and the measured rows.
     fn linearised(&self, visits: &[Visit], weights: &[f64]) -> Result<Problem, FitError> {
         let (machine, unknowns) = self.values();
-        let mut problem = Problem::new(&self.now, 3 * visits.len() + 1);
+        let mut problem = Problem::new(&self.now);
         for (visit, measured) in visits.iter().enumerate() {
             let weight = weights[visit];
             if weight == 0.0 {

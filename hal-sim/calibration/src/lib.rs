@@ -26,12 +26,12 @@ pub mod accuracy;
 //pub mod file;
 pub mod fit;
 pub mod frames;
-//pub mod freedom;
+pub mod freedom;
 pub mod kit;
 pub mod least_squares;
 pub mod model;
 pub mod numbers;
-//pub mod plan;
+pub mod plan;
 pub mod position;
 pub mod spread;
 pub mod visit;
@@ -39,7 +39,7 @@ pub mod visit;
 pub use accuracy::Accuracy;
 pub use fit::{Fit, FitError, fit};
 pub use kit::{Instrument, Kit, Noise};
-//pub use plan::{Plan, plan};
+pub use plan::{Plan, plan};
 pub use visit::{Seen, Visit};
 
 /// The three pivots with their rings, encoders and guides.

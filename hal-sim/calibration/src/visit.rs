@@ -26,6 +26,18 @@ pub enum Seen {
     },
 }
 
+impl Seen {
+    /// The numbers that were measured.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Self::Pose(values) => values,
+            Self::Place(values) | Self::Mark { off: values, .. } => values,
+            Self::Turn(value) => core::slice::from_ref(value),
+        }
+    }
+}
+
 /// One measured pose.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Visit {

@@ -10,11 +10,14 @@
 //! | [`interferometer`] | x, y and theta |
 //! | [`target`] | x and y of one target on the platform |
 //! | [`camera`] | a camera at fixed places over a plate of marks |
+//! | [`survey`](mod@survey) | a whole measurement, and its proof |
 
 pub mod camera;
 pub mod interferometer;
 pub mod quasi_static;
+pub mod survey;
 pub mod target;
 pub mod workshop;
 
 pub use quasi_static::{EncoderErrors, QuasiStatic};
+pub use survey::{commanded, survey};
