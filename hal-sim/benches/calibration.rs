@@ -4,8 +4,8 @@
 //! commanded with the fitted numbers, and the true poses compared with what was asked for, frames and scale taken out. `MACHINES=50`
 //! is the form that is published; without it there are 5. `ONLY=xyt` keeps the rows whose names contain that.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use calibration::frames::{Size, without_frames};
@@ -30,13 +30,7 @@ struct Row {
     visits: usize,
 }
 
-const fn row(
-    kit: Kit,
-    is_planned: bool,
-    noise_nm: f64,
-    noise_urad: f64,
-    visits: usize,
-) -> Row {
+const fn row(kit: Kit, is_planned: bool, noise_nm: f64, noise_urad: f64, visits: usize) -> Row {
     Row {
         kit,
         is_planned,

@@ -8,6 +8,7 @@ use calibration::{
     Accuracy, DRAWN, Fit, FitError, Instrument, Kit, Machine, Noise, Seen, Visit, fit, plan,
 };
 use hal_sim::machine::instruments::camera::Camera;
+use hal_sim::machine::instruments::interferometer::Interferometer;
 use hal_sim::machine::instruments::{QuasiStatic, commanded, survey, workshop};
 use hal_sim::machine::plant::{Imperfections, Plant, PlantParameters};
 use hal_sim::random::Random;
@@ -82,7 +83,11 @@ fn x_and_y_of_a_target_measured_200_times() {
 
 #[test]
 fn an_unknown_plate_under_a_camera_at_two_places() {
-    hold(&instrument(Kit::Camera2, 50.0, 0.0), 600, [40.0, 160.0, 0.3]);
+    hold(
+        &instrument(Kit::Camera2, 50.0, 0.0),
+        600,
+        [40.0, 160.0, 0.3],
+    );
 }
 
 /// The plate comes out of it as well: as good as the machine.
@@ -109,7 +114,8 @@ fn the_plate_is_found() {
     // The marks' mean distance from the middle was known to 1 ppm; radii of the machine alone would say 600 ppm.
     let fitted = |mark: usize| &fit.unknowns[instrument.mark_at(mark)..][..2];
     let marks = || instrument.marks.iter().enumerate();
-    let along = marks().map(|(mark, drawn)| drawn[0] * fitted(mark)[0] + drawn[1] * fitted(mark)[1]);
+    let along =
+        marks().map(|(mark, drawn)| drawn[0] * fitted(mark)[0] + drawn[1] * fitted(mark)[1]);
     let square = marks().map(|(_, drawn)| drawn[0] * drawn[0] + drawn[1] * drawn[1]);
     let scale = along.sum::<f64>() / square.sum::<f64>();
     assert!((scale - 1.0).abs() < 3e-6, "{scale}");
@@ -129,7 +135,9 @@ fn sixty_planned_poses_with_fine_instruments() {
 
 #[test]
 fn machines_of_the_workshop_are_as_bad_as_they_should_be() {
-    let sizes: Vec<Size> = (1..=20).map(|seed| size(&workshop::machine(seed), &DRAWN)).collect();
+    let sizes: Vec<Size> = (1..=20)
+        .map(|seed| size(&workshop::machine(seed), &DRAWN))
+        .collect();
     let mean = |value: &dyn Fn(&Size) -> f64| {
         (sizes.iter().map(|size| value(size).powi(2)).sum::<f64>() / sizes.len() as f64).sqrt()
     };
@@ -182,6 +190,30 @@ fn spoil(visit: &mut Visit, off_nm: f64) {
     }
 }
 
+/// An interferometer that stands turned by a quarter, with its target 40 mm beside the middle.
+#[test]
+fn an_instrument_may_stand_anywhere() {
+    let instrument = instrument(Kit::Xyt, 50.0, 1.0);
+    let truth = workshop::machine(5);
+    let random = &mut Random::new(5);
+    let mut beams = Interferometer::set_up(instrument.noise, random);
+    beams.axes = [0.3, -0.2, 1.6];
+    beams.target = [0.02, -0.04, -2.9];
+    let visits: Vec<Visit> = (stops(&instrument, 200).iter())
+        .map(
+            |&Stop {
+                 pose: [x, y, theta],
+                 ..
+             }| {
+                let pose = [x * RADIUS_M, y * RADIUS_M, theta];
+                beams.visit(&truth, pose, random).expect("inside the disk")
+            },
+        )
+        .collect();
+    let size = size(&truth, &fit(&instrument, &visits).expect("a fit").machine);
+    assert!(size.place_rms * NM < 50.0, "{}", size.place_rms * NM);
+}
+
 /// Somebody knocked against the table now and then: those visits are found, all of them and no others, and do no harm.
 #[test]
 fn outliers_are_found_and_left_out() {
@@ -213,7 +245,14 @@ fn what_cannot_be_fitted_is_refused() {
     }
     let error = fit(&instrument, &spoiled).expect_err("too many");
     assert!(
-        matches!(error, FitError::TooManyOutliers { outliers: 10, visits: 200, .. }),
+        matches!(
+            error,
+            FitError::TooManyOutliers {
+                outliers: 10,
+                visits: 200,
+                ..
+            }
+        ),
         "{error}"
     );
     // Encoders 1 and 2 are plugged in the wrong way round.

@@ -37,7 +37,9 @@ impl Accuracy {
             let by_numbers = position(machine, &readings_rad).ok()?.by_numbers;
             for (column, size) in (0..MACHINE_NUMBERS).zip(sizes) {
                 let by = by_numbers.column(column) * *size;
-                by_unknowns.fixed_view_mut::<3, 1>(at, column).copy_from(&by);
+                by_unknowns
+                    .fixed_view_mut::<3, 1>(at, column)
+                    .copy_from(&by);
             }
         }
         take_out(&mut by_unknowns, &poses);

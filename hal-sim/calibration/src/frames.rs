@@ -104,7 +104,9 @@ fn moved(frames: &SVector<f64, 6>, pair: &Pair) -> Vector2<f64> {
 pub fn take_out(errors: &mut DMatrix<f64>, poses: &[[f64; 3]]) {
     let mut basis = DMatrix::zeros(errors.nrows(), 7);
     for (pose, at) in poses.iter().zip((0..).step_by(3)) {
-        basis.fixed_view_mut::<2, 6>(at, 0).copy_from(&by_frames(pose));
+        basis
+            .fixed_view_mut::<2, 6>(at, 0)
+            .copy_from(&by_frames(pose));
         basis[(at + 2, 6)] = 1.0;
     }
     let directions = basis.qr().q();

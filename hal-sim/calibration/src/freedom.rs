@@ -125,10 +125,7 @@ impl Freedoms {
         let named = (ALL.into_iter())
             .filter(|&freedom| is_among(&null, &signature(freedom, instrument), sizes))
             .collect();
-        Self {
-            count,
-            named,
-        }
+        Self { count, named }
     }
 }
 

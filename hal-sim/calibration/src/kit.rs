@@ -25,13 +25,7 @@ pub enum Kit {
 }
 
 /// All kits.
-pub const KITS: [Kit; 5] = [
-    Kit::Xyt,
-    Kit::Xy,
-    Kit::Theta,
-    Kit::Camera,
-    Kit::Camera2,
-];
+pub const KITS: [Kit; 5] = [Kit::Xyt, Kit::Xy, Kit::Theta, Kit::Camera, Kit::Camera2];
 
 impl Kit {
     /// Its name in files and on the command line.

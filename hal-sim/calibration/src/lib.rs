@@ -13,17 +13,22 @@
 //! | [`position`] | pose to encoder angles and back, by Newton's method on the model |
 //! | [`kit`] | what an instrument measures, and what is unknown about it |
 //! | [`visit`] | one measured pose, and what the model says of it |
+//! | [`alignment`] | where the instrument stands, roughly |
 //! | [`least_squares`] | rows to an orthogonal factor, and what that says of uncertainty |
-//! | [`mod@fit`] | Gauss-Newton: robust, with some visits held out |
+//! | [`mod@fit`] | the fit: robust, with some visits held out |
+//! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
 //! | [`frames`] | errors of poses without what only the choice of frames and of scale makes |
 //! | [`accuracy`] | what is left of the machine's errors after a fit, before anything is measured |
 //! | [`freedom`] | what an instrument cannot tell |
 //! | [`plan`] | poses to measure at, chosen one by one for what they add |
 //! | [`spread`] | poses spread evenly over the disk and all orientations |
+//! | [`table`] | measured visits as rows of a text file |
 //! | [`file`](mod@file) | a fitted machine as a text file |
 
 pub mod accuracy;
-//pub mod file;
+pub mod alignment;
+mod descent;
+pub mod file;
 pub mod fit;
 pub mod frames;
 pub mod freedom;
@@ -33,7 +38,9 @@ pub mod model;
 pub mod numbers;
 pub mod plan;
 pub mod position;
+mod residuals;
 pub mod spread;
+pub mod table;
 pub mod visit;
 
 pub use accuracy::Accuracy;

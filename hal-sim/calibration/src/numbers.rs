@@ -35,7 +35,15 @@ pub fn to_list(pivot: &PivotCoefficients) -> [f64; COEFFICIENTS] {
 #[must_use]
 pub fn from_list(list: &[f64; COEFFICIENTS]) -> PivotCoefficients {
     let mut pivot = PivotCoefficients::IDEAL;
-    let [zero_rad, radius_error, x, y, guide_error_rad, guide_offset, curves @ ..] = list;
+    let [
+        zero_rad,
+        radius_error,
+        x,
+        y,
+        guide_error_rad,
+        guide_offset,
+        curves @ ..,
+    ] = list;
     pivot.encoder_zero_rad = *zero_rad;
     pivot.radius_error = *radius_error;
     pivot.ring_centre = [*x, *y];

@@ -6,15 +6,15 @@
 
 use nalgebra::{DMatrix, Matrix3};
 
+use crate::DRAWN;
 use crate::accuracy::{Accuracy, DISK};
-use crate::fit::{put_rows, put_scale};
+use crate::descent::{put_rows, put_scale};
 use crate::freedom::Freedoms;
 use crate::kit::{Instrument, Kit};
 use crate::least_squares::{Factor, Problem};
 use crate::position::readings_rad;
 use crate::spread::{in_cube, over_disk};
 use crate::visit::{Rows, Seen, Visit};
-use crate::DRAWN;
 
 /// Candidates, but at least twice as many as are chosen.
 const CANDIDATES: usize = 700;
@@ -149,11 +149,12 @@ fn choose(candidates: &[&Rows], sizes: &[f64], count: usize) -> Vec<usize> {
     let mut is_free = vec![true; candidates.len()];
     while chosen.len() < count {
         let free = (0..candidates.len()).filter(|&at| is_free[at]);
-        let best = free.max_by(|&a, &b| {
-            f64::total_cmp(&gains[a].determinant(), &gains[b].determinant())
-        });
+        let best =
+            free.max_by(|&a, &b| f64::total_cmp(&gains[a].determinant(), &gains[b].determinant()));
         let Some(best) = best else { break };
-        let Some(inverse) = gains[best].try_inverse() else { break };
+        let Some(inverse) = gains[best].try_inverse() else {
+            break;
+        };
         is_free[best] = false;
         chosen.push(best);
         let taken = weighed.fixed_columns::<3>(3 * best).into_owned();
@@ -166,4 +167,3 @@ fn choose(candidates: &[&Rows], sizes: &[f64], count: usize) -> Vec<usize> {
     }
     chosen
 }
-

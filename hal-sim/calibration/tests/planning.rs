@@ -80,7 +80,10 @@ fn only_frames_and_scale_are_taken_out_of_errors() {
     };
     let poses = || over_disk(0.8).take(500);
     let size = without_frames(&poses().map(|pose| pair(pose, 0.0)).collect::<Vec<_>>()).size();
-    assert!(size.place_max < 1e-12 && size.turn_rms_rad < 1e-12, "{size:?}");
+    assert!(
+        size.place_max < 1e-12 && size.turn_rms_rad < 1e-12,
+        "{size:?}"
+    );
     // An error that goes once around with four times theta is none of them.
     let size = without_frames(
         &poses()

@@ -38,7 +38,10 @@ impl Camera {
         let cameras_m = near(&instrument.cameras, 0.5e-3);
         let mut marks_m = near(&instrument.marks, 0.1e-3);
         let drawn = || instrument.marks.iter().map(|&mark| Vector2::from(mark));
-        let along: f64 = drawn().zip(&marks_m).map(|(drawn, mark)| drawn.dot(mark)).sum();
+        let along: f64 = drawn()
+            .zip(&marks_m)
+            .map(|(drawn, mark)| drawn.dot(mark))
+            .sum();
         let square: f64 = drawn().map(|drawn| drawn.norm_squared()).sum();
         for mark in &mut marks_m {
             *mark *= square * track_radius_m / along;

@@ -22,8 +22,7 @@ impl Interferometer {
     /// Set up by hand: some tenths of a mm, some mrad.
     #[must_use]
     pub fn set_up(noise: Noise, random: &mut Random) -> Self {
-        let mut by_hand =
-            || [3e-4, 3e-4, 3e-3].map(|size: f64| size * random.normal());
+        let mut by_hand = || [3e-4, 3e-4, 3e-3].map(|size: f64| size * random.normal());
         Self {
             axes: by_hand(),
             target: by_hand(),

@@ -9,6 +9,7 @@
 //! | `stage`, `machine`, `simulate`, `serve` | the simulated stage: its options, its numbers, a run, in real time |
 //! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
+//! | `calibrate` | what a built machine is off its drawing |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
 //! | `rows`, `units`, `json` | numbers in and out |
 //! | `pages` | completions and man pages |
@@ -16,6 +17,7 @@
 
 mod arguments;
 mod board;
+mod calibrate;
 mod check;
 mod direct;
 mod error;
@@ -85,6 +87,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Machine(arguments)) => machine::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Settings(command)) => settings::run(&command),
+        Some(Command::Calibrate(command)) => calibrate::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),
