@@ -90,6 +90,20 @@ fn an_unknown_plate_under_a_camera_at_two_places() {
     );
 }
 
+/// No instrument at all: pivots against the ends of their guides, which stop them to 2 um. Encoders alone bring 84 um and 660 urad down
+/// to some um; much of what is left is held by tolerances alone, and differs from machine to machine.
+#[test]
+fn ends_of_guides_touched_200_times() {
+    let instrument = instrument(Kit::Ends, 2000.0, 0.0);
+    let stops = stops(&instrument, 200);
+    for seed in 1..=3 {
+        let (fit, size, _) = measured(&instrument, &stops, seed);
+        assert!(size.place_rms * NM < 6000.0, "seed {seed}: {size:?}");
+        assert!(size.turn_rms_rad * 1e6 < 60.0, "seed {seed}: {size:?}");
+        assert!(fit.outliers.is_empty(), "seed {seed}: {:?}", fit.outliers);
+    }
+}
+
 /// The plate comes out of it as well: as good as the machine.
 #[test]
 fn the_plate_is_found() {

@@ -31,7 +31,7 @@ pub fn aligned(instrument: &Instrument, visits: &[Visit]) -> Instrument {
             Seen::Pose([x, y, theta]) => (Some([x, y]), Some(theta)),
             Seen::Place(place) => (Some(place), None),
             Seen::Turn(theta) => (None, Some(theta)),
-            Seen::Mark { .. } => (None, None),
+            Seen::Mark { .. } | Seen::End { .. } => (None, None),
         };
         if let Some([x, y]) = place {
             let (sin, cos) = drawn.theta.sin_cos();

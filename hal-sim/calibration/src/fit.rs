@@ -168,17 +168,22 @@ fn check(instrument: &Instrument, visits: &[Visit]) -> Result<(), FitError> {
             let reason = "a value is not finite";
             return Err(FitError::Visit { visit, reason });
         }
-        if let Seen::Mark { mark, camera, .. } = *seen {
-            if mark >= instrument.marks.len() {
-                let reason = "the plate has no such mark";
-                return Err(FitError::Visit { visit, reason });
+        let reason = match *seen {
+            Seen::Mark { mark, .. } if mark >= instrument.marks.len() => {
+                Some("the plate has no such mark")
             }
-            if camera >= instrument.cameras.len() {
-                let reason = "the camera has no such place";
-                return Err(FitError::Visit { visit, reason });
+            Seen::Mark { camera, .. } if camera >= instrument.cameras.len() => {
+                Some("the camera has no such place")
             }
-        } else if !instrument.cameras.is_empty() {
-            let reason = "a camera sees marks";
+            Seen::End { end } if end >= instrument.ends.len() => {
+                Some("the guides have no such end")
+            }
+            Seen::Mark { .. } | Seen::End { .. } => None,
+            _ if !instrument.cameras.is_empty() => Some("a camera sees marks"),
+            _ if !instrument.ends.is_empty() => Some("ends are touched, and nothing is read"),
+            _ => None,
+        };
+        if let Some(reason) = reason {
             return Err(FitError::Visit { visit, reason });
         }
     }

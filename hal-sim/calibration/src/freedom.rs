@@ -13,10 +13,11 @@ use crate::model::GUIDES_RAD;
 use crate::{MACHINE_NUMBERS, visit::Rows};
 use kinematics::COEFFICIENTS;
 
-/// A singular value so small, over the largest, is 0 but for rounding: on real directions it is 1e-6 and more.
-const ZERO: f64 = 1e-9;
+/// A singular value so small, over the largest, is 0 but for rounding, which leaves 1e-16; the weakest real direction, of ends of guides,
+/// has 2e-11.
+const ZERO: f64 = 1e-13;
 /// A freedom has a name where it is that direction but for this share.
-const NAMED: f64 = 1e-3;
+const NAMED: f64 = 1e-2;
 /// Less than this share of a direction is rounding.
 const PRESENT: f64 = 1e-6;
 

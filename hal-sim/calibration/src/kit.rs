@@ -22,10 +22,19 @@ pub enum Kit {
     Camera,
     /// The same camera at two places, one after the other.
     Camera2,
+    /// No instrument: pivots driven against the ends of their guides.
+    Ends,
 }
 
 /// All kits.
-pub const KITS: [Kit; 5] = [Kit::Xyt, Kit::Xy, Kit::Theta, Kit::Camera, Kit::Camera2];
+pub const KITS: [Kit; 6] = [
+    Kit::Xyt,
+    Kit::Xy,
+    Kit::Theta,
+    Kit::Camera,
+    Kit::Camera2,
+    Kit::Ends,
+];
 
 impl Kit {
     /// Its name in files and on the command line.
@@ -37,6 +46,7 @@ impl Kit {
             Self::Theta => "theta",
             Self::Camera => "camera",
             Self::Camera2 => "camera2",
+            Self::Ends => "ends",
         }
     }
 }
@@ -49,7 +59,7 @@ impl fmt::Display for Kit {
 
 /// There is no such kit.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("'{0}' is no kit: there are xyt, xy, theta, camera, camera2")]
+#[error("'{0}' is no kit: there are xyt, xy, theta, camera, camera2, ends")]
 pub struct UnknownKit(pub String);
 
 impl FromStr for Kit {
@@ -100,6 +110,8 @@ pub struct Instrument {
     pub marks: Vec<[f64; 2]>,
     /// Places of the camera in the base frame.
     pub cameras: Vec<[f64; 2]>,
+    /// Ends of guides that pivots can touch: which guide, from 0, and where on it.
+    pub ends: Vec<(usize, f64)>,
     /// How well the mean distance of the marks is known, as a share of it: it alone gives cameras their scale.
     pub scale: f64,
 }
@@ -109,6 +121,9 @@ const ALIGNMENT: f64 = 0.05;
 const CAMERA: f64 = 0.01;
 /// How well marks are placed, and the plate on the platform: 0.1 mm.
 const MARK: f64 = 1e-3;
+/// Where guides end, and how well they do: 0.5 mm.
+const ENDS: [f64; 2] = [0.16, 1.84];
+const END: f64 = 5e-3;
 /// How well a length is known, unless it is said.
 const SCALE: f64 = 1e-6;
 /// Pitch of the marks and radius of the plate, and places of the camera: both away from the track's centre, 90 mm apart.
@@ -122,6 +137,7 @@ impl Instrument {
     #[must_use]
     pub fn new(kit: Kit, noise: Noise) -> Self {
         let (mut alignment, mut marks, mut cameras) = ([0.0; 6], Vec::new(), Vec::new());
+        let mut ends = Vec::new();
         match kit {
             Kit::Xyt | Kit::Theta => {}
             Kit::Xy => [alignment[3], alignment[4]] = TARGET,
@@ -130,6 +146,10 @@ impl Instrument {
                 let places = if kit == Kit::Camera { 1 } else { 2 };
                 cameras.extend(&CAMERAS[..places]);
             }
+            Kit::Ends => {
+                let of_guide = |guide: usize| ENDS.map(|place| (guide, place));
+                ends.extend((0..3).flat_map(of_guide));
+            }
         }
         Self {
             kit,
@@ -137,6 +157,7 @@ impl Instrument {
             alignment,
             marks,
             cameras,
+            ends,
             scale: SCALE,
         }
     }
@@ -144,6 +165,9 @@ impl Instrument {
     /// What is unknown about the instrument as it is guessed: places of cameras and marks, or the alignment.
     #[must_use]
     pub fn guess(&self) -> Vec<f64> {
+        if !self.ends.is_empty() {
+            return self.ends.iter().map(|&(_, place)| place).collect();
+        }
         if self.cameras.is_empty() {
             return self.alignment.to_vec();
         }
@@ -163,11 +187,22 @@ impl Instrument {
         2 * (self.cameras.len() + mark)
     }
 
+    /// Where the number of an end stands in that list.
+    #[must_use]
+    pub const fn end_at(&self, end: usize) -> usize {
+        end
+    }
+
+    /// The guide of an end.
+    #[must_use]
+    pub fn guide_of(&self, end: usize) -> usize {
+        self.ends.get(end).map_or(0, |&(guide, _)| guide)
+    }
+
     /// All unknowns: the machine's and the instrument's.
     #[must_use]
     pub fn unknowns(&self) -> usize {
-        let instrument = 2 * (self.cameras.len() + self.marks.len());
-        MACHINE_NUMBERS + if instrument == 0 { 6 } else { instrument }
+        MACHINE_NUMBERS + self.guess().len()
     }
 
     /// What each unknown may be off its guess, one standard deviation.
@@ -176,6 +211,7 @@ impl Instrument {
         let machine = (0..MACHINE_NUMBERS).map(|n| numbers::size(n % kinematics::COEFFICIENTS));
         let cameras = 2 * self.cameras.len();
         let instrument = (MACHINE_NUMBERS..self.unknowns()).map(|n| match n - MACHINE_NUMBERS {
+            _ if !self.ends.is_empty() => END,
             _ if cameras == 0 => ALIGNMENT,
             n if n < cameras => CAMERA,
             _ => MARK,

@@ -15,7 +15,7 @@ use core::f64::consts::FRAC_PI_6;
 use kinematics::{COEFFICIENTS, PivotCoefficients};
 use nalgebra::Vector2;
 
-use crate::numbers::{ENCODER, RUNOUT, STRAIGHTNESS};
+use crate::numbers::{ENCODER, GUIDE_ERROR, GUIDE_OFFSET, RUNOUT, STRAIGHTNESS};
 
 /// Directions of the guides in the platform, rad.
 pub const GUIDES_RAD: [f64; 3] = [-FRAC_PI_6, 3.0 * FRAC_PI_6, 7.0 * FRAC_PI_6];
@@ -73,6 +73,26 @@ impl Ring {
         ring
     }
 
+    /// Derivatives of the pivot's place in a direction by its numbers at a given reading; the guide's are 0.
+    fn by_numbers(&self, direction: Vector2<f64>) -> [f64; COEFFICIENTS] {
+        let mut by = [0.0; COEFFICIENTS];
+        let [cos, sin] = self.waves[0];
+        let by_radius = direction.x * cos + direction.y * sin;
+        let by_zero = -direction.dot(&self.by_angle) / (1.0 + self.encoder_slope);
+        let ring = [by_zero, by_radius, direction.x, direction.y];
+        for (place, value) in by.iter_mut().zip(ring) {
+            *place = value;
+        }
+        let waves = self.waves.as_flattened();
+        for (place, wave) in by[ENCODER..RUNOUT].iter_mut().zip(waves) {
+            *place = by_zero * wave;
+        }
+        for (place, wave) in by[RUNOUT..STRAIGHTNESS].iter_mut().zip(&waves[2..]) {
+            *place = by_radius * wave;
+        }
+        by
+    }
+
     /// What its encoder reads, rad.
     #[must_use]
     pub fn reading_rad(&self, pivot: &PivotCoefficients) -> f64 {
@@ -87,6 +107,9 @@ pub struct Contact {
     pub gap: f64,
     /// rho: the place on the guide.
     pub rho: f64,
+    /// u, and the pivot's distance to the left of the platform's centre.
+    along: Vector2<f64>,
+    side: f64,
     across: Vector2<f64>,
     by_turn: f64,
     polynomials: [f64; 8],
@@ -108,6 +131,8 @@ impl Contact {
         Self {
             gap: side - pivot.guide_offset - straightness,
             rho,
+            along: u,
+            side,
             across: n - slope * u,
             by_turn: -rho - slope * side,
             polynomials,
@@ -135,31 +160,26 @@ impl Contact {
     /// Derivatives of the gap by the pivot's numbers at a given reading, in the order of [`crate::numbers`].
     #[must_use]
     pub fn by_numbers(&self, ring: &Ring) -> [f64; COEFFICIENTS] {
-        let mut by = [0.0; COEFFICIENTS];
-        let [cos, sin] = ring.waves[0];
-        let by_radius = self.across.x * cos + self.across.y * sin;
-        let by_zero = -self.by_reading(ring);
-        let lines = [
-            by_zero,
-            by_radius,
-            self.across.x,
-            self.across.y,
-            self.by_turn,
-            -1.0,
-        ];
-        for (place, value) in by.iter_mut().zip(lines) {
-            *place = value;
-        }
-        let waves = ring.waves.as_flattened();
-        for (place, wave) in by[ENCODER..RUNOUT].iter_mut().zip(waves) {
-            *place = by_zero * wave;
-        }
-        for (place, wave) in by[RUNOUT..STRAIGHTNESS].iter_mut().zip(&waves[2..]) {
-            *place = by_radius * wave;
-        }
+        let mut by = ring.by_numbers(self.across);
+        by[GUIDE_ERROR] = self.by_turn;
+        by[GUIDE_OFFSET] = -1.0;
         for (place, polynomial) in by[STRAIGHTNESS..].iter_mut().zip(self.polynomials) {
             *place = -polynomial;
         }
+        by
+    }
+
+    /// Derivatives of rho by x, y and theta.
+    #[must_use]
+    pub fn rho_by_pose(&self) -> [f64; 3] {
+        [-self.along.x, -self.along.y, self.side]
+    }
+
+    /// Derivatives of rho by the pivot's numbers at a given reading and pose.
+    #[must_use]
+    pub fn rho_by_numbers(&self, ring: &Ring) -> [f64; COEFFICIENTS] {
+        let mut by = ring.by_numbers(self.along);
+        by[GUIDE_ERROR] = self.side;
         by
     }
 }

@@ -2,6 +2,10 @@
 
 use kinematics::{COEFFICIENTS, PivotCoefficients};
 
+/// Place of e in the list.
+pub const GUIDE_ERROR: usize = 4;
+/// Place of d0.
+pub const GUIDE_OFFSET: usize = 5;
 /// First of the encoder's numbers in the list; before it stand z, dR, a, e, d0.
 pub const ENCODER: usize = 6;
 /// First of the run-out's numbers.

@@ -4,6 +4,9 @@
 //! With the covariance S of the unknowns and the rows J of a candidate, over the noise, that is the largest `det(1 + J S J^T)`; after it
 //! `S -= S J^T (1 + J S J^T)^-1 J S`. S itself is never made: `J S` is kept for every candidate.
 
+use core::f64::consts::TAU;
+
+use kinematics::{Pose, inverse};
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::DRAWN;
@@ -12,6 +15,7 @@ use crate::descent::{put_rows, put_scale};
 use crate::freedom::Freedoms;
 use crate::kit::{Instrument, Kit};
 use crate::least_squares::{Factor, Problem};
+use crate::model::GUIDES_RAD;
 use crate::position::readings_rad;
 use crate::spread::{in_cube, over_disk};
 use crate::visit::{Rows, Seen, Visit};
@@ -19,13 +23,39 @@ use crate::visit::{Rows, Seen, Visit};
 /// Candidates, but at least twice as many as are chosen.
 const CANDIDATES: usize = 700;
 
+/// What is to be done at a pose.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum At {
+    /// Read the instrument there.
+    Pose,
+    /// Bring a mark under a place of the camera.
+    Mark {
+        /// Which mark, from 0.
+        mark: usize,
+        /// Which place of the camera, from 0.
+        camera: usize,
+    },
+    /// Drive a pivot against an end of its guide.
+    End {
+        /// Which of the instrument's ends, from 0.
+        end: usize,
+    },
+}
+
+/// Guides end outside the disk: there carriages are still 20.7 deg apart.
+const TOUCHING_DISK: f64 = 0.88;
+/// So far the other guides keep from their ends, track radii.
+const CLEAR_OF_ENDS: core::ops::Range<f64> = 0.18..1.82;
+/// Beyond this angle between pivot and guide no end is inside that disk.
+const MOST_LEAN_RAD: f64 = 0.2;
+
 /// One pose to go to.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Stop {
     /// x, y (track radii), theta (rad).
     pub pose: [f64; 3],
-    /// The mark, and the camera's place that it is to be under; for cameras.
-    pub under: Option<(usize, usize)>,
+    /// What is to be done there.
+    pub at: At,
 }
 
 /// What to measure, and what will come out.
@@ -62,49 +92,76 @@ pub fn plan(instrument: &Instrument, poses: usize) -> Option<Plan> {
     })
 }
 
-/// Poses all over the disk, for cameras such as bring a mark under it.
+/// Poses all over the disk, for cameras such as bring a mark under it, for ends such as touch one.
 #[must_use]
 pub fn stops(instrument: &Instrument, count: usize) -> Vec<Stop> {
-    if !matches!(instrument.kit, Kit::Camera | Kit::Camera2) {
-        let poses = over_disk(DISK).take(count);
-        return poses.map(|pose| Stop { pose, under: None }).collect();
-    }
-    let (marks, cameras) = (&instrument.marks, &instrument.cameras);
-    let pick = |share: f64, count: usize| ((share * count as f64) as usize).min(count - 1);
     // Half of all marks and orientations bring the platform out of the disk: so many tries are plenty.
-    (0..20 * count)
-        .map(|index| {
-            let [mark, camera, turn] = in_cube(index);
-            let (mark, camera) = (pick(mark, marks.len()), pick(camera, cameras.len()));
-            let theta = (turn - 0.5) * core::f64::consts::TAU;
-            let (sin, cos) = theta.sin_cos();
-            let ([x, y], [camera_x, camera_y]) = (marks[mark], cameras[camera]);
-            let pose = [
-                camera_x - (cos * x - sin * y),
-                camera_y - (sin * x + cos * y),
-                theta,
-            ];
-            Stop {
-                pose,
-                under: Some((mark, camera)),
-            }
-        })
-        .filter(|stop| stop.pose[0].hypot(stop.pose[1]) < DISK)
-        .take(count)
-        .collect()
+    let tries = (0..20 * count).map(in_cube);
+    match instrument.kit {
+        Kit::Xyt | Kit::Xy | Kit::Theta => (over_disk(DISK).take(count))
+            .map(|pose| Stop { pose, at: At::Pose })
+            .collect(),
+        Kit::Camera | Kit::Camera2 => (tries.filter_map(|share| under_camera(instrument, share)))
+            .take(count)
+            .collect(),
+        Kit::Ends => (tries.filter_map(|share| against_end(instrument, share)))
+            .take(count)
+            .collect(),
+    }
+}
+
+/// A share of a list's length as a place in it.
+fn pick(share: f64, count: usize) -> usize {
+    ((share * count as f64) as usize).min(count.saturating_sub(1))
+}
+
+/// A mark under a place of the camera, inside the disk.
+fn under_camera(instrument: &Instrument, [mark, camera, turn]: [f64; 3]) -> Option<Stop> {
+    let mark = pick(mark, instrument.marks.len());
+    let camera = pick(camera, instrument.cameras.len());
+    let theta = (turn - 0.5) * TAU;
+    let (sin, cos) = theta.sin_cos();
+    let [x, y] = *instrument.marks.get(mark)?;
+    let [camera_x, camera_y] = *instrument.cameras.get(camera)?;
+    let pose = [
+        camera_x - (cos * x - sin * y),
+        camera_y - (sin * x + cos * y),
+        theta,
+    ];
+    let at = At::Mark { mark, camera };
+    (pose[0].hypot(pose[1]) < DISK).then_some(Stop { pose, at })
+}
+
+/// A pivot at an end of its guide and the others not: with the pivot's angle to its guide, `C = P - rho u`.
+fn against_end(instrument: &Instrument, [end, lean, turn]: [f64; 3]) -> Option<Stop> {
+    let end = pick(end, instrument.ends.len());
+    let &(guide, rho) = instrument.ends.get(end)?;
+    let theta = (turn - 0.5) * TAU;
+    let (sin, cos) = (theta + GUIDES_RAD.get(guide)?).sin_cos();
+    let (ring_sin, ring_cos) =
+        (theta + GUIDES_RAD[guide] + (2.0 * lean - 1.0) * MOST_LEAN_RAD).sin_cos();
+    let pose = [ring_cos - rho * cos, ring_sin - rho * sin, theta];
+    let [x, y, _] = pose;
+    let drawn = inverse::<f64>(&Pose { x, y, theta }).ok()?;
+    let others = drawn.guides.iter().enumerate();
+    let is_clear = (others.filter(|&(other, _)| other != guide))
+        .all(|(_, other)| CLEAR_OF_ENDS.contains(&other.rho()));
+    let at = At::End { end };
+    (x.hypot(y) < TOUCHING_DISK && is_clear).then_some(Stop { pose, at })
 }
 
 /// Rows of a stop on the machine as drawn.
 fn rows(instrument: &Instrument, stop: &Stop) -> Option<Rows> {
-    let seen = match (stop.under, instrument.kit) {
-        (Some((mark, camera)), _) => Seen::Mark {
+    let seen = match (stop.at, instrument.kit) {
+        (At::Mark { mark, camera }, _) => Seen::Mark {
             mark,
             camera,
             off: [0.0; 2],
         },
-        (None, Kit::Xy) => Seen::Place([0.0; 2]),
-        (None, Kit::Theta) => Seen::Turn(0.0),
-        (None, _) => Seen::Pose(stop.pose),
+        (At::End { end }, _) => Seen::End { end },
+        (At::Pose, Kit::Xy) => Seen::Place([0.0; 2]),
+        (At::Pose, Kit::Theta) => Seen::Turn(0.0),
+        (At::Pose, _) => Seen::Pose(stop.pose),
     };
     let visit = Visit {
         readings_rad: readings_rad(&DRAWN, &stop.pose).ok()?,

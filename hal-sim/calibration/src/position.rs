@@ -29,6 +29,10 @@ pub struct Position {
     pub by_numbers: SMatrix<f64, 3, MACHINE_NUMBERS>,
     /// Derivatives by the encoder angles.
     pub by_readings: Matrix3<f64>,
+    /// The rings, and the pivots against their guides.
+    pub rings: [Ring; 3],
+    /// See `rings`.
+    pub contacts: [Contact; 3],
 }
 
 /// Encoder angles, rad, multi-turn with theta, that bring a machine to a pose.
@@ -90,6 +94,8 @@ pub fn position(machine: &Machine, readings_rad: &[f64; 3]) -> Result<Position, 
         pose,
         by_numbers,
         by_readings,
+        rings,
+        contacts,
     })
 }
 

@@ -6,15 +6,16 @@
 //! | x, y | `m1_deg,m2_deg,m3_deg,x_mm,y_mm` |
 //! | theta | `m1_deg,m2_deg,m3_deg,theta_deg` |
 //! | camera | `m1_deg,m2_deg,m3_deg,mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um` |
+//! | ends of guides | `m1_deg,m2_deg,m3_deg,guide,end_mm` |
 //!
 //! m1 to m3 are the encoders' readings, multi-turn or not. A mark and a place of the camera are known by where they were drawn, in the
-//! platform's and in the base frame: the same numbers are the same mark. `off` is how far the mark was seen from the cross-hair.
+//! platform's and in the base frame: the same numbers are the same mark. An end is known by its guide, 1 to 3, and by where it was drawn on it. `off` is how far the mark was seen from the cross-hair.
 
 use crate::kit::{Instrument, Kit, Noise};
 use crate::visit::{Seen, Visit};
 
 const READINGS: &str = "m1_deg,m2_deg,m3_deg";
-const COLUMNS: [(Kit, &str); 4] = [
+const COLUMNS: [(Kit, &str); 5] = [
     (Kit::Xyt, "x_mm,y_mm,theta_deg"),
     (Kit::Xy, "x_mm,y_mm"),
     (Kit::Theta, "theta_deg"),
@@ -22,6 +23,7 @@ const COLUMNS: [(Kit, &str); 4] = [
         Kit::Camera,
         "mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um",
     ),
+    (Kit::Ends, "guide,end_mm"),
 ];
 const UM_PER_MM: f64 = 1e3;
 
@@ -52,6 +54,14 @@ pub enum TableError {
         /// How many there should be.
         wanted: usize,
     },
+    /// A guide is none of the three.
+    #[error("line {line}: there is no guide {text}")]
+    Guide {
+        /// From 1.
+        line: usize,
+        /// What stands there.
+        text: String,
+    },
     /// A value is no finite number.
     #[error("line {line}: '{text}' is not a number")]
     Number {
@@ -73,6 +83,7 @@ pub struct Table {
     pub lines: Vec<usize>,
     marks: Vec<[f64; 2]>,
     cameras: Vec<[f64; 2]>,
+    ends: Vec<[f64; 2]>,
 }
 
 impl Table {
@@ -96,10 +107,15 @@ impl Table {
             lines: Vec::new(),
             marks: Vec::new(),
             cameras: Vec::new(),
+            ends: Vec::new(),
         };
         let wanted = head.split(',').count();
         for (text, line) in lines {
             let values = numbers(text, line, wanted)?;
+            if kit == Kit::Ends && ![1.0, 2.0, 3.0].contains(&values[3]) {
+                let text = values[3].to_string();
+                return Err(TableError::Guide { line, text });
+            }
             let Some(visit) = table.visit(&values, radius_mm) else {
                 let found = values.len();
                 return Err(TableError::Count {
@@ -123,6 +139,11 @@ impl Table {
         let mut instrument = Instrument::new(self.kit, noise);
         instrument.marks.clone_from(&self.marks);
         instrument.cameras.clone_from(&self.cameras);
+        let ends = self
+            .ends
+            .iter()
+            .map(|&[guide, place]| (guide as usize - 1, place));
+        instrument.ends = ends.collect();
         instrument
     }
 
@@ -138,6 +159,9 @@ impl Table {
                 mark: place_in(&mut self.marks, [radii(mark_x), radii(mark_y)]),
                 camera: place_in(&mut self.cameras, [radii(camera_x), radii(camera_y)]),
                 off: [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)],
+            },
+            (Kit::Ends, &[guide, end]) => Seen::End {
+                end: place_in(&mut self.ends, [guide, radii(end)]),
             },
             _ => return None,
         };
@@ -175,6 +199,14 @@ pub fn to_text(instrument: &Instrument, visits: &[Visit], radius_mm: f64) -> Str
                 let drawn = drawn.into_iter().flatten().flatten();
                 row.extend(drawn.map(|value| value * radius_mm));
                 row.extend(off.map(|value| value * radius_mm * UM_PER_MM));
+            }
+            Seen::End { end } => {
+                let drawn = instrument.ends.get(end);
+                row.extend(
+                    drawn
+                        .into_iter()
+                        .flat_map(|&(guide, place)| [1.0 + guide as f64, place * radius_mm]),
+                );
             }
         }
         let row: Vec<String> = row.iter().map(|value| format!("{value:.12}")).collect();

@@ -1,6 +1,7 @@
 //! One measured pose, and what the model says of it: up to three rows of the least-squares problem.
 
-use nalgebra::{Matrix3, Rotation2, Vector2, Vector3};
+use kinematics::COEFFICIENTS;
+use nalgebra::{Matrix3, Rotation2, SMatrix, Vector2, Vector3};
 
 use crate::kit::Instrument;
 use crate::position::{OutOfReach, Position, position, within_half_turn};
@@ -24,6 +25,11 @@ pub enum Seen {
         /// The mark's place less the camera's.
         off: [f64; 2],
     },
+    /// A pivot at an end of its guide; nothing was measured but that they touch.
+    End {
+        /// Which of the instrument's ends, from 0.
+        end: usize,
+    },
 }
 
 impl Seen {
@@ -34,6 +40,7 @@ impl Seen {
             Self::Pose(values) => values,
             Self::Place(values) | Self::Mark { off: values, .. } => values,
             Self::Turn(value) => core::slice::from_ref(value),
+            Self::End { .. } => &[],
         }
     }
 }
@@ -54,11 +61,10 @@ pub struct Rows {
     pub seen: &'static [usize],
     /// Seen less said, in standard deviations.
     pub misses: Vector3<f64>,
-    /// Derivatives of what is said by the pose, over the noise.
-    by_pose: Matrix3<f64>,
+    /// Derivatives of what is said by the machine's numbers, over the noise.
+    by_machine: SMatrix<f64, 3, MACHINE_NUMBERS>,
     /// Derivatives by the instrument's unknowns, over the noise: which, and by it.
     by_instrument: Vec<(usize, Vector3<f64>)>,
-    position: Position,
 }
 
 impl Rows {
@@ -80,34 +86,48 @@ impl Rows {
                 instrument.mark_at(mark),
                 instrument.camera_at(camera),
             ),
+            Seen::End { end } => at_end(
+                &position,
+                unknowns,
+                instrument.guide_of(end),
+                instrument.end_at(end),
+            ),
             _ => aligned(&position.pose, unknowns),
         };
         let (seen, values): (&[usize], _) = match visit.seen {
             Seen::Pose(values) => (&[0, 1, 2], values),
             Seen::Place([x, y]) | Seen::Mark { off: [x, y], .. } => (&[0, 1], [x, y, said.z]),
             Seen::Turn(theta) => (&[2], [said.x, said.y, theta]),
+            Seen::End { .. } => (&[0], [0.0, said.y, said.z]),
         };
         let mut misses = Vector3::from(values) - said;
         misses.z = within_half_turn(misses.z);
         let noise = Vector3::from(instrument.noise.with_encoders());
         let scaled = |column: Vector3<f64>| column.component_div(&noise);
-        let columns = [0, 1, 2].map(|k| scaled(by_pose[k]));
+        let by_pose = Matrix3::from_columns(&by_pose.map(scaled));
+        let mut by_machine = by_pose * position.by_numbers;
+        if let Seen::End { end } = visit.seen {
+            // The place on a guide changes with its pivot's numbers also where the platform stays.
+            let guide = instrument.guide_of(end);
+            let by_numbers = position.contacts[guide].rho_by_numbers(&position.rings[guide]);
+            for (by, number) in by_numbers.into_iter().zip(guide * COEFFICIENTS..) {
+                by_machine[(0, number)] += by / noise.x;
+            }
+        }
         Ok(Self {
             seen,
             misses: scaled(misses),
-            by_pose: Matrix3::from_columns(&columns),
+            by_machine,
             by_instrument: (by_instrument.into_iter())
                 .map(|(unknown, column)| (unknown, scaled(column)))
                 .collect(),
-            position,
         })
     }
 
     /// Derivatives of what is said, over the noise, by all unknowns times their sizes: calls `put` with column and rows for each
     /// column that is not zero.
     pub fn for_columns(&self, sizes: &[f64], mut put: impl FnMut(usize, Vector3<f64>)) {
-        let by_numbers = self.by_pose * self.position.by_numbers;
-        for (column, rows) in by_numbers.column_iter().enumerate() {
+        for (column, rows) in self.by_machine.column_iter().enumerate() {
             put(column, rows * sizes[column]);
         }
         for &(unknown, rows) in &self.by_instrument {
@@ -170,6 +190,18 @@ fn mark_under_camera(pose: &[f64; 3], unknowns: &[f64], mark: usize, camera: usi
         (mark + 1, column(turn * axis(1))),
     ];
     (column(off), by_pose, by_instrument)
+}
+
+/// The place on a guide less that of its end.
+fn at_end(position: &Position, unknowns: &[f64], guide: usize, end: usize) -> Said {
+    let contact = &position.contacts[guide];
+    let place = unknowns.get(end).copied().unwrap_or(0.0);
+    let first = |value: f64| Vector3::new(value, 0.0, 0.0);
+    (
+        first(contact.rho - place),
+        contact.rho_by_pose().map(first),
+        vec![(end, first(-1.0))],
+    )
 }
 
 /// A quarter turn to the left.

@@ -144,6 +144,7 @@ fn derivatives_of_rows_are_those_of_differences() {
         (Kit::Xy, Seen::Place([0.1, 0.2])),
         (Kit::Theta, Seen::Turn(1.0)),
         (Kit::Camera2, mark),
+        (Kit::Ends, Seen::End { end: 3 }),
     ] {
         let mut instrument = Instrument::new(kit, noise);
         instrument.alignment = [0.1, -0.05, 0.3, 0.2, 0.1, -0.2];
@@ -170,16 +171,26 @@ fn derivatives_of_rows_are_those_of_differences() {
                 assert!(off < CLOSE, "{kit}, unknown {unknown}: {off:e}");
             }
         }
-        // The machine's columns pass through the pose's; one that turns and moves it is enough.
-        let slope = difference(|step| {
-            let mut other = machine;
-            other[0].guide_error_rad += step;
-            let rows = Rows::new(&instrument, &other, &guess, &visit).expect("a pose");
-            rows.misses.into()
-        });
-        for &row in rows.seen {
-            let off = (columns[4][row] + slope[row]).abs();
-            assert!(off < CLOSE, "{kit}, guide error: {off:e}");
+        for pivot in 0..3 {
+            for number in 0..COEFFICIENTS {
+                let slope = difference(|step| {
+                    let mut other = machine;
+                    let mut list = numbers::to_list(&machine[pivot]);
+                    list[number] += step;
+                    other[pivot] = numbers::from_list(&list);
+                    let rows = Rows::new(&instrument, &other, &guess, &visit).expect("a pose");
+                    rows.misses.into()
+                });
+                for &row in rows.seen {
+                    let column = columns[pivot * COEFFICIENTS + number];
+                    let off = (column[row] + slope[row]).abs();
+                    assert!(
+                        off < CLOSE,
+                        "{kit}, {}: {off:e}",
+                        numbers::name(pivot, number)
+                    );
+                }
+            }
         }
     }
 }

@@ -30,7 +30,8 @@ fn freedoms_are_those_of_each_kit() {
         (Kit::Xy, 6, with(&[])),
         (Kit::Theta, 11, choices.clone()),
         (Kit::Camera, 9, plate),
-        (Kit::Camera2, 7, choices),
+        (Kit::Camera2, 7, choices.clone()),
+        (Kit::Ends, 7, choices),
     ] {
         let plan = plan(&Instrument::new(kit, NOISE), 20).expect("finite numbers");
         assert_eq!(plan.freedoms.count, count, "{kit}: {:?}", plan.freedoms);

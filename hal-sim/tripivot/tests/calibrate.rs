@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use calibration::file::Calibration;
 use calibration::frames::without_frames;
-use calibration::plan::Stop;
+use calibration::plan::{At, Stop};
 use calibration::spread::over_disk;
 use calibration::table;
 use calibration::{Instrument, Kit, Noise};
@@ -77,7 +77,7 @@ fn measured(stops: &[Stop]) -> String {
 }
 
 fn spread(count: usize) -> Vec<Stop> {
-    let stop = |pose| Stop { pose, under: None };
+    let stop = |pose| Stop { pose, at: At::Pose };
     over_disk(0.8).take(count).map(stop).collect()
 }
 
@@ -99,7 +99,7 @@ fn a_machine_is_planned_measured_and_fitted() {
     let stops: Vec<Stop> = (rows(&text).into_iter())
         .map(|row| Stop {
             pose: [row[0] / RADIUS_MM, row[1] / RADIUS_MM, row[2].to_radians()],
-            under: None,
+            at: At::Pose,
         })
         .collect();
     assert_eq!(stops.len(), 200);
@@ -233,7 +233,7 @@ fn wrong_files_and_options_are_refused() {
     assert_refused(&tripivot(&folder, &none), 2, "cannot read none.csv: ");
     let plan = |arguments: &[&str]| tripivot(&folder, &[&["plan"][..], arguments].concat());
     let kit = plan(&["--kit", "sextant", "--noise", "1nm", "--poses", "20"]);
-    assert_refused(&kit, 2, "there are xyt, xy, theta, camera, camera2");
+    assert_refused(&kit, 2, "there are xyt, xy, theta, camera, camera2, ends");
     for noise in ["50", "0nm", "50urad", "nm", "NaNnm", "2mm"] {
         let output = plan(&["--kit", "xyt", "--noise", noise, "--poses", "20"]);
         assert_refused(&output, 2, "not a length from 0.1nm to 1mm, such as 50nm");

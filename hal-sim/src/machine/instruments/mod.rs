@@ -10,9 +10,11 @@
 //! | [`interferometer`] | x, y and theta |
 //! | [`target`] | x and y of one target on the platform |
 //! | [`camera`] | a camera at fixed places over a plate of marks |
+//! | [`ends`] | no instrument: ends of guides, touched |
 //! | [`survey`](mod@survey) | a whole measurement, and its proof |
 
 pub mod camera;
+pub mod ends;
 pub mod interferometer;
 pub mod quasi_static;
 pub mod survey;

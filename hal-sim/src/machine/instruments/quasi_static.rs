@@ -70,6 +70,21 @@ impl QuasiStatic {
         Ok([0, 1, 2].map(|i| rings_rad[i] + self.encoders[i].at(rings_rad[i]).0))
     }
 
+    /// Place of a pivot on its guide at a pose (m, m, rad), m, and its derivatives by the pose.
+    ///
+    /// # Errors
+    /// [`OffGuide`]: a pivot does not reach its guide.
+    pub fn place_on_guide(
+        &self,
+        guide: usize,
+        pose: [f64; 3],
+    ) -> Result<(f64, [f64; 3]), OffGuide> {
+        let pose = Vector3::from(pose);
+        let rings_rad = self.geometry.rings_rad(&pose)?;
+        let state = &self.geometry.guides(&pose, &rings_rad)[guide];
+        Ok((state.rho_m, state.rho_by_pose().into()))
+    }
+
     /// The pose (m, m, rad) that the machine takes where its encoders read this, rad.
     ///
     /// # Errors

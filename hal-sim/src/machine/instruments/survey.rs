@@ -1,18 +1,19 @@
 //! A whole measurement, and its proof: visits at the stops of a plan, and where the machine goes when fitted numbers command it.
 
 use calibration::frames::Pair;
-use calibration::plan::Stop;
+use calibration::plan::{At, Stop};
 use calibration::position::readings_rad;
 use calibration::{Instrument, Kit, Machine, Seen, Visit};
 
 use super::camera::Camera;
+use super::ends::Ends;
 use super::interferometer::Interferometer;
 use super::quasi_static::QuasiStatic;
 use super::target::Target;
 use crate::machine::plant::OffGuide;
 use crate::random::Random;
 
-/// Visits of a machine, with an instrument that somebody has set up by hand.
+/// Visits of a machine, with an instrument that somebody has set up by hand. Stops that are none of its own are passed over.
 ///
 /// # Errors
 /// [`OffGuide`]: the machine cannot be at a stop.
@@ -48,10 +49,26 @@ pub fn survey(
         Kit::Camera | Kit::Camera2 => {
             let camera = Camera::set_up(instrument, radius_m, random);
             let visit = |stop: &Stop| {
-                let under = stop.under.unwrap_or_default();
-                camera.visit(machine, under, stop.pose[2], random)
+                let At::Mark {
+                    mark,
+                    camera: place,
+                } = stop.at
+                else {
+                    return None;
+                };
+                Some(camera.visit(machine, (mark, place), stop.pose[2], random))
             };
-            stops.iter().map(visit).collect()
+            stops.iter().filter_map(visit).collect()
+        }
+        Kit::Ends => {
+            let ends = Ends::set_up(instrument, radius_m, random);
+            let visit = |stop: &Stop| {
+                let At::End { end } = stop.at else {
+                    return None;
+                };
+                Some(ends.visit(machine, end, in_m(stop.pose), random))
+            };
+            stops.iter().filter_map(visit).collect()
         }
     }
 }

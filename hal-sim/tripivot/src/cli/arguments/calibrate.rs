@@ -19,7 +19,7 @@ pub(in super::super) enum CalibrateCommand {
 /// The instrument's noise.
 #[derive(Args, Clone, Copy, Debug)]
 pub(in super::super) struct NoiseArguments {
-    /// Standard deviation of one measurement of x or y, such as 50nm or 0.5um.
+    /// Standard deviation of one measurement of x or y, or of where a pivot stops at an end, such as 50nm or 2um.
     #[arg(long, value_name = "LENGTH", value_parser = length_m)]
     pub(in super::super) noise: f64,
     /// Standard deviation of one measurement of theta, such as 1urad [default: that of lengths over a base of 50 mm].
@@ -31,7 +31,7 @@ pub(in super::super) struct NoiseArguments {
 #[derive(Args, Clone, Debug)]
 pub(in super::super) struct CalibratePlan {
     /// The instrument: xyt (x, y and theta), xy (x and y of one target), theta, camera (over a plate of unknown marks), camera2 (the
-    /// same at two places).
+    /// same at two places), ends (none: pivots are driven against the ends of their guides).
     #[arg(long)]
     pub(in super::super) kit: Kit,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub(in super::super) struct CalibratePlan {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
     pub(in super::super) poses: usize,
     /// Write the poses into this file, as CSV, the most telling first: x_mm, y_mm, theta_deg; for cameras the mark in the platform frame
-    /// and the camera in the base frame besides.
+    /// and the camera in the base frame besides, for ends the guide and where on it the end is.
     #[arg(long, value_name = "FILE")]
     pub(in super::super) out: Option<PathBuf>,
     /// Tell the result as one JSON document on standard output.
@@ -55,7 +55,8 @@ pub(in super::super) struct CalibratePlan {
 #[derive(Args, Clone, Debug)]
 pub(in super::super) struct CalibrateFit {
     /// What was measured, as CSV. The first row names the columns: m1_deg,m2_deg,m3_deg (readings of the encoders), then
-    /// x_mm,y_mm,theta_deg or x_mm,y_mm or theta_deg or mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um.
+    /// x_mm,y_mm,theta_deg or x_mm,y_mm or theta_deg or mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um
+    /// or guide,end_mm.
     pub(in super::super) file: PathBuf,
     #[command(flatten)]
     pub(in super::super) noise: NoiseArguments,

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use calibration::plan::Stop;
+use calibration::plan::{At, Stop};
 use calibration::{Instrument, Plan, plan};
 use drawing::write_file;
 use serde::Serialize;
@@ -124,21 +124,29 @@ fn text(document: &Document) -> String {
     .concat()
 }
 
-/// The poses, and for cameras which mark is to be under which place.
+/// The poses, for cameras which mark is to be under which place, and for ends which is to be touched.
 fn table(instrument: &Instrument, stops: &[Stop]) -> String {
     let radius_mm = Geometry::REFERENCE.radius_mm;
-    let under = if instrument.cameras.is_empty() {
-        ""
-    } else {
-        ",mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm"
+    let more = match stops.first().map(|stop| stop.at) {
+        Some(At::Mark { .. }) => ",mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm",
+        Some(At::End { .. }) => ",guide,end_mm",
+        _ => "",
     };
-    let mut text = format!("x_mm,y_mm,theta_deg{under}\n");
+    let mut text = format!("x_mm,y_mm,theta_deg{more}\n");
     for stop in stops {
         let mut row = in_mm_deg(stop.pose).to_vec();
-        if let Some((mark, camera)) = stop.under {
-            let drawn = [instrument.marks.get(mark), instrument.cameras.get(camera)];
-            let drawn = drawn.into_iter().flatten().flatten();
-            row.extend(drawn.map(|value| value * radius_mm));
+        match stop.at {
+            At::Pose => {}
+            At::Mark { mark, camera } => {
+                let drawn = [instrument.marks.get(mark), instrument.cameras.get(camera)];
+                let drawn = drawn.into_iter().flatten().flatten();
+                row.extend(drawn.map(|value| value * radius_mm));
+            }
+            At::End { end } => {
+                if let Some(&(guide, place)) = instrument.ends.get(end) {
+                    row.extend([1.0 + guide as f64, place * radius_mm]);
+                }
+            }
         }
         let row: Vec<String> = row.into_iter().map(decimals).collect();
         text += &(row.join(",") + "\n");
