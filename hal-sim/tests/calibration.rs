@@ -160,7 +160,7 @@ fn machines_of_the_workshop_are_as_bad_as_they_should_be() {
         mean(&|size| size.turn_rms_rad) * 1e6,
     );
     println!("{xy_um:.0} um, {turn_urad:.0} urad");
-    // 84 um and 660 urad of all machines.
+    // 84 um and 660 urad of all machines, by another program's model.
     assert!((65.0..105.0).contains(&xy_um), "{xy_um}");
     assert!((500.0..820.0).contains(&turn_urad), "{turn_urad}");
 }

@@ -63,6 +63,7 @@ impl State {
             .collect()
     }
 
+    /// Visits that miss by more than the noise allows; of those that are not in the fit, by more than noise and fit allow.
     pub(crate) fn outliers(
         &self,
         visits: &[Visit],

@@ -295,7 +295,7 @@ pub const SECTIONS: &[Section] = &[
         name: "calibration",
         title: "Machines that are measured and fitted",
         group: Group::Exactness,
-        about: "Machines drawn from seeds, 84 um and 660 urad off in the mean with the best frames, measured by simulated instruments and fitted \
+        about: "Machines drawn from seeds, some 85 um and 620 urad off with the best frames, measured by simulated instruments and fitted \
                 with `tripivot calibrate`'s library: what is left between true poses of the plant and poses asked for with the fitted numbers, \
                 over the whole disk and all orientations, beside what was predicted. At planned poses (chosen for what they add) and at poses \
                 spread evenly. `camera2` is a plate of unknown marks under a camera at two places, `xy` one target, `ends` nothing but the \
