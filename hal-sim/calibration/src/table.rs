@@ -9,7 +9,8 @@
 //! | ends of guides | `m1_deg,m2_deg,m3_deg,guide,end_mm` |
 //!
 //! m1 to m3 are the encoders' readings, multi-turn or not. A mark and a place of the camera are known by where they were drawn, in the
-//! platform's and in the base frame: the same numbers are the same mark. An end is known by its guide, 1 to 3, and by where it was drawn on it. `off` is how far the mark was seen from the cross-hair.
+//! platform's and in the base frame: the same numbers are the same mark. An end is known by its guide, 1 to 3, and by where it was
+//! drawn on it. `off` is how far the mark was seen from the cross-hair.
 
 use crate::kit::{Instrument, Kit, Noise};
 use crate::visit::{Seen, Visit};
