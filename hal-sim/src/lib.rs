@@ -8,8 +8,10 @@
 //! | [`campaign`] | many runs in each of which something breaks |
 //! | [`report`] | what a run leaves behind |
 //! | [`random`] | random numbers from a seed |
+//! | [`date`] | today's date |
 
 pub mod campaign;
+pub mod date;
 pub mod front;
 pub mod machine;
 pub mod random;

@@ -3,7 +3,8 @@
 use core::f64::consts::TAU;
 
 use super::devices::{COUNTS_PER_TURN, EncoderParameters, StageParameters};
-use super::plant::{AXES, FrictionParameters, Imperfections, Payload, PivotGeometry};
+use super::instruments::workshop::{encoder_of, pivot_of};
+use super::plant::{AXES, FrictionParameters, Imperfections, Payload};
 use crate::random::Random;
 
 /// How far inertias, friction and motors are off the reference stage, over themselves.
@@ -21,7 +22,7 @@ pub fn unknown(seed: u64) -> StageParameters {
     draw_guides(&mut machine, &mut random);
     draw_load(&mut machine, &mut random);
     for pivot in &mut machine.plant.pivots {
-        *pivot = pivot_geometry(&mut random);
+        *pivot = pivot_of(&mut random);
     }
     for encoder in &mut machine.encoders {
         *encoder = self::encoder(&mut random);
@@ -83,38 +84,18 @@ fn draw_load(machine: &mut StageParameters, random: &mut Random) {
     };
 }
 
-fn pivot_geometry(random: &mut Random) -> PivotGeometry {
-    let mut size = |one_sigma: f64| one_sigma * random.normal();
-    PivotGeometry {
-        ring_centre_m: [size(20e-6), size(20e-6)],
-        radius_error_m: size(0.1e-3),
-        guide_error_rad: size(2e-3),
-        guide_offset_m: size(0.2e-3),
-        runout_m: [2.0, 3.0, 4.0, 5.0, 6.0].map(|k: f64| {
-            let each_m = 2.5e-6 * (2.0 / k).powf(1.5);
-            [size(each_m), size(each_m)]
-        }),
-        straightness_m: [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]
-            .map(|k: f64| size(2.5e-6 * (2.0 / k).powi(2))),
-    }
-}
-
 fn encoder(random: &mut Random) -> EncoderParameters {
-    let reference = EncoderParameters::REFERENCE;
-    let mut harmonics_rad = [[0.0; 2]; 11];
-    for (harmonic, k) in harmonics_rad.iter_mut().zip(2_u32..) {
-        let each_rad = if k == 2 { 20e-6 } else { 10e-6 / f64::from(k) };
-        *harmonic = [each_rad * random.normal(), each_rad * random.normal()];
-    }
+    let [[cosine_rad, sine_rad], harmonics_rad @ ..] = encoder_of(random).harmonics_rad;
     EncoderParameters {
         zero_counts: random.below(COUNTS_PER_TURN),
         reversed: random.once_in(2),
         noise_rad: random.between(30e-9, 200e-9),
-        eccentricity_rad: 400e-6 * random.normal().abs(),
-        eccentricity_phase_rad: random.between(0.0, TAU),
+        // A cos psi + B sin psi as a sine that is zero and rising at its phase.
+        eccentricity_rad: cosine_rad.hypot(sine_rad),
+        eccentricity_phase_rad: (-cosine_rad).atan2(sine_rad),
         harmonics_rad,
         subdivisional_error_rad: random.between(0.2e-6, 0.8e-6),
-        ..reference
+        ..EncoderParameters::REFERENCE
     }
 }
 

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 use std::thread::available_parallelism;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
+
+use hal_sim::date::today;
 
 use super::Kind;
 
@@ -16,9 +18,8 @@ pub(super) struct Conditions {
 
 impl Conditions {
     pub(super) fn now(root: &Path, kind: Kind) -> Self {
-        let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
-            date: date(since.unwrap_or_default().as_secs() / 86_400),
+            date: today(),
             commit: commit(root),
             machine: machine(kind),
         }
@@ -36,20 +37,6 @@ impl Conditions {
             taken.as_secs_f64().ceil()
         )
     }
-}
-
-/// Year, month and day of a day since 1970-01-01 (H. Hinnant, "chrono-compatible low-level date algorithms").
-fn date(day: u64) -> String {
-    let from_march_0 = day + 719_468;
-    let era = from_march_0 / 146_097;
-    let of_era = from_march_0 % 146_097;
-    let year_of_era = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = (month_from_march + 2) % 12 + 1;
-    let year = 400 * era + year_of_era + u64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02}")
 }
 
 /// The commit, and whether anything but the page itself differs from it.
@@ -99,23 +86,4 @@ fn said(folder: &Path, program: &str, arguments: &[&str]) -> Option<String> {
         .ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::date;
-
-    #[test]
-    fn days_have_their_dates() {
-        for (day, text) in [
-            (0, "1970-01-01"),
-            (59, "1970-03-01"),
-            (11_016, "2000-02-29"),
-            (11_017, "2000-03-01"),
-            (20_453, "2025-12-31"),
-            (20_454, "2026-01-01"),
-        ] {
-            assert_eq!(date(day), text);
-        }
-    }
 }

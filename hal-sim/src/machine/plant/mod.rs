@@ -37,7 +37,7 @@ pub use built::ENCODER_HARMONICS_RAD;
 pub use drive::{CyclicError, Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
-pub use geometry::OffGuide;
+pub use geometry::{Geometry, GuideState, OffGuide};
 pub use imperfections::{Imperfections, NAMED, Named};
 pub use parameters::{
     FrictionParameters, GearParameters, Payload, PlantParameters, WindingParameters,
@@ -46,7 +46,6 @@ pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
 
 use dynamics::Dynamics;
-use geometry::GuideState;
 use nalgebra::{Matrix3, Vector3};
 use state::State;
 use surroundings::Surroundings;

@@ -2,12 +2,14 @@
 
 use super::number::{whole, within};
 use super::stage::{Machine, SimulatedStage, Simulation};
+pub(super) use calibrate::{CalibrateCommand, CalibrateFit, CalibratePlan, NoiseArguments};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
+mod calibrate;
 mod controller;
 mod kinematics;
 
@@ -78,6 +80,9 @@ pub(super) enum Command {
     Sensitivity(SensitivityRun),
     /// Break something in many short simulated runs, and see whether the controller notices. Exit code 1 if it does not.
     Faults(Faults),
+    /// Find what a built machine is off its drawing: where to measure, and the fit to what was measured.
+    #[command(subcommand)]
+    Calibrate(CalibrateCommand),
     /// Pivot angles (deg) of a pose (mm, mm, deg), or what the encoders of a built machine read. Exit code 1 if it is out of reach.
     Inverse(PoseRows),
     /// Pose (mm, mm, deg) of three pivot angles (deg), or of what the encoders of a built machine read.

@@ -1,23 +1,19 @@
 //! A built machine's errors from a file: what is off the drawing, pivot by pivot.
 //!
-//! Ours is a JSON object with `pivots`, three objects of the keys of [`BuiltPivot`]. The flat one of the published
-//! poses is read as it is (`flat_calibration`). All of a file has to be right: a key too many or too few is named.
+//! It is what `calibrate fit` writes, or the JSON object of the published poses as it is (`flat_calibration`). All of a file has to be
+//! right: a key too many or too few is named.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibration::file::Calibration as FittedMachine;
 use drawing::read_text;
-use kinematics::{CoefficientError, Corrections, Geometry, PivotCoefficients, Series};
-use serde::Deserialize;
-use serde_json::Value;
+use kinematics::{CoefficientError, Corrections, PivotCoefficients, Series};
 
 use super::flat_calibration;
 
 /// Longest file: several times what 144 numbers take.
 const LONGEST_BYTES: u64 = 1 << 16;
-/// The keys by which the two kinds of file are told apart.
-const OUR_KEY: &str = "pivots";
-const FLAT_KEY: &str = "z0";
 
 /// What a machine's encoders read, exactly.
 pub(super) type Calibration = Corrections<f64, Series<f64>>;
@@ -51,43 +47,6 @@ pub enum CalibrationError {
     },
 }
 
-/// The errors of three pivots.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BuiltMachine {
-    pivots: [BuiltPivot; 3],
-}
-
-/// [`PivotCoefficients`] with lengths in mm.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BuiltPivot {
-    encoder_zero_rad: f64,
-    radius_error_mm: f64,
-    ring_centre_mm: [f64; 2],
-    guide_error_rad: f64,
-    guide_offset_mm: f64,
-    encoder_rad: [[f64; 2]; 12],
-    runout_mm: [[f64; 2]; 5],
-    straightness_mm: [f64; 8],
-}
-
-impl BuiltPivot {
-    fn coefficients(self) -> PivotCoefficients {
-        let radii = |mm: f64| mm / Geometry::REFERENCE.radius_mm;
-        PivotCoefficients {
-            encoder_zero_rad: self.encoder_zero_rad,
-            radius_error: radii(self.radius_error_mm),
-            ring_centre: self.ring_centre_mm.map(radii),
-            guide_error_rad: self.guide_error_rad,
-            guide_offset: radii(self.guide_offset_mm),
-            encoder_rad: self.encoder_rad,
-            runout: self.runout_mm.map(|pair| pair.map(radii)),
-            straightness: self.straightness_mm.map(radii),
-        }
-    }
-}
-
 /// The calibration in a file.
 pub(super) fn read(path: &Path) -> Result<Calibration, CalibrationError> {
     let path = path.to_owned();
@@ -105,16 +64,9 @@ pub(super) fn read(path: &Path) -> Result<Calibration, CalibrationError> {
 
 /// The numbers of either kind of file, or what is wrong with it.
 fn pivots(text: &str) -> Result<[PivotCoefficients; 3], String> {
-    let told = |error: serde_json::Error| error.to_string();
-    let document: Value = serde_json::from_str(text).map_err(told)?;
-    if document.get(OUR_KEY).is_some() {
-        let machine: BuiltMachine = serde_json::from_str(text).map_err(told)?;
-        Ok(machine.pivots.map(BuiltPivot::coefficients))
-    } else if document.get(FLAT_KEY).is_some() {
-        flat_calibration::pivots(text)
-    } else {
-        Err(format!(
-            "no calibration: neither '{OUR_KEY}' nor '{FLAT_KEY}' is in it"
-        ))
+    if text.trim_start().starts_with('{') {
+        return flat_calibration::pivots(text);
     }
+    let fitted = FittedMachine::from_text(text).map_err(|error| error.to_string())?;
+    Ok(fitted.machine())
 }

@@ -46,6 +46,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Record(#[from] desk::record::RecordError),
     #[error(transparent)]
+    Calibrate(#[from] super::calibrate::CalibrateError),
+    #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
     #[error(transparent)]
     Calibration(#[from] super::calibration_file::CalibrationError),
@@ -72,6 +74,7 @@ impl CliError {
 
             Self::Row { error, .. } => error.exit_code(),
 
+            Self::Calibrate(error) if error.is_failure() => FAILED,
             Self::Settings(error) if error.is_failure() => FAILED,
             Self::Record(error) if error.is_failure() => FAILED,
             _ => BAD_REQUEST,

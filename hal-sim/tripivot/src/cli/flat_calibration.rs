@@ -16,6 +16,7 @@ pub(super) fn pivots(text: &str) -> Result<[PivotCoefficients; 3], String> {
     let mut parser = serde_json::Deserializer::from_str(text);
     let read = parser.deserialize_map(NumbersVisitor);
     let mut numbers = read.map_err(|error| error.to_string())?;
+    parser.end().map_err(|error| error.to_string())?;
     let pivots = [
         numbers.take_pivot(0)?,
         numbers.take_pivot(1)?,

@@ -10,6 +10,7 @@
 //! | `sensitivity` | what each of its imperfections decides |
 //! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
+//! | `calibrate` | what a built machine is off its drawing |
 //! | `inverse`, `direct`, `check`, `map` | kinematics |
 //! | `calibration_file`, `flat_calibration` | a built machine's errors from a file |
 //! | `rows`, `units`, `json` | numbers in and out |
@@ -18,6 +19,7 @@
 
 mod arguments;
 mod board;
+mod calibrate;
 mod calibration_file;
 mod check;
 mod direct;
@@ -91,6 +93,7 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),
         Some(Command::Settings(command)) => settings::run(&command),
+        Some(Command::Calibrate(command)) => calibrate::run(&command),
         Some(Command::Inverse(numbers)) => inverse::run(&numbers),
         Some(Command::Direct(numbers)) => direct::run(&numbers),
         Some(Command::Check(pose)) => check::run(&pose),

@@ -32,10 +32,8 @@ pub(in super::super) struct PoseArguments {
 pub(in super::super) struct BuiltMachine {
     /// What the machine is off the drawing: the angles are then those that its encoders read.
     ///
-    /// A JSON object with "pivots", on a track of 100 mm: three objects with encoder_zero_rad, radius_error_mm, ring_centre_mm (x, y), guide_error_rad,
-    /// guide_offset_mm, encoder_rad (cosine and sine of 1 to 12 times the ring's angle), runout_mm (the same of 2 to 6 times),
-    /// straightness_mm (Legendre polynomials 2 to 9 over the guide from 20 to 180 mm). Or one object with the keys z0, dR0, ax0, ay0, e0, d0,
-    /// Ec1_0, Es1_0 and so on, in track radii and rad. A key too many or too few is an error.
+    /// What `tripivot calibrate fit` writes, or the JSON object of the published poses (144 numbers in track radii and rad: z, dR, ax,
+    /// ay, e, d, Ec and Es 1 to 12, rc and rs 2 to 6, S 2 to 9, each with the pivot's number 0 to 2 at its end).
     #[arg(long, value_name = "FILE")]
     pub(in super::super) calibration: Option<PathBuf>,
 }

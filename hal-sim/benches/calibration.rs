@@ -1,0 +1,190 @@
+//! What calibration leaves of a machine's errors, as a table: `cargo bench -p hal-sim --bench calibration`.
+//!
+//! Machines are drawn from seeds, measured by simulated instruments and fitted. Then poses all over the disk and all orientations are
+//! commanded with the fitted numbers, and the true poses compared with what was asked for, frames and scale taken out. `MACHINES=50`
+//! is the form that is published; without it there are 5. `ONLY=xyt` keeps the rows whose names contain that.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use calibration::frames::{Size, without_frames};
+use calibration::plan::{Stop, stops};
+use calibration::spread::over_disk;
+use calibration::{Accuracy, Fit, Instrument, Kit, Noise, fit, plan};
+use hal_sim::machine::instruments::{commanded, survey, workshop};
+use hal_sim::random::Random;
+
+const RADIUS_M: f64 = 0.1;
+const DISK: f64 = 0.8;
+/// Poses of the sequence that may be measured at, and are not looked at again.
+const POSES_PASSED: usize = 5000;
+/// nm in a track radius.
+const NM: f64 = 1e9 * RADIUS_M;
+
+struct Row {
+    kit: Kit,
+    is_planned: bool,
+    noise_nm: f64,
+    noise_urad: f64,
+    visits: usize,
+}
+
+const fn row(kit: Kit, is_planned: bool, noise_nm: f64, noise_urad: f64, visits: usize) -> Row {
+    Row {
+        kit,
+        is_planned,
+        noise_nm,
+        noise_urad,
+        visits,
+    }
+}
+
+const ROWS: [Row; 16] = [
+    row(Kit::Xyt, true, 5.0, 0.1, 60),
+    row(Kit::Xyt, false, 5.0, 0.1, 60),
+    row(Kit::Xyt, true, 50.0, 1.0, 200),
+    row(Kit::Xyt, false, 50.0, 1.0, 200),
+    row(Kit::Xyt, true, 50.0, 1.0, 600),
+    row(Kit::Xyt, false, 50.0, 1.0, 600),
+    row(Kit::Xyt, true, 500.0, 10.0, 200),
+    row(Kit::Xyt, false, 500.0, 10.0, 200),
+    row(Kit::Camera2, true, 50.0, 0.0, 600),
+    row(Kit::Camera2, false, 50.0, 0.0, 600),
+    row(Kit::Camera2, true, 500.0, 0.0, 600),
+    row(Kit::Camera2, false, 500.0, 0.0, 600),
+    row(Kit::Xy, true, 50.0, 0.0, 200),
+    row(Kit::Xy, false, 50.0, 0.0, 200),
+    row(Kit::Ends, true, 2000.0, 0.0, 200),
+    row(Kit::Ends, false, 2000.0, 0.0, 200),
+];
+
+struct Outcome {
+    size: Size,
+    ratio: f64,
+    chi2: f64,
+    held_out: f64,
+    seconds: f64,
+}
+
+fn main() {
+    let machines =
+        std::env::var("MACHINES").map_or(5, |text| text.parse().expect("a number of machines"));
+    let only = std::env::var("ONLY").unwrap_or_default();
+    println!(
+        "{machines} machines a row. Errors of true poses over the whole disk and all orientations, frames and scale out."
+    );
+    println!();
+    println!(
+        "| kit | poses | noise | predicted: xy, nm / theta, urad | xy, nm rms: median / 90 % / worst | xy, nm max: median / worst | theta, urad rms: median / 90 % / worst | verified over predicted: least / median / most | chi^2 | of visits held out |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    let mut slowest_s = 0.0;
+    for row in &ROWS {
+        if row.kit.name().contains(&only) {
+            let (stops, predicted) = stops_of(row);
+            let outcomes = outcomes(row, &stops, machines);
+            print_row(row, &predicted, &outcomes);
+            let seconds = outcomes.iter().map(|outcome| outcome.seconds);
+            slowest_s = seconds.fold(slowest_s, f64::max);
+        }
+    }
+    println!();
+    println!("slowest fit: {slowest_s:.2} s");
+}
+
+fn instrument(row: &Row) -> Instrument {
+    let noise = Noise {
+        length: row.noise_nm * 1e-9 / RADIUS_M,
+        angle_rad: row.noise_urad * 1e-6,
+        encoder_rad: Noise::ENCODER_RAD,
+    };
+    Instrument::new(row.kit, noise)
+}
+
+/// Where to measure, and what is to come out of it: with a plan's best poses, or spread evenly.
+fn stops_of(row: &Row) -> (Vec<Stop>, String) {
+    let instrument = instrument(row);
+    if !row.is_planned {
+        return (stops(&instrument, row.visits), "-".to_owned());
+    }
+    let plan = plan(&instrument, row.visits).expect("finite numbers");
+    let Accuracy {
+        place_rms,
+        turn_rms_rad,
+        ..
+    } = plan.accuracy;
+    let predicted = format!("{:.1} / {:.3}", place_rms * NM, turn_rms_rad * 1e6);
+    (plan.stops, predicted)
+}
+
+fn outcomes(row: &Row, stops: &[Stop], machines: usize) -> Vec<Outcome> {
+    let next = AtomicUsize::new(0);
+    let outcomes = Mutex::new(Vec::new());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let seed = next.fetch_add(1, Ordering::Relaxed);
+                    if seed >= machines {
+                        break;
+                    }
+                    let outcome = outcome(row, stops, seed as u64 + 1);
+                    outcomes.lock().expect("no thread has failed").push(outcome);
+                }
+            });
+        }
+    });
+    outcomes.into_inner().expect("no thread has failed")
+}
+
+fn outcome(row: &Row, stops: &[Stop], seed: u64) -> Outcome {
+    let machine = workshop::machine(seed);
+    let instrument = instrument(row);
+    let random = &mut Random::new(1000 + seed);
+    let visits = survey(&machine, &instrument, stops, random).expect("inside the disk");
+    let start = Instant::now();
+    let fit = fit(&instrument, &visits).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+    let seconds = start.elapsed().as_secs_f64();
+    let predicted = Accuracy::new(&fit.machine, &fit.factor, &instrument.sizes())
+        .expect("a factor of full rank");
+    let poses = over_disk(DISK).skip(POSES_PASSED).take(2000);
+    let pairs = commanded(&machine, &fit.machine, poses).expect("inside the disk");
+    let size = without_frames(&pairs).size();
+    let Fit {
+        chi2,
+        chi2_held_out,
+        ..
+    } = fit;
+    Outcome {
+        size,
+        ratio: size.place_rms / predicted.place_rms,
+        chi2,
+        held_out: chi2_held_out,
+        seconds,
+    }
+}
+
+fn print_row(row: &Row, predicted: &str, outcomes: &[Outcome]) {
+    let sorted = |value: &dyn Fn(&Outcome) -> f64| {
+        let mut values: Vec<f64> = outcomes.iter().map(value).collect();
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+        [at(0.0), at(0.5), at(0.9), at(1.0)]
+    };
+    let [_, xy, xy_90, xy_worst] = sorted(&|outcome| outcome.size.place_rms * NM);
+    let [_, max, _, max_worst] = sorted(&|outcome| outcome.size.place_max * NM);
+    let [_, turn, turn_90, turn_worst] = sorted(&|outcome| outcome.size.turn_rms_rad * 1e6);
+    let [least, ratio, _, most] = sorted(&|outcome| outcome.ratio);
+    let [_, chi2, ..] = sorted(&|outcome| outcome.chi2);
+    let [_, held_out, ..] = sorted(&|outcome| outcome.held_out);
+    println!(
+        "| {} | {} {} | {} nm, {} urad | {predicted} | {xy:.1} / {xy_90:.1} / {xy_worst:.1} | {max:.0} / {max_worst:.0} | {turn:.3} / {turn_90:.3} / {turn_worst:.3} | {least:.2} / {ratio:.2} / {most:.2} | {chi2:.2} | {held_out:.2} |",
+        row.kit,
+        row.visits,
+        if row.is_planned { "planned" } else { "spread" },
+        row.noise_nm,
+        row.noise_urad
+    );
+}

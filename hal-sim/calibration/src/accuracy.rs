@@ -1,0 +1,65 @@
+//! What is left of the machine's errors after a fit: from the uncertainty of the numbers to that of commanded poses.
+
+use nalgebra::DMatrix;
+
+use crate::frames::take_out;
+use crate::least_squares::Factor;
+use crate::position::{position, readings_rad};
+use crate::spread::over_disk;
+use crate::{MACHINE_NUMBERS, Machine};
+
+/// Poses over disk and orientations that stand for all.
+const POSES: usize = 250;
+/// Radius of the disk, track radii.
+pub const DISK: f64 = 0.8;
+
+/// One standard deviation of commanded poses, with the best frames and scale.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Accuracy {
+    /// Root mean square of the place's error over the disk and all orientations, track radii.
+    pub place_rms: f64,
+    /// Root mean square of theta's error, rad.
+    pub turn_rms_rad: f64,
+    /// The place's error where it is largest, track radii.
+    pub worst_place_rms: f64,
+    /// That pose: x, y (track radii), theta (rad).
+    pub worst_pose: [f64; 3],
+}
+
+impl Accuracy {
+    /// From the factor of a fit in which the unknowns have these sizes. `None` where the factor has lost a number.
+    #[must_use]
+    pub fn new(machine: &Machine, factor: &Factor, sizes: &[f64]) -> Option<Self> {
+        let poses: Vec<[f64; 3]> = over_disk(DISK).take(POSES).collect();
+        let mut by_unknowns = DMatrix::zeros(3 * POSES, factor.root.ncols());
+        for (pose, at) in poses.iter().zip((0..).step_by(3)) {
+            let readings_rad = readings_rad(machine, pose).ok()?;
+            let by_numbers = position(machine, &readings_rad).ok()?.by_numbers;
+            for (column, size) in (0..MACHINE_NUMBERS).zip(sizes) {
+                let by = by_numbers.column(column) * *size;
+                by_unknowns
+                    .fixed_view_mut::<3, 1>(at, column)
+                    .copy_from(&by);
+            }
+        }
+        take_out(&mut by_unknowns, &poses);
+        let spread = factor.spread(&by_unknowns.transpose())?;
+        let variance = |row: usize| spread.column(row).norm_squared();
+        let (mut place, mut turn, mut worst) = (0.0, 0.0, (0.0, [0.0; 3]));
+        for (&pose, at) in poses.iter().zip((0..).step_by(3)) {
+            let here = variance(at) + variance(at + 1);
+            place += here;
+            turn += variance(at + 2);
+            if here > worst.0 {
+                worst = (here, pose);
+            }
+        }
+        let mean = 1.0 / POSES as f64;
+        Some(Self {
+            place_rms: (place * mean).sqrt(),
+            turn_rms_rad: (turn * mean).sqrt(),
+            worst_place_rms: worst.0.sqrt(),
+            worst_pose: worst.1,
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! Options of calibration.
+
+use std::path::PathBuf;
+
+use calibration::Kit;
+use clap::{Args, Subcommand};
+
+use super::super::number::{whole, within};
+
+/// What a built machine is off its drawing.
+#[derive(Subcommand, Clone, Debug)]
+pub(in super::super) enum CalibrateCommand {
+    /// Choose poses to measure at, and tell what will come out of it and what the instrument cannot tell, before anything moves.
+    Plan(CalibratePlan),
+    /// Fit the machine to what was measured, and write it as a calibration file.
+    Fit(CalibrateFit),
+}
+
+/// The instrument's noise.
+#[derive(Args, Clone, Copy, Debug)]
+pub(in super::super) struct NoiseArguments {
+    /// Standard deviation of one measurement of x or y, or of where a pivot stops at an end, such as 50nm or 2um.
+    #[arg(long, value_name = "LENGTH", value_parser = length_m)]
+    pub(in super::super) noise: f64,
+    /// Standard deviation of one measurement of theta, such as 1urad [default: that of lengths over a base of 50 mm].
+    #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
+    pub(in super::super) noise_theta: Option<f64>,
+}
+
+/// A plan of poses.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibratePlan {
+    /// The instrument: xyt (x, y and theta), xy (x and y of one target), theta, camera (over a plate of unknown marks), camera2 (the
+    /// same at two places), ends (none: pivots are driven against the ends of their guides).
+    #[arg(long)]
+    pub(in super::super) kit: Kit,
+    #[command(flatten)]
+    pub(in super::super) noise: NoiseArguments,
+    /// How many poses.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Write the poses into this file, as CSV, the most telling first: x_mm, y_mm, theta_deg; for cameras the mark in the platform frame
+    /// and the camera in the base frame besides, for ends the guide and where on it the end is.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) out: Option<PathBuf>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: kit, noise_nm, noise_urad, poses; expected_xy_nm, expected_worst_xy_nm, worst_pose (x_mm, y_mm, theta_deg),
+    /// expected_theta_urad; yours_to_choose, not_identifiable, more_not_identifiable, held_by_tolerances, numbers.
+    #[arg(long)]
+    pub(in super::super) json: bool,
+}
+
+/// A fit.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateFit {
+    /// What was measured, as CSV. The first row names the columns: m1_deg,m2_deg,m3_deg (readings of the encoders), then
+    /// x_mm,y_mm,theta_deg or x_mm,y_mm or theta_deg or mark_x_mm,mark_y_mm,camera_x_mm,camera_y_mm,off_x_um,off_y_um
+    /// or guide,end_mm.
+    pub(in super::super) file: PathBuf,
+    #[command(flatten)]
+    pub(in super::super) noise: NoiseArguments,
+    /// The calibration file.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) out: PathBuf,
+    /// What the machine is called.
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    pub(in super::super) serial: String,
+    /// Temperature at which was measured, deg C.
+    #[arg(long, value_name = "C", allow_negative_numbers = true, value_parser = within(-50.0..=100.0))]
+    pub(in super::super) temperature: Option<f64>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_held_out, chi2_is_doubtful, expected_xy_nm, expected_worst_xy_nm,
+    /// expected_theta_urad, steps, file.
+    #[arg(long)]
+    pub(in super::super) json: bool,
+}
+
+/// Smallest and largest noise: an atom, and a mm or a mrad.
+const NOISES: (f64, f64) = (1e-10, 1e-3);
+
+fn length_m(text: &str) -> Result<f64, String> {
+    let units = [("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3)];
+    with_unit(text, &units).ok_or_else(|| "not a length from 0.1nm to 1mm, such as 50nm".to_owned())
+}
+
+fn angle_rad(text: &str) -> Result<f64, String> {
+    let units = [("nrad", 1e-9), ("urad", 1e-6), ("mrad", 1e-3)];
+    with_unit(text, &units)
+        .ok_or_else(|| "not an angle from 0.1nrad to 1mrad, such as 1urad".to_owned())
+}
+
+fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
+    let (number, factor) =
+        (units.iter()).find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))?;
+    let value = number.trim().parse::<f64>().ok()? * factor;
+    let (least, most) = NOISES;
+    (least..=most).contains(&value).then_some(value)
+}

@@ -1,0 +1,157 @@
+//! `tripivot calibrate fit`: a calibration file from what was measured.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use calibration::file::{Calibration, Made};
+use calibration::table::Table;
+use calibration::{Accuracy, Fit, FitError, Instrument, fit};
+use drawing::write_file;
+use hal_sim::date::today;
+use kinematics::Geometry;
+use serde::Serialize;
+
+use super::super::arguments::CalibrateFit;
+use super::super::error::CliError;
+use super::super::json;
+use super::{CalibrateError, URAD_PER_RAD, line, nm, noise, read};
+
+/// What a fit is told as with `--json`.
+#[derive(Serialize)]
+struct Document {
+    kit: &'static str,
+    visits: usize,
+    /// Lines of the file.
+    outliers: Vec<usize>,
+    chi2: f64,
+    chi2_held_out: f64,
+    chi2_is_doubtful: bool,
+    expected_xy_nm: f64,
+    expected_worst_xy_nm: f64,
+    expected_theta_urad: f64,
+    steps: usize,
+    file: String,
+}
+
+pub(super) fn run(arguments: &CalibrateFit) -> Result<ExitCode, CliError> {
+    let path = &arguments.file;
+    let radius_mm = Geometry::REFERENCE.radius_mm;
+    let table = Table::from_text(&read(path)?, radius_mm).map_err(|source| {
+        let path = path.clone();
+        CalibrateError::Table { path, source }
+    })?;
+    let instrument = table.instrument(noise(&arguments.noise));
+    let fit = fit(&instrument, &table.visits).map_err(|error| at_line(path, &table, error))?;
+    let accuracy = Accuracy::new(&fit.machine, &fit.factor, &instrument.sizes())
+        .ok_or(CalibrateError::Lost)?;
+    let calibration = Calibration::new(
+        made(arguments, &instrument, &table, &fit, &accuracy),
+        &fit.machine,
+    );
+    let text = calibration.to_text();
+    // What would be refused when it is read is not written.
+    Calibration::from_text(&text).map_err(CalibrateError::File)?;
+    write_file(&arguments.out, text.as_bytes())?;
+    let made = &calibration.made;
+    let document = Document {
+        kit: table.kit.name(),
+        visits: made.visits,
+        outliers: (fit.outliers.iter())
+            .filter_map(|&visit| table.lines.get(visit).copied())
+            .collect(),
+        chi2: fit.chi2,
+        chi2_held_out: fit.chi2_held_out,
+        chi2_is_doubtful: fit.is_doubtful(),
+        expected_xy_nm: made.expected_xy_nm,
+        expected_worst_xy_nm: made.expected_worst_xy_nm,
+        expected_theta_urad: made.expected_theta_urad,
+        steps: fit.steps,
+        file: arguments.out.display().to_string(),
+    };
+    if arguments.json {
+        json::print(&document)?;
+    } else {
+        (io::stdout().write_all(text_of(&document).as_bytes())).map_err(CliError::output)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Says where in the file what a fit refuses stands.
+fn at_line(path: &Path, table: &Table, error: FitError) -> CalibrateError {
+    let path = path.to_owned();
+    match error {
+        FitError::Visit { visit, reason } => CalibrateError::Visit {
+            path,
+            line: table.lines.get(visit).copied().unwrap_or(0),
+            reason,
+        },
+        source => CalibrateError::Fit { path, source },
+    }
+}
+
+fn made(
+    arguments: &CalibrateFit,
+    instrument: &Instrument,
+    table: &Table,
+    fit: &Fit,
+    accuracy: &Accuracy,
+) -> Made {
+    Made {
+        serial: arguments.serial.clone(),
+        date: today(),
+        temperature_c: arguments.temperature,
+        track_radius_mm: Geometry::REFERENCE.radius_mm,
+        kit: table.kit,
+        noise_nm: nm(instrument.noise.length),
+        noise_urad: instrument.noise.angle_rad * URAD_PER_RAD,
+        visits: table.visits.len(),
+        outliers: fit.outliers.len(),
+        chi2: fit.chi2,
+        chi2_held_out: fit.chi2_held_out,
+        expected_xy_nm: nm(accuracy.place_rms),
+        expected_worst_xy_nm: nm(accuracy.worst_place_rms),
+        expected_theta_urad: accuracy.turn_rms_rad * URAD_PER_RAD,
+    }
+}
+
+fn text_of(document: &Document) -> String {
+    let outliers = match &document.outliers[..] {
+        [] => String::new(),
+        lines => {
+            let lines: Vec<String> = lines.iter().map(ToString::to_string).collect();
+            format!(", without those of lines {}", lines.join(", "))
+        }
+    };
+    let doubt = if document.chi2_is_doubtful {
+        ": not 1, so the noise is not what was said, or the machine is not of this model, and what is expected does not hold"
+    } else {
+        ""
+    };
+    [
+        line(
+            "measured",
+            &format!("{}, {} poses{outliers}", document.kit, document.visits),
+        ),
+        line(
+            "chi^2 a row",
+            &format!(
+                "{:.2}, {:.2} of poses that were held out{doubt}",
+                document.chi2, document.chi2_held_out
+            ),
+        ),
+        line(
+            "expected, x and y",
+            &format!(
+                "{:.1} nm rms; {:.1} nm rms where it is worst",
+                document.expected_xy_nm, document.expected_worst_xy_nm
+            ),
+        ),
+        line(
+            "expected, theta",
+            &format!("{:.3} urad rms", document.expected_theta_urad),
+        ),
+        line("calibration in", &document.file),
+    ]
+    .concat()
+}
