@@ -146,10 +146,10 @@ mod app {
     ])]
     fn init(context: init::Context) -> (Shared, Local) {
         let Board {
-            mut latch_timer,
+            latch_timer,
             tick_event,
             sensors,
-            mut pwm,
+            pwm,
             bridges,
             brake_resistor,
             receiver,
@@ -202,16 +202,16 @@ mod app {
         .with_learnt(&config);
         let (sample_sender, sample_receiver) = context.local.samples.split();
         watchdogs.start(&mut rcc);
-        // Last: everything that takes time is done, the first tick comes 50 us from here.
-        latch_timer.start_with(&mut pwm);
-        let local = Local {
+        let state = context.local.state_place.write(state);
+        let session = context.local.session_place.write(Session::new());
+        let mut local = Local {
             latch_timer,
             tick_event,
             pwm,
             bridges,
             brake_resistor,
             config,
-            state: context.local.state_place.write(state),
+            state,
             sample_sender: SampleSender(sample_sender),
             sample_receiver,
             // They run behind the tick.
@@ -220,12 +220,14 @@ mod app {
             tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
             tick_queues,
             interpreter,
-            session: context.local.session_place.write(Session::new()),
+            session,
             settings_store,
             command_queues,
             receiver,
             transmitter,
         };
+        // Last: everything that takes time is done, the first latch comes 35 us from here, and no interrupt before this ends.
+        local.latch_timer.start_with(&mut local.pwm);
         (Shared { sensors }, local)
     }
 
