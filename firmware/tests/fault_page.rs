@@ -3,7 +3,8 @@
 mod written_page;
 
 use firmware::control::{MODES, Outcome, TRANSITIONS};
-use firmware::fault::{FAULT_DESCRIPTIONS, Fault, Reaction};
+use firmware::drivers::power_stage::{BRIDGE, BUS};
+use firmware::fault::{FAULT_DESCRIPTIONS, Fault, FaultKind, Reaction};
 use firmware::gcs::{ErrorCode, PARAMETERS};
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
@@ -152,4 +153,24 @@ fn every_kind_has_its_line() {
         assert!(text.starts_with(about.kind.text()) && text.ends_with(", at tick 7"));
         assert_eq!(text.contains("limit"), !about.kind.unit().is_empty());
     }
+}
+
+/// What the words say of the power stage is what its table has.
+#[test]
+fn words_have_the_figures_of_the_power_stage() {
+    let words = |kind: FaultKind| {
+        let mut all = FAULT_DESCRIPTIONS.iter();
+        all.find(|one| one.kind == kind)
+            .map(|one| (one.detection, one.reason))
+    };
+    let (detection, reason) = words(FaultKind::SupplyHigh).unwrap();
+    assert!(detection.contains(&format!("over {} V", BUS.too_high_v)));
+    assert!(detection.contains(&format!("from {} V", BUS.resistor_on_v)));
+    let [_, most_v] = BRIDGE.supply_v;
+    assert!(reason.contains(&format!("{most_v} V, {} V", BRIDGE.absolute_supply_v)));
+    let (detection, reason) = words(FaultKind::BrakeResistorHot).unwrap();
+    let watts = (BUS.resistor_on_v.powi(2) / BUS.resistor_ohm).round();
+    let figures = format!("{watts} W while it is on less the {} W", BUS.resistor_w);
+    assert!(detection.contains(&figures) && detection.contains(&format!("{} J", BUS.resistor_j)));
+    assert!(reason.contains(&format!("{} V", BUS.resistor_on_v)));
 }

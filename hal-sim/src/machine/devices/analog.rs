@@ -1,5 +1,6 @@
 //! What the controller's 12 bit ADC (3.3 V) reads of the bridges.
 
+use firmware::drivers::power_stage::{BUS, CURRENT_SENSOR};
 use serde::{Deserialize, Serialize};
 
 use crate::machine::plant::AXES;
@@ -10,12 +11,12 @@ pub const FULL_SCALE_COUNTS: u16 = 4095;
 
 /// Volts at the input for each ampere of motor current: a shunt of 10 mohm and an amplifier of 20, which see the current with its
 /// sign in every state of the bridge. Full scale is +-8.25 A.
-pub const CURRENT_V_A: f64 = 0.2;
+pub const CURRENT_V_A: f64 = CURRENT_SENSOR.shunt_ohm * CURRENT_SENSOR.gain;
 /// Volts at the input at no current.
-pub const CURRENT_ZERO_V: f64 = 1.65;
+pub const CURRENT_ZERO_V: f64 = CURRENT_SENSOR.zero_v;
 
 /// Volts at the input for each volt of supply: 19 kohm over 1 kohm. Full scale is 66 V.
-pub const SUPPLY_V_V: f64 = 1.0 / 20.0;
+pub const SUPPLY_V_V: f64 = 1.0 / BUS.divider;
 
 const REFERENCE_V: f64 = 3.3;
 

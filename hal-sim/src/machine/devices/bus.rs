@@ -1,5 +1,6 @@
 //! The bus between supply and bridges: what a diode lets in, what the motors draw and give back, what the brake resistor takes.
 
+use firmware::drivers::power_stage::BUS;
 use serde::{Deserialize, Serialize};
 
 /// What the bus is made of.
@@ -17,12 +18,12 @@ pub struct BusParameters {
 }
 
 impl BusParameters {
-    /// 4.7 mF and 8.2 ohm of the reference stage; 50 mohm of source and cable, and 0.5 V of a Schottky diode, as makers state.
+    /// Capacitor and brake resistor of the reference board; 50 mohm of source and cable, and 0.5 V of a Schottky diode, as makers state.
     pub const REFERENCE: Self = Self {
         source_ohm: 0.05,
         diode_v: 0.5,
-        capacitor_f: 4.7e-3,
-        brake_resistor_ohm: 8.2,
+        capacitor_f: BUS.capacitor_f,
+        brake_resistor_ohm: BUS.resistor_ohm,
     };
 }
 

@@ -101,30 +101,12 @@ impl Imperfections {
     pub const CALIBRATED: Self = Self {
         dry_friction: true,
         viscous_friction: true,
-        compliance: true,
         backlash: true,
         torque_ripple: true,
         encoder_noise: true,
-        encoder_eccentricity: false,
         dead_time: true,
-        guide_friction: false,
-        guide_compliance: false,
-        geometry: false,
-        gear_error: false,
-        preload: false,
-        motor_friction: false,
-        commutation_ripple: false,
-        ball_runout: false,
-        cable_drag: false,
-        encoder_harmonics: false,
-        subdivisional_error: false,
-        bit_errors: false,
-        analog_errors: false,
-        floor_vibration: false,
-        winding_heat: false,
-        bus: false,
-        bridge_limits: false,
         pwm_quantisation: true,
+        ..Self::NONE
     };
 
     /// Everything.
