@@ -390,7 +390,7 @@ fn analog_inputs_follow_current_and_supply() {
         ..PlantParameters::REFERENCE
     };
     let mut stage = Stage::new(&parameters);
-    assert_eq!(stage.analog(), ([0; 3], 1489));
+    assert_eq!(stage.analog(), ([2048; 3], 1489));
     let pins = [BridgeState {
         pulse: 0.5,
         forward: false,
@@ -399,7 +399,8 @@ fn analog_inputs_follow_current_and_supply() {
     }; 3];
     stage.advance_period(pins);
     stage.advance_period(pins);
-    let expected = (stage.plant.currents_a()[0].abs() * 0.45 / 3.3 * 4095.0).round() as u16;
-    assert!(expected > 100);
+    // Backwards: less than the middle of 3.3 V.
+    let expected = ((1.65 + 0.2 * stage.plant.currents_a()[0]) / 3.3 * 4096.0).round() as u16;
+    assert!(expected < 2048 - 60, "{expected}");
     assert_eq!(stage.analog().0[0], expected);
 }
