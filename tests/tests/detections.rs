@@ -41,7 +41,7 @@ fn assert_brakes(bench: &Bench) {
 
 /// At rest, under servo or braked.
 fn assert_at_rest(bench: &mut Bench) {
-    bench.run(2_000);
+    bench.run(2_400);
     let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
     assert!(rates.iter().all(|rate| rate.abs() < 0.0052), "{rates:?}");
 }

@@ -18,6 +18,7 @@ const COMMANDS: &[&str] = &[
     "settings",
     "board",
     "machine",
+    "sensitivity",
     "faults",
     "calibrate",
     "inverse",
@@ -31,6 +32,7 @@ const COMMANDS: &[&str] = &[
 const COMMANDS: &[&str] = &[
     "run",
     "machine",
+    "sensitivity",
     "faults",
     "calibrate",
     "inverse",
