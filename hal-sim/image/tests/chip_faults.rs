@@ -52,7 +52,7 @@ enum Trouble {
 use Trouble::{Bridge, EmergencyStop, Encoder, Jam, Nothing, Push, Supply};
 
 /// What goes wrong, what does not quite, what is told, and whether the motors brake (or else coast).
-const FAULTS: [(Trouble, Trouble, &str, bool); 11] = [
+const FAULTS: [(Trouble, Trouble, &str, bool); 12] = [
     (
         Encoder(EncoderFault::StuckHigh, BRIDGED + 1),
         Encoder(EncoderFault::StuckHigh, BRIDGED),
@@ -98,14 +98,21 @@ const FAULTS: [(Trouble, Trouble, &str, bool); 11] = [
     ),
     (
         Push(150.0, 80),
-        Push(20.0, STAYS),
+        // 6 A are 18 N m.
+        Push(12.0, STAYS),
         "following error too large, pivot 2",
         true,
     ),
     (
         Supply(35.9),
         Supply(36.1),
-        "supply voltage too low: 3.58",
+        "supply voltage too low: 3.59",
+        true,
+    ),
+    (
+        Supply(58.3),
+        Supply(57.9),
+        "supply voltage too high: 5.8",
         true,
     ),
     (Bridge, Nothing, "bridge reports a fault, pivot 2", false),
