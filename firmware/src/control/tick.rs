@@ -78,7 +78,10 @@ pub fn tick_and_drive(
         pivots = state.encoders.each_ref().map(Encoder::angle);
     }
     state.check_inputs(config, inputs);
-    state.update_brake_resistor(config, inputs.supply_counts);
+    let overload = (state.brake_resistor).update(inputs.supply_counts, config.limits.rate_hz);
+    if let Some([taken_j, most_j]) = overload {
+        state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
+    }
     state.check_motor_heat(config, inputs);
 
     let point = advance(config, state);

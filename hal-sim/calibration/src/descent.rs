@@ -3,7 +3,7 @@
 use kinematics::COEFFICIENTS;
 use nalgebra::DVector;
 
-use crate::fit::FitError;
+use crate::error::FitError;
 use crate::kit::Instrument;
 use crate::least_squares::{Factor, Problem};
 use crate::numbers;

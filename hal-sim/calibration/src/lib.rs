@@ -17,6 +17,7 @@
 //! | [`least_squares`] | rows to an orthogonal factor, and what that says of uncertainty |
 //! | [`mod@fit`] | the fit: robust, with some visits held out |
 //! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
+//! | `error` | why there is no fit |
 //! | [`frames`] | errors of poses without what only the choice of frames and of scale makes |
 //! | [`accuracy`] | what is left of the machine's errors after a fit, before anything is measured |
 //! | [`freedom`] | what an instrument cannot tell |
@@ -28,6 +29,7 @@
 pub mod accuracy;
 pub mod alignment;
 mod descent;
+mod error;
 pub mod file;
 pub mod fit;
 pub mod frames;
@@ -44,7 +46,8 @@ pub mod table;
 pub mod visit;
 
 pub use accuracy::Accuracy;
-pub use fit::{Fit, FitError, fit};
+pub use error::FitError;
+pub use fit::{Fit, fit};
 pub use kit::{Instrument, Kit, Noise};
 pub use plan::{Plan, plan};
 pub use visit::{Seen, Visit};

@@ -3,7 +3,8 @@
 use nalgebra::DMatrix;
 
 use crate::descent::State;
-use crate::fit::{FitError, few, is_held_out};
+use crate::error::FitError;
+use crate::fit::{few, is_held_out};
 use crate::least_squares::Factor;
 use crate::visit::Visit;
 

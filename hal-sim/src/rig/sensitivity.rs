@@ -1,6 +1,5 @@
 //! How much each imperfection of the simulated machine decides: the demonstration with one more, or one less, at a time.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::run::{RunOptions, run};
@@ -61,25 +60,26 @@ pub fn measure(
     threads: usize,
 ) -> Vec<Sensitivity> {
     let next = AtomicUsize::new(0);
-    let found = Mutex::new(vec![None; machines.len()]);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(machine) = machines.get(i) else {
-                        return;
-                    };
-                    let one = demonstrate(script, machine, options);
-                    if let Ok(mut found) = found.lock() {
-                        found[i] = Some(one);
-                    }
-                }
-            });
+    let work = || {
+        let mut done = Vec::new();
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(machine) = machines.get(i) else {
+                return done;
+            };
+            done.push((i, demonstrate(script, machine, options)));
         }
+    };
+    let mut rows = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
+        // A thread that has failed fails this one.
+        joined
+            .flat_map(|rows| rows.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect::<Vec<_>>()
     });
-    let found = found.into_inner().unwrap_or_default();
-    found.into_iter().flatten().collect()
+    rows.sort_by_key(|(i, _)| *i);
+    rows.into_iter().map(|(_, row)| row).collect()
 }
 
 fn demonstrate(script: &Script, machine: &Compared, options: &RunOptions) -> Sensitivity {

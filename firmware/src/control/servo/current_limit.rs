@@ -30,6 +30,7 @@ impl CurrentLimitConfig {
 pub(super) struct CurrentLimit {
     /// The integral's part, V, from 0.
     volts: f32,
+    /// Follows from `volts`, and is kept beside them: to compare them in every tick took a tenth of a servo more.
     is_active: bool,
 }
 

@@ -12,13 +12,14 @@
 //!
 //! Numbers begin with their lowest byte.
 
+use super::names::{read_name, write_name};
 use super::state::{KeptParameters, MAX_UNUSABLE, UnusableValues};
 use super::stored_moves::{self, MOVES_BYTES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::macros::{MACRO_BYTES, MAX_MACROS};
 use crate::gcs::parameter::{PARAMETERS, Parameter};
-use crate::gcs::text::{NAME_BYTES, Name};
+use crate::gcs::text::NAME_BYTES;
 use crate::iterative_learning::TrialControl;
 use crate::parameters::Parameters;
 use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, envelope_bytes};
@@ -168,21 +169,6 @@ fn read_parameters<F: NorFlash>(
         }
     }
     kept.parameters.are_sound().then_some(kept)
-}
-
-/// A name with its length.
-pub(super) fn write_name<S: Sink>(name: &str, sink: &mut S) -> Result<(), S::Error> {
-    sink.put(&[name.len() as u8])?;
-    sink.put(name.as_bytes())
-}
-
-/// What [`write_name`] has written.
-pub(super) fn read_name<F: NorFlash>(reader: &mut Reader<'_, F>) -> Option<Name> {
-    let [length] = reader.take()?;
-    let mut name = [0; NAME_BYTES];
-    let name = name.get_mut(..usize::from(length))?;
-    reader.fill(name)?;
-    Name::named(name)
 }
 
 fn read_macros<F: NorFlash>(

@@ -9,10 +9,12 @@
 //! | `state` | what is stored, and what is to be |
 //! | `contents` | what stands in the store |
 //! | `stored_moves` | and of the tables of repeated moves |
+//! | `names` | names in it |
 //! | `execute` | `WPA` and `RPA` |
 
 mod contents;
 mod execute;
+mod names;
 mod state;
 mod stored_moves;
 

@@ -11,7 +11,7 @@
 //! | 4, 2 | ticks from point to point; points |
 //! | each 2, 2, 2 | volts of the pivots in units of 2 mV, two's complement |
 
-use super::contents::{read_name, write_name};
+use super::names::{read_name, write_name};
 use crate::commander::Commander;
 use crate::gcs::text::NAME_BYTES;
 use crate::iterative_learning::{

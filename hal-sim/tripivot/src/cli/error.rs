@@ -46,7 +46,7 @@ pub(super) enum CliError {
     #[error(transparent)]
     Record(#[from] desk::record::RecordError),
     #[error(transparent)]
-    Calibrate(#[from] super::calibrate::CalibrateError),
+    Calibrate(#[from] super::calibrate::error::CalibrateError),
     #[error(transparent)]
     Settings(#[from] desk::settings::SettingsError),
     #[error(transparent)]

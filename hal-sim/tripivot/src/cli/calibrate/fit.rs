@@ -15,7 +15,8 @@ use serde::Serialize;
 use super::super::arguments::CalibrateFit;
 use super::super::error::CliError;
 use super::super::json;
-use super::{CalibrateError, URAD_PER_RAD, line, nm, noise, read};
+use super::error::CalibrateError;
+use super::{URAD_PER_RAD, line, nm, noise, read};
 
 /// What a fit is told as with `--json`.
 #[derive(Serialize)]

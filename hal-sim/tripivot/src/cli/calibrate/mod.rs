@@ -1,56 +1,24 @@
 //! `tripivot calibrate`: what a built machine is off its drawing.
 
+pub(super) mod error;
 mod fit;
 mod plan;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
-use calibration::file::FileError;
-use calibration::table::TableError;
-use calibration::{FitError, Noise};
+use calibration::Noise;
 use kinematics::Geometry;
 
 use super::arguments::{CalibrateCommand, NoiseArguments};
 use super::error::CliError;
+use error::CalibrateError;
 
 /// Length over which theta is measured, m, unless its noise is told: two beams of an interferometer.
 const BASE_M: f64 = 0.05;
 const NM_PER_MM: f64 = 1e6;
 const URAD_PER_RAD: f64 = 1e6;
-
-/// Why there is no plan or no calibration.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum CalibrateError {
-    #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("{}: {source}", path.display())]
-    Table { path: PathBuf, source: TableError },
-    /// A visit of the fit, by its line.
-    #[error("{}: line {line}: {reason}", path.display())]
-    Visit {
-        path: PathBuf,
-        line: usize,
-        reason: &'static str,
-    },
-    #[error("{}: {source}", path.display())]
-    Fit { path: PathBuf, source: FitError },
-    #[error("the fit is no calibration: {0}")]
-    File(#[from] FileError),
-    #[error("the numbers of the instrument leave nothing to compute with")]
-    Lost,
-}
-
-impl CalibrateError {
-    /// Whether the request was sound and what was measured is not.
-    pub(super) const fn is_failure(&self) -> bool {
-        matches!(self, Self::Fit { .. } | Self::File(_) | Self::Lost)
-    }
-}
 
 pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
     match command {

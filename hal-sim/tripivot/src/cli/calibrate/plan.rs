@@ -12,7 +12,8 @@ use super::super::arguments::CalibratePlan;
 use super::super::error::CliError;
 use super::super::json;
 use super::super::units::decimals;
-use super::{CalibrateError, URAD_PER_RAD, line, nm, noise};
+use super::error::CalibrateError;
+use super::{URAD_PER_RAD, line, nm, noise};
 use kinematics::Geometry;
 
 /// What a plan is told as with `--json`.
