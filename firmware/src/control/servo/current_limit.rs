@@ -30,7 +30,7 @@ impl CurrentLimitConfig {
 pub(super) struct CurrentLimit {
     /// The integral's part, V, from 0.
     volts: f32,
-    /// Follows from `volts`, and is kept beside them: to compare them in every tick took a tenth of a servo more.
+    /// Follows from `volts`, and is kept beside them: with a comparison in every tick in its place the three servos took 5 % longer.
     is_active: bool,
 }
 
