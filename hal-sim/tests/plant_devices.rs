@@ -9,7 +9,7 @@ use firmware::drivers::biss::{self, FrameError};
 use hal_sim::machine::devices::biss::COUNTS_PER_TURN;
 use hal_sim::machine::devices::{
     Bridge, BridgeParameters, BridgeState, Encoder, EncoderFault, EncoderParameters, Stage,
-    StageParameters,
+    StageParameters, WiringParameters,
 };
 use hal_sim::machine::plant::{Drive, Imperfections, Plant, PlantParameters};
 use hal_sim::random::Random;
@@ -403,4 +403,47 @@ fn analog_inputs_follow_current_and_supply() {
     let expected = ((1.65 + 0.2 * stage.plant.currents_a()[0]) / 3.3 * 4096.0).round() as u16;
     assert!(expected < 2048 - 60, "{expected}");
     assert_eq!(stage.analog().0[0], expected);
+}
+
+/// A bridge turns the motor that its leads go to, the way round that they are, and sees the current that it gives; a port has the frames of
+/// the encoder that is plugged into it.
+#[test]
+fn plugs_decide_what_a_bridge_turns_and_what_a_port_reads() {
+    let wiring = WiringParameters {
+        bridge_of_ring: [2, 0, 1],
+        leads_exchanged: [false, true, false],
+        port_of_ring: [1, 2, 0],
+    };
+    for (bridge, ring, way) in [(2, 0, 1.0), (0, 1, -1.0), (1, 2, 1.0)] {
+        let mut stage = Stage::new(&StageParameters {
+            wiring,
+            ..StageParameters::REFERENCE
+        });
+        let mut pins = [BridgeState::RESET; 3];
+        pins[bridge] = BridgeState {
+            pulse: 0.3,
+            forward: true,
+            awake: true,
+            fault: false,
+        };
+        for _ in 0..20 {
+            stage.advance_period(pins);
+        }
+        let rates = stage.plant.motor_rates_rad_s();
+        let fastest = rates.into_iter().map(f64::abs).fold(0.0, f64::max);
+        assert!(
+            rates[ring] * way == fastest && fastest > 0.1,
+            "{bridge}: {rates:?}"
+        );
+        let (currents, _) = stage.analog();
+        for (i, counts) in currents.into_iter().enumerate() {
+            assert_eq!(counts > 2048, i == bridge, "{bridge}: {currents:?}");
+        }
+        let frames = stage.frames();
+        for (ring, port) in [(0, 1), (1, 2), (2, 0)] {
+            assert_eq!(frames[port], stage.encoders[ring].frame_bytes());
+            let at_port = stage.encoder_at(port).position();
+            assert_eq!(at_port, stage.encoders[ring].position());
+        }
+    }
 }
