@@ -14,4 +14,6 @@ pub enum Mode {
     Fault,
     /// A fault is latched, the motion under way is being brought to rest under control.
     Stopping,
+    /// Servo off, an excitation has the motors.
+    Exciting,
 }

@@ -3,9 +3,11 @@
 //! What the tick uses is derived from these once, in `control/config.rs`. Defaults are those of the reference stage
 //! unless a line says otherwise.
 
+mod connector_order;
 mod consistency;
 mod recovery;
 
+pub use connector_order::ConnectorOrder;
 pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 
 use crate::motion::{Limits, TurnDirection};
@@ -40,6 +42,10 @@ pub struct Parameters {
     pub window: SettlingWindow,
     /// Thresholds of the faults.
     pub supervision: Supervision,
+    /// Guards of excitations.
+    pub excitation: ExcitationLimits,
+    /// Which connector of the board is which pivot's.
+    pub wiring: Wiring,
     /// The data recorder.
     pub recorder: RecorderParameters,
     /// What targets mean.
@@ -297,6 +303,30 @@ pub struct Supervision {
     pub host_silence_ms: f64,
 }
 
+/// What an excitation may do with the servo off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExcitationLimits {
+    /// Largest voltage of a motor; with the servo on what is added to the servo's.
+    pub voltage_v: f64,
+    /// Furthest that a pivot may go.
+    pub way_rad: f64,
+    /// Largest rate of a pivot.
+    pub rate_rad_s: f64,
+    /// Share of the servo's gains where rings are held each on its own.
+    pub stiffness: f64,
+}
+
+/// Which of the board's connectors is which pivot's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wiring {
+    /// Numbers of the encoder ports of pivot 1, 2 and 3, as the digits of one: 123 is straight. See [`ConnectorOrder`].
+    pub encoder_order: u16,
+    /// The same of the bridges.
+    pub bridge_order: u16,
+    /// Whether a positive voltage turns the ring to smaller angles.
+    pub motors_reversed: [bool; 3],
+}
+
 /// Records of the data recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecorderParameters {
@@ -437,6 +467,19 @@ impl Parameters {
             separation_margin_rad: 0.5 * core::f64::consts::PI / 180.0,
             stop_s: 0.06,
             host_silence_ms: 0.0,
+        },
+        excitation: ExcitationLimits {
+            // Holds a ring to 0.67 rad/s, by its back-EMF: 7 mJ of platform.
+            voltage_v: 2.0,
+            // What braking adds at that rate leaves it under 20 mrad.
+            way_rad: 12e-3,
+            rate_rad_s: 0.7,
+            stiffness: 0.1,
+        },
+        wiring: Wiring {
+            encoder_order: 123,
+            bridge_order: 123,
+            motors_reversed: [false; 3],
         },
         recorder: RecorderParameters {
             points: MAX_RECORD_ROWS as u32,

@@ -21,7 +21,8 @@ stop is told besides; the first stays latched.
 
 ## States and events
 
-Off lets the motors coast; holding, moving and stopping drive them; a fault brakes them, or lets them coast where its reaction is
+Off lets the motors coast; holding, moving and stopping drive them, and so does an excitation (`EXC`), which needs neither a reference
+nor a commissioned machine and brakes at its end; a fault brakes them, or lets them coast where its reaction is
 that. `refused`: the command is counted as refused, nothing changes. `if ready`: the encoders answer and are referenced, or the plan
 starts where the motion is, or the fault that is acknowledged is not one that only a restart takes away; refused if not.
 
@@ -67,6 +68,7 @@ fn word(mode: Mode) -> &'static str {
         Mode::Moving => "moving",
         Mode::Stopping => "stopping",
         Mode::Fault => "fault",
+        Mode::Exciting => "exciting",
     }
 }
 

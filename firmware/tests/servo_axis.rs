@@ -276,8 +276,8 @@ fn what_is_taken_over_is_no_step() {
     let config = config();
     let full = full_loop(SUPPLY_COUNTS);
     let mut servo = PivotServo::default();
-    let with = |learnt_volts| PivotSetpoint {
-        learnt_volts,
+    let with = |added_volts| PivotSetpoint {
+        added_volts,
         ..asking(1.0, 0.0)
     };
     servo.step(&config, &with(2.0), &full);

@@ -2,6 +2,9 @@
 //! What is expected is written here once more, and not read from the table: a change of the table fails until it is made here too.
 
 use firmware::control::config::Config;
+use firmware::control::excitation::{
+    Excitation, ExcitationGuards, ExcitationSignal, ExcitationUntil,
+};
 use firmware::control::{Event, MODES, Outcome, TRANSITIONS};
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
@@ -18,32 +21,36 @@ const SOON: u32 = 4;
 /// Ticks of any of the motions here.
 const LONG: u32 = 20_000;
 
-/// What every event does in every state, in the order of the columns: off, holding, moving, stopping, fault.
+/// What every event does in every state, in the order of the columns: off, holding, moving, stopping, fault, exciting.
 #[rustfmt::skip]
-const EXPECTED: [(Event, [Outcome; 5]); 12] = {
-    use Mode::{Fault, Holding, Moving, Off, Stopping};
+const EXPECTED: [(Event, [Outcome; 6]); 14] = {
+    use Mode::{Exciting, Fault, Holding, Moving, Off, Stopping};
     use Outcome::{If, Nothing, Refused, To};
     [
-        (Event::Reference,   [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
-        (Event::ServoOn,     [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
-        (Event::ServoOff,    [To(Off),     To(Off),     To(Off),      Refused,   Refused]),
-        (Event::Move,        [Refused,     If(Moving),  If(Moving),   Refused,   Refused]),
-        (Event::Centre,      [To(Off),     To(Holding), Refused,      Refused,   Refused]),
-        (Event::Constants,   [To(Off),     To(Holding), Refused,      Refused,   To(Fault)]),
-        (Event::Mounting,    [To(Off),     Refused,     Refused,      Refused,   To(Fault)]),
-        (Event::Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   If(Off)]),
-        (Event::AtRest,      [Nothing,     Nothing,     To(Holding),  To(Fault), Nothing]),
-        (Event::StopFault,   [To(Fault),   To(Fault),   To(Stopping), Nothing,   Nothing]),
-        (Event::BrakeFault,  [To(Fault),   To(Fault),   To(Fault),    To(Fault), Nothing]),
-        (Event::CoastFault,  [Nothing,     To(Fault),   To(Fault),    To(Fault), Nothing]),
+        //              off           holding      moving        stopping   fault      exciting
+        (Event::Reference,     [If(Holding),  To(Holding), To(Moving),   Refused,   Refused,   Refused]),
+        (Event::ServoOn,       [If(Holding),  To(Holding), To(Moving),   Refused,   Refused,   Refused]),
+        (Event::ServoOff,      [To(Off),      To(Off),     To(Off),      Refused,   Refused,   To(Off)]),
+        (Event::Move,          [Refused,      If(Moving),  If(Moving),   Refused,   Refused,   Refused]),
+        (Event::Centre,        [To(Off),      To(Holding), Refused,      Refused,   Refused,   Refused]),
+        (Event::Constants,     [To(Off),      To(Holding), Refused,      Refused,   To(Fault), Refused]),
+        (Event::Mounting,      [To(Off),      Refused,     Refused,      Refused,   To(Fault), Refused]),
+        (Event::Excite,        [If(Exciting), If(Holding), If(Moving),   Refused,   Refused,   Refused]),
+        (Event::EndExcitation, [To(Off),      To(Holding), To(Moving),   Nothing,   Nothing,   To(Exciting)]),
+        (Event::Acknowledge,   [Nothing,      Nothing,     Nothing,      Refused,   If(Off),   Nothing]),
+        (Event::AtRest,        [Nothing,      Nothing,     To(Holding),  To(Fault), Nothing,   To(Off)]),
+        (Event::StopFault,     [To(Fault),    To(Fault),   To(Stopping), Nothing,   Nothing,   To(Fault)]),
+        (Event::BrakeFault,    [To(Fault),    To(Fault),   To(Fault),    To(Fault), Nothing,   To(Fault)]),
+        (Event::CoastFault,    [Nothing,      To(Fault),   To(Fault),    To(Fault), Nothing,   To(Fault)]),
     ]
 };
-const COLUMNS: [Mode; 5] = [
+const COLUMNS: [Mode; 6] = [
     Mode::Off,
     Mode::Holding,
     Mode::Moving,
     Mode::Stopping,
     Mode::Fault,
+    Mode::Exciting,
 ];
 
 struct Run {
@@ -110,6 +117,10 @@ impl Run {
                 run.host.emergency_stop = false;
                 run.ticks(SOON);
             }
+            Mode::Exciting => {
+                run.command(Command::Servo(false));
+                run.command(Command::Excite(excitation(LONG / 2)));
+            }
         }
         if state == Mode::Stopping {
             run.host.stage.encoders[0].set_fault(EncoderFault::StuckHigh);
@@ -153,6 +164,8 @@ impl Run {
                 wanted.encoders[1].zero_counts += 1;
                 self.command(Command::Configure(Config::new(&wanted)));
             }
+            Event::Excite => self.command(Command::Excite(excitation(LONG / 2))),
+            Event::EndExcitation => self.command(Command::EndExcitation),
             Event::Acknowledge => self.command(Command::Acknowledge),
             Event::AtRest => self.ticks(LONG),
             Event::StopFault => {
@@ -171,6 +184,20 @@ impl Run {
                 self.host.bridges[2].set_fault(false);
             }
         }
+    }
+}
+
+/// A voltage that moves nothing.
+fn excitation(ticks: u32) -> Excitation {
+    Excitation {
+        pivot: 1,
+        signal: ExcitationSignal::Volts {
+            start: 0.1,
+            per_tick: 0.0,
+        },
+        ticks,
+        until: ExcitationUntil::TIME,
+        guards: ExcitationGuards::new(&Parameters::REFERENCE),
     }
 }
 
@@ -229,6 +256,21 @@ fn what_needs_something_is_refused_without_it() {
         run.now.setpoint[0] += 1;
         run.plan = None;
         refuses(run, Event::Move);
+    }
+    for state in [Mode::Off, Mode::Holding, Mode::Moving] {
+        // Off and not referenced: an encoder that is lost is no fault then.
+        let mut run = match state {
+            Mode::Off => Run::new(),
+            _ => Run::in_state(state),
+        };
+        match state {
+            // An encoder that does not answer.
+            Mode::Off => run.host.stage.encoders[1].set_fault(EncoderFault::StuckLow),
+            // One under way.
+            _ => run.command(Command::Excite(excitation(LONG))),
+        }
+        run.ticks(10);
+        refuses(run, Event::Excite);
     }
     // What only another start can find gone.
     let mut damaged = Run::new();

@@ -22,6 +22,7 @@ impl Commander {
         }
         self.tables.take_result(&mut queues.trial);
         self.switch_off_at_rest(queues);
+        self.advance_end_of_excitation(queues);
         self.advance_streaming(queues);
         let result = match (self.mode(), &self.pending) {
             (Mode::Moving, &(Pending::Stop(stop) | Pending::StopThenGoal(stop, _))) => {

@@ -13,6 +13,10 @@ pub enum CommandError {
     Busy,
     /// The stage is not referenced, or its servo is off.
     NotReady,
+    /// Not with the servo on.
+    ServoOn,
+    /// The tick has refused an excitation: an encoder does not answer.
+    ExcitationRefused,
     /// Nobody has said yet how this machine is set up, so nothing may drive.
     NotCommissioned,
     /// A debugger is attached, which can halt the loop while the motors drive.
@@ -97,6 +101,8 @@ impl fmt::Display for CommandError {
             Self::Wave(error) => error.fmt(f),
             Self::Busy => f.write_str("a command is on its way"),
             Self::NotReady => f.write_str("not referenced, or the servo is off"),
+            Self::ServoOn => f.write_str("not with the servo on"),
+            Self::ExcitationRefused => f.write_str("the control loop refuses the excitation"),
             Self::NotCommissioned => f.write_str("not commissioned"),
             Self::Debugged => f.write_str("a debugger is attached"),
             Self::Faulted => f.write_str("a fault is latched"),

@@ -11,6 +11,8 @@ pub(super) enum InFlight {
     Plan(SentPlan, Option<Goal>),
     /// Referencing.
     Reference,
+    /// An excitation.
+    Excitation,
     /// Other constants for the tick.
     Configure,
     /// Frames with another centre of rotation: in force when the tick has that centre.

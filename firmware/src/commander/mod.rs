@@ -39,6 +39,7 @@
 //! | `referencing`, `reach` | referencing; whether the stage can be where the encoders show it |
 //! | `recovery` | the way back of a stage that was found out of its reach |
 //! | `configure` | other parameters |
+//! | `excitation` | known voltages on a motor |
 //! | `velocities` | of the whole and of single axes |
 //! | `constraints` | what plans keep to now |
 //! | `soft_limits` | travel as the user narrows it |
@@ -60,6 +61,7 @@ mod advance;
 mod configure;
 mod constraints;
 mod error;
+mod excitation;
 mod frame_changes;
 mod furthest_target;
 mod in_flight;

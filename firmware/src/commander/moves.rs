@@ -126,6 +126,7 @@ impl Commander {
     /// Brings the motion to rest, if there is one; whatever else was asked is over. A recovery ends with the servo off.
     pub fn stop(&mut self, stop: Stop, queues: &mut CommandQueues<'_>) {
         self.give_up_recovery();
+        self.end_excitation(queues);
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }

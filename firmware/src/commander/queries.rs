@@ -211,7 +211,7 @@ impl Commander {
             || match self.mode() {
                 Mode::Off | Mode::Fault => self.slides_since.is_some(),
                 Mode::Holding => !settled,
-                Mode::Moving | Mode::Stopping => true,
+                Mode::Moving | Mode::Stopping | Mode::Exciting => true,
             }
     }
 
@@ -220,6 +220,7 @@ impl Commander {
         self.is_referencing()
             || self.is_recovering()
             || self.is_motion_pending()
+            || self.is_exciting()
             || self.mode() == Mode::Moving
     }
 

@@ -34,6 +34,11 @@ impl Commander {
         }
         match (on, snapshot.mode) {
             (true, Mode::Fault | Mode::Stopping) => Err(CommandError::Faulted),
+            (true, Mode::Exciting) => Err(CommandError::InMotion),
+            (false, Mode::Exciting) => {
+                self.end_excitation(queues);
+                Ok(())
+            }
             (true, Mode::Off) if snapshot.referenced => {
                 self.check_may_drive()?;
                 if self.rest.is_fast {
@@ -74,7 +79,7 @@ impl Commander {
                 let sent = self.send(Command::Servo(false), InFlight::Other, queues);
                 self.off_at_rest = sent.is_err();
             }
-            Mode::Off | Mode::Stopping | Mode::Fault => self.off_at_rest = false,
+            Mode::Off | Mode::Stopping | Mode::Fault | Mode::Exciting => self.off_at_rest = false,
         }
     }
 }

@@ -81,6 +81,8 @@ pub struct Commander {
     pub(super) slides_since: Option<u64>,
     /// The servo goes off as soon as the motion has come to its end.
     pub(super) off_at_rest: bool,
+    /// The excitation under way is to end, and the tick has not been told yet.
+    pub(super) ends_excitation: bool,
     /// What became, later, of a request that had been accepted; not asked for yet.
     pub(super) late_error: Option<CommandError>,
 }
@@ -122,6 +124,7 @@ impl Commander {
             rest: RestWatch::default(),
             slides_since: None,
             off_at_rest: false,
+            ends_excitation: false,
             late_error: None,
         }
     }
@@ -195,6 +198,7 @@ impl Commander {
             InFlight::SelectFrames(selection, active_frames) if !refused => {
                 self.apply_frames(selection, active_frames);
             }
+            InFlight::Excitation if refused => self.report_late(CommandError::ExcitationRefused),
             InFlight::Configure if refused => {
                 self.configuration_refused = true;
                 self.report_late(CommandError::ConfigurationRefused);
@@ -270,7 +274,7 @@ impl Commander {
                     self.target_is_rest = false;
                 }
             }
-            Mode::Off | Mode::Fault | Mode::Stopping => {
+            Mode::Off | Mode::Fault | Mode::Stopping | Mode::Exciting => {
                 self.sent_plan = None;
                 self.next_plan = None;
                 self.pending = Pending::Nothing;

@@ -1,6 +1,7 @@
 //! What the command side asks of the tick.
 
 use super::config::Config;
+use super::excitation::Excitation;
 use crate::motion::{Plan, RotationCentre};
 
 /// What the command side asks of the tick.
@@ -20,9 +21,14 @@ pub enum Command {
     /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the
     /// encoders' readings mean; such a change takes the reference.
     Configure(Config),
+    /// Put a known voltage on a motor: alone with the servo off, else besides what the servo asks for.
+    Excite(Excitation),
+    /// End that.
+    EndExcitation,
     /// Acknowledge the latched fault.
     Acknowledge,
 }
 
 // Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
 const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());
+const _: () = assert!(size_of::<Excitation>() <= size_of::<Plan>());

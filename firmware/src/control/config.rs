@@ -7,6 +7,7 @@ use crate::control::oscillation::MEMORY_S;
 use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
+use crate::control::wiring::WiringConfig;
 use crate::drivers::power_stage::BUS;
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
@@ -23,6 +24,8 @@ pub(super) const MAX_MEAN_TICKS: usize = 32;
 pub struct Config {
     /// Whether the machine is commissioned: if not, the servo never goes on.
     pub commissioned: bool,
+    /// Which connector is which pivot's.
+    pub wiring: WiringConfig,
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderConfig; 3],
     /// Setpoint integers to rates.
@@ -105,6 +108,7 @@ impl Config {
         let fastest = parameters.limits.pivot_rate_rad_s * supervision.overspeed_factor;
         Self {
             commissioned: parameters.commissioned,
+            wiring: WiringConfig::new(&parameters.wiring),
             encoders: parameters
                 .encoders
                 .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),

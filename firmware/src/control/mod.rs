@@ -6,12 +6,15 @@
 //! | `state` | what a tick is given, what it gives, what it remembers |
 //! | `config` | what it computes with, derived from the parameters |
 //! | `units` | counts of the converter and units of an angle |
+//! | `wiring` | from connectors to pivots, and back |
 //! | `encoder` | frames to a multi-turn angle: which frame is believed, what bridges one that is not |
 //! | `referencing` | turns for theta and the pivots from single-turn encoders |
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `brake_resistor` | what takes the energy that the motors give back |
+//! | `excitation/` | a known voltage on a motor, to see what the machine is |
+//! | `excited` | the tick of an excitation with the servo off |
 //! | `trial` | trials of iterative learning |
 //! | `rest_mode` | slower loops while the setpoint rests |
 //! | `settling` | whether the stage has settled |
@@ -28,6 +31,8 @@ mod brake_resistor;
 mod command;
 pub mod config;
 pub mod encoder;
+pub mod excitation;
+mod excited;
 pub mod held_position;
 mod inspection;
 pub mod loop_counters;
@@ -46,6 +51,7 @@ mod tick;
 mod tick_queues;
 mod trial;
 pub mod units;
+mod wiring;
 
 pub use command::Command;
 pub use observers::TickObservers;

@@ -20,6 +20,22 @@ pub(super) struct PivotSetpoints {
     pub cosines: [f32; 3],
 }
 
+impl PivotSetpoints {
+    /// At rest at these angles, with the guides as they are in the middle of the disk.
+    pub fn at_rest(angles: [Angle; 3]) -> Self {
+        Self {
+            angles,
+            motion: PivotMotion {
+                rates: [0.0; 3],
+                accelerations: [0.0; 3],
+            },
+            torques: [0.0; 3],
+            lengths: [1.0; 3],
+            cosines: [1.0; 3],
+        }
+    }
+}
+
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.
 #[inline(never)]
 pub(super) fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {

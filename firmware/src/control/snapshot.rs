@@ -1,5 +1,6 @@
 //! What the tick reports to the command side.
 
+use super::excitation::ExcitationReport;
 use super::loop_counters::LoopCounters;
 use super::servo::Learnt;
 use crate::drivers::bridge::Duty;
@@ -65,6 +66,8 @@ pub struct Snapshot {
     pub refused: u32,
     /// Largest following error of a pivot since the last start of a motion, rad.
     pub peak_following_error_rad: f32,
+    /// The excitation under way, or the last one.
+    pub excitation: ExcitationReport,
     /// What the loop has counted since the snapshot before.
     pub loop_counters: LoopCounters,
     /// One servo, another one in each snapshot.

@@ -3,6 +3,7 @@
 use super::brake_resistor::BrakeResistor;
 use super::config::Config;
 use super::encoder::Encoder;
+use super::excitation::ExcitationRun;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
 use super::rest_mode::RestMode;
@@ -62,6 +63,7 @@ pub struct State {
     pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
     pub(super) trial: Trial,
+    pub(super) excitation: ExcitationRun,
     pub(super) settling: Settling,
     pub(super) rest_mode: RestMode,
     pub(super) supply: f32,
@@ -142,12 +144,17 @@ impl State {
         matches!(self.mode, Mode::Holding | Mode::Moving | Mode::Stopping)
     }
 
+    /// Whether anything drives the motors.
+    pub(super) fn is_driven(&self) -> bool {
+        self.servo_on() || self.mode == Mode::Exciting
+    }
+
     /// Whether the bridges drive or brake.
     pub(super) fn bridges_awake(&self) -> bool {
         match self.mode {
             Mode::Off => false,
             Mode::Fault => !self.coasts,
-            Mode::Holding | Mode::Moving | Mode::Stopping => true,
+            Mode::Holding | Mode::Moving | Mode::Stopping | Mode::Exciting => true,
         }
     }
 }

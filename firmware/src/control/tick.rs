@@ -57,7 +57,8 @@ pub fn tick_and_drive(
     state
         .loop_counters
         .count_tick(inputs.tick_cycles, inputs.late);
-    let mut pivots = decode(config, &mut state.encoders, inputs.frames);
+    let (frames, currents) = (config.wiring).of_pivots(&inputs.frames, &inputs.current_counts);
+    let mut pivots = decode(config, &mut state.encoders, &frames);
     // An average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.supply == 0.0 {
@@ -82,26 +83,31 @@ pub fn tick_and_drive(
     if let Some([taken_j, most_j]) = overload {
         state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
     }
-    state.check_motor_heat(config, inputs);
+    state.check_motor_heat(config, &currents);
 
     let point = advance(config, state);
     state.advance_trial(config, queues.trial);
     let setpoint = state.motion.centre().platform_setpoint(&point);
     let driven = if drives && state.servo_on() {
-        state.drive(config, &setpoint, &mut pivots, &inputs.current_counts)
+        state.drive(config, &setpoint, &mut pivots, &currents)
     } else {
         None
+    };
+    let excited = if state.mode == Mode::Exciting {
+        state.drive_excited(config, &pivots, &currents)
+    } else {
+        [Duty(0); 3]
     };
     // A fault that came of it takes the drive away in the same tick, unless it stops the motion first.
     if let Some((target, ..)) = &driven {
         state.record_trial(config, queues.trial, &pivots, target);
     }
     let (target, rates, duty) =
-        (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], [Duty(0); 3]));
+        (driven.filter(|_| state.servo_on())).unwrap_or((pivots, [0.0; 3], excited));
     let slot = state.inspection_slot;
     state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
     drive(Outputs {
-        duty,
+        duty: config.wiring.duties(duty),
         awake: state.bridges_awake(),
         brake_resistor: state.brake_resistor.is_on(),
     });
@@ -121,7 +127,7 @@ pub fn tick_and_drive(
         pivot_rates: rates,
         pivots,
         duty,
-        current_counts: inputs.current_counts,
+        current_counts: currents,
         supply_counts: inputs.supply_counts,
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,
@@ -148,7 +154,7 @@ pub fn tick_and_drive(
 
 /// Encoder frames to pivot angles.
 #[inline(never)]
-fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: [RawFrame; 3]) -> [Angle; 3] {
+fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) -> [Angle; 3] {
     for i in 0..3 {
         encoders[i].update(&config.encoders[i], &frames[i]);
     }
@@ -210,6 +216,9 @@ impl State {
         if self.mode != Mode::Holding && !self.motion.is_moving() {
             self.finish_motion();
         }
+        if self.excitation.report.runs {
+            self.excitation.advance_added_volts();
+        }
         let (duty, sum) = self.step_servos(config, &errors, wanted, stiffness, currents);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
@@ -247,7 +256,7 @@ impl State {
 
     /// Duties of the three servos, and the sum of what they asked for. The one that is inspected in this tick learns.
     #[inline(never)]
-    fn step_servos(
+    pub(super) fn step_servos(
         &mut self,
         config: &Config,
         errors: &[i32; 3],
@@ -270,7 +279,7 @@ impl State {
                 platform_torque: wanted.torques[i],
                 angle: wanted.angles[i],
                 current_counts: current_counts[i],
-                learnt_volts: self.trial.volts(i),
+                added_volts: self.trial.volts(i) + self.excitation.added_volts[i],
             };
             let (servo, config) = (&mut self.servo[i], &servos.pivots[i]);
             duty[i] = servo.step(config, &setpoint, &common);

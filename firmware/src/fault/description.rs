@@ -83,8 +83,8 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::Overspeed,
-        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every fourth tick while driven, but not while a late tick is unforgiven, which makes steps too long",
-        thresholds: &[0x5450_0505, 0x5450_0106],
+        detection: "the measured rate of a pivot over a multiple of the largest rate of a pivot; each pivot every fourth tick while driven, but not while a late tick is unforgiven, which makes steps too long. During an excitation with the servo off over a limit of its own, every tick",
+        thresholds: &[0x5450_0505, 0x5450_0106, 0x5450_0D02],
         reason: "what lets a pivot run away cannot be trusted to stop it",
     },
     FaultDescription {
@@ -170,5 +170,11 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         detection: "356 W while it is on less the 50 W that it can give away, summed up to 500 J; every tick, in every state. It is then switched off until half of that is gone, some 5 s",
         thresholds: &[],
         reason: "a supply of more than 54 V, or a motion that brakes without end: shorted windings give nothing back",
+    },
+    FaultDescription {
+        kind: FaultKind::ExcitationWay,
+        detection: "a pivot further than a limit from where it was when an excitation began, or from where its servo has it; each pivot every tick of an excitation with the servo off",
+        thresholds: &[0x5450_0D01],
+        reason: "the machine is not known yet: what moves further than it should is not understood, and the shortest way to rest is the best",
     },
 ];

@@ -53,6 +53,8 @@ pub enum FaultKind {
     SupplyHigh,
     /// The brake resistor has taken more than it bears; value and limit in J.
     BrakeResistorHot,
+    /// An excitation has taken a pivot further than it may; value and limit in rad.
+    ExcitationWay,
 }
 
 /// What a fault does to the motors.
@@ -89,6 +91,7 @@ impl FaultKind {
             | Self::WorkspaceLeft
             | Self::Stalled
             | Self::Oscillation
+            | Self::ExcitationWay
             | Self::NotFinite => Reaction::Brake,
             // Nothing has moved yet at the start.
             Self::BridgeFault
@@ -129,6 +132,7 @@ impl FaultKind {
             Self::SupplyLow => "supply voltage too low",
             Self::SupplyHigh => "supply voltage too high",
             Self::BrakeResistorHot => "brake resistor too hot",
+            Self::ExcitationWay => "excitation has moved a pivot too far",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
             Self::EncoderFrozen => "encoder repeats one reading",
             Self::Overspeed => "pivot too fast",
@@ -154,7 +158,7 @@ impl FaultKind {
     /// Unit of the value and the limit; empty where there are none.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::FollowingError | Self::PivotsTooClose => "rad",
+            Self::FollowingError | Self::PivotsTooClose | Self::ExcitationWay => "rad",
             Self::SupplyLow | Self::SupplyHigh | Self::Oscillation => "V",
             Self::BrakeResistorHot => "J",
             Self::Overspeed => "rad/s",

@@ -143,13 +143,17 @@ impl ErrorCode {
 impl From<CommandError> for ErrorCode {
     fn from(error: CommandError) -> Self {
         match error {
-            CommandError::Busy | CommandError::ConfigurationRefused => Self::Busy,
+            CommandError::Busy
+            | CommandError::ConfigurationRefused
+            | CommandError::ExcitationRefused => Self::Busy,
             CommandError::NotReady => Self::NotReady,
             CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Debugged => Self::Debugged,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
-            CommandError::Streaming | CommandError::StreamNotAtRest => Self::NotAllowed,
+            CommandError::Streaming | CommandError::StreamNotAtRest | CommandError::ServoOn => {
+                Self::NotAllowed
+            }
             CommandError::GeneratorsRunning => Self::GeneratorActive,
             CommandError::ReferencingFailed => Self::ReferencingFailed,
             CommandError::ReferenceOutside(_) => Self::ReferenceOutside,

@@ -33,6 +33,7 @@
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
+//! | `excitation` | `EXC`: a known voltage on a motor |
 //! | `iterative_learning` | `ILC`: moves that are repeated |
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
 //! | `recorder` | the data recorder: what it records, when, and reading it |
@@ -54,6 +55,7 @@ mod connection_number;
 mod connections;
 mod error;
 mod events;
+mod excitation;
 mod execute;
 mod frames;
 mod heartbeat;

@@ -62,6 +62,7 @@ impl Interpreter {
             Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),
             Query::Statistics => self.reply_statistics(out),
+            Query::Excitation => self.reply_excitation(out),
             Query::RepeatedMoves => self.reply_repeated_moves(out),
             Query::Fault => self.reply_fault(out),
             Query::Monitor => self.reply_monitor(session, out),

@@ -1,5 +1,6 @@
 //! What a line or a single byte asks for.
 
+use super::excitation::ExcitationRequest;
 use super::frames::FrameQuery;
 use super::iterative_learning::LearnAction;
 use super::macros::MacroRequest;
@@ -98,6 +99,8 @@ pub enum Query {
     Statistics,
     /// `ILC?`
     RepeatedMoves,
+    /// `EXC?`
+    Excitation,
     /// `#4`
     Status,
     /// `#5`
@@ -144,6 +147,8 @@ pub enum Action {
     Wave(WaveChange),
     /// Tables of moves that are repeated.
     Repeat(LearnAction),
+    /// A known voltage on a motor.
+    Excite(ExcitationRequest),
     /// Frames and the centre of rotation.
     Frame(FrameChange),
     /// `NLM`: mm and deg.
@@ -266,6 +271,7 @@ impl Action {
                 | Self::MoveInTool(_)
                 | Self::Step(_)
                 | Self::Jog(_)
+                | Self::Excite(_)
                 | Self::Wave(WaveChange::Switch(_))
         )
     }

@@ -1,6 +1,7 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
 use super::arguments::{axis_identifiers, joysticks};
+use super::excitation::parse as excitation;
 use super::frames::parse as frames;
 use super::iterative_learning::parse as learning;
 use super::macros::{MacroRequest, parse as macros};
@@ -114,6 +115,27 @@ pub(super) static COMMANDS: &[Entry] = &[
         Query::Events,
         "get what has happened: number, tick, event",
     ),
+    own(
+        "EXC RAMP",
+        excitation::ramp,
+        "<pivot> <V> <ms> [<mrad> [<A>]] put a voltage that rises from 0 on a motor, until a pivot has gone so far or the motor carries so much",
+    ),
+    own(
+        "EXC RING",
+        excitation::ring,
+        "<pivot> <mrad> <mrad/s> <ms> [<A>] hold every ring by itself and move one, until its motor carries so much",
+    ),
+    own(
+        "EXC SINES",
+        excitation::sines,
+        "<pivot> <V> <ms> <lowest> <highest> <lines> put a multisine of harmonics of 4096 ticks on a motor",
+    ),
+    own(
+        "EXC STEP",
+        excitation::step,
+        "<pivot> <V> <ms> [<mrad> [<A>]] put a voltage on a motor",
+    ),
+    ask("EXC?", Query::Excitation, "get what came of the excitation"),
     entry(
         "FLC",
         Syntax::Plain(Request::Act(Action::Acknowledge)),

@@ -1,6 +1,6 @@
 //! What has to hold between parameters, each of which is in its own range.
 
-use super::Parameters;
+use super::{ConnectorOrder, Parameters, Wiring};
 use kinematics::Geometry;
 
 /// Least and most of the track's radius that the usable disk may reach out to: closer to the track the pivots' rates
@@ -19,12 +19,13 @@ const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
 
 impl Parameters {
     /// Whether they make a stage that can be controlled: that the disk is not empty, that the tick's numbers hold every
-    /// rate, that no threshold contradicts another, and that a record has a point from its trigger on. Says nothing of
+    /// rate, that no threshold contradicts another, that no connector is two pivots', and that a record has a point from its trigger on. Says nothing of
     /// each parameter's own range.
     pub fn are_sound(&self) -> bool {
         self.has_disk()
             && self.rates_fit()
             && self.thresholds_agree()
+            && self.connectors_differ()
             && self.recorder.before < self.recorder.points
     }
 
@@ -48,6 +49,17 @@ impl Parameters {
         limits.all_positive()
             && fastest <= MAX_RATE_1_S
             && hardest * limits.stop_factor <= MAX_ACCELERATION_1_S2
+    }
+
+    fn connectors_differ(&self) -> bool {
+        let Wiring {
+            encoder_order,
+            bridge_order,
+            ..
+        } = self.wiring;
+        [encoder_order, bridge_order]
+            .iter()
+            .all(|digits| ConnectorOrder::from_digits(f64::from(*digits)).is_some())
     }
 
     fn thresholds_agree(&self) -> bool {

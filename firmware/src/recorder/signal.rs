@@ -29,7 +29,7 @@ pub enum RawSignal {
     Current(u8),
     /// Supply, ADC counts.
     Supply,
-    /// The supervisor's [`Mode`](crate::mode::Mode): 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault.
+    /// The supervisor's [`Mode`](crate::mode::Mode): 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault, 5 excited.
     Mode,
     /// The latched [`FaultKind`](crate::fault::FaultKind), counted from 1; 0 for none.
     Fault,

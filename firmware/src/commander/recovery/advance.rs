@@ -84,7 +84,7 @@ impl Commander {
             return None;
         };
         match (self.mode(), recovery.step) {
-            (Mode::Moving | Mode::Stopping, _) => {}
+            (Mode::Moving | Mode::Stopping | Mode::Exciting, _) => {}
             (Mode::Holding, _) if self.is_motion_pending() => {}
             (Mode::Holding, _) if recovery.is_given_up => {
                 // A full queue: again at the next snapshot. So below.

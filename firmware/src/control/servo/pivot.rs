@@ -29,8 +29,8 @@ pub struct PivotSetpoint {
     pub angle: Angle,
     /// The motor's current as it was measured, ADC counts.
     pub current_counts: i16,
-    /// What iterative learning adds, V.
-    pub learnt_volts: f32,
+    /// What iterative learning or an excitation adds, V.
+    pub added_volts: f32,
 }
 
 /// What the three loops have in common at a tick.
@@ -165,7 +165,7 @@ impl PivotServo {
         let feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
             + (config.model_weights[1] + self.learnt.weights[1]) * torque
             + (config.model_weights[2] + self.learnt.weights[2]) * friction
-            + setpoint.learnt_volts;
+            + setpoint.added_volts;
 
         let r = r + self.scheduled_excess * r;
         let feedback = self.filters.step(

@@ -4,6 +4,7 @@ use super::transitions::{Event, Outcome, outcome};
 use crate::control::command::Command;
 use crate::control::config::Config;
 use crate::control::encoder::Encoder;
+use crate::control::excitation::{Excitation, ExcitationEnd, ExcitationSignal};
 use crate::control::referencing;
 use crate::control::state::State;
 use crate::fault::Fault;
@@ -55,7 +56,14 @@ impl State {
                 let _ = self.motion.set_centre(*centre);
             }
             // The servo is on already, or goes off, which is all there is to it.
-            Command::Reference | Command::Servo(_) | Command::Move(_) | Command::Acknowledge => {}
+            Command::Servo(false) | Command::EndExcitation => {
+                self.excitation.end(ExcitationEnd::Stopped);
+            }
+            Command::Reference
+            | Command::Servo(true)
+            | Command::Move(_)
+            | Command::Excite(_)
+            | Command::Acknowledge => {}
         }
     }
 
@@ -84,7 +92,8 @@ impl State {
                 self.lost_pivot = None;
                 true
             }
-            Command::Centre(_) | Command::Configure(_) => false,
+            Command::Excite(excitation) => self.excite(excitation, pivots),
+            Command::Centre(_) | Command::Configure(_) | Command::EndExcitation => false,
         }
     }
 
@@ -128,9 +137,28 @@ impl State {
         }
     }
 
+    /// Begins an excitation: one at a time, with encoders that answer, and with the servo on none that has its own.
+    fn excite(&mut self, excitation: &Excitation, pivots: &[Angle; 3]) -> bool {
+        let is_ring = matches!(excitation.signal, ExcitationSignal::Ring { .. });
+        let ready = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
+        if !ready || self.excitation.request().is_some() || is_ring && self.servo_on() {
+            return false;
+        }
+        if self.mode == Mode::Off {
+            for servo in &mut self.servo {
+                servo.restart();
+            }
+        }
+        self.excitation.start(excitation, pivots);
+        true
+    }
+
     /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that sends no snapshot.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
-        let moved = [0, 1, 2].map(|i| !config.encoders[i].has_same_mounting(&wanted.encoders[i]));
+        let moved = [0, 1, 2].map(|i| {
+            !config.encoders[i].has_same_mounting(&wanted.encoders[i])
+                || !config.wiring.has_same_encoders(&wanted.wiring)
+        });
         for (i, servo) in self.servo.iter_mut().enumerate() {
             // Other ones than were set last: what has been learnt since then stays otherwise.
             let learnt = &wanted.servo.pivots[i].learnt;
@@ -159,12 +187,14 @@ fn event_of(config: &Config, command: &Command) -> Event {
         Command::Configure(wanted) => {
             let same = (config.encoders.iter().zip(&wanted.encoders))
                 .all(|(now, wanted)| now.has_same_mounting(wanted));
-            if same {
+            if same && config.wiring == wanted.wiring {
                 Event::Constants
             } else {
                 Event::Mounting
             }
         }
+        Command::Excite(_) => Event::Excite,
+        Command::EndExcitation => Event::EndExcitation,
         Command::Acknowledge => Event::Acknowledge,
     }
 }

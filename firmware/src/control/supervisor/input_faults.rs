@@ -37,10 +37,10 @@ impl State {
             return;
         }
         self.check_lateness(config, inputs.late);
-        if self.servo_on() {
+        if self.is_driven() {
             self.check_power(config, inputs);
         }
-        if self.referenced || self.mode == Mode::Stopping {
+        if self.referenced || matches!(self.mode, Mode::Stopping | Mode::Exciting) {
             self.check_encoders();
         }
     }
@@ -59,8 +59,9 @@ impl State {
     }
 
     fn check_power(&mut self, config: &Config, inputs: &Inputs) {
-        for i in 0..3 {
-            if inputs.bridge_fault[i] {
+        let faults = config.wiring.bridge_faults(&inputs.bridge_fault);
+        for (i, reported) in faults.into_iter().enumerate() {
+            if reported {
                 self.raise_fault(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
             }
         }

@@ -4,7 +4,7 @@
 use crate::control::config::Config;
 use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
 use crate::control::oscillation::OscillationWatch;
-use crate::control::state::{Inputs, State};
+use crate::control::state::State;
 use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
 use crate::fault::FaultKind;
 use crate::number::sqrt_f32;
@@ -15,10 +15,13 @@ const REPEATED_READINGS: u16 = 20;
 
 impl State {
     /// The motor's temperature, in every state: it cools while nothing drives it.
-    pub(in crate::control) fn check_motor_heat(&mut self, config: &Config, inputs: &Inputs) {
+    pub(in crate::control) fn check_motor_heat(
+        &mut self,
+        config: &Config,
+        current_counts: &[i16; 3],
+    ) {
         let i = self.inspection_slot;
-        let (Some(watch), Some(counts)) =
-            (self.pivot_watches.get_mut(i), inputs.current_counts.get(i))
+        let (Some(watch), Some(counts)) = (self.pivot_watches.get_mut(i), current_counts.get(i))
         else {
             return;
         };
@@ -29,7 +32,7 @@ impl State {
             watch.mean_square_current,
             config.limits.max_mean_square_current,
         );
-        if heat > most && self.servo_on() {
+        if heat > most && self.is_driven() {
             const A: f32 = CURRENT_A_PER_COUNT as f32;
             let (value, limit) = (sqrt_f32(heat) * A, sqrt_f32(most) * A);
             self.raise_fault(FaultKind::MotorHot, Some(i), value, limit);

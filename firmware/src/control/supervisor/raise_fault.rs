@@ -1,6 +1,7 @@
 //! What a fault does: it is latched, and answered as the table of transitions has it.
 
 use super::transitions::{Event, Outcome, outcome};
+use crate::control::excitation::ExcitationEnd;
 use crate::control::state::State;
 use crate::fault::{Fault, FaultKind, Reaction};
 use crate::mode::Mode;
@@ -61,6 +62,7 @@ impl State {
         if mode == Mode::Stopping {
             self.motion.begin_fault_stop();
         }
+        self.excitation.end(ExcitationEnd::Fault);
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;
         self.settling.start();

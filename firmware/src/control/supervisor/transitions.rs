@@ -20,9 +20,13 @@ pub enum Event {
     Constants,
     /// Command: other constants, an encoder's mounting among them.
     Mounting,
+    /// Command: an excitation.
+    Excite,
+    /// Command: end it.
+    EndExcitation,
     /// Command: acknowledge the fault.
     Acknowledge,
-    /// The motion has come to its end.
+    /// The motion, or the excitation, has come to its end.
     AtRest,
     /// A fault that is answered by a controlled stop.
     StopFault,
@@ -46,35 +50,40 @@ pub enum Outcome {
 }
 
 /// All states, in the order of the table.
-pub const MODES: [Mode; 5] = [
+pub const MODES: [Mode; 6] = [
     Mode::Off,
     Mode::Holding,
     Mode::Moving,
     Mode::Stopping,
     Mode::Fault,
+    Mode::Exciting,
 ];
 
 /// All events with what they do in each of the [`MODES`].
 #[rustfmt::skip]
-pub const TRANSITIONS: [(Event, [Outcome; 5]); 12] = {
-    use Event::{Acknowledge, AtRest, BrakeFault, Centre, CoastFault, Constants, Mounting, Move, Reference, ServoOff, ServoOn, StopFault};
-    use Mode::{Fault, Holding, Moving, Off, Stopping};
+pub const TRANSITIONS: [(Event, [Outcome; 6]); 14] = {
+    use Event::{Acknowledge, AtRest, BrakeFault, Centre, CoastFault, Constants, EndExcitation, Excite, Mounting, Move, Reference, ServoOff, ServoOn, StopFault};
+    use Mode::{Exciting, Fault, Holding, Moving, Off, Stopping};
     use Outcome::{If, Nothing, Refused, To};
     [
-        //            off          holding      moving        stopping   fault
-        (Reference,   [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
-        (ServoOn,     [If(Holding), To(Holding), To(Moving),   Refused,   Refused]),
-        (ServoOff,    [To(Off),     To(Off),     To(Off),      Refused,   Refused]),
-        (Move,        [Refused,     If(Moving),  If(Moving),   Refused,   Refused]),
-        (Centre,      [To(Off),     To(Holding), Refused,      Refused,   Refused]),
-        (Constants,   [To(Off),     To(Holding), Refused,      Refused,   To(Fault)]),
-        (Mounting,    [To(Off),     Refused,     Refused,      Refused,   To(Fault)]),
-        (Acknowledge, [Nothing,     Nothing,     Nothing,      Refused,   If(Off)]),
-        (AtRest,      [Nothing,     Nothing,     To(Holding),  To(Fault), Nothing]),
-        (StopFault,   [To(Fault),   To(Fault),   To(Stopping), Nothing,   Nothing]),
-        (BrakeFault,  [To(Fault),   To(Fault),   To(Fault),    To(Fault), Nothing]),
+        //              off           holding      moving        stopping   fault      exciting
+        (Reference,     [If(Holding),  To(Holding), To(Moving),   Refused,   Refused,   Refused]),
+        (ServoOn,       [If(Holding),  To(Holding), To(Moving),   Refused,   Refused,   Refused]),
+        (ServoOff,      [To(Off),      To(Off),     To(Off),      Refused,   Refused,   To(Off)]),
+        (Move,          [Refused,      If(Moving),  If(Moving),   Refused,   Refused,   Refused]),
+        (Centre,        [To(Off),      To(Holding), Refused,      Refused,   Refused,   Refused]),
+        (Constants,     [To(Off),      To(Holding), Refused,      Refused,   To(Fault), Refused]),
+        (Mounting,      [To(Off),      Refused,     Refused,      Refused,   To(Fault), Refused]),
+        // With the servo on it is added to what the servo asks for.
+        (Excite,        [If(Exciting), If(Holding), If(Moving),   Refused,   Refused,   Refused]),
+        // It brakes before it lets go.
+        (EndExcitation, [To(Off),      To(Holding), To(Moving),   Nothing,   Nothing,   To(Exciting)]),
+        (Acknowledge,   [Nothing,      Nothing,     Nothing,      Refused,   If(Off),   Nothing]),
+        (AtRest,        [Nothing,      Nothing,     To(Holding),  To(Fault), Nothing,   To(Off)]),
+        (StopFault,     [To(Fault),    To(Fault),   To(Stopping), Nothing,   Nothing,   To(Fault)]),
+        (BrakeFault,    [To(Fault),    To(Fault),   To(Fault),    To(Fault), Nothing,   To(Fault)]),
         // A bridge that does not drive does not matter.
-        (CoastFault,  [Nothing,     To(Fault),   To(Fault),    To(Fault), Nothing]),
+        (CoastFault,    [Nothing,      To(Fault),   To(Fault),    To(Fault), Nothing,   To(Fault)]),
     ]
 };
 
@@ -109,6 +118,7 @@ impl Mode {
             Self::Moving => 2,
             Self::Stopping => 3,
             Self::Fault => 4,
+            Self::Exciting => 5,
         }
     }
 }

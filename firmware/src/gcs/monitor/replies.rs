@@ -53,5 +53,6 @@ const fn mode_text(mode: Mode) -> &'static str {
         Mode::Moving => "moving",
         Mode::Fault => "fault",
         Mode::Stopping => "stopping",
+        Mode::Exciting => "exciting",
     }
 }

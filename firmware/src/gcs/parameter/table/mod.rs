@@ -30,6 +30,7 @@ const SERVO: Group = group("servo", 1, When::AtRest);
 const WINDOW: Group = group("window", 0, When::AtRest);
 const SUPERVISION: Group = group("supervision", 1, When::AtRest);
 const ENCODER: Group = group("encoder", 1, When::ServoOff);
+const EXCITATION: Group = group("excitation", 1, When::ServoOff);
 const COMMISSIONING: Group = group("commissioning", 1, When::ServoOff);
 const PLATFORM: Group = group("platform", 0, When::AtRest);
 const RECORDER: Group = group("recorder", 0, When::AtRest);
@@ -232,6 +233,17 @@ const AFTER_GAINS: &[Parameter] = &[
     ENCODER.int(0x5450_0610, "whether encoder 1 counts down", [0.0, 1.0], flag!(encoders[0].reversed)),
     ENCODER.int(0x5450_0611, "whether encoder 2 counts down", [0.0, 1.0], flag!(encoders[1].reversed)),
     ENCODER.int(0x5450_0612, "whether encoder 3 counts down", [0.0, 1.0], flag!(encoders[2].reversed)),
+
+    ENCODER.int(0x5450_0620, "ports of the encoders of pivot 1, 2 and 3, a digit each", [123.0, 321.0], whole!(u16: wiring.encoder_order)),
+    ENCODER.int(0x5450_0630, "bridges of pivot 1, 2 and 3, a digit each", [123.0, 321.0], whole!(u16: wiring.bridge_order)),
+    ENCODER.int(0x5450_0640, "whether a positive voltage turns pivot 1 to smaller angles", [0.0, 1.0], flag!(wiring.motors_reversed[0])),
+    ENCODER.int(0x5450_0641, "whether a positive voltage turns pivot 2 to smaller angles", [0.0, 1.0], flag!(wiring.motors_reversed[1])),
+    ENCODER.int(0x5450_0642, "whether a positive voltage turns pivot 3 to smaller angles", [0.0, 1.0], flag!(wiring.motors_reversed[2])),
+
+    EXCITATION.float(0x5450_0D00, "largest voltage of an excitation", "V", [0.1, 12.0], at!(excitation.voltage_v)),
+    EXCITATION.float(0x5450_0D01, "furthest that it may move a pivot", "rad", [1e-4, 7.0], at!(excitation.way_rad)),
+    EXCITATION.float(0x5450_0D02, "largest rate of a pivot during it", "rad/s", [0.01, 5.0], at!(excitation.rate_rad_s)),
+    EXCITATION.float(0x5450_0D03, "share of the servo's gains with which rings are held, each by itself", "", [0.01, 1.0], at!(excitation.stiffness)),
 
     COMMISSIONING.int(COMMISSIONED, "whether all that this machine has of its own is set: if not, nothing drives; CMS sets it", [0.0, 1.0], flag!(commissioned)),
 

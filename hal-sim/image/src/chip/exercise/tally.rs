@@ -37,7 +37,7 @@ pub struct Doing {
 }
 
 impl Doing {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 12] = [
         Self::new(Mode::Off, false),
         Self::new(Mode::Off, true),
         Self::new(Mode::Holding, false),
@@ -48,6 +48,8 @@ impl Doing {
         Self::new(Mode::Stopping, true),
         Self::new(Mode::Fault, false),
         Self::new(Mode::Fault, true),
+        Self::new(Mode::Exciting, false),
+        Self::new(Mode::Exciting, true),
     ];
 
     const fn new(mode: Mode, commanded: bool) -> Self {
@@ -67,6 +69,8 @@ impl Doing {
             (Mode::Stopping, false) => "stopping because of a fault",
             (Mode::Stopping, true) => "taking a command, stopping because of a fault",
             (Mode::Fault, false) => "with a fault latched",
+            (Mode::Exciting, false) => "excited",
+            (Mode::Exciting, true) => "taking a command, excited",
             (Mode::Fault, true) => "taking a command, with a fault",
         }
     }
@@ -139,7 +143,7 @@ mod tests {
             tally.add(tick, 100 + tick % 8, doing, || tick.to_string());
         }
         let counted: Vec<_> = tally.by_doing().map(|(_, cost)| cost.ticks).collect();
-        assert_eq!(counted, [2; 10]);
+        assert_eq!(counted, [2; 12]);
         assert_eq!((tally.all().ticks, tally.all().worst), (20, 107));
         let worst = tally.worst.expect("there were ticks");
         assert_eq!((worst.tick, worst.line.as_str()), (7, "7"));
