@@ -9,3 +9,4 @@ mod least_squares;
 pub mod multisine;
 pub mod record;
 mod spectrum;
+pub mod tuning;

@@ -131,7 +131,7 @@ pub struct Plan {
     pub lines: usize,
 }
 
-pub const PLAN: Plan = Plan { pose: [0.0; 3], rate_rad_s: 1.5, rms_v: 2.0, runs: 4, periods: 4, to_hz: 3_000.0, lines: 57 };
+pub const PLAN: Plan = Plan { pose: [0.0; 3], rate_rad_s: 1.5, rms_v: 4.0, runs: 4, periods: 4, to_hz: 3_000.0, lines: 57 };
 
 /// The records of a plan, on a machine that turns without end.
 pub fn excite(parameters: &StageParameters, plan: &Plan) -> (Vec<Run>, Machine) {
