@@ -21,7 +21,7 @@ pub struct Gains {
 /// What a loop is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Whether it is stable: known only where the plant's frequencies reach from a few Hz to nearly half the ticks' rate.
+    /// Whether it is stable: known only where the plant's frequencies reach from half a hertz to nearly half the ticks' rate.
     pub is_stable: bool,
     /// Largest singular value of S over all frequencies.
     pub ms: f64,

@@ -1,15 +1,17 @@
 //! Gains and filters for a machine: the best rejection of what is slow, at margins that are kept at every place and with every load.
 //!
-//! For a shape of the servo the velocity gain goes as high as the limits allow; the shape is changed a number at a time until nothing more is won.
-//! Position gain and corner of the integral go with the velocity gain, so that a slower servo is the same with time stretched, and small
+//! All numbers of the servo are varied at once (`evolution`); what breaks a limit costs. At the end the velocity gain goes as high as the limits
+//! allow. Position gain and corner of the integral go with the velocity gain, so that a slower servo is the same with time stretched, and small
 //! gains are safe.
 //!
 //! | file | idea |
 //! |---|---|
+//! | `evolution` | the search |
 //! | `servo` | the servo of a pivot as a frequency response |
 //! | `plant` | what the servos see |
 //! | `margins` | sensitivity and stability of the three loops together |
 
+mod evolution;
 mod margins;
 mod plant;
 mod servo;
@@ -20,6 +22,8 @@ pub use servo::{Lead, Notch, PivotGains};
 
 use crate::drive_model::Electrical;
 use crate::record::Timing;
+use evolution::evolve;
+use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// What must be kept.
@@ -62,15 +66,19 @@ pub enum TuningError {
     NotEvenSmall,
 }
 
-/// Ranges of the parameters, and where the search starts.
-const VELOCITY: [f64; 2] = [0.2, 500.0];
+/// Ranges that are searched, inside those of the parameters.
+const VELOCITY: [f64; 2] = [3.0, 500.0];
 const POSITION: [f64; 2] = [1.0, 2_000.0];
 const CORNER: [f64; 2] = [1.0, 2_000.0];
 const LEAD_TO_HZ: f64 = 3_000.0;
-/// Halvings of a step of the velocity gain; rounds over the shape, and the step of the first, as a logarithm.
+/// Halvings of the range of the velocity gain; starts that are followed, generations of each, and how far the first goes, as a logarithm.
 const HALVINGS: usize = 9;
-const ROUNDS: usize = 7;
-const FIRST_STEP: f64 = 0.4;
+const FOLLOWED: usize = 2;
+const GENERATIONS: usize = 120;
+const FIRST_STEP: f64 = 0.25;
+/// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
+const PENALTY: f64 = 20.0;
+const UNSTABLE: f64 = 100.0;
 
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
 type Shape = [f64; 8];
@@ -98,33 +106,18 @@ pub fn tune(
         tick_s: timing.tick_s,
         limits,
     };
-    let best = starts(resonances_hz)
-        .into_iter()
-        .filter_map(|shape| search.best_velocity(&shape).map(|found| (found.margins.rejection, shape)))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut rejection, mut shape) = best.ok_or(TuningError::NotEvenSmall)?;
-    let mut step = FIRST_STEP;
-    for _ in 0..ROUNDS {
-        let before = rejection;
-        for k in 0..shape.len() {
-            for sign in [1.0, -1.0] {
-                let mut next = shape;
-                // A notch's place is known better than a gain.
-                let share = if k == 2 || k == 5 { 0.25 } else { 1.0 };
-                next[k] *= f64::exp(sign * step * share);
-                if let Some(found) = search.best_velocity(&next)
-                    && found.margins.rejection < rejection
-                {
-                    (rejection, shape) = (found.margins.rejection, next);
-                    break;
-                }
-            }
-        }
-        if rejection > 0.97 * before {
-            step *= 0.5;
-        }
-    }
-    let found = search.best_velocity(&shape).ok_or(TuningError::NotEvenSmall)?;
+    let mut starts: Vec<_> = (starts(resonances_hz).into_iter())
+        .filter_map(|shape| search.best_velocity(&shape).map(|found| (found.margins.rejection, shape, found)))
+        .collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ended = starts.iter().take(FOLLOWED).map(|(rejection, shape, found)| {
+        let unknowns = shape.iter().copied().chain([found.gains.pivots[0].velocity_v_s_rad]).map(f64::ln);
+        let start = DVector::from_iterator(shape.len() + 1, unknowns);
+        let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
+        let after = search.best_velocity(&shape_of(&at)).filter(|after| after.margins.rejection < *rejection);
+        after.unwrap_or(*found)
+    });
+    let found = ended.min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection)).ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
     let margins = search.margins(&gains);
@@ -149,6 +142,10 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
         }
     }
     starts
+}
+
+fn shape_of(unknowns: &DVector<f64>) -> Shape {
+    std::array::from_fn(|k| unknowns[k].exp())
 }
 
 struct Search<'a> {
@@ -202,6 +199,16 @@ impl Search<'_> {
 
     fn keeps(&self, margins: &Margins) -> bool {
         margins.is_stable && margins.ms <= self.limits.ms && margins.resonance_peak <= self.limits.resonance_peak
+    }
+
+    fn cost(&self, unknowns: &DVector<f64>) -> f64 {
+        let velocity = unknowns[unknowns.len() - 1].exp().clamp(VELOCITY[0], VELOCITY[1]);
+        let margins = self.margins(&self.gains(&shape_of(unknowns), velocity));
+        if !margins.is_stable {
+            return UNSTABLE;
+        }
+        let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
+        margins.rejection.ln() + PENALTY * (over(margins.ms, self.limits.ms) + over(margins.resonance_peak, self.limits.resonance_peak))
     }
 
     /// The largest velocity gain that keeps the limits.

@@ -19,8 +19,8 @@ pub struct Plant {
 }
 
 /// Lowest frequency of a grid, points of it, and its end over half the ticks' rate.
-const FROM_HZ: f64 = 2.0;
-const POINTS: usize = 700;
+const FROM_HZ: f64 = 0.5;
+const POINTS: usize = 800;
 const END: f64 = 0.98;
 
 /// Frequencies for a plant.
