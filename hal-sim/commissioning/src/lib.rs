@@ -10,3 +10,4 @@ pub mod multisine;
 pub mod record;
 mod spectrum;
 pub mod tuning;
+pub mod winding;

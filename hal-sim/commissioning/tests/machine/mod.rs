@@ -8,6 +8,8 @@ use commissioning::frequency_response::Run;
 use hal_sim::machine::devices::{BridgeState, COUNTS_PER_TURN, MAX_DUTY, Stage, StageParameters, WiringParameters};
 use std::f64::consts::TAU;
 
+pub mod truth;
+
 pub const TIMING: Timing = Timing::STAGE;
 pub const PERIOD: usize = 4096;
 const VOLTS_PER_COUNT: f64 = 3.3 / 4096.0;
@@ -131,10 +133,17 @@ pub struct Plan {
     pub lines: usize,
 }
 
-pub const PLAN: Plan = Plan { pose: [0.0; 3], rate_rad_s: 1.5, rms_v: 4.0, runs: 4, periods: 4, to_hz: 3_000.0, lines: 57 };
+pub const PLAN: Plan = Plan { pose: [0.0; 3], rate_rad_s: 2.0, rms_v: 3.0, runs: 4, periods: 4, to_hz: 3_000.0, lines: 57 };
+
+pub struct Excited {
+    pub runs: Vec<Run>,
+    pub machine: Machine,
+    /// How warm the windings were halfway, K.
+    pub warmer_k: [f64; 3],
+}
 
 /// The records of a plan, on a machine that turns without end.
-pub fn excite(parameters: &StageParameters, plan: &Plan) -> (Vec<Run>, Machine) {
+pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
     let mut machine = Machine::at(parameters, plan.pose);
     let mut phase_rad = machine.angle_rad[0];
     let start = machine.angle_rad;
@@ -148,6 +157,7 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> (Vec<Run>, Machine) 
     for _ in 0..10_000 {
         turn(&mut machine, [0.0; 3], None);
     }
+    let before_k = machine.stage.plant.windings_warmer_k();
     let bins = lines(PERIOD, TIMING.tick_s, 29.0, plan.to_hz, plan.lines);
     let runs = runs(&bins, plan.runs)
         .into_iter()
@@ -167,5 +177,7 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> (Vec<Run>, Machine) 
             Run { period_ticks: PERIOD, bins: sines.bins, experiments }
         })
         .collect();
-    (runs, machine)
+    let after_k = machine.stage.plant.windings_warmer_k();
+    let warmer_k = [0, 1, 2].map(|i| 0.5 * (before_k[i] + after_k[i]));
+    Excited { runs, machine, warmer_k }
 }
