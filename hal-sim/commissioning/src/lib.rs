@@ -5,6 +5,7 @@
 pub mod chain;
 pub mod drive_model;
 pub mod frequency_response;
+pub mod friction;
 mod least_squares;
 pub mod multisine;
 pub mod record;
