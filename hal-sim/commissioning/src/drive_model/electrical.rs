@@ -41,11 +41,14 @@ const IMAGES: i32 = 60;
 /// Bands, equal by their logarithm, in which residuals are of one size.
 const BANDS: usize = 24;
 const ROUNDS: usize = 5;
+/// What a number that is known weighs more than all that is measured of it.
+const SURE: f64 = 1e6;
 /// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
 const LEAST_APART: f64 = 0.25;
 /// Multiples of its own size, over a normal one's median, at which a residual counts half.
 const HALF_AT: f64 = 2.0;
 
+#[derive(Clone)]
 struct Row {
     hz: f64,
     /// Of the commanded voltage without its hold: what the images are made of.
@@ -57,41 +60,61 @@ struct Row {
     weight: f64,
 }
 
-/// Winding and motor constant of pivot `pivot` (0 to 2) from all runs. `knee_a`: current from which the whole dead time counts. `mechanics`: inertia
-/// of the motor, transmission and motor constant, as far as they are known; without, the motor is taken to turn as its ring does.
+/// What is recorded of a drive, as rows of the equation.
+pub struct Equations {
+    rows: Vec<Row>,
+    pivot: usize,
+}
+
+/// What is known of a drive besides.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Besides<'a> {
+    /// Its motor constant, from steady rates ([`crate::friction`]): then it stays what it is.
+    pub motor_constant: Option<f64>,
+    /// Inertia of the motor, transmission and motor constant, as far as they are known; without, the motor is taken to turn as its ring does.
+    pub mechanics: Option<(&'a Chain, f64)>,
+}
+
+impl Equations {
+    /// Of pivot `pivot` (0 to 2) from all runs. `knee_a`: current from which the whole dead time counts.
+    ///
+    /// # Errors
+    /// [`DriveError::NotRecorded`].
+    pub fn new(runs: &[Run], timing: &Timing, pivot: usize, knee_a: f64) -> Result<Self, DriveError> {
+        let mut rows = Vec::new();
+        for run in runs {
+            for record in run.experiments.iter().flatten() {
+                add_rows(&record.pivots[pivot], run.period_ticks, timing, knee_a, &mut rows);
+            }
+        }
+        if rows.is_empty() {
+            return Err(DriveError::NotRecorded { pivot: pivot + 1 });
+        }
+        Ok(Self { rows, pivot })
+    }
+}
+
+/// Winding and motor constant of a drive.
 ///
 /// # Errors
 /// [`DriveError`].
-pub fn electrical(
-    runs: &[Run],
-    timing: &Timing,
-    pivot: usize,
-    knee_a: f64,
-    mechanics: Option<(&Chain, f64)>,
-) -> Result<Electrical, DriveError> {
-    let mut rows = Vec::new();
-    for run in runs {
-        for record in run.experiments.iter().flatten() {
-            add_rows(&record.pivots[pivot], run.period_ticks, timing, knee_a, &mut rows);
-        }
-    }
-    if rows.is_empty() {
-        return Err(DriveError::NotRecorded { pivot: pivot + 1 });
-    }
-    if let Some((chain, motor_constant)) = mechanics {
+pub fn electrical(equations: &Equations, timing: &Timing, besides: &Besides<'_>) -> Result<Electrical, DriveError> {
+    let pivot = equations.pivot + 1;
+    let mut rows = equations.rows.clone();
+    if let Some((chain, motor_constant)) = besides.mechanics {
         rows.retain_mut(|row| row.take_motor(chain, motor_constant));
     }
-    let mut found = solve_with(&rows, |_| Complex::default());
+    let mut found = solve_with(&rows, besides.motor_constant, |_| Complex::default());
     for _ in 0..ROUNDS {
         let winding = found.map(|(numbers, _)| [numbers[0], numbers[1]]);
-        let winding = winding.ok_or(DriveError::NoMotion { pivot: pivot + 1 })?;
+        let winding = winding.ok_or(DriveError::NoMotion { pivot })?;
         weigh(&mut rows, &found, timing, winding);
-        found = solve_without_images(&rows, timing, winding);
+        found = solve_without_images(&rows, besides.motor_constant, timing, winding);
     }
-    let (numbers, deviations) = found.ok_or(DriveError::NoMotion { pivot: pivot + 1 })?;
+    let (numbers, deviations) = found.ok_or(DriveError::NoMotion { pivot })?;
     let [resistance_ohm, inductance_h, motor_constant, dead_time_v] = numbers.into();
     if !(resistance_ohm > 0.0 && inductance_h > 0.0 && motor_constant > 0.0) {
-        return Err(DriveError::Senseless { pivot: pivot + 1 });
+        return Err(DriveError::Senseless { pivot });
     }
     Ok(Electrical {
         resistance_ohm,
@@ -165,16 +188,16 @@ fn images(hz: f64, timing: &Timing, [resistance_ohm, inductance_h]: [f64; 2]) ->
     sum
 }
 
-fn solve_without_images(rows: &[Row], timing: &Timing, winding: [f64; 2]) -> Found {
+fn solve_without_images(rows: &[Row], constant: Option<f64>, timing: &Timing, winding: [f64; 2]) -> Found {
     let mut cache = std::collections::HashMap::new();
     let images: Vec<_> = rows
         .iter()
         .map(|row| *cache.entry(row.hz.to_bits()).or_insert_with(|| images(row.hz, timing, winding)))
         .collect();
-    solve_with(rows, |k| images[k])
+    solve_with(rows, constant, |k| images[k])
 }
 
-fn solve_with(rows: &[Row], image: impl Fn(usize) -> Complex<f64>) -> Found {
+fn solve_with(rows: &[Row], constant: Option<f64>, image: impl Fn(usize) -> Complex<f64>) -> Found {
     let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
     let (mut square, mut weights) = (0.0, 0.0);
     for (k, row) in rows.iter().enumerate() {
@@ -185,6 +208,11 @@ fn solve_with(rows: &[Row], image: impl Fn(usize) -> Complex<f64>) -> Found {
                 normal[(i, j)] += row.weight * (a.conj() * b).re;
             }
         }
+    }
+    if let Some(constant) = constant {
+        let sure = SURE * normal[(2, 2)];
+        normal[(2, 2)] += sure;
+        right[2] += sure * constant;
     }
     // Each in its own size, so that the inverse is one of likes.
     let scale = normal.diagonal().map(|d: f64| 1.0 / d.sqrt());

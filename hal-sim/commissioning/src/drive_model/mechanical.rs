@@ -52,7 +52,7 @@ const MOST_RESIDUAL: f64 = 0.3;
 const TRANSMISSIONS: [f64; 6] = [0.15, 0.25, 0.45, 0.8, 1.3, 1.9];
 const GUIDES: [f64; 4] = [0.25, 0.45, 0.75, 1.1];
 /// Starts that are followed to their end, and steps of each.
-const FOLLOWED: usize = 4;
+const FOLLOWED: usize = 8;
 const STEPS: usize = 60;
 
 struct Measured {

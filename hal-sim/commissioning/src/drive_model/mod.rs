@@ -8,7 +8,7 @@
 mod electrical;
 mod mechanical;
 
-pub use electrical::{Electrical, electrical};
+pub use electrical::{Besides, Electrical, Equations, electrical};
 pub use mechanical::{Guess, Mechanical, mechanical};
 
 use crate::frequency_response::{Line, Run};
@@ -28,6 +28,8 @@ pub struct DriveModel {
 pub struct Known {
     /// Current from which a bridge's whole dead time counts, A.
     pub knee_a: f64,
+    /// Motor constants from steady rates ([`crate::friction`]), V s/rad: better than what small motions say of them.
+    pub motor_constants: Option<[f64; 3]>,
     /// What the machine may be.
     pub guess: Guess,
     /// Lines up to here are followed, Hz.
@@ -42,10 +44,13 @@ const PASSES: usize = 4;
 /// # Errors
 /// [`DriveError`].
 pub fn drive_model(runs: &[Run], lines: &[Line], timing: &Timing, known: &Known) -> Result<DriveModel, DriveError> {
+    let equations = |pivot: usize| Equations::new(runs, timing, pivot, known.knee_a);
+    let equations = [equations(0)?, equations(1)?, equations(2)?];
     let all = |mechanics: Option<&DriveModel>| -> Result<[Electrical; 3], DriveError> {
         let one = |pivot: usize| {
             let mechanics = mechanics.map(|model| (&model.mechanical.chain, model.electrical[pivot].motor_constant));
-            electrical(runs, timing, pivot, known.knee_a, mechanics)
+            let motor_constant = known.motor_constants.map(|all| all[pivot]);
+            electrical(&equations[pivot], timing, &Besides { motor_constant, mechanics })
         };
         Ok([one(0)?, one(1)?, one(2)?])
     };

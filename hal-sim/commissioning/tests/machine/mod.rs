@@ -8,6 +8,7 @@ use commissioning::frequency_response::Run;
 use hal_sim::machine::devices::{BridgeState, COUNTS_PER_TURN, MAX_DUTY, Stage, StageParameters, WiringParameters};
 use std::f64::consts::TAU;
 
+pub mod steady;
 pub mod truth;
 
 pub const TIMING: Timing = Timing::STAGE;

@@ -1,8 +1,10 @@
 //! What a machine is, from the simulator's own numbers and matrices, against what was found.
 
-use super::{Excited, PLAN, Plan, TIMING, excite};
+use super::steady::all_rates;
+use super::{Excited, Machine, PLAN, Plan, TIMING, excite};
 use commissioning::chain::{Chain, Load, Place};
 use commissioning::drive_model::{DriveModel, Guess, Known, drive_model};
+use commissioning::friction::friction;
 use commissioning::frequency_response::{Line, frequency_response};
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::Plant;
@@ -23,7 +25,8 @@ pub const GUESS: Guess = Guess(Chain {
     load: Load { mass: 0.05, inertia: 0.025, moment: [0.0; 2] },
 });
 
-pub const KNOWN: Known = Known { knee_a: 0.043, guess: GUESS, to_hz: 2_500.0 };
+/// Resistances of the windings as their pulses had them, roughly: what the motor constants are found with.
+const ROUGH_OHM: f64 = 1.02;
 
 pub struct Identified {
     pub excited: Excited,
@@ -32,9 +35,22 @@ pub struct Identified {
 }
 
 pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
+    let mut machine = Machine::at(parameters, plan.pose);
+    let steady = all_rates(&mut machine);
+    let motor_constants = [0, 1, 2].map(|i| {
+        let warm = 1.0 + parameters.plant.winding.resistance_per_k * machine.stage.plant.windings_warmer_k()[i];
+        let found = friction(&steady[i], ROUGH_OHM * warm * parameters.plant.resistance_ohm).expect("there is friction");
+        found.motor_constant
+    });
+    let known = Known {
+        knee_a: 0.043,
+        motor_constants: Some(motor_constants),
+        guess: GUESS,
+        to_hz: 2_500.0,
+    };
     let excited = excite(parameters, plan);
     let lines = frequency_response(&excited.runs, &TIMING).expect("there are responses");
-    let model = drive_model(&excited.runs, &lines, &TIMING, &KNOWN).expect("there is a model");
+    let model = drive_model(&excited.runs, &lines, &TIMING, &known).expect("there is a model");
     Identified { excited, lines, model }
 }
 
