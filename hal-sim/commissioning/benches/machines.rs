@@ -1,0 +1,40 @@
+//! How well unknown machines are identified, as tables: `cargo bench -p commissioning`. `-- N` takes N machines in place of 20.
+
+#[path = "../tests/machine/mod.rs"]
+mod machine;
+
+use machine::truth::{NAMES, errors, identify};
+use machine::{PLAN, Plan, unknown};
+
+fn main() {
+    let numbers: Vec<f64> = std::env::args().filter_map(|word| word.parse().ok()).collect();
+    let machines = numbers.first().copied().unwrap_or(20.0) as u64;
+    let plan = Plan {
+        rms_v: numbers.get(1).copied().unwrap_or(PLAN.rms_v),
+        rate_rad_s: numbers.get(2).copied().unwrap_or(PLAN.rate_rad_s),
+        ..PLAN
+    };
+    let (mut all, mut residuals): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
+    for seed in 0..machines {
+        let parameters = unknown(seed);
+        let found = identify(&parameters, &plan);
+        all.push(errors(&parameters, &found));
+        residuals.push(found.model.mechanical.residual);
+    }
+    println!("{machines} machines; {} V rms on each drive in turn, turning at {} rad/s", plan.rms_v, plan.rate_rad_s);
+    println!("| what | median | 90 % | worst | mean with its sign |");
+    println!("|---|---|---|---|---|");
+    for (k, name) in NAMES.iter().enumerate() {
+        let mut sizes: Vec<f64> = all.iter().map(|errors| errors[k].abs()).collect();
+        let mean = all.iter().map(|errors| errors[k]).sum::<f64>() / all.len() as f64;
+        let [median, most, worst] = spread(&mut sizes);
+        println!("| {name} | {:.2} % | {:.2} % | {:.2} % | {:+.2} % |", 100.0 * median, 100.0 * most, 100.0 * worst, 100.0 * mean);
+    }
+    let [median, most, worst] = spread(&mut residuals);
+    println!("| what the model leaves of the responses | {:.2} % | {:.2} % | {:.2} % | |", 100.0 * median, 100.0 * most, 100.0 * worst);
+}
+
+fn spread(sizes: &mut [f64]) -> [f64; 3] {
+    sizes.sort_by(f64::total_cmp);
+    [0.5, 0.9, 1.0].map(|part| sizes[(((sizes.len() - 1) as f64 * part).round()) as usize])
+}

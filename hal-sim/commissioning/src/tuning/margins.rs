@@ -1,0 +1,171 @@
+//! How far a loop of three pivots is from the edge: sensitivity of all three together, stability by Nyquist's criterion.
+//!
+//! `S = 1 / (1 + L)`, L the 3x3 loop; its largest singular value says what becomes of the worst direction of an error. The loop is
+//! stable if `det(1 + L) (1 - 1/z)^6`, which has no poles outside, does not go round 0: L has an integrator in each plant and one in
+//! each servo.
+
+use super::plant::Plant;
+use super::servo::PivotGains;
+use nalgebra::{Complex, Matrix3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// Gains of the three pivots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// Of each pivot.
+    pub pivots: [PivotGains; 3],
+    /// Inertia that velocity and integral gain are for, kg m^2 (parameter 0x54500306); 0: the same gains everywhere.
+    pub scheduled_inertia_kg_m2: f64,
+}
+
+/// What a loop is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margins {
+    /// Whether it is stable: known only where the plant's frequencies reach from half a hertz to nearly half the ticks' rate.
+    pub is_stable: bool,
+    /// Largest singular value of S over all frequencies.
+    pub ms: f64,
+    /// Where.
+    pub ms_hz: f64,
+    /// Largest singular value of S at [`REJECTION_HZ`].
+    pub rejection: f64,
+    /// Highest frequency at which the loop of a pivot, with the others closed, has a gain of 1 (`|1/S_ii - 1|`); of the slowest pivot.
+    pub crossover_hz: f64,
+    /// Largest peak of L beyond [`BEYOND`] times the crossover, as a singular value: resonances. 0 where L only falls.
+    pub resonance_peak: f64,
+}
+
+/// Where rejection is measured.
+pub const REJECTION_HZ: f64 = 30.0;
+/// Resonances are sought from so many crossovers on.
+pub const BEYOND: f64 = 1.5;
+
+/// The sensitivity at each frequency.
+#[must_use]
+pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Complex<f64>>> {
+    let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
+    loops(plant, gains, tick_s).map(|l| (Matrix3::identity() + l).try_inverse().unwrap_or(nothing)).collect()
+}
+
+fn loops<'a>(plant: &'a Plant, gains: &'a Gains, tick_s: f64) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
+    let shares = plant.inertia.map(|inertia| match gains.scheduled_inertia_kg_m2 {
+        scheduled if scheduled > 0.0 => inertia / scheduled,
+        _ => 1.0,
+    });
+    plant.hz.iter().zip(&plant.response).map(move |(&hz, response)| {
+        let servo = |i: usize| gains.pivots[i].response(hz, tick_s) * shares[i];
+        response * Matrix3::from_diagonal(&Vector3::new(servo(0), servo(1), servo(2)))
+    })
+}
+
+/// The margins of a loop at one place.
+#[must_use]
+pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
+    let mut found = Margins {
+        is_stable: true,
+        ms: 0.0,
+        ms_hz: 0.0,
+        rejection: f64::NAN,
+        crossover_hz: f64::INFINITY,
+        resonance_peak: 0.0,
+    };
+    let loops: Vec<_> = loops(plant, gains, tick_s).collect();
+    let (mut last, mut turned) = (Complex::from(1.0), 0.0);
+    let mut crossovers = [0.0; 3];
+    for (&hz, l) in plant.hz.iter().zip(&loops) {
+        let difference = Matrix3::identity() + l;
+        let (determinant, adjugate) = determinant_and_adjugate(&difference);
+        let back = 1.0 - Complex::cis(-TAU * hz * tick_s);
+        let now = determinant * back.powi(6);
+        turned += (now / last).arg();
+        last = now;
+        let size = 1.0 / least_singular(&difference);
+        if !(size <= found.ms) {
+            (found.ms, found.ms_hz) = (size, hz);
+        }
+        if found.rejection.is_nan() && hz >= REJECTION_HZ {
+            found.rejection = size;
+        }
+        for (i, crossover) in crossovers.iter_mut().enumerate() {
+            if (determinant - adjugate[i]).norm() >= adjugate[i].norm() {
+                *crossover = hz;
+            }
+        }
+    }
+    found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
+    found.is_stable = turned.abs() < PI;
+    let sizes: Vec<f64> = loops.iter().map(largest_singular).collect();
+    for (beside, hz) in sizes.windows(3).zip(plant.hz.iter().skip(1)) {
+        let is_peak = beside[1] > beside[0] && beside[1] > beside[2];
+        if is_peak && *hz > BEYOND * found.crossover_hz {
+            found.resonance_peak = found.resonance_peak.max(beside[1]);
+        }
+    }
+    found
+}
+
+impl Margins {
+    /// The worse of each.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        let (ms, ms_hz) = if other.ms > self.ms { (other.ms, other.ms_hz) } else { (self.ms, self.ms_hz) };
+        Self {
+            is_stable: self.is_stable && other.is_stable,
+            ms,
+            ms_hz,
+            rejection: self.rejection.max(other.rejection),
+            crossover_hz: self.crossover_hz.min(other.crossover_hz),
+            resonance_peak: self.resonance_peak.max(other.resonance_peak),
+        }
+    }
+}
+
+/// Determinant, and the diagonal of the adjugate: their quotients are the diagonal of the inverse.
+fn determinant_and_adjugate(m: &Matrix3<Complex<f64>>) -> (Complex<f64>, [Complex<f64>; 3]) {
+    let minor = |i: usize, j: usize| m[(i, i)] * m[(j, j)] - m[(i, j)] * m[(j, i)];
+    (m.determinant(), [minor(1, 2), minor(0, 2), minor(0, 1)])
+}
+
+fn least_singular(m: &Matrix3<Complex<f64>>) -> f64 {
+    singular_squares(m)[2].max(0.0).sqrt()
+}
+
+fn largest_singular(m: &Matrix3<Complex<f64>>) -> f64 {
+    singular_squares(m)[0].max(0.0).sqrt()
+}
+
+/// Eigenvalues of `m* m`, the largest first: of a Hermitian matrix of three in closed form (Smith, Communications of the ACM 4(4), 1961).
+fn singular_squares(m: &Matrix3<Complex<f64>>) -> [f64; 3] {
+    let square = m.adjoint() * m;
+    let mean = (square[(0, 0)].re + square[(1, 1)].re + square[(2, 2)].re) / 3.0;
+    let beside = square[(0, 1)].norm_sqr() + square[(0, 2)].norm_sqr() + square[(1, 2)].norm_sqr();
+    let along: f64 = (0..3).map(|i| (square[(i, i)].re - mean).powi(2)).sum();
+    let spread = ((along + 2.0 * beside) / 6.0).sqrt();
+    if !(spread > 1e-14 * mean) {
+        return [mean; 3];
+    }
+    let shape = (square - Matrix3::from_diagonal_element(Complex::from(mean))) / Complex::from(spread);
+    let third = (0.5 * shape.determinant().re).clamp(-1.0, 1.0).acos() / 3.0;
+    let [most, least] = [third, third + TAU / 3.0].map(|angle| mean + 2.0 * spread * angle.cos());
+    [most, 3.0 * mean - most - least, least]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn singular_values_are_those_of_a_decomposition() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        for _ in 0..200 {
+            let m = Matrix3::from_fn(|_, _| Complex::new(random(), random()));
+            let expected = m.singular_values();
+            assert!((largest_singular(&m) - expected.max()).abs() < 1e-9);
+            assert!((least_singular(&m) - expected.min()).abs() < 1e-7, "{} {}", least_singular(&m), expected.min());
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Gains and filters for a machine: the best rejection of what is slow, at margins that are kept at every place and with every load.
+//!
+//! All numbers of the servo are varied at once (`evolution`); what breaks a limit costs. At the end the velocity gain goes as high as the limits
+//! allow. Position gain and corner of the integral go with the velocity gain, so that a slower servo is the same with time stretched, and small
+//! gains are safe.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `evolution` | the search |
+//! | `servo` | the servo of a pivot as a frequency response |
+//! | `plant` | what the servos see |
+//! | `margins` | sensitivity and stability of the three loops together |
+
+mod evolution;
+mod margins;
+mod plant;
+mod servo;
+
+pub use margins::{BEYOND, Gains, Margins, REJECTION_HZ, margins, sensitivity};
+pub use plant::{Plant, angle_by_volts, grid};
+pub use servo::{Lead, Notch, PivotGains};
+
+use crate::drive_model::Electrical;
+use crate::record::Timing;
+use evolution::evolve;
+use nalgebra::DVector;
+use std::f64::consts::TAU;
+
+/// What must be kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest singular value of the sensitivity.
+    pub ms: f64,
+    /// Largest peak of the loop beyond its crossover.
+    pub resonance_peak: f64,
+    /// Share of the velocity gain that would just keep them.
+    pub share: f64,
+}
+
+impl Limits {
+    /// Ms of 1.9, -6 dB at resonances, all of the gain.
+    pub const USUAL: Self = Self {
+        ms: 1.9,
+        resonance_peak: 0.5,
+        share: 1.0,
+    };
+}
+
+/// Gains, and what they are predicted to give at the worst place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuned {
+    /// The gains.
+    pub gains: Gains,
+    /// Worst of all places and loads.
+    pub margins: Margins,
+}
+
+/// Why there are no gains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TuningError {
+    /// No plants.
+    #[error("no plant to tune for: give at least the one in the middle of the disk")]
+    NoPlant,
+    /// Not even small gains keep the limits.
+    #[error("not even small gains keep the limits: look at the model's resonances and their damping")]
+    NotEvenSmall,
+}
+
+/// Ranges that are searched, inside those of the parameters.
+const VELOCITY: [f64; 2] = [3.0, 500.0];
+const POSITION: [f64; 2] = [1.0, 2_000.0];
+const CORNER: [f64; 2] = [1.0, 2_000.0];
+const LEAD_TO_HZ: f64 = 3_000.0;
+/// Halvings of the range of the velocity gain; starts that are followed, generations of each, and how far the first goes, as a logarithm.
+const HALVINGS: usize = 9;
+const FOLLOWED: usize = 2;
+const GENERATIONS: usize = 120;
+const FIRST_STEP: f64 = 0.25;
+/// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
+const PENALTY: f64 = 20.0;
+const UNSTABLE: f64 = 100.0;
+
+/// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
+type Shape = [f64; 8];
+
+/// Gains for plants at several places and with several loads. `resonances_hz`: where the first two notches are tried, from the model
+/// in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
+///
+/// # Errors
+/// [`TuningError`].
+pub fn tune(
+    plants: &[Plant],
+    electrical: &[Electrical; 3],
+    resonances_hz: &[f64],
+    scheduled_inertia_kg_m2: f64,
+    timing: &Timing,
+    limits: &Limits,
+) -> Result<Tuned, TuningError> {
+    if plants.is_empty() {
+        return Err(TuningError::NoPlant);
+    }
+    let search = Search {
+        plants,
+        electrical,
+        scheduled_inertia_kg_m2,
+        tick_s: timing.tick_s,
+        limits,
+    };
+    let mut starts: Vec<_> = (starts(resonances_hz).into_iter())
+        .filter_map(|shape| search.best_velocity(&shape).map(|found| (found.margins.rejection, shape, found)))
+        .collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ended = starts.iter().take(FOLLOWED).map(|(rejection, shape, found)| {
+        let unknowns = shape.iter().copied().chain([found.gains.pivots[0].velocity_v_s_rad]).map(f64::ln);
+        let start = DVector::from_iterator(shape.len() + 1, unknowns);
+        let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
+        let after = search.best_velocity(&shape_of(&at)).filter(|after| after.margins.rejection < *rejection);
+        after.unwrap_or(*found)
+    });
+    let found = ended.min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection)).ok_or(TuningError::NotEvenSmall)?;
+    let mut gains = found.gains;
+    gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
+    let margins = search.margins(&gains);
+    Ok(Tuned { gains, margins })
+}
+
+/// Shapes to start from: notches at each pair of resonances, or where they may have moved to at another place.
+fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
+    let mut places: Vec<f64> = Vec::new();
+    for &hz in resonances_hz {
+        if places.iter().all(|place| (hz / place).ln().abs() > 0.08) {
+            places.push(hz);
+        }
+    }
+    let mut starts = Vec::new();
+    for (k, &first) in places.iter().enumerate() {
+        for &second in places.iter().skip(k) {
+            let spread = if first == second { 1.09 } else { 1.0 };
+            for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
+                starts.push([position, corner, first / spread, 0.4, 0.2, second * spread, 0.4, 0.2]);
+            }
+        }
+    }
+    starts
+}
+
+fn shape_of(unknowns: &DVector<f64>) -> Shape {
+    std::array::from_fn(|k| unknowns[k].exp())
+}
+
+struct Search<'a> {
+    plants: &'a [Plant],
+    electrical: &'a [Electrical; 3],
+    scheduled_inertia_kg_m2: f64,
+    tick_s: f64,
+    limits: &'a Limits,
+}
+
+impl Search<'_> {
+    fn gains(&self, shape: &Shape, velocity: f64) -> Gains {
+        let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
+        let notch = |hz: f64, width: f64, gain: f64| Notch {
+            frequency_hz: hz.clamp(10.0, 9_000.0),
+            width_hz: (hz * width.min(2.0)).clamp(1.0, 9_000.0),
+            gain: gain.clamp(0.02, 1.0),
+        };
+        let volts_per_torque = |drive: &Electrical| drive.resistance_ohm / drive.motor_constant;
+        let first = volts_per_torque(&self.electrical[0]);
+        let inertia = match self.scheduled_inertia_kg_m2 {
+            scheduled if scheduled > 0.0 => scheduled,
+            _ => self.plants[0].inertia[0],
+        };
+        let velocity_1_s = velocity / (first * inertia);
+        let pivots = self.electrical.map(|drive| {
+            // A motor that takes more volts for its torque gets more.
+            let velocity_v_s_rad = velocity * volts_per_torque(&drive) / first;
+            PivotGains {
+                velocity_v_s_rad,
+                position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
+                integral_v_rad: velocity_v_s_rad * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
+                notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
+                lead: Lead {
+                    from_hz: drive.resistance_ohm / drive.inductance_h / TAU,
+                    to_hz: LEAD_TO_HZ,
+                },
+            }
+        });
+        Gains {
+            pivots,
+            scheduled_inertia_kg_m2: self.scheduled_inertia_kg_m2,
+        }
+    }
+
+    fn margins(&self, gains: &Gains) -> Margins {
+        let mut all = self.plants.iter().map(|plant| margins(plant, gains, self.tick_s));
+        let first = all.next().unwrap_or_else(|| unreachable!("there is a plant"));
+        all.fold(first, Margins::worse)
+    }
+
+    fn keeps(&self, margins: &Margins) -> bool {
+        margins.is_stable && margins.ms <= self.limits.ms && margins.resonance_peak <= self.limits.resonance_peak
+    }
+
+    fn cost(&self, unknowns: &DVector<f64>) -> f64 {
+        let velocity = unknowns[unknowns.len() - 1].exp().clamp(VELOCITY[0], VELOCITY[1]);
+        let margins = self.margins(&self.gains(&shape_of(unknowns), velocity));
+        if !margins.is_stable {
+            return UNSTABLE;
+        }
+        let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
+        margins.rejection.ln() + PENALTY * (over(margins.ms, self.limits.ms) + over(margins.resonance_peak, self.limits.resonance_peak))
+    }
+
+    /// The largest velocity gain that keeps the limits.
+    fn best_velocity(&self, shape: &Shape) -> Option<Tuned> {
+        let [mut low, mut high] = VELOCITY.map(f64::ln);
+        let mut best = None;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let gains = self.gains(shape, middle.exp());
+            let margins = self.margins(&gains);
+            if self.keeps(&margins) {
+                low = middle;
+                best = Some(Tuned { gains, margins });
+            } else {
+                high = middle;
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,79 @@
+//! What the servos see: from the volts of a tick to the angles that are read later, at frequencies up to half the ticks' rate.
+
+use crate::chain::{Chain, Place};
+use crate::drive_model::Electrical;
+use crate::frequency_response::{Line, hold};
+use crate::record::Timing;
+use nalgebra::{Complex, Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+/// Responses from volts told to angles read, all delays in them, and what the pivots move there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plant {
+    /// Frequencies, rising.
+    pub hz: Vec<f64>,
+    /// Responses, rad/V.
+    pub response: Vec<Matrix3<Complex<f64>>>,
+    /// What each pivot moves, kg m^2: by it the gains may be scheduled.
+    pub inertia: [f64; 3],
+}
+
+/// Lowest frequency of a grid, points of it, and its end over half the ticks' rate.
+const FROM_HZ: f64 = 0.5;
+const POINTS: usize = 800;
+const END: f64 = 0.98;
+
+/// Frequencies for a plant.
+#[must_use]
+pub fn grid(timing: &Timing) -> Vec<f64> {
+    let end_hz = 0.5 * END / timing.tick_s;
+    let step = (end_hz / FROM_HZ).ln() / (POINTS - 1) as f64;
+    (0..POINTS).map(|k| FROM_HZ * (step * k as f64).exp()).collect()
+}
+
+/// From volts at the terminals to the rings' angles, rad/V, as continuous signals: what [`Line::angle_by_volts`] measures.
+#[must_use]
+pub fn angle_by_volts(electrical: &[Electrical; 3], chain: &Chain, place: &Place, hz: f64) -> Matrix3<Complex<f64>> {
+    let s = Complex::new(0.0, TAU * hz);
+    let angles = chain.compliance(hz, place);
+    let diagonal = |value: &dyn Fn(&Electrical) -> Complex<f64>| {
+        Matrix3::from_diagonal(&Vector3::new(value(&electrical[0]), value(&electrical[1]), value(&electrical[2])))
+    };
+    let constants = diagonal(&|drive| drive.motor_constant.into());
+    let windings = diagonal(&|drive| drive.resistance_ohm + s * drive.inductance_h);
+    let impedance = windings + constants * angles.motor * constants * s;
+    let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
+    impedance.try_inverse().map_or(nothing, |inverse| angles.ring * constants * inverse)
+}
+
+impl Plant {
+    /// From the model, at a place.
+    #[must_use]
+    pub fn from_model(electrical: &[Electrical; 3], chain: &Chain, place: &Place, timing: &Timing) -> Self {
+        let hz = grid(timing);
+        let response = hz.iter().map(|&hz| angle_by_volts(electrical, chain, place, hz) * seen(hz, timing)).collect();
+        Self {
+            hz,
+            response,
+            inertia: diagonal_of(&chain.inertia(place)),
+        }
+    }
+
+    /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.
+    #[must_use]
+    pub fn from_lines(lines: &[Line], inertia: [f64; 3], timing: &Timing) -> Self {
+        Self {
+            hz: lines.iter().map(|line| line.hz).collect(),
+            response: lines.iter().map(|line| line.angle_by_volts() * seen(line.hz, timing)).collect(),
+            inertia,
+        }
+    }
+}
+
+fn seen(hz: f64, timing: &Timing) -> Complex<f64> {
+    hold(hz, timing) * Complex::cis(TAU * hz * timing.angle_s)
+}
+
+fn diagonal_of(matrix: &Matrix3<f64>) -> [f64; 3] {
+    matrix.diagonal().into()
+}
