@@ -6,6 +6,7 @@
 //! | `web` | the page, in front of any controller |
 //! | `record` | a record of a controller's data recorder |
 //! | `board` | the tests to be repeated on every board |
+//! | `commission` | from an unknown machine to one that moves |
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
 //! | `reference` | the parameters of the reference stage |
@@ -13,6 +14,7 @@
 
 mod assets;
 pub mod board;
+pub mod commission;
 pub mod error_words;
 pub mod record;
 mod reference;

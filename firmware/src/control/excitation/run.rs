@@ -7,6 +7,9 @@ use kinematics::Angle;
 /// Ticks for which the motors brake at the end: 20 ms, in which a ring comes to rest from any rate that the guards let it have.
 const BRAKING_TICKS: u32 = 400;
 
+/// Ticks that the bridges are given to wake up, with no duty: 2 ms, twice what they take.
+const WAKING_TICKS: u32 = 40;
+
 /// Why an excitation has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExcitationEnd {
@@ -57,6 +60,8 @@ pub struct ExcitationRun {
     pub(in crate::control) report: ExcitationReport,
     /// What it adds to the servos' voltages, with the servo on.
     pub(in crate::control) added_volts: [f32; 3],
+    /// Ticks left of those in which the bridges wake up.
+    waking_ticks: u32,
     /// Ticks of braking left.
     braking_ticks: u32,
     /// Where servos are to have the pivots, or where these were at the start.
@@ -70,6 +75,7 @@ impl ExcitationRun {
         *self = Self {
             request: Some(request.clone()),
             setpoints: *pivots,
+            waking_ticks: WAKING_TICKS,
             report: ExcitationReport {
                 runs: true,
                 ..ExcitationReport::default()
@@ -135,6 +141,10 @@ impl ExcitationRun {
     ) -> Option<(usize, f32)> {
         let request = self.request.as_mut()?;
         let (pivot, ticks) = (request.pivot, self.report.ticks);
+        if self.waking_ticks > 0 {
+            self.waking_ticks -= 1;
+            return None;
+        }
         if ticks >= request.ticks {
             self.finish(ExcitationEnd::Time, pivot, 0.0);
             return None;

@@ -3,7 +3,7 @@
 use super::Record;
 
 /// Appends the rows, and takes names and period from the head; `None` when it is no such answer.
-pub(super) fn read(answer: &str, record: &mut Record) -> Option<()> {
+pub(crate) fn read(answer: &str, record: &mut Record) -> Option<()> {
     record.names.clear();
     let mut lines = answer.lines();
     for line in lines.by_ref() {

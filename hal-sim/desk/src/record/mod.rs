@@ -7,7 +7,7 @@
 //! | `answer` | the answer of `DRR?` |
 //! | `table` | the record, as a table and as a picture |
 
-mod answer;
+pub(crate) mod answer;
 pub(crate) mod desk;
 mod table;
 

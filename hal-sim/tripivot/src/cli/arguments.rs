@@ -5,11 +5,13 @@ use super::stage::{Machine, SimulatedStage, Simulation};
 pub(super) use calibrate::{CalibrateCommand, CalibrateFit, CalibratePlan, NoiseArguments};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+pub(super) use commission::Commission;
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
 
 mod calibrate;
+mod commission;
 mod controller;
 mod kinematics;
 
@@ -74,6 +76,9 @@ pub(super) enum Command {
     /// Run the tests that are to be repeated on every board, over its command line; nothing moves without --move. Exit code 1 if one
     /// fails.
     Board(BoardRun),
+    /// Bring up a machine that nobody knows: which plug is which, which way everything turns, zeros, windings, friction; and see it move.
+    /// Every step tells what it measured, its limit and what to do where it fails. Exit code 1 at the first that does.
+    Commission(Commission),
     /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
     Machine(Machine),
     /// How much each imperfection of the simulated machine decides: the demonstration with one more or less at a time, as a table.

@@ -104,8 +104,15 @@ impl Machine {
         })
     }
 
+    /// Whether one was asked for.
+    #[must_use]
+    pub const fn is_simulated(&self) -> bool {
+        !self.is_reference()
+    }
+
     /// What to call it.
-    fn name(&self) -> String {
+    #[must_use]
+    pub fn name(&self) -> String {
         let mut name = match (&self.file, self.unknown) {
             (Some(file), _) => format!("machine of {}", file.display()),
             (None, Some(seed)) => format!("unknown machine {seed}"),

@@ -1,0 +1,77 @@
+//! What a step has found, and why one fails.
+
+use crate::record::RecordError;
+
+/// A number, its limit, and whether it is inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What was measured.
+    pub name: String,
+    /// The number with its unit.
+    pub value: String,
+    /// What it has to be.
+    pub limit: String,
+    /// Whether it is.
+    pub passed: bool,
+    /// What to do where it is not.
+    pub advice: &'static str,
+}
+
+impl Finding {
+    /// A finding.
+    pub fn new(
+        name: impl Into<String>,
+        value: impl Into<String>,
+        limit: impl Into<String>,
+        passed: bool,
+        advice: &'static str,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            value: value.into(),
+            limit: limit.into(),
+            passed,
+            advice,
+        }
+    }
+
+    /// What is told without being judged.
+    pub fn told(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self::new(name, value, "", true, "")
+    }
+}
+
+/// Why a step has failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// What is wrong.
+    pub what: String,
+    /// What to do.
+    pub advice: &'static str,
+}
+
+impl Failure {
+    /// A failure.
+    pub fn new(what: impl Into<String>, advice: &'static str) -> Self {
+        Self {
+            what: what.into(),
+            advice,
+        }
+    }
+}
+
+/// Why a step ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum CommissionError {
+    /// The controller.
+    #[error(transparent)]
+    Controller(#[from] RecordError),
+    /// The machine.
+    #[error("{}", .0.what)]
+    Failed(Failure),
+}
+
+/// Ends a step.
+pub(super) fn fail<T>(what: impl Into<String>, advice: &'static str) -> Result<T, CommissionError> {
+    Err(CommissionError::Failed(Failure::new(what, advice)))
+}

@@ -1,0 +1,186 @@
+//! `tripivot commission`: from a machine that nobody knows to one that moves, step by step, over its command line alone.
+//!
+//! Every step says what it measured, what the limit is, and what to do where it fails; the first that fails ends it. Until the last step
+//! nothing is kept: `RPA` brings back what was there before, and an end by failure does that by itself.
+//!
+//! | file | idea |
+//! |---|---|
+//! | here | what is asked of a machine and of the person beside it; the sequence |
+//! | `bench` | questions, excitations and records, as the steps need them |
+//! | `found` | what a step has found, and why one fails |
+//! | `known` | what is known of the machine so far |
+//! | `steps/` | a file each |
+//! | `report` | all of it, as one page |
+
+mod bench;
+mod found;
+mod known;
+mod report;
+mod steps;
+
+pub use found::{CommissionError, Failure, Finding};
+pub use known::Known;
+pub use report::page;
+pub use steps::STEPS;
+
+use crate::record::{Desk, RecordError};
+use crate::web::Endpoint;
+use bench::Bench;
+
+/// A machine with its controller, and somebody beside it.
+pub trait Machine {
+    /// A line, and its answer if it has one.
+    ///
+    /// # Errors
+    /// [`RecordError::Refused`] with the error that it leaves; others when nobody answers.
+    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError>;
+    /// Lets seconds of the controller's clock pass.
+    ///
+    /// # Errors
+    /// When nobody answers.
+    fn delay(&mut self, seconds: f64) -> Result<(), RecordError>;
+    /// Asks the person beside it to do something.
+    ///
+    /// # Errors
+    /// When nobody is there.
+    fn request(&mut self, task: Task) -> Result<(), RecordError>;
+}
+
+/// What only a person can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// Begins to; the encoders tell when it is done.
+    Turn,
+    /// Says when it is done.
+    PutOnJig,
+}
+
+impl Task {
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Turn => {
+                "Push the platform 2 to 5 cm out of the middle. Then turn it by hand to the left, seen from above, by a quarter of a turn, \
+                 slowly, and keep its middle about where it is."
+            }
+            Self::PutOnJig => {
+                "Bring the platform into the middle and put in the jig: guide 1 points along x, away from the middle, over pivot 1."
+            }
+        }
+    }
+}
+
+/// A step of commissioning.
+pub struct Step {
+    /// What it is called.
+    pub name: &'static str,
+    /// What it does.
+    pub about: &'static str,
+    run: fn(&mut Bench<'_>, &mut Known) -> Result<Vec<Finding>, CommissionError>,
+}
+
+/// What a step came to.
+pub struct Done {
+    /// Which.
+    pub step: &'static Step,
+    /// What it measured.
+    pub findings: Vec<Finding>,
+    /// Why it has failed.
+    pub failure: Option<Failure>,
+    /// How long it took, by the controller's clock, s.
+    pub seconds: f64,
+}
+
+/// Runs the steps until one fails, tells of each as it ends; what all of them came to, and what is known of the machine.
+///
+/// After a failure what is kept is in force again, and the motors are off.
+///
+/// # Errors
+/// [`RecordError`] when nobody answers, or no longer.
+pub fn run(
+    machine: &mut dyn Machine,
+    tell: &mut dyn FnMut(&Done),
+) -> Result<(Vec<Done>, Known), RecordError> {
+    let mut bench = Bench::new(machine);
+    let (mut known, mut all) = (Known::default(), Vec::new());
+    for step in STEPS {
+        let start_s = bench.clock_s()?;
+        let result = (step.run)(&mut bench, &mut known);
+        let (findings, failure) = match result {
+            Ok(findings) => {
+                let failed = findings.iter().find(|finding| !finding.passed);
+                let failure =
+                    failed.map(|finding| Failure::new(finding.name.clone(), finding.advice));
+                (findings, failure)
+            }
+            Err(CommissionError::Failed(failure)) => (Vec::new(), Some(failure)),
+            Err(CommissionError::Controller(error @ RecordError::Refused { .. })) => {
+                let fault = bench.fault()?;
+                let failure =
+                    Failure::new(format!("{error}{fault}"), "see what FLT? and EVT? tell");
+                (Vec::new(), Some(failure))
+            }
+            Err(CommissionError::Controller(error)) => return Err(error),
+        };
+        let done = Done {
+            step,
+            findings,
+            failure,
+            seconds: bench.clock_s()? - start_s,
+        };
+        tell(&done);
+        let failed = done.failure.is_some();
+        all.push(done);
+        if failed {
+            bench.give_up()?;
+            break;
+        }
+    }
+    Ok((all, known))
+}
+
+/// A controller that runs, with somebody who reads standard error and presses Enter.
+pub struct Attended {
+    desk: Desk,
+    wait_for_enter: fn() -> std::io::Result<()>,
+    tell: fn(&str),
+}
+
+impl Attended {
+    /// # Errors
+    /// When nobody answers there.
+    pub fn open(
+        endpoint: &Endpoint,
+        tell: fn(&str),
+        wait_for_enter: fn() -> std::io::Result<()>,
+    ) -> Result<Self, RecordError> {
+        Ok(Self {
+            desk: Desk::open(endpoint)?,
+            wait_for_enter,
+            tell,
+        })
+    }
+}
+
+impl Machine for Attended {
+    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
+        self.desk.ask(line)
+    }
+
+    fn delay(&mut self, seconds: f64) -> Result<(), RecordError> {
+        self.desk.delay(seconds)
+    }
+
+    fn request(&mut self, task: Task) -> Result<(), RecordError> {
+        (self.tell)(task.words());
+        if task == Task::PutOnJig {
+            (self.tell)("Press Enter when that is done.");
+            (self.wait_for_enter)().map_err(|error| RecordError::Broken {
+                place: "the keyboard".to_owned(),
+                error,
+            })?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,74 @@
+//! All of it, as one page.
+
+use super::{Done, STEPS};
+use std::fmt::Write;
+
+const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Commissioning</title><style>\n\
+    body{font:15px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n\
+    h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .3em}p{margin:.2em 0 .6em;color:#555}\n\
+    table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.25em .6em;border-bottom:1px solid #ddd;vertical-align:top}\n\
+    .ok{color:#176b2c}.failed{color:#a61b1b;font-weight:600}.none{color:#888}\n\
+    </style></head><body>\n";
+
+/// The report of a commissioning as an HTML page.
+#[must_use]
+pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
+    let mut page = HEAD.to_owned();
+    let failed = all.iter().any(|done| done.failure.is_some());
+    let verdict = if failed {
+        "<span class=\"failed\">not commissioned</span>"
+    } else if all.len() == STEPS.len() {
+        "<span class=\"ok\">commissioned</span>"
+    } else {
+        "<span class=\"none\">not finished</span>"
+    };
+    let [identity, date, machine] = [identity, date, machine].map(escaped);
+    // Writing to a text does not fail.
+    let _ = write!(
+        page,
+        "<h1>{machine}: {verdict}</h1>\n<p>{date}<br>{identity}</p>\n"
+    );
+    for done in all {
+        let _ = write!(
+            page,
+            "<h2>{}</h2>\n<p>{}; {:.1} s</p>\n",
+            escaped(done.step.name),
+            escaped(done.step.about),
+            done.seconds
+        );
+        if !done.findings.is_empty() {
+            page += "<table><tr><th>measured</th><th>value</th><th>limit</th><th></th></tr>\n";
+            for finding in &done.findings {
+                let (class, verdict) = match (finding.passed, finding.limit.is_empty()) {
+                    (true, true) => ("none", ""),
+                    (true, false) => ("ok", "ok"),
+                    (false, _) => ("failed", "failed"),
+                };
+                let _ = writeln!(
+                    page,
+                    "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{verdict}</td></tr>",
+                    escaped(&finding.name),
+                    escaped(&finding.value),
+                    escaped(&finding.limit)
+                );
+            }
+            page += "</table>\n";
+        }
+        if let Some(failure) = &done.failure {
+            let _ = writeln!(
+                page,
+                "<p class=\"failed\">Failed: {}.</p>\n<p>What to do: {}.</p>",
+                escaped(&failure.what),
+                escaped(failure.advice)
+            );
+        }
+    }
+    page += "</body></html>\n";
+    page
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

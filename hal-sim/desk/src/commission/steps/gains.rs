@@ -1,0 +1,135 @@
+//! Gains by the ultimate gain (Ziegler and Nichols, Trans. ASME 64, 1942): they are raised together until noise and a kick ring on, in the
+//! middle and far out; half of that is used.
+
+use super::id;
+use crate::commission::bench::Bench;
+use crate::commission::found::{CommissionError, Finding};
+use crate::commission::known::{AXES, Known};
+use crate::record::RecordError;
+
+/// Gains that a share of 1 stands for: position 1/s, velocity V s/rad, integral V/rad.
+const WHOLE: [f64; 3] = [400.0, 40.0, 14_000.0];
+/// Share with which a machine is driven before, from which the search goes up, and by how much at a time to what.
+const FIRST_SHARE: f64 = 0.25;
+const STEP: f64 = 1.2;
+const MOST_SHARE: f64 = 4.0;
+/// What is used of the share at which it does not ring yet.
+const MARGIN: f64 = 0.5;
+/// Where, mm.
+const PLACES: [[f64; 2]; 2] = [[0.0, 0.0], [60.0, 0.0]];
+/// Ticks of a record, and of its end, which is looked at: 50 ms after the kick.
+const TICKS: usize = 1_500;
+const END: usize = 400;
+/// Kick, V, and ms.
+const KICK_V: f64 = 1.5;
+const KICK_MS: f64 = 5.0;
+/// How many times as large the current's change from tick to tick is where it rings, over that of the first share and the gains' part.
+const RINGS: f64 = 3.0;
+/// Least share that is good for anything.
+const LEAST_SHARE: f64 = 0.1;
+
+/// Gains of all pivots. The slower the velocity loop is, the slower must be what lies around it.
+fn set(bench: &mut Bench<'_>, share: f64) -> Result<(), CommissionError> {
+    let [position, velocity, integral] = WHOLE;
+    let around = share.min(1.0);
+    bench.set(&[
+        (id::POSITION_GAIN, position * around),
+        (id::VELOCITY_GAIN, velocity * share),
+        (id::INTEGRAL_GAIN, integral * share * around),
+    ])
+}
+
+/// Encoder counts within which a loop counts as settled that is as slow as with the first share, and those of the machine.
+const WIDE_COUNTS: f64 = 100.0;
+const USUAL_COUNTS: f64 = 2.0;
+
+/// A loop as it is before anything is known: a share of the gains, and a settling window for them.
+pub(super) fn begin_softly(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    bench.set(&[(id::SETTLING_COUNTS, WIDE_COUNTS)])?;
+    set(bench, FIRST_SHARE)
+}
+
+pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, CommissionError> {
+    let rest = bench.parameter(id::REST_STIFFNESS)?;
+    // At rest the loop would answer with an eighth of its gains.
+    bench.set(&[(id::REST_STIFFNESS, 1.0)])?;
+    bench.reserve(TICKS)?;
+    let mut found = Vec::new();
+    let mut least = MOST_SHARE;
+    for [x, y] in PLACES {
+        set(bench, FIRST_SHARE)?;
+        bench.ask(&format!("MOV X {x} Y {y}"))?;
+        bench.wait_for_target(20.0)?;
+        let share = ultimate(bench, least)?;
+        set(bench, FIRST_SHARE)?;
+        least = least.min(share);
+        found.push(Finding::told(
+            format!("share of the gains at X {x:.0} Y {y:.0} before it rings"),
+            format!("{share:.2}"),
+        ));
+    }
+    let share = MARGIN * least;
+    bench.ask("MOV X 0 Y 0")?;
+    bench.wait_for_target(20.0)?;
+    set(bench, share)?;
+    bench.set(&[
+        (id::REST_STIFFNESS, rest),
+        (id::SETTLING_COUNTS, USUAL_COUNTS),
+    ])?;
+    found.push(Finding::new(
+        "share that is used",
+        format!("{share:.2}: velocity gain {:.1} V s/rad", WHOLE[1] * share),
+        format!("over {LEAST_SHARE}"),
+        share > LEAST_SHARE,
+        "a transmission that gives way so much needs a notch (0x54500340), or to be made stiffer",
+    ));
+    Ok(found)
+}
+
+/// The largest share, of those tried up to a limit, at which nothing rings.
+fn ultimate(bench: &mut Bench<'_>, limit: f64) -> Result<f64, CommissionError> {
+    let mut quiet = [0.0; AXES];
+    for (pivot, quiet) in quiet.iter_mut().enumerate() {
+        *quiet = ringing(bench, pivot)?.unwrap_or(f64::INFINITY) / FIRST_SHARE;
+    }
+    let (mut good, mut share) = (FIRST_SHARE, FIRST_SHARE * STEP);
+    while share <= limit {
+        set(bench, share)?;
+        for (pivot, quiet) in quiet.iter().enumerate() {
+            match ringing(bench, pivot)? {
+                Some(now) if now < RINGS * quiet * share => {}
+                _ => return Ok(good),
+            }
+        }
+        good = share;
+        share *= STEP;
+    }
+    Ok(good)
+}
+
+/// Root mean square of the current's change from tick to tick, A, some time after a kick; `None` where that was a fault.
+fn ringing(bench: &mut Bench<'_>, pivot: usize) -> Result<Option<f64>, CommissionError> {
+    let line = format!("EXC STEP {} {KICK_V} {KICK_MS}", pivot + 1);
+    let signals = match bench.record(&[pivot], TICKS, 1, Some(&line)) {
+        Ok(mut signals) => signals.remove(0),
+        Err(CommissionError::Controller(RecordError::Refused { .. })) => return recovered(bench),
+        Err(error) => return Err(error),
+    };
+    if !bench.fault()?.is_empty() {
+        return recovered(bench);
+    }
+    let end = &signals.current_a[TICKS - END..];
+    let squares: f64 = end.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    Ok(Some((squares / END as f64).sqrt()))
+}
+
+/// After a fault: held again, with the first gains.
+fn recovered(bench: &mut Bench<'_>) -> Result<Option<f64>, CommissionError> {
+    bench.delay(0.3)?;
+    bench.ask("FLC")?;
+    bench.delay(0.1)?;
+    set(bench, FIRST_SHARE)?;
+    bench.ask("FRF")?;
+    bench.settle()?;
+    Ok(None)
+}

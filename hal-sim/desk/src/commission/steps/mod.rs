@@ -1,0 +1,104 @@
+//! The steps, in the order in which they are run: first what puts no power on a motor.
+
+mod friction;
+mod gains;
+mod hand;
+mod keep;
+mod nudges;
+mod reference;
+mod ring_servo;
+mod verification;
+mod windings;
+mod wiring;
+mod zeros;
+
+use super::Step;
+
+/// See the module.
+pub static STEPS: &[Step] = &[
+    Step {
+        name: "wiring",
+        about: "the machine at rest with the motors off: encoders, supply, current sensors",
+        run: wiring::run,
+    },
+    Step {
+        name: "hand",
+        about: "the platform is turned by hand: which way each encoder counts, and in which order the pivots follow each other",
+        run: hand::run,
+    },
+    Step {
+        name: "nudges",
+        about: "a rising voltage on one motor after the other: which pivot it moves, which way, and what it takes",
+        run: nudges::run,
+    },
+    Step {
+        name: "windings",
+        about: "short pulses: resistance and inductance of each winding",
+        run: windings::run,
+    },
+    Step {
+        name: "ring servo",
+        about: "each ring under a soft servo of its own, moved by a milliradian",
+        run: ring_servo::run,
+    },
+    Step {
+        name: "zeros",
+        about: "the platform in its jig: what each encoder reads at pivot angle 0",
+        run: zeros::run,
+    },
+    Step {
+        name: "reference",
+        about: "the first closed loop: a slow turn and a slow square",
+        run: reference::run,
+    },
+    Step {
+        name: "friction",
+        about: "turning at steady rates both ways: motor constants and friction",
+        run: friction::run,
+    },
+    Step {
+        name: "gains",
+        about: "the gains are raised until a kick rings on, in the middle and far out; half of that is used",
+        run: gains::run,
+    },
+    Step {
+        name: "verification",
+        about: "moves at full speed: following error and settling",
+        run: verification::run,
+    },
+    Step {
+        name: "keep",
+        about: "what was found is kept, and read back",
+        run: keep::run,
+    },
+];
+
+/// Numbers of parameters that the steps set.
+mod id {
+    pub const ENCODER_ZERO: u32 = 0x5450_0600;
+    pub const ENCODER_REVERSED: u32 = 0x5450_0610;
+    pub const ENCODER_ORDER: u32 = 0x5450_0620;
+    pub const BRIDGE_ORDER: u32 = 0x5450_0630;
+    pub const MOTOR_REVERSED: u32 = 0x5450_0640;
+    pub const POSITION_GAIN: u32 = 0x5450_0300;
+    pub const VELOCITY_GAIN: u32 = 0x5450_0301;
+    pub const INTEGRAL_GAIN: u32 = 0x5450_0302;
+    pub const REST_STIFFNESS: u32 = 0x5450_0308;
+    pub const SETTLING_COUNTS: u32 = 0x5450_0400;
+    pub const EXCITATION_V: u32 = 0x5450_0D00;
+    pub const TORQUE_CONSTANT: u32 = 0x5450_0810;
+    pub const GEAR_RATIO: u32 = 0x5450_0811;
+    pub const RESISTANCE: u32 = 0x5450_0812;
+    pub const INDUCTANCE: u32 = 0x5450_0813;
+    pub const DEAD_TIME: u32 = 0x5450_0814;
+    pub const DEAD_TIME_KNEE: u32 = 0x5450_0815;
+    pub const VISCOUS: u32 = 0x5450_0818;
+    pub const COULOMB: u32 = 0x5450_0819;
+    pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
+    pub const PWM_HZ: u32 = 0x5450_080B;
+
+    /// Of a pivot that has one of its own, counted from 0; `first` is pivot 1's.
+    pub const fn of(first: u32, pivot: usize) -> u32 {
+        first + 0x10 * pivot as u32
+    }
+}

@@ -1,0 +1,56 @@
+//! The platform in its jig, in the middle with guide 1 along x: there pivot 1 is at 0 deg, pivot 2 at 120, pivot 3 at 240.
+
+use super::id;
+use crate::commission::Task;
+use crate::commission::bench::Bench;
+use crate::commission::found::{CommissionError, Finding};
+use crate::commission::known::{AXES, Known};
+use std::f64::consts::TAU;
+
+/// Counts of a turn.
+const COUNTS: f64 = 67_108_864.0;
+/// What the angles are off after it, rad: a count or two.
+const MOST_LEFT_RAD: f64 = 3e-7;
+
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    known: &mut Known,
+) -> Result<Vec<Finding>, CommissionError> {
+    bench.request(Task::PutOnJig)?;
+    bench.delay(0.2)?;
+    let mut found = Vec::new();
+    let angles = bench.pivots_rad()?;
+    for (pivot, angle) in angles.into_iter().enumerate() {
+        let target = TAU * pivot as f64 / AXES as f64;
+        let sign = if known.reversed_at_port[known.ports[pivot]] {
+            -1.0
+        } else {
+            1.0
+        };
+        let now = bench.parameter(id::ENCODER_ZERO + pivot as u32)?;
+        let zero = (now + sign * (angle - target) / TAU * COUNTS)
+            .round()
+            .rem_euclid(COUNTS);
+        bench.set(&[(id::ENCODER_ZERO + pivot as u32, zero)])?;
+        found.push(Finding::told(
+            format!("zero of encoder {}", pivot + 1),
+            format!("{zero:.0} counts"),
+        ));
+    }
+    bench.delay(0.1)?;
+    let angles = bench.pivots_rad()?;
+    let left = (0..AXES)
+        .map(|pivot| {
+            let off = (angles[pivot] - TAU * pivot as f64 / AXES as f64) / TAU;
+            ((off - off.round()) * TAU).abs()
+        })
+        .fold(0.0, f64::max);
+    found.push(Finding::new(
+        "pivots in the jig, off 0, 120 and 240 deg",
+        format!("{:.2} urad at most", left * 1e6),
+        format!("under {:.1}", MOST_LEFT_RAD * 1e6),
+        left < MOST_LEFT_RAD + 1e-6,
+        "the platform has moved in the jig: put it in again",
+    ));
+    Ok(found)
+}

@@ -1,0 +1,160 @@
+//! A simulated machine with a simulated person beside it, as fast as this computer can.
+
+use std::path::Path;
+
+use super::super::error::CliError;
+use desk::commission::{Machine, Task};
+use desk::record::RecordError;
+use firmware::gcs::Session;
+use firmware::parameters::Parameters;
+use hal_sim::machine::devices::{SettingsFlash, StageParameters};
+use hal_sim::machine::plant::External;
+use hal_sim::rig::{ControllerMemory, Rig};
+
+/// Where the person holds the platform's middle, m, and how far it is turned, rad, in which time, s.
+const OUT_M: [f64; 2] = [0.025, 0.015];
+const TURN_RAD: f64 = 1.6;
+const PUSH_S: f64 = 1.5;
+const TURN_S: f64 = 4.0;
+/// How stiff a person's hand is, N/m and N s/m, N m/rad and N m s/rad.
+const HAND_N_M: f64 = 2_000.0;
+const HAND_N_S_M: f64 = 200.0;
+const WRIST_N_M_RAD: f64 = 30.0;
+const WRIST_N_M_S_RAD: f64 = 5.0;
+/// How well a jig holds, m and rad.
+const JIG_M: f64 = 20e-6;
+const JIG_RAD: f64 = 0.2e-3;
+/// Ticks that a line may take.
+const PATIENCE: u32 = 400_000;
+const TICK_S: f64 = 50e-6;
+
+/// See the module.
+pub(super) struct SimulatedMachine {
+    rig: Rig<'static>,
+    session: Session,
+    answers: Vec<u8>,
+    /// Ticks since the person has begun to turn the platform, and where its theta was.
+    turning: Option<(u32, f64)>,
+}
+
+impl SimulatedMachine {
+    /// Switched on, with a controller that keeps its settings in a file and knows nothing.
+    ///
+    /// # Errors
+    /// The file.
+    pub fn new(stage: &StageParameters, seed: u64, settings: &Path) -> Result<Self, CliError> {
+        let mut stage = stage.clone();
+        stage.seed = seed;
+        let flash = SettingsFlash::open(settings)?;
+        let parameters = Parameters::REFERENCE.uncommissioned();
+        let mut machine = Self {
+            rig: Rig::simulated(ControllerMemory::endless(), &stage, &parameters, flash),
+            session: Session::new(),
+            answers: Vec::new(),
+            turning: None,
+        };
+        machine.run(2_000);
+        Ok(machine)
+    }
+
+    fn tick(&mut self) {
+        self.push();
+        self.rig.tick(&mut ());
+        // Writing to a vector does not fail.
+        let _ = self.rig.service(&mut self.session, &mut self.answers);
+        self.rig.keep();
+    }
+
+    fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.tick();
+        }
+    }
+
+    /// What the person's hand does.
+    fn push(&mut self) {
+        let Some((ticks, start_rad)) = &mut self.turning else {
+            return;
+        };
+        *ticks += 1;
+        let now_s = f64::from(*ticks) * TICK_S;
+        let plant = &mut self.rig.front.stage.plant;
+        if now_s > PUSH_S + TURN_S {
+            self.turning = None;
+            plant.set_external(External::default());
+            return;
+        }
+        let turned = ((now_s - PUSH_S) / (TURN_S - 1.0)).clamp(0.0, 1.0);
+        let pushed = (now_s / PUSH_S).min(1.0);
+        let (pose, velocity) = (plant.pose(), plant.velocity());
+        let to_rad = *start_rad + TURN_RAD * turned;
+        let force_n =
+            [0, 1].map(|k| HAND_N_M * (pushed * OUT_M[k] - pose[k]) - HAND_N_S_M * velocity[k]);
+        let torque_n_m = WRIST_N_M_RAD * (to_rad - pose[2]) - WRIST_N_M_S_RAD * velocity[2];
+        plant.set_external(External {
+            force_n,
+            torque_n_m,
+            ..External::default()
+        });
+    }
+}
+
+impl Machine for SimulatedMachine {
+    fn ask(&mut self, line: &str) -> Result<Option<String>, RecordError> {
+        self.say("ERR?")?;
+        let answer = self.say(line)?;
+        let error = self.say("ERR?")?;
+        match error.trim().parse() {
+            // A stop has this error without having been refused.
+            Ok(0 | 10) => Ok((!answer.is_empty()).then_some(answer)),
+            Ok(code) => Err(RecordError::Refused {
+                line: line.to_owned(),
+                code,
+                hint: "",
+            }),
+            Err(_) => Err(RecordError::Strange {
+                line: "ERR?".to_owned(),
+                answer: error,
+            }),
+        }
+    }
+
+    fn delay(&mut self, seconds: f64) -> Result<(), RecordError> {
+        self.run((seconds / TICK_S).ceil() as u32);
+        Ok(())
+    }
+
+    fn request(&mut self, task: Task) -> Result<(), RecordError> {
+        match task {
+            Task::Turn => self.turning = Some((0, self.rig.front.stage.plant.pose()[2])),
+            Task::PutOnJig => {
+                let stage = &mut self.rig.front.stage;
+                stage.set_pose_at_rest([JIG_M, -JIG_M, JIG_RAD]);
+                self.run(400);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl SimulatedMachine {
+    fn say(&mut self, line: &str) -> Result<String, RecordError> {
+        let text = format!("{line}\n");
+        let mut bytes = text.as_bytes();
+        for _ in 0..PATIENCE {
+            let taken = self.session.receive(bytes);
+            bytes = &bytes[taken..];
+            self.tick();
+            if bytes.is_empty() && self.session.is_idle() {
+                let answer =
+                    String::from_utf8_lossy(&std::mem::take(&mut self.answers)).into_owned();
+                let lines: Vec<&str> = answer.trim_end().lines().map(str::trim_end).collect();
+                return Ok(lines.join("\n"));
+            }
+        }
+        Err(RecordError::Strange {
+            line: line.to_owned(),
+            answer: "(none)".to_owned(),
+        })
+    }
+}
