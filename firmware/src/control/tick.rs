@@ -37,21 +37,26 @@ pub fn tick(
     recorder: &mut impl TickObserver,
 ) -> Outputs {
     let mut given = Outputs::default();
-    tick_and_drive(config, state, inputs, queues, recorder, |outputs| {
-        given = outputs;
+    let drive = |outputs| given = outputs;
+    tick_and_drive(config, state, inputs, queues, drive, |queues, sample| {
+        recorder.observe(sample);
+        if let Some(observers) = &mut queues.observers {
+            observers.observe(sample);
+        }
     });
     given
 }
 
-/// The same with the outputs handed to `drive` as soon as they are known.
+/// The same with the outputs handed to `drive` as soon as they are known, and the sample to `observe`: where the recorders run
+/// behind the tick, their code is no part of it.
 #[inline]
-pub fn tick_and_drive(
+pub fn tick_and_drive<'a>(
     config: &mut Config,
     state: &mut State,
     inputs: &Inputs,
-    queues: &mut TickQueues<'_>,
-    recorder: &mut impl TickObserver,
+    queues: &mut TickQueues<'a>,
     drive: impl FnOnce(Outputs),
+    observe: impl FnOnce(&mut TickQueues<'a>, &Sample),
 ) {
     state.tick = state.tick.wrapping_add(1);
     state
@@ -111,7 +116,7 @@ pub fn tick_and_drive(
     if commanded {
         let _ = queues.commands.dequeue();
     }
-    let sample = || Sample {
+    let sample = Sample {
         tick: state.tick,
         mode: state.mode,
         fault: state.fault.map(|fault| fault.kind),
@@ -127,10 +132,7 @@ pub fn tick_and_drive(
         commands: state.commands,
         servo: state.servo_sample(slot),
     };
-    recorder.observe(&sample());
-    if let Some(observers) = &mut queues.observers {
-        observers.observe(&sample());
-    }
+    observe(queues, &sample);
     // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
     // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
     // on when the command side reads.

@@ -273,7 +273,6 @@ mod app {
             context.local.state,
             &inputs,
             context.local.tick_queues,
-            context.local.sample_sender,
             |outputs| {
                 bridges.set(outputs.duty, outputs.awake);
                 brake_resistor.set(outputs.brake_resistor);
@@ -282,6 +281,7 @@ mod app {
                 // What follows has no deadline.
                 trace::mark_end_of_tick();
             },
+            |_, sample| context.local.sample_sender.observe(sample),
         );
         watchdog::feed_window();
         rtic::pend(Interrupt::CRYP);
