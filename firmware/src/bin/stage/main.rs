@@ -171,10 +171,7 @@ mod app {
             serial: context.local.serial_place.write(identity::serial()),
             version: env!("CARGO_PKG_VERSION"),
         };
-        let interpreter = context
-            .local
-            .panel_place
-            .write(Interpreter::new(&PARAMETERS, identity));
+        let interpreter = place_interpreter(context.local.panel_place, identity);
         interpreter.set_board(&StageBoard);
         if let Some(cause) = reset_cause.unasked() {
             interpreter.set_start_cause(cause);
@@ -229,6 +226,15 @@ mod app {
         // Last: everything that takes time is done, the first latch comes 35 us from here, and no interrupt before this ends.
         local.latch_timer.start_with(&mut local.pwm);
         (Shared { sensors }, local)
+    }
+
+    /// In a frame of its own: what it makes on the stack is gone before the settings are read.
+    #[inline(never)]
+    fn place_interpreter(
+        place: &'static mut MaybeUninit<Interpreter>,
+        identity: Identity,
+    ) -> &'static mut Interpreter {
+        place.write(Interpreter::new(&PARAMETERS, identity))
     }
 
     /// Latches the encoders, starts the conversions, arms the tick.
