@@ -59,6 +59,7 @@ mod fault_handlers;
 mod flash;
 mod identity;
 mod latch;
+mod loop_memory;
 mod panic;
 mod pwm;
 mod reset_cause;
@@ -141,6 +142,7 @@ mod app {
         samples: SampleQueue = SampleQueue::new(),
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
+        #[unsafe(link_section = ".ccm.state")]
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
         serial_place: MaybeUninit<identity::Serial> = MaybeUninit::uninit(),
     ])]

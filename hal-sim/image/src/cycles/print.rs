@@ -97,8 +97,10 @@ const KINDS: [Kind; 7] = [
     ("ARM's table", |it| it.table),
     ("floating-point results waited for", |it| it.float),
     ("refills after jumps", |it| it.refill),
-    ("instructions waited for, flash", |it| it.fetch),
-    ("data waited for, flash", |it| it.data),
+    ("instructions waited for", |it| it.fetch),
+    ("data waited for, flash or RAM that is fetched from", |it| {
+        it.data
+    }),
     ("peripherals", |it| it.peripherals),
     ("entry", |it| it.entry),
 ];
