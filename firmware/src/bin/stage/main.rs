@@ -35,6 +35,10 @@
 //! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase
 //! does not matter until the new duty comes.
 //!
+//! # Memory
+//!
+//! The latch, the tick and all that they call run from RAM (`loop_memory`); `memory.x` has the map.
+//!
 //! # Priorities
 //!
 //! The latch has 1 in the hardware, the tick 2: a latch comes in its time, whatever a tick still does after its duties
