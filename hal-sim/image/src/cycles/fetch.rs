@@ -1,9 +1,17 @@
-//! The core's fetch: words of the code, one a cycle where the flash does not hold it up, a few ahead of what runs.
+//! The core's fetch: words of the code, one a cycle where the memory does not hold it up, a few ahead of what runs.
+//!
+//! Code in RAM does without the flash's waits. Where it is fetched over the instruction bus, from under the addresses of the flash,
+//! each word is there in the cycle in which it is asked for (RM0090, 2.3.1: no wait states; Cortex-M3 Technical Reference Manual, 14.3,
+//! which says of this bus what the later manual leaves out). Over the system bus, from RAM's own address, it takes a cycle more (14.5).
 
 use super::flash::Flash;
 use super::setting::Setting;
 use std::collections::VecDeque;
+use std::ops::Range;
 
+/// RAM under the instruction bus's addresses, and at its own.
+const CODE_RAM: Range<u64> = 0..0x0800_0000;
+const RAM: Range<u64> = 0x2000_0000..0x4000_0000;
 /// Bytes of a word.
 const WORD: u64 = 4;
 /// Words that it fetches ahead (Cortex-M3 Technical Reference Manual, 14.3; the later manual does not say). With fewer, code of wide
@@ -74,7 +82,15 @@ impl Fetch {
     }
 
     fn fetch(&mut self, flash: &mut Flash) {
-        let there_at = self.free_at + flash.fetch(self.next * WORD, self.free_at);
+        let address = self.next * WORD;
+        let wait = if CODE_RAM.contains(&address) {
+            0
+        } else if RAM.contains(&address) {
+            1
+        } else {
+            flash.fetch(address, self.free_at)
+        };
+        let there_at = self.free_at + wait;
         self.queue.push_back(Fetched {
             word: self.next,
             begins_at: there_at + DECODE,

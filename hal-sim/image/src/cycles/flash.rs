@@ -2,14 +2,9 @@
 //! The line that the core fetches from stands in a buffer; as it is entered, the next one is read ahead. A line that is in neither is
 //! looked up in the cache of 64 lines, and goes there when it had to be read. Data have a cache of 8 lines of their own. Both replace
 //! the line used longest ago.
-//!
-//! Code in RAM does without all that. Where it is fetched over the instruction bus, from under the addresses of the flash, each
-//! word is there in the cycle in which it is asked for (RM0090, 2.3.1: no wait states; Cortex-M3 Technical Reference Manual, 14.3, which
-//! says of this bus what the later manual leaves out). Over the system bus, from RAM's own address, it takes a cycle more (14.5).
 
 use super::setting::Setting;
 use std::collections::VecDeque;
-use std::ops::Range;
 
 /// Bytes of a line.
 const LINE: u64 = 16;
@@ -38,10 +33,6 @@ impl Cache {
         self.0.push_back(line);
     }
 }
-
-/// RAM under the instruction bus's addresses, and at its own.
-const CODE_RAM: Range<u64> = 0..0x0800_0000;
-const RAM: Range<u64> = 0x2000_0000..0x4000_0000;
 
 /// The accelerator, and the flash behind it.
 #[derive(Clone, Debug)]
@@ -84,12 +75,6 @@ impl Flash {
 
     /// Cycles that a fetch of an address, begun in a cycle, waits.
     pub fn fetch(&mut self, address: u64, now: u64) -> u64 {
-        if CODE_RAM.contains(&address) {
-            return 0;
-        }
-        if RAM.contains(&address) {
-            return 1;
-        }
         let line = address / LINE;
         if self.current == Some(line) {
             return 0;
