@@ -1,8 +1,12 @@
-//! Tells the linker of the image where `memory.x` lies, and cargo to link again when it changes.
+//! Tells the linker of the image where `memory.x` lies and what stands in RAM, and cargo to link again when that changes.
 
 fn main() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    println!("cargo:rerun-if-changed={root}/memory.x");
+    let here = env!("CARGO_MANIFEST_DIR");
+    println!("cargo:rerun-if-changed={here}/../memory.x");
+    println!("cargo:rerun-if-changed={here}/control-loop.x");
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rustc-link-search={root}");
+    println!("cargo:rustc-link-search={here}/..");
+    if std::env::var_os("CARGO_FEATURE_STAGE").is_some() {
+        println!("cargo:rustc-link-arg-bin=stage=-T{here}/control-loop.x");
+    }
 }

@@ -13,7 +13,7 @@ pub(crate) use consistency::MIN_HOST_SILENCE_MS;
 use crate::motion::{Limits, TurnDirection};
 use kinematics::Geometry;
 
-/// Rows that a record of any signals can have: with all tables 16,384 samples.
+/// Rows of a record unless told otherwise: with all tables 16,384 samples.
 pub const MAX_RECORD_ROWS: usize = 2048;
 
 /// PWM counts of full duty on the reference controller: 168 MHz over 40 kHz.

@@ -318,11 +318,20 @@ fn fewer_tables_leave_room_for_more_points() {
     for table in 2..=8 {
         bench.say(&format!("DRC {table} 0 0\n"));
     }
-    assert_eq!(bench.error_after("SPA 1 0x16000201 22529"), "17");
-    assert_eq!(bench.error_after("SPA 1 0x16000201 22528"), "0");
+    assert_eq!(bench.error_after("SPA 1 0x16000201 18433"), "17");
+    assert_eq!(bench.error_after("SPA 1 0x16000201 18432"), "0");
     // More tables leave fewer again.
     assert_eq!(bench.error_after("DRC 2 Y 1"), "0");
-    assert_eq!(bench.say("SPA? 1 0x16000201\n"), "1 0x16000201=11264\n");
+    assert_eq!(bench.say("SPA? 1 0x16000201\n"), "1 0x16000201=9216\n");
+    assert_eq!(bench.error_after("DRC 3 W 1 4 X 70"), "0");
+    assert_eq!(bench.error_after("SPA 1 0x16000201 4096"), "0");
+    // The three errors of the pose, and five signals more, are the widest.
+    assert_eq!(bench.error_after("DRC 1 X 3 2 Y 3 3 W 3"), "0");
+    assert_eq!(
+        bench.error_after("DRC 4 1 73 5 2 73 6 3 73 7 0 201 8 0 204"),
+        "0"
+    );
+    assert_eq!(bench.say("SPA? 1 0x16000201\n"), "1 0x16000201=1675\n");
 }
 
 /// A connection that takes little at a time gets the same answer, and single bytes and others are served meanwhile.

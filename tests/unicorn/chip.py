@@ -4,9 +4,10 @@ Unicorn runs blocks of instructions; a hook counts them, and stops it at the nex
 aside and runs the handler until it returns; so nothing here knows how a core stacks its registers.
 """
 
+import ctypes
 import struct
 
-from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc, UcError
+from unicorn import UC_PROT_ALL, UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc, UcError
 from unicorn.arm_const import (
     UC_ARM_REG_LR,
     UC_ARM_REG_PC,
@@ -19,7 +20,9 @@ from unicorn.arm_const import (
 import peripherals as part
 
 FLASH, FLASH_BYTES = 0x0800_0000, 2 << 20
-MEMORIES = ((FLASH, FLASH_BYTES), (0x2000_0000, 192 << 10), (0x1000_0000, 64 << 10), (0x1FFF_0000, 64 << 10))
+MEMORIES = ((FLASH, FLASH_BYTES), (0x1000_0000, 64 << 10), (0x1FFF_0000, 64 << 10))
+# RAM, and how much of it answers at address 0 when the program says so. Until then nothing is there.
+SRAM, SRAM_BYTES, SRAM1_BYTES = 0x2000_0000, 192 << 10, 112 << 10
 # Where handlers return to, and what stands there.
 RETURN, ENDLESS = 0x6000_0000, b"\xfe\xe7"
 FLASH_SIZE_KIB = (0x1FFF_7A22, 2048)
@@ -44,6 +47,8 @@ class Chip:
         self.uc.ctl_set_cpu_model(UC_CPU_ARM_CORTEX_M4)
         for start, size in MEMORIES:
             self.uc.mem_map(start, size)
+        self.sram, self.sram1_wanted = ctypes.create_string_buffer(SRAM_BYTES), False
+        self.uc.mem_map_ptr(SRAM, SRAM_BYTES, UC_PROT_ALL, ctypes.addressof(self.sram))
         self.uc.mem_map(RETURN, 0x1000)
         self.uc.mem_write(RETURN, ENDLESS)
         self.uc.mem_write(FLASH, b"\xff" * FLASH_BYTES)
@@ -84,6 +89,7 @@ class Chip:
             0x4002_3800: part.Rcc(),
             0x4002_3C00: part.Flash(),
             0x4000_7000: part.Pwr(),
+            0x4001_3800: part.Syscfg(self),
             0xE000_1000: part.Cycles(self),
             0xE000_E000: self.interrupts,
         }
@@ -168,6 +174,11 @@ class Chip:
         """Something has changed that may interrupt: the core is to be asked after the block under way."""
         self.stop_at = 0
 
+    def map_sram1(self):
+        """SRAM1 is wanted at address 0: it is there from the block after the one under way."""
+        self.sram1_wanted = True
+        self.look()
+
     def fail(self, why):
         self.failure = why
         self.look()
@@ -215,6 +226,9 @@ class Chip:
                 self.sleeping = False if self.requested() else self.sleeping
             else:
                 self.run()
+            if self.sram1_wanted:
+                self.sram1_wanted = False
+                self.uc.mem_map_ptr(0, SRAM1_BYTES, UC_PROT_ALL, ctypes.addressof(self.sram))
             if self.failure:
                 raise Failed(self.failure)
 

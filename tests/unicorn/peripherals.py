@@ -58,6 +58,21 @@ class Flash(Registers):
         return 0 if offset == 0x0C else self.values.get(offset, 0)
 
 
+class Syscfg(Registers):
+    """What answers at address 0: nothing, until it is the first block of RAM."""
+
+    MEMRMP, SRAM1 = 0x00, 0b011
+
+    def __init__(self, chip):
+        super().__init__()
+        self.chip = chip
+
+    def write(self, offset, value):
+        super().write(offset, value)
+        if offset == self.MEMRMP and value & 0b111 == self.SRAM1:
+            self.chip.map_sram1()
+
+
 class Port(Registers):
     """A GPIO port: what is driven from outside, and what is put out."""
 

@@ -25,7 +25,7 @@ use kinematics::Angle;
 /// - Period: 50 us, by a timer's compare event. The frames were latched 15 us before.
 /// - Deadline: 32 us after the event, 5,376 cycles. There the PWM period begins in which the duties act.
 /// - Cost until then: in cycles by use, from `cargo chip-cycles`, which CI holds to `firmware/cycle-limits.csv`; in
-///   instructions from `cargo chip`. What follows, the rest of a plan that was taken, sample and snapshot, has no deadline.
+///   instructions from `cargo chip`. What follows, learning, the rest of a plan that was taken, sample and snapshot, has no deadline.
 /// - Miss: the old duties act one PWM period, 25 us, longer. The next tick is told so ([`Inputs::late`]) and counts it; more
 ///   than parameter 0x5450050B of them, one in 100 ticks forgiven, are a fault.
 #[inline]
@@ -37,26 +37,28 @@ pub fn tick(
     recorder: &mut impl TickObserver,
 ) -> Outputs {
     let mut given = Outputs::default();
-    tick_and_drive(config, state, inputs, queues, recorder, |outputs| {
-        given = outputs;
+    let drive = |outputs| given = outputs;
+    tick_and_drive(config, state, inputs, queues, drive, |queues, sample| {
+        recorder.observe(sample);
+        if let Some(observers) = &mut queues.observers {
+            observers.observe(sample);
+        }
     });
     given
 }
 
-/// The same with the outputs handed to `drive` as soon as they are known.
+/// The same with the outputs handed to `drive` as soon as they are known, and the sample to `observe`: where the recorders run
+/// behind the tick, their code is no part of it.
 #[inline]
-pub fn tick_and_drive(
+pub fn tick_and_drive<'a>(
     config: &mut Config,
     state: &mut State,
     inputs: &Inputs,
-    queues: &mut TickQueues<'_>,
-    recorder: &mut impl TickObserver,
+    queues: &mut TickQueues<'a>,
     drive: impl FnOnce(Outputs),
+    observe: impl FnOnce(&mut TickQueues<'a>, &Sample),
 ) {
     state.tick = state.tick.wrapping_add(1);
-    state
-        .loop_counters
-        .count_tick(inputs.tick_cycles, inputs.late);
     let (frames, currents) = (config.wiring).of_pivots(&inputs.frames, &inputs.current_counts);
     let mut pivots = decode(config, &mut state.encoders, &frames);
     // An average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
@@ -88,8 +90,9 @@ pub fn tick_and_drive(
     let point = advance(config, state);
     state.advance_trial(config, queues.trial);
     let setpoint = state.motion.centre().platform_setpoint(&point);
+    let mut guides = None;
     let driven = if drives && state.servo_on() {
-        state.drive(config, &setpoint, &mut pivots, &currents)
+        state.drive(config, &setpoint, &mut pivots, &currents, &mut guides)
     } else {
         None
     };
@@ -111,13 +114,20 @@ pub fn tick_and_drive(
         awake: state.bridges_awake(),
         brake_resistor: state.brake_resistor.is_on(),
     });
+    // What has no deadline: from here on it is for ticks to come.
+    state
+        .loop_counters
+        .count_tick(inputs.tick_cycles, inputs.late);
+    if let Some(guides) = &guides {
+        state.learn(config, guides, slot);
+    }
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
     }
     if commanded {
         let _ = queues.commands.dequeue();
     }
-    let sample = || Sample {
+    let sample = Sample {
         tick: state.tick,
         mode: state.mode,
         fault: state.fault.map(|fault| fault.kind),
@@ -133,10 +143,7 @@ pub fn tick_and_drive(
         commands: state.commands,
         servo: state.servo_sample(slot),
     };
-    recorder.observe(&sample());
-    if let Some(observers) = &mut queues.observers {
-        observers.observe(&sample());
-    }
+    observe(queues, &sample);
     // In its slot, and when mode or commands have changed; not in a tick that has taken a command, which is the longest
     // as it is. Where there is no room then, it is sent in the next slot: so the ticks that can send one do not depend
     // on when the command side reads.
@@ -180,17 +187,21 @@ fn advance(config: &Config, state: &mut State) -> Setpoint {
 /// a sample is a third of it.
 const SUPPLY_SMOOTHING: f32 = 1.0 / 8.0;
 
+/// Lengths of the guides, and cosines of their angles to the track, as in [`PivotSetpoints`].
+type Guides = [[f32; 3]; 2];
+
 /// Setpoints of the pivots, their rates (rad/s), and the duties.
 type DriveOutputs = ([Angle; 3], [f32; 3], [Duty; 3]);
 
 impl State {
-    /// Setpoint to duties; `None` when a fault came of it.
+    /// Setpoint to duties; `None` when a fault came of it. `guides` are told where servos have run, which can learn then.
     fn drive(
         &mut self,
         config: &Config,
         setpoint: &Setpoint,
         pivots: &mut [Angle; 3],
         currents: &[i16; 3],
+        guides: &mut Option<Guides>,
     ) -> Option<DriveOutputs> {
         if !self.is_in_disk(config, &setpoint.position) {
             return None;
@@ -219,6 +230,7 @@ impl State {
         if self.excitation.report.runs {
             self.excitation.advance_added_volts();
         }
+        *guides = Some([wanted.lengths, wanted.cosines]);
         let (duty, sum) = self.step_servos(config, &errors, wanted, stiffness, currents);
         // Infinities add up to one, or to no number.
         if !(sum.abs() <= f32::MAX) {
@@ -254,7 +266,22 @@ impl State {
         Some((wanted.angles, wanted.motion.rates, duty))
     }
 
-    /// Duties of the three servos, and the sum of what they asked for. The one that is inspected in this tick learns.
+    /// The servo that is inspected in this tick learns, for those to come.
+    fn learn(&mut self, config: &Config, [lengths, cosines]: &Guides, slot: usize) {
+        let servos = &config.servo;
+        let (Some(servo), Some(config)) = (self.servo.get_mut(slot), servos.pivots.get(slot))
+        else {
+            return;
+        };
+        if self.trial.holds_model() {
+            servo.skip_learning();
+        } else {
+            servo.learn(config);
+        }
+        servo.schedule(servos.scheduled_share(lengths, cosines, slot));
+    }
+
+    /// Duties of the three servos, and the sum of what they asked for.
     #[inline(never)]
     pub(super) fn step_servos(
         &mut self,
@@ -283,14 +310,6 @@ impl State {
             };
             let (servo, config) = (&mut self.servo[i], &servos.pivots[i]);
             duty[i] = servo.step(config, &setpoint, &common);
-            if i == self.inspection_slot {
-                if self.trial.holds_model() {
-                    servo.skip_learning();
-                } else {
-                    servo.learn(config);
-                }
-                servo.schedule(servos.scheduled_share(&wanted.lengths, &wanted.cosines, i));
-            }
             sum += servo.requested_counts();
         }
         (duty, sum)

@@ -49,6 +49,8 @@ impl Interpreter {
     }
 
     /// What goes on with and without connections: takes a new snapshot, carries on what is pending, a macro too.
+    // A frame of its own, as `handle` and `execute` have: what one needs on the stack is not there below the other.
+    #[inline(never)]
     pub fn advance(&mut self, queues: &mut CommandQueues<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next
         // call.
@@ -119,6 +121,7 @@ impl Interpreter {
         }
     }
 
+    #[inline(never)]
     pub(super) fn handle(
         &mut self,
         session: &mut Session,
@@ -193,6 +196,7 @@ impl Interpreter {
         self.execute(request, session, queues, out)
     }
 
+    #[inline(never)]
     fn execute(
         &mut self,
         request: Request,

@@ -48,6 +48,8 @@ impl<F: NorFlash> SettingsStore<F> {
     /// Stores the settings if they wait for it and can be stored now. To be called after every
     /// [`service`](crate::gcs::Interpreter::service). Takes as long as the flash does: an erased sector is needed now
     /// and then.
+    // A frame of its own: the caller never ends.
+    #[inline(never)]
     pub fn store_pending(&mut self, settings: &mut impl StoredSettings) {
         if settings.needs_storing() {
             let result = self.write(settings);

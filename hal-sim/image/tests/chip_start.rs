@@ -9,12 +9,24 @@ use std::sync::mpsc;
 /// A register, which of its bits, what they are, and what for.
 type Setting = (u32, u32, u32, &'static str);
 
-const SETTINGS: [Setting; 14] = [
+const SETTINGS: [Setting; 16] = [
     (
         0x4002_3800,
         1 << 19,
         1 << 19,
         "the crystal is watched (RCC_CR.CSSON)",
+    ),
+    (
+        0x4002_3844,
+        1 << 14,
+        1 << 14,
+        "the system configuration has its clock (RCC_APB2ENR.SYSCFGEN)",
+    ),
+    (
+        0x4001_3800,
+        0b111,
+        0b011,
+        "SRAM answers at address 0 (SYSCFG_MEMRMP)",
     ),
     (
         0x4000_2C04,

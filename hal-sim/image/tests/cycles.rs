@@ -224,6 +224,41 @@ fn straight_code_of_wide_instructions_waits_for_its_lines_and_of_narrow_ones_har
     assert!((5..=8).contains(&narrow), "{narrow}");
 }
 
+/// The same from RAM, at an address.
+fn from_ram(setting: Setting, start: u64, code: &[u8], count: u64) -> Cycles {
+    let length = code.len() as u64;
+    let decoded = decoded(code, start);
+    let ran = (0..count).map(|k| Ran {
+        at: start + k * length,
+        instruction: &decoded,
+        bus: Bus::None,
+    });
+    Core::new(setting).run(ran, |_, _| {})
+}
+
+#[test]
+fn code_in_ram_waits_for_nothing_over_the_instruction_bus_and_every_other_cycle_over_the_system_bus()
+ {
+    for setting in Setting::ALL {
+        assert_eq!(from_ram(setting, 0x100, ADD_WIDE, 64).fetch, 0);
+        let system = from_ram(setting, 0x2000_0100, ADD_WIDE, 64).fetch;
+        assert!((60..=70).contains(&system), "{system}");
+    }
+    let flash = from_ram(Setting::NOMINAL, START, ADD_WIDE, 64).fetch;
+    assert!((30..=40).contains(&flash), "{flash}");
+}
+
+#[test]
+fn data_in_the_block_of_the_code_wait_for_a_fetch_each_word() {
+    let code = [
+        (LDR_R0, Bus::CodeBlock),
+        (STR, Bus::CodeBlock),
+        (LDM, Bus::CodeBlock),
+    ];
+    let of = |setting| run_with(setting, &code).data;
+    assert_eq!(Setting::ALL.map(of), [0, 5, 10]);
+}
+
 #[test]
 fn data_in_the_flash_wait_once_for_a_line_and_always_without_the_cache() {
     let code = [
@@ -268,6 +303,11 @@ fn entry_takes_12_cycles_and_the_first_instruction_of_the_floating_point_unit_pu
     };
     assert_eq!(of(&[ADD]), 12);
     assert_eq!(of(&[ADD, VADD, VMUL]), 12 + 18);
+    // The vector is in flash.
+    assert_eq!(
+        run_with(Setting::PESSIMISTIC, &[(ADD, Bus::None)]).entry,
+        12 + 5
+    );
 }
 
 #[test]

@@ -383,11 +383,13 @@ pub const SECTIONS: &[Section] = &[
         title: "What a tick takes in cycles",
         group: Group::Chip,
         about: "Each tick's instructions, as the emulated chip ran them, through a model of the Cortex-M4F (ARM's table, loads that overlap, \
-                results waited for, jumps, slow buses, entry) and of ST's flash accelerator (5 wait states, lines of 128 bits, one read \
-                ahead, 64 lines of instructions and 8 of data cached). What the manuals leave open is guessed three times. Modelled, not \
-                measured: it may be some 6 % off, and what DMA takes of the RAM is not in it. \
+                results waited for, jumps, slow buses, entry), of RAM at address 0, which the loop's code comes from without a wait unless data \
+                of the same block are in its way, and of ST's flash accelerator, which nothing of the loop comes through any more. What \
+                the manuals leave open is guessed three times. Modelled, not measured: it may be some 6 % off, and what DMA takes of the \
+                RAM is not in it. \
                 [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
-                `--check` fails where one is over, or the model without a memory is more than 2 % off `llvm-mca`'s.",
+                `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2 % off \
+                `llvm-mca`'s.",
         command: "cargo chip-cycles",
         short: Some("cargo chip-cycles --ticks 100"),
         kind: Kind::Compiled,
@@ -410,8 +412,8 @@ pub const SECTIONS: &[Section] = &[
         title: "Proofs on the image, and its sizes",
         group: Group::Chip,
         about: "The image is taken apart, instruction by instruction: from the handlers of the control loop no path leads to the panic \
-                machinery, a trap, a call through a pointer, a recursion or arithmetic in f64. The deepest stack counts both levels of \
-                interrupts on top of everything below.",
+                machinery, a trap, a call through a pointer, a recursion or arithmetic in f64, nor to code in flash, and none of their code makes \
+                an address of the flash. The deepest stack counts both levels of interrupts on top of everything below.",
         command: "cargo image-check",
         short: None,
         kind: Kind::Compiled,

@@ -244,8 +244,8 @@ const PIECES_OF_A_TICK: usize = 2;
 /// Adds to the pieces of a slot those of a plan that are not there yet, up to so many.
 #[inline(never)]
 fn copy(plan: &Plan, slot: &mut Plan, most: usize) {
-    for piece in plan.pieces.iter().take(most).skip(slot.pieces.len()) {
-        // As many fit as come.
-        let _ = slot.pieces.push(*piece);
-    }
+    while slot.pieces.len() < most
+        && let Some(piece) = plan.pieces.get(slot.pieces.len())
+        && slot.pieces.push(*piece).is_ok()
+    {}
 }

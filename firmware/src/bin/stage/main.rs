@@ -35,6 +35,10 @@
 //! less than a third of full duty, as at every change of sign in normal operation, it is over by then and the phase
 //! does not matter until the new duty comes.
 //!
+//! # Memory
+//!
+//! The latch, the tick and all that they call run from RAM (`loop_memory`); `memory.x` has the map.
+//!
 //! # Priorities
 //!
 //! The latch has 1 in the hardware, the tick 2: a latch comes in its time, whatever a tick still does after its duties
@@ -59,6 +63,7 @@ mod fault_handlers;
 mod flash;
 mod identity;
 mod latch;
+mod loop_memory;
 mod panic;
 mod pwm;
 mod reset_cause;
@@ -141,6 +146,7 @@ mod app {
         samples: SampleQueue = SampleQueue::new(),
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
+        #[unsafe(link_section = ".ccm.state")]
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),
         serial_place: MaybeUninit<identity::Serial> = MaybeUninit::uninit(),
     ])]
@@ -171,10 +177,7 @@ mod app {
             serial: context.local.serial_place.write(identity::serial()),
             version: env!("CARGO_PKG_VERSION"),
         };
-        let interpreter = context
-            .local
-            .panel_place
-            .write(Interpreter::new(&PARAMETERS, identity));
+        let interpreter = place_interpreter(context.local.panel_place, identity);
         interpreter.set_board(&StageBoard);
         if let Some(cause) = reset_cause.unasked() {
             interpreter.set_start_cause(cause);
@@ -231,6 +234,15 @@ mod app {
         (Shared { sensors }, local)
     }
 
+    /// In a frame of its own: what it makes on the stack is gone before the settings are read.
+    #[inline(never)]
+    fn place_interpreter(
+        place: &'static mut MaybeUninit<Interpreter>,
+        identity: Identity,
+    ) -> &'static mut Interpreter {
+        place.write(Interpreter::new(&PARAMETERS, identity))
+    }
+
     /// Latches the encoders, starts the conversions, arms the tick.
     #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event])]
     fn latch(mut context: latch::Context) {
@@ -273,7 +285,6 @@ mod app {
             context.local.state,
             &inputs,
             context.local.tick_queues,
-            context.local.sample_sender,
             |outputs| {
                 bridges.set(outputs.duty, outputs.awake);
                 brake_resistor.set(outputs.brake_resistor);
@@ -282,6 +293,7 @@ mod app {
                 // What follows has no deadline.
                 trace::mark_end_of_tick();
             },
+            |_, sample| context.local.sample_sender.observe(sample),
         );
         watchdog::feed_window();
         rtic::pend(Interrupt::CRYP);

@@ -4,7 +4,7 @@ use super::platform_torque::Body;
 
 const HALF_ROOT: f32 = 0.866_025_4;
 /// Of the guides, in the platform's axes, as in `platform_torque`.
-const NORMALS: [[f32; 2]; 3] = [[0.5, HALF_ROOT], [-1.0, 0.0], [0.5, -HALF_ROOT]];
+static NORMALS: [[f32; 2]; 3] = [[0.5, HALF_ROOT], [-1.0, 0.0], [0.5, -HALF_ROOT]];
 /// Places on the edge of the disk that the largest inertia is looked for at: between two it is less than 1 % more.
 const PLACES: u16 = 48;
 

@@ -11,7 +11,7 @@ use crate::fault::Fault;
 use crate::mode::Mode;
 use crate::motion::Position;
 use crate::number::Fixed;
-use kinematics::{Angle, Pose, direct};
+use kinematics::{Angle, DirectError, Pose, direct};
 
 impl State {
     /// Handles a command as the table of transitions has it.
@@ -103,7 +103,7 @@ impl State {
             .encoders
             .iter()
             .all(|encoder| encoder.unusable().is_none());
-        let (true, Ok(pose)) = (ready, direct::<Fixed>(pivots)) else {
+        let (true, Ok(pose)) = (ready, measured_pose(pivots)) else {
             return false;
         };
         let (theta, unwrapped) = referencing::within_one_turn(pose.theta, pivots);
@@ -117,7 +117,7 @@ impl State {
 
     /// Servo on, at the pose where the stage is.
     fn hold(&mut self, config: &Config, pivots: &[Angle; 3]) -> bool {
-        let (true, Ok(pose)) = (self.referenced, direct(pivots)) else {
+        let (true, Ok(pose)) = (self.referenced, measured_pose(pivots)) else {
             return false;
         };
         self.hold_at(config, &pose);
@@ -206,4 +206,10 @@ fn position(pose: &Pose<Fixed>) -> Position {
         pose.y.to_position(),
         pose.theta.units(),
     ]
+}
+
+/// The pose of measured pivots: in a function of the loop's own, which the image's linker finds.
+#[inline(never)]
+fn measured_pose(pivots: &[Angle; 3]) -> Result<Pose<Fixed>, DirectError> {
+    direct(pivots)
 }

@@ -181,8 +181,13 @@ impl Bench {
         ];
         let finished =
             emulator::run(session, &Start::new(&images), driver).map_err(BenchError::Emulator)?;
-        let gaps = gaps::unexpected(&finished.session);
+        let mut gaps = gaps::unexpected(&finished.session);
         let driver = finished.driver;
+        if driver.not_mapped {
+            gaps.push(
+                "the loop was started without RAM at address 0, where its code is".to_owned(),
+            );
+        }
         if driver.never_started {
             return Err(BenchError::NeverStarted { gaps });
         }

@@ -5,8 +5,9 @@ use super::line::HostLine;
 use hal_sim::machine::devices::{BridgeState, MAX_DUTY};
 use rigless::cpu::armv7m;
 use rigless::device::Level;
+use rigless::emulator::Alias;
 use rigless::image::Image;
-use rigless::machine::armv7m::{Core, Fpu, MpuRegions, Variant};
+use rigless::machine::armv7m::{Config, Core, Fpu, Variant};
 use rigless::machine::{Board, Target};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
@@ -45,6 +46,12 @@ const LATCH_PERIOD_COUNTS: i64 = 4_200;
 /// Clock control, and its bit that switches the crystal on.
 pub const RCC_CR: u64 = 0x4002_3800;
 pub const HSE_ON: u32 = 1 << 16;
+/// Where the vectors are, to the emulator from the reset on: on the chip they stand at 0 too until the program says otherwise.
+const FLASH_AT: u32 = 0x0800_0000;
+/// What answers at address 0, and the bits of it with SRAM's first block there.
+const SYSCFG_MEMRMP: u64 = 0x4001_3800;
+const MEM_MODE: u32 = 0b111;
+const SRAM1: u32 = 0b011;
 /// Of the chip on the board; and where it says so.
 const FLASH_KIB: u16 = 2048;
 const FLASH_KIB_AT: u64 = 0x1FFF_7A22;
@@ -210,6 +217,12 @@ impl ChipBoard {
             .map(|word| word as u32)
     }
 
+    /// Whether the program has mapped SRAM to address 0, where its loop runs.
+    pub fn has_sram_at_zero(&mut self, now: VirtualNanos) -> bool {
+        let mapped = self.register(now, SYSCFG_MEMRMP);
+        mapped.is_some_and(|mapped| mapped & MEM_MODE == SRAM1)
+    }
+
     /// Sets the timer that starts every control period back by so many counts, or forward.
     ///
     /// # Errors
@@ -270,7 +283,16 @@ impl Board for ChipBoard {
             boot: "flash",
         };
         let windows = armv7m::windows(Mcu::bus(&self.mcu));
-        let mut core = core.spec_with_parts(&windows, Fpu::FpV4Sp, MpuRegions::Eight);
+        let mut config = Config::new(core, &windows);
+        config.fpu = Fpu::FpV4Sp;
+        config.vector_table = Some(FLASH_AT);
+        let mut core = config.spec();
+        // The emulator maps nothing anew while it runs: what the program maps to address 0 is there from the start, and that the
+        // program does so before its loop runs is looked at then.
+        core.aliases = vec![Alias {
+            region: "sram",
+            at: 0,
+        }];
         let factory_bytes = self.flash_kib.to_le_bytes().to_vec();
         core.factory_images.extend(Image::new(
             Path::new("factory"),

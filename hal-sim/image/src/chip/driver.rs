@@ -52,6 +52,8 @@ pub struct StageDriver<F> {
     pub searching_since: u64,
     pub searched_periods: u64,
     pub never_started: bool,
+    /// The loop was started where the chip has no code of it.
+    pub not_mapped: bool,
 }
 
 impl<F> StageDriver<F> {
@@ -72,6 +74,7 @@ impl<F> StageDriver<F> {
             searching_since: 0,
             searched_periods: 0,
             never_started: false,
+            not_mapped: false,
         }
     }
 
@@ -234,6 +237,7 @@ where
                     && access.value & COUNTER_ENABLE != 0 =>
             {
                 self.started_at = Some(now.0);
+                self.not_mapped |= !session.board_mut().has_sram_at_zero(now);
             }
             Settled::Hit(hit) if hit.kind == HitKind::Instruction => self.note_hit(hit, host),
             Settled::Access { access, .. } => {

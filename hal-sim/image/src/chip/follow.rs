@@ -2,6 +2,7 @@
 
 use crate::cycles::{Bus, Program, address};
 use rigless::emulator::{Access, AccessKind, Host};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// One instruction as it ran.
@@ -14,7 +15,9 @@ pub struct Step {
 }
 
 /// Both banks of the flash.
-const FLASH: std::ops::Range<u32> = 0x0800_0000..0x0820_0000;
+const FLASH: Range<u32> = 0x0800_0000..0x0820_0000;
+/// The block of RAM in which the loop's code lies, at both its addresses.
+const CODE_BLOCK: [Range<u32>; 2] = [0..0x1_C000, 0x2000_0000..0x2001_C000];
 const CORE_REGISTERS: usize = 16;
 const PC: usize = 15;
 
@@ -71,13 +74,15 @@ impl Following {
         }
         let place = self.program.at(at).and_then(|it| it.place);
         let mut bus = Bus::None;
-        // Where a store goes is told by the peripherals, and RAM is all the same.
-        if let Some(place) = place.filter(|place| !place.writes) {
+        // What goes to peripherals is told by them, and other RAM is all the same.
+        if let Some(place) = place {
             match registers(host, at) {
                 Some(registers) => {
                     let at = address(&place, &registers);
                     if FLASH.contains(&at) {
                         bus = Bus::Flash(at);
+                    } else if CODE_BLOCK.iter().any(|block| block.contains(&at)) {
+                        bus = Bus::CodeBlock;
                     }
                 }
                 None => self.complete = false,

@@ -8,6 +8,7 @@ use super::{Bench, ChipError, Period, TickCost, elf_file};
 use hal_sim::machine::devices::{Stage, StageParameters};
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::{Break, Continue};
+use std::ops::Range;
 use std::sync::mpsc;
 
 /// What a run under load has shown.
@@ -46,8 +47,8 @@ const FLOOD: [&[u8]; 8] = [
     b"SPA 1 0x54500100 150\n",
     b"ERR?\n",
 ];
-/// The memory of the stack, which grows down from its end.
-const STACK: std::ops::Range<u64> = 0x1000_0000..0x1001_0000;
+/// Symbols of the image: the ends of the stack's memory, the lower one first.
+const STACK: [&str; 2] = ["_stack_end", "_stack_start"];
 
 /// Runs so many ticks on a chip that executes so many instructions in a second.
 ///
@@ -58,6 +59,8 @@ pub fn load(ticks: u64, instructions_per_second: NonZeroU64) -> Result<Load, Chi
     let no_bench = |error| ChipError::Bench(path.clone(), error);
     let stage = Stage::new(&StageParameters::REFERENCE);
     let bench = Bench::load(&path, stage).map_err(no_bench)?;
+    let end = |name| bench.symbol(name).map_err(no_bench);
+    let memory = end(STACK[0])?..end(STACK[1])?;
     let mut flood = FLOOD.iter().cycle();
     let mut targets = TARGETS.iter().cycle();
     let mut seen = Load::default();
@@ -90,7 +93,7 @@ pub fn load(ticks: u64, instructions_per_second: NonZeroU64) -> Result<Load, Chi
         seen.refused = (answers.windows(REFUSED.len()))
             .filter(|it| *it == REFUSED)
             .count() as u64;
-        seen.stack = stack(period);
+        seen.stack = stack(period, &memory);
         // Nobody is left to be told when the other side is gone.
         let _ = tell.send(seen);
         Break(())
@@ -107,8 +110,8 @@ pub fn load(ticks: u64, instructions_per_second: NonZeroU64) -> Result<Load, Chi
 }
 
 /// From the lowest word that is not what the memory held at first to its end.
-fn stack(period: &mut Period<'_>) -> u64 {
-    let mut words = STACK.step_by(4);
+fn stack(period: &mut Period<'_>, memory: &Range<u64>) -> u64 {
+    let mut words = memory.clone().step_by(4);
     let lowest = words.find(|at| period.word(*at).is_some_and(|word| word != 0));
-    STACK.end - lowest.unwrap_or(STACK.end)
+    memory.end - lowest.unwrap_or(memory.end)
 }

@@ -2,7 +2,7 @@
 
 use super::follow::Step;
 use super::{Bench, ChipError, Period, bench, elf_file};
-use crate::cycles::Program;
+use crate::cycles::{Bus, Program};
 use hal_sim::machine::devices::{Stage, StageParameters};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -84,6 +84,16 @@ pub struct Used {
     pub program: Arc<Program>,
     /// In the order in which they ran.
     pub ticks: Vec<UsedTick>,
+}
+
+impl Used {
+    /// An instruction that has loaded from flash, if there was one.
+    #[must_use]
+    pub fn flash_read(&self) -> Option<u64> {
+        let mut steps = self.ticks.iter().flat_map(|tick| &tick.steps);
+        let found = steps.find(|step| matches!(step.bus, Bus::Flash(_)));
+        found.map(|step| step.at)
+    }
 }
 
 /// A stretch of ticks that are followed.

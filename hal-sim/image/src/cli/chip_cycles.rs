@@ -46,6 +46,11 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
     if arguments.check && apart.is_some_and(|apart| apart.abs() > APART) {
         found.push("the model is not what llvm-mca has".to_owned());
     }
+    if let Some(at) = used.flash_read() {
+        found.push(format!(
+            "the instruction at {at:#010x} has loaded from flash in a tick"
+        ));
+    }
     if !tallies.are_in_order() {
         found.push("the guesses at the chip are not in order".to_owned());
     }

@@ -6,11 +6,8 @@ use super::error::CliError;
 use crate::chip::elf_file;
 use crate::cost::{Sizes, print_sizes};
 use crate::proof::{
-    CONTROL_LOOP, Code, NESTING, Stack, faults, print_proof, print_stack, vector_faults,
+    CONTROL_LOOP, Code, NESTING, STACK_LEFT, Stack, faults, print_proof, print_stack, vector_faults,
 };
-
-/// Share of the stack's memory that has to be left, so that a change or two still fit.
-const LEFT: f64 = 0.25;
 
 pub(super) fn run() -> Result<ExitCode, CliError> {
     let path = elf_file::find();
@@ -31,7 +28,7 @@ pub(super) fn run() -> Result<ExitCode, CliError> {
         );
         return Err(CliError::Grown(what));
     }
-    if (stack.left() as f64) < LEFT * stack.memory as f64 {
+    if stack.left() < STACK_LEFT {
         let what = format!("{} bytes of stack left, too few", stack.left());
         return Err(CliError::Grown(what));
     }

@@ -91,7 +91,7 @@ pub fn print_sizes(sizes: &Sizes) -> String {
     let generator = sizes.generator();
     let _ = writeln!(
         text,
-        "motion generator {generator} bytes, goal {GENERATOR_GOAL}; stack not in RAM: 65536 bytes of its own"
+        "motion generator {generator} bytes, goal {GENERATOR_GOAL}; the stack has memory of its own"
     );
     let _ = writeln!(text, "built by {}", sizes.compiler);
     text

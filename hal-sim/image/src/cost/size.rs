@@ -29,6 +29,8 @@ pub struct Sizes {
 
 /// The motion generator's parts.
 pub const GENERATOR: [&str; 2] = ["motion", "planners"];
+/// The section of what runs from RAM.
+const CONTROL_LOOP: &str = ".control_loop";
 const NAMELESS: &str = "constants and fill";
 const RUNTIME: &str = "compiler's runtime";
 
@@ -41,7 +43,7 @@ impl Sizes {
         let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
         let file = object::File::parse(&*bytes).map_err(|error| error.to_string())?;
         let total = (file.sections())
-            .map(|section| taken(section.kind(), section.size()))
+            .map(|section| taken(&section, section.size()))
             .fold(Bytes::default(), Bytes::plus);
         Ok(Self {
             parts: parts(&file, total),
@@ -73,9 +75,10 @@ impl Bytes {
     }
 }
 
-/// What so many bytes in a section of this kind take. What RAM starts from lies in flash too.
-fn taken(kind: SectionKind, bytes: u64) -> Bytes {
-    let (flash, ram) = match kind {
+/// What so many bytes of a section take. What RAM starts from lies in flash too, and so does code that is copied there.
+fn taken(section: &object::Section<'_, '_>, bytes: u64) -> Bytes {
+    let (flash, ram) = match section.kind() {
+        _ if section.name() == Ok(CONTROL_LOOP) => (bytes, bytes),
         SectionKind::Text | SectionKind::ReadOnlyData | SectionKind::ReadOnlyString => (bytes, 0),
         SectionKind::Data => (bytes, bytes),
         SectionKind::UninitializedData => (0, bytes),
@@ -97,7 +100,7 @@ fn parts(file: &object::File<'_>, total: Bytes) -> BTreeMap<String, Bytes> {
             continue;
         };
         let part = part(symbol.name().unwrap_or_default());
-        let bytes = taken(section.kind(), symbol.size());
+        let bytes = taken(&section, symbol.size());
         symbols.entry(symbol.address()).or_insert((part, bytes));
     }
     let mut parts: BTreeMap<String, Bytes> = BTreeMap::new();

@@ -25,6 +25,8 @@ pub enum Bus {
     None,
     /// Loads from the flash, at an address.
     Flash(u32),
+    /// Loads from the block of RAM in which the code lies, or stores there.
+    CodeBlock,
     /// Loads from a peripheral.
     Read(u32),
     /// Stores to a peripheral.
@@ -53,7 +55,7 @@ pub struct Cycles {
     pub refill: u64,
     /// Waiting for instructions from the flash.
     pub fetch: u64,
-    /// Waiting for data from the flash.
+    /// Waiting for data from the flash, or from the block of RAM in which the code lies.
     pub data: u64,
     /// Waiting for peripherals.
     pub peripherals: u64,
@@ -144,11 +146,12 @@ impl Core {
         let mut handler = handler.into_iter().peekable();
         let first = handler.peek().map_or(0, |ran| ran.at);
         // Entry ends with the first instruction in the pipeline: its fetch begins two cycles before.
-        let mut fetch = Fetch::new(&self.setting, first, ENTRY - 2);
+        let entry = ENTRY + self.setting.vector;
+        let mut fetch = Fetch::new(&self.setting, first, entry - 2);
         let mut before = Before::default();
-        let mut now = ENTRY;
+        let mut now = entry;
         let mut sum = Cycles {
-            entry: ENTRY,
+            entry,
             ..Cycles::default()
         };
         // What a jump costs besides waiting for the flash, once its target begins.
@@ -212,6 +215,7 @@ impl Core {
             Bus::Flash(address) => {
                 cycles.data += self.load(instruction, address, begins_at + so_far);
             }
+            Bus::CodeBlock => cycles.data += self.setting.shared_block * words(instruction),
             Bus::Read(address) => {
                 let through = before.stored_at.saturating_sub(begins_at + so_far);
                 cycles.peripherals += through + self.peripheral(address);
@@ -250,11 +254,7 @@ impl Core {
 
     /// What the words of a load from the flash wait.
     fn load(&mut self, instruction: &Instruction, address: u32, now: u64) -> u64 {
-        let words = match instruction.kind {
-            Kind::Many(words) | Kind::JumpLoaded(words) => u64::from(words),
-            _ => 1,
-        };
-        (0..words).fold(0, |waited, word| {
+        (0..words(instruction)).fold(0, |waited, word| {
             waited
                 + self
                     .flash
@@ -268,5 +268,13 @@ impl Core {
             _ if APB2.contains(&address) => self.setting.apb2,
             _ => 0,
         }
+    }
+}
+
+/// Words that an instruction loads or stores.
+fn words(instruction: &Instruction) -> u64 {
+    match instruction.kind {
+        Kind::Many(words) | Kind::JumpLoaded(words) => u64::from(words),
+        _ => 1,
     }
 }

@@ -1,11 +1,22 @@
-//! The core's fetch: words of the code, one a cycle where the flash does not hold it up, a few ahead of what runs.
+//! The core's fetch: words of the code, one a cycle where the memory does not hold it up, a few ahead of what runs.
+//!
+//! Code in RAM does without the flash's waits. Where it is fetched over the instruction bus, from under the addresses of the flash,
+//! each word is there in the cycle in which it is asked for (RM0090, 2.3.1: no wait states; Cortex-M3 Technical Reference Manual, 14.3,
+//! which says of this bus what the later manual leaves out). Over the system bus, from RAM's own address, it takes a cycle more (14.5).
 
 use super::flash::Flash;
 use super::setting::Setting;
 use std::collections::VecDeque;
+use std::ops::Range;
 
+/// RAM under the instruction bus's addresses, and at its own.
+const CODE_RAM: Range<u64> = 0..0x0800_0000;
+const RAM: Range<u64> = 0x2000_0000..0x4000_0000;
 /// Bytes of a word.
 const WORD: u64 = 4;
+/// Words that it fetches ahead (Cortex-M3 Technical Reference Manual, 14.3; the later manual does not say). With fewer, code of wide
+/// instructions would not run at one a cycle from a memory without wait states, which ARM's table has it do.
+const AHEAD: usize = 3;
 /// From the cycle in which a word is there to the one in which its instruction begins: it is decoded meanwhile.
 const DECODE: u64 = 2;
 
@@ -19,7 +30,6 @@ struct Fetched {
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Fetch {
-    ahead: usize,
     refill: u64,
     queue: VecDeque<Fetched>,
     next: u64,
@@ -32,7 +42,6 @@ impl Fetch {
     #[must_use]
     pub fn new(setting: &Setting, address: u64, now: u64) -> Self {
         Self {
-            ahead: setting.fetched_ahead,
             refill: setting.refill,
             queue: VecDeque::new(),
             next: address / WORD,
@@ -44,7 +53,7 @@ impl Fetch {
     pub fn begin(&mut self, flash: &mut Flash, address: u64, length: u64, now: u64) -> u64 {
         let (first, last) = (address / WORD, (address + length - 1) / WORD);
         self.pass(first, now);
-        while self.next <= last || (self.queue.len() < self.ahead && self.free_at < now) {
+        while self.next <= last || (self.queue.len() < AHEAD && self.free_at < now) {
             self.fetch(flash);
         }
         let needed = self.queue.iter().rfind(|it| it.word <= last);
@@ -54,7 +63,7 @@ impl Fetch {
     /// A jump to an address is taken by an instruction that ends in the cycle before `now`.
     pub fn jump(&mut self, flash: &mut Flash, address: u64, now: u64) {
         // What was begun ahead of it keeps the flash busy.
-        while self.queue.len() < self.ahead && self.free_at + 1 < now {
+        while self.queue.len() < AHEAD && self.free_at + 1 < now {
             self.fetch(flash);
         }
         self.queue.clear();
@@ -64,7 +73,7 @@ impl Fetch {
 
     /// Words before this one are done with.
     fn pass(&mut self, first: u64, now: u64) {
-        let full = self.queue.len() >= self.ahead;
+        let full = self.queue.len() >= AHEAD;
         let before = self.queue.len();
         self.queue.retain(|it| it.word >= first);
         if full && self.queue.len() < before {
@@ -73,7 +82,15 @@ impl Fetch {
     }
 
     fn fetch(&mut self, flash: &mut Flash) {
-        let there_at = self.free_at + flash.fetch(self.next * WORD, self.free_at);
+        let address = self.next * WORD;
+        let wait = if CODE_RAM.contains(&address) {
+            0
+        } else if RAM.contains(&address) {
+            1
+        } else {
+            flash.fetch(address, self.free_at)
+        };
+        let there_at = self.free_at + wait;
         self.queue.push_back(Fetched {
             word: self.next,
             begins_at: there_at + DECODE,

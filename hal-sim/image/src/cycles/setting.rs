@@ -10,8 +10,11 @@ pub struct Setting {
     /// Cycles in which the core's fetch starts anew after a jump to an aligned instruction, of ARM's `P` of 1 to 3; ARM's table does
     /// not say when it is which.
     pub refill: u64,
-    /// Words that the core fetches ahead.
-    pub fetched_ahead: usize,
+    /// Cycles that a load or store of the block of RAM in which the code lies waits for a fetch, or a fetch for it: they come over
+    /// two buses, and the matrix lets one of them through at a time (RM0090, 2.1).
+    pub shared_block: u64,
+    /// Cycles of the entry in which the vector, which is in flash, is waited for: the registers are put on the stack meanwhile.
+    pub vector: u64,
     /// Whether a jump drops the flash read that is under way for nothing.
     pub drops_reads: bool,
     /// Whether the accelerator's caches hold what the last tick left, or what came between has filled them.
@@ -42,7 +45,8 @@ impl Setting {
         name: "nominal",
         wait_states: WAIT_STATES,
         refill: 2,
-        fetched_ahead: 3,
+        shared_block: 1,
+        vector: 0,
         drops_reads: false,
         keeps_caches: false,
         data_cache: true,
@@ -57,6 +61,7 @@ impl Setting {
     pub const OPTIMISTIC: Self = Self {
         name: "optimistic",
         refill: 1,
+        shared_block: 0,
         drops_reads: true,
         keeps_caches: true,
         apb1: 6,
@@ -70,7 +75,9 @@ impl Setting {
     pub const PESSIMISTIC: Self = Self {
         name: "pessimistic",
         refill: 3,
-        fetched_ahead: 2,
+        // What had the block last is let through first the cycle after.
+        shared_block: 2,
+        vector: WAIT_STATES,
         apb1: 12,
         apb2: 8,
         divide: 12,
@@ -85,6 +92,7 @@ impl Setting {
     pub const WITHOUT_WAIT_STATES: Self = Self {
         name: "no wait states",
         wait_states: 0,
+        shared_block: 0,
         ..Self::NOMINAL
     };
 

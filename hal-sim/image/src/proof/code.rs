@@ -7,6 +7,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
 
+/// Both banks of the flash.
+pub(super) const FLASH: Range<u64> = 0x0800_0000..0x0820_0000;
+
+/// What the linker calls its long jumps.
+const LONG_JUMP: &str = "__Thumbv7ABSLongThunk_";
+
 /// How one function leads to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Edge {
@@ -35,8 +41,12 @@ pub struct Function {
     pub unknown: Vec<u64>,
     #[allow(missing_docs)]
     pub masks: Vec<(u64, String)>,
+    /// Where it comes by an address of the flash.
+    pub flash: Vec<u64>,
     /// Instructions.
     pub instructions: u32,
+    /// Bytes.
+    pub size: u64,
 }
 
 /// All of them.
@@ -96,10 +106,19 @@ impl Code {
         let end = at + size;
         let mut function = Function {
             name: name.to_owned(),
+            size,
             ..Function::default()
         };
         let mut lower = BTreeMap::<u16, Vec<u32>>::new();
-        for (here, decoded) in elf.instructions(engine, at, size)? {
+        let instructions = elf.instructions(engine, at, size)?;
+        if let Some(to) = long_jump(name, &instructions) {
+            let nowhere = || ProofError::Nowhere(name.to_owned(), to);
+            let to = owner(elf, to).ok_or_else(nowhere)?;
+            function.edges.insert(Edge { to, tail: true });
+            function.instructions += instructions.len() as u32;
+            return Ok(function);
+        }
+        for (here, decoded) in instructions {
             self.note(&mut function, &mut lower, (at..end, here), decoded, elf)?;
         }
         Ok(function)
@@ -134,9 +153,18 @@ impl Code {
             Step::Lower(register, half) => lower.entry(register).or_default().push(half),
             // With every lower half that this register has had: too many rather than too few.
             Step::Upper(register, half) => {
+                if FLASH.contains(&(u64::from(half) << 16)) {
+                    function.flash.push(at);
+                }
                 let lower = lower.get(&register).map_or(&[][..], |halves| halves);
                 let whole = lower.iter().map(|lower| u64::from(half << 16 | lower));
                 self.taken.extend(whole.filter(|it| it & 1 == 1).map(even));
+            }
+            Step::Literal(place) => {
+                let word = elf.word(place).ok_or(ProofError::Bytes(place))?;
+                if FLASH.contains(&word.into()) {
+                    function.flash.push(at);
+                }
             }
             Step::Plain => {}
         }
@@ -163,6 +191,24 @@ impl Code {
             let masks = function.masks.iter();
             masks.map(|(at, text)| (&*function.name, *at, &**text))
         })
+    }
+}
+
+/// Where the linker's own jump leads to that goes further than an instruction reaches: from flash to RAM, or back.
+fn long_jump(name: &str, instructions: &[(u64, Decoded)]) -> Option<u64> {
+    let steps: Vec<_> = instructions
+        .iter()
+        .map(|(_, decoded)| &decoded.step)
+        .collect();
+    match steps[..] {
+        [
+            Step::Lower(from, lower),
+            Step::Upper(to, upper),
+            Step::JumpPointer,
+        ] if name.starts_with(LONG_JUMP) && from == to => {
+            Some(even(u64::from(upper << 16 | lower)))
+        }
+        _ => None,
     }
 }
 

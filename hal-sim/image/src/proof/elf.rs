@@ -1,4 +1,4 @@
-//! The image's file: functions, which bytes of `.text` are instructions, the vector table, words that could be addresses.
+//! The image's file: functions, which bytes of its code are instructions, the vector table, words that could be addresses.
 
 use super::error::ProofError;
 use super::step::{Decoded, Engine};
@@ -7,16 +7,17 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 const VECTORS: &str = ".vector_table";
+/// Where code is: what runs from flash, and what from RAM, which not every image has.
 const TEXT: &str = ".text";
+const LOOP: &str = ".control_loop";
 
 /// What the proofs read of the file.
 pub struct Elf {
     /// Names by address, with sizes.
     pub functions: BTreeMap<u64, (String, u64)>,
-    /// The code, and where it lies.
-    pub text: Vec<u8>,
-    pub text_at: u64,
-    /// Parts of `.text` that are constants.
+    /// The code, by where it lies when it runs.
+    pub code: Vec<(u64, Vec<u8>)>,
+    /// Parts of it that are constants.
     pub constants: Vec<Range<u64>>,
     /// Every vector but the first, which is the stack's start.
     pub vectors: Vec<u64>,
@@ -34,14 +35,18 @@ impl Elf {
             let found = section.and_then(|section| Some((section.address(), section.data().ok()?)));
             found.ok_or_else(|| format!("no section {name}"))
         };
-        let (text_at, text) = section(TEXT)?;
-        let constants = constants(&file, text_at + text.len() as u64);
+        let mut code = vec![section(TEXT)?];
+        code.extend(section(LOOP));
+        let constants = code.iter().zip([TEXT, LOOP]);
+        let constants = constants
+            .flat_map(|((at, bytes), name)| constants_of(&file, name, at + bytes.len() as u64));
+        let constants: Vec<Range<u64>> = constants.collect();
         let mut found = Vec::new();
         for (at, data) in [section(".rodata")?, section(".data")?] {
             found.extend(words(data, at));
         }
         for range in &constants {
-            let data = &text[(range.start - text_at) as usize..(range.end - text_at) as usize];
+            let data = bytes_of(&code, range).unwrap_or_default();
             found.extend(words(data, range.start));
         }
         let address = |name: &str| {
@@ -51,8 +56,9 @@ impl Elf {
         };
         Ok(Self {
             functions: functions(&file),
-            text: text.to_vec(),
-            text_at,
+            code: (code.into_iter())
+                .map(|(at, bytes)| (at, bytes.to_vec()))
+                .collect(),
             constants,
             vectors: words(section(VECTORS)?.1, 0).skip(1).collect(),
             words: found,
@@ -78,7 +84,7 @@ impl Elf {
                 next = range.end;
                 continue;
             }
-            let bytes = &self.text[(next - self.text_at) as usize..(end - self.text_at) as usize];
+            let bytes = bytes_of(&self.code, &(next..end)).ok_or(ProofError::Bytes(next))?;
             let decoded = engine.decode(bytes, next)?;
             let length = decoded.length;
             instructions.push((next, decoded));
@@ -86,6 +92,20 @@ impl Elf {
         }
         Ok(instructions)
     }
+
+    /// The word that stands in the code at an address.
+    pub fn word(&self, at: u64) -> Option<u32> {
+        let bytes = bytes_of(&self.code, &(at..at + 4))?;
+        Some(u32::from_le_bytes(bytes.try_into().ok()?))
+    }
+}
+
+/// The bytes of code at these addresses.
+fn bytes_of<'a, B: AsRef<[u8]>>(code: &'a [(u64, B)], range: &Range<u64>) -> Option<&'a [u8]> {
+    code.iter().find_map(|(at, bytes)| {
+        let start = range.start.checked_sub(*at)? as usize;
+        bytes.as_ref().get(start..(range.end - at) as usize)
+    })
 }
 
 /// Functions by address: of several names the one with a size, then the first.
@@ -105,8 +125,8 @@ fn functions(file: &object::File<'_>) -> BTreeMap<u64, (String, u64)> {
 }
 
 /// From each symbol `$d` to the next `$t`: what the compiler calls data between the instructions.
-fn constants(file: &object::File<'_>, end: u64) -> Vec<Range<u64>> {
-    let text = file.section_by_name(TEXT).map(|section| section.index());
+fn constants_of(file: &object::File<'_>, section: &str, end: u64) -> Vec<Range<u64>> {
+    let text = file.section_by_name(section).map(|section| section.index());
     let mut marks = BTreeMap::new();
     for symbol in file.symbols().filter(|it| it.section_index() == text) {
         match symbol.name() {

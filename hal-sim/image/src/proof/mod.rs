@@ -8,6 +8,9 @@
 //! - **No panic.** From the handlers of the control loop no path leads to the panic machinery, to a trap instruction, to a call
 //!   through a pointer, back to itself, or to arithmetic in f64 ([`faults`]). In the whole image nothing is a fused
 //!   multiply-add, which the desktop would round otherwise.
+//! - **No flash.** No function that those handlers lead to lies in flash, and none comes by an address of the flash: by two
+//!   instructions that put it together, or as a word of the code. An address that lies in a variable is not found so; `cargo
+//!   chip-cycles` fails when a tick that it follows has loaded from flash.
 //! - **Stack.** The frame of a function is everything it ever pushes, summed, as if it did so at once; its depth that of its
 //!   deepest callee on top ([`Depths`]). A call through a pointer may reach every function whose address stands anywhere in
 //!   the image; such calls nest [`NESTING`] deep at most.
@@ -18,7 +21,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `elf`, `code`, `listing`, `step` | the file; functions and calls; instructions; what one of them means |
-//! | `safe` | nothing in the control loop can fail |
+//! | `safe` | nothing in the control loop can fail, nothing of it is in flash |
 //! | `stack` | the deepest stack |
 //! | `vectors` | where exceptions end |
 //! | `print` | the proofs as they are printed |
@@ -38,6 +41,6 @@ pub use error::ProofError;
 pub use listing::listing;
 pub use print::{print_proof, print_stack};
 pub use safe::{Fault, faults};
-pub use stack::{CONTROL_LOOP, Depth, Depths, LEVELS, Level, NESTING, Stack};
+pub use stack::{CONTROL_LOOP, Depth, Depths, LEVELS, Level, NESTING, STACK_LEFT, Stack};
 pub use step::{Decoded, Engine, Step};
 pub use vectors::vector_faults;

@@ -1,7 +1,7 @@
 //! The proofs as they are printed.
 
 use super::code::Code;
-use super::safe::Fault;
+use super::safe::{Fault, reached_bytes};
 use super::stack::{EXCEPTION_FRAME, LEVELS, NESTING, Stack};
 use std::fmt::Write;
 
@@ -17,6 +17,11 @@ pub fn print_proof(code: &Code, handlers: &[&str], faults: &[Fault]) -> String {
             text,
             "control loop ({}): no way to a panic, a trap, a call through a pointer, a recursion, or f64",
             handlers.join(", ")
+        );
+        let bytes = reached_bytes(code, handlers);
+        let _ = writeln!(
+            text,
+            "control loop: all {bytes} bytes of its code are in RAM, and it makes no address of the flash"
         );
         let _ = writeln!(text, "image: no fused multiply-add");
     }

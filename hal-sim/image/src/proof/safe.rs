@@ -1,7 +1,7 @@
-//! That nothing in the control loop can fail.
+//! That nothing in the control loop can fail, and that nothing of it is in flash.
 
-use super::code::Code;
-use std::collections::BTreeMap;
+use super::code::{Code, FLASH};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// What must not be there, and the way to it.
@@ -53,6 +53,12 @@ fn from(code: &Code, start: u64, faults: &mut Vec<Fault>) {
         if is_double(&function.name) {
             note("arithmetic in f64");
         }
+        if FLASH.contains(&at) {
+            note("code in flash");
+        }
+        for place in &function.flash {
+            note(&format!("an address of the flash at {place:#010x}"));
+        }
         for trap in &function.traps {
             note(&format!("trap at {trap:#010x}"));
         }
@@ -73,9 +79,25 @@ fn from(code: &Code, start: u64, faults: &mut Vec<Fault>) {
     }
 }
 
+/// Bytes of the functions that handlers lead to.
+#[must_use]
+pub fn reached_bytes(code: &Code, handlers: &[&str]) -> u64 {
+    let mut waiting: Vec<u64> = handlers
+        .iter()
+        .filter_map(|name| code.named(name))
+        .collect();
+    let mut seen: BTreeSet<u64> = waiting.iter().copied().collect();
+    while let Some(at) = waiting.pop() {
+        let edges = code.functions.get(&at).into_iter().flat_map(|it| &it.edges);
+        waiting.extend(edges.map(|edge| edge.to).filter(|next| seen.insert(*next)));
+    }
+    let reached = seen.iter().filter_map(|at| code.functions.get(at));
+    reached.map(|it| it.size).sum()
+}
+
 /// Whether one function leads to another, or is it.
 fn leads(code: &Code, from: u64, to: u64) -> bool {
-    let mut seen = std::collections::BTreeSet::from([from]);
+    let mut seen = BTreeSet::from([from]);
     let mut waiting = vec![from];
     while let Some(at) = waiting.pop() {
         if at == to {

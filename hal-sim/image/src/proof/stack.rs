@@ -48,6 +48,9 @@ pub const LEVELS: [Level; 5] = [
     },
 ];
 
+/// Bytes of its memory that have to be left, so that a change or two still fit.
+pub const STACK_LEFT: u64 = 4096;
+
 /// Handlers of the control loop.
 pub const CONTROL_LOOP: &[&str] = &["TIM3", "TIM1_CC"];
 

@@ -32,6 +32,8 @@ pub enum Step {
     Lower(u16, u32),
     /// The upper half of an address goes into a register.
     Upper(u16, u32),
+    /// A word of the code, at an address, goes into a register.
+    Literal(u64),
     /// Nothing of interest.
     Plain,
 }
@@ -84,7 +86,7 @@ impl Engine {
                 *place = *byte;
             }
             Decoded {
-                step: step(instruction, arm),
+                step: literal(instruction, arm, at).unwrap_or_else(|| step(instruction, arm)),
                 bytes,
                 length: instruction.bytes().len() as u64,
                 text: format!("{name} {}", instruction.op_str().unwrap_or_default()),
@@ -176,6 +178,20 @@ fn step(instruction: &Insn<'_>, detail: &ArmInsnDetail<'_>) -> Step {
         _ if first == Some(PC) && !compares(name) => Step::JumpPointer,
         _ => Step::Plain,
     }
+}
+
+/// A load of a word of the code; not of the floating-point unit, whose words are no addresses.
+fn literal(instruction: &Insn<'_>, detail: &ArmInsnDetail<'_>, at: u64) -> Option<Step> {
+    let mut operands = detail.operands();
+    let first = operands.next()?.op_type;
+    let ArmOperandType::Mem(place) = operands.next()?.op_type else {
+        return None;
+    };
+    let name = instruction.mnemonic().unwrap_or_default();
+    let jumps = matches!(first, ArmOperandType::Reg(register) if register.0 == PC);
+    // The program counter is two instructions ahead, rounded down.
+    (name.starts_with("ldr") && place.base().0 == PC && !jumps)
+        .then(|| Step::Literal(((at + 4) & !3).wrapping_add_signed(place.disp().into())))
 }
 
 /// A store that moves the stack pointer with it, `[sp, #-n]!`.
