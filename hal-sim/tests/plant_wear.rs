@@ -80,7 +80,10 @@ fn a_jammed_carriage_holds_the_platform() {
     };
     let at_m = ideal().rhos_m()[1];
     let (free_m, held_m) = (push([None; AXES]), push([None, Some(at_m), None]));
-    assert!(held_m < 0.2e-3 && free_m > 5.0 * held_m, "{free_m} {held_m}");
+    assert!(
+        held_m < 0.2e-3 && free_m > 5.0 * held_m,
+        "{free_m} {held_m}"
+    );
 }
 
 /// Carriages that are driven against each other stop at their bumpers, and the energy of the blow is told.
@@ -88,19 +91,23 @@ fn a_jammed_carriage_holds_the_platform() {
 fn carriages_meet_with_the_energy_that_they_have() {
     let mut plant = ideal();
     // Where two carriages are nearly as close as they can be, and no guide has ended; towards each other.
-    let place = (0..360).map(|degrees| f64::from(degrees).to_radians()).find_map(|turn| {
-        plant.set_pose_at_rest([0.0885, 0.0, turn]);
-        let ends = plant.contacts();
-        let touches = plant.broken().is_none() && ends.iter().all(|end| end.pressed_m == 0.0);
-        (touches && closest_rad(&plant) < CARRIAGE_RAD + 0.02).then_some(turn)
-    });
+    let place = (0..360)
+        .map(|degrees| f64::from(degrees).to_radians())
+        .find_map(|turn| {
+            plant.set_pose_at_rest([0.0885, 0.0, turn]);
+            let ends = plant.contacts();
+            let touches = plant.broken().is_none() && ends.iter().all(|end| end.pressed_m == 0.0);
+            (touches && closest_rad(&plant) < CARRIAGE_RAD + 0.02).then_some(turn)
+        });
     let turn = place.expect("some orientation brings two carriages together");
     let velocities = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, -0.2, 0.0]];
     let closing = |velocity: &[f64; 3]| {
         let mut plant = plant.clone();
         plant.set_velocity(*velocity);
         let carriages = &plant.contacts()[6..];
-        (carriages.iter()).map(|it| it.closing_m_s).fold(0.0, f64::max)
+        (carriages.iter())
+            .map(|it| it.closing_m_s)
+            .fold(0.0, f64::max)
     };
     let fastest = (velocities.into_iter()).max_by(|a, b| closing(a).total_cmp(&closing(b)));
     plant.set_velocity(fastest.expect("three of them"));
@@ -114,7 +121,10 @@ fn carriages_meet_with_the_energy_that_they_have() {
         }
         closest = closest.min(closest_rad(&plant));
     }
-    assert!(blow_j > 0.0 && blow_j <= moving_j, "{turn}: {blow_j} of {moving_j} J");
+    assert!(
+        blow_j > 0.0 && blow_j <= moving_j,
+        "{turn}: {blow_j} of {moving_j} J"
+    );
     assert!(closest > CARRIAGE_RAD - 0.05, "{closest}");
 }
 

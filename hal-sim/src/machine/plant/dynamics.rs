@@ -152,12 +152,8 @@ impl Dynamics {
             self.add_drive(i, state, drive, step_s, &mut forces, &mut rate);
             self.add_guide(i, &guides[i], state, step_s, &mut forces, &mut rate);
             if let Some(at_m) = external.guide_jammed_at_m[i] {
-                let jam_n = (self.guides).jam_n(
-                    &guides[i],
-                    &state.twist,
-                    state.ring_rad_s[i],
-                    at_m,
-                );
+                let jam_n =
+                    (self.guides).jam_n(&guides[i], &state.twist, state.ring_rad_s[i], at_m);
                 forces.platform += jam_n * guides[i].rho_by_pose();
                 forces.ring_n_m[i] += jam_n * guides[i].rho_by_ring_m();
             }

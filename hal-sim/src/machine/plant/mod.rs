@@ -135,6 +135,12 @@ impl Plant {
         self.dynamics.drive.set_supply_v(supply_v);
     }
 
+    /// Changes the load on the platform, which keeps its velocity.
+    pub fn set_payload(&mut self, payload: Payload) {
+        self.parameters.payload = payload;
+        self.dynamics.body = Body::new(&self.parameters);
+    }
+
     /// Integrates over `step_s` (3 to 16 us is what the parameters are made for) with constant drives: one classic
     /// Runge-Kutta step of fourth order. A broken plant stands still.
     pub fn step(&mut self, step_s: f64, drives: &[Drive; AXES]) {
