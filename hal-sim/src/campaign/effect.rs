@@ -209,9 +209,15 @@ impl<'a> Effects<'a> {
                 * TAU
                 * rate_hz
                 * self.parameters.servo.gains[i].velocity_v_s_rad;
-            let seen = [(volts, SWING_V[0]), (volts, SWING_V[1]), (asked_v, ASKED_V)];
-            for (swings, (volts, swing_v)) in self.swings[i].iter_mut().zip(seen) {
-                swings.look(volts, swing_v, now.is_driven && is_slow);
+            // What may be one counts at any rate, what has to be found only where the setpoint hardly moves.
+            let may = now.is_driven;
+            let seen = [
+                (volts, SWING_V[0], may && is_slow),
+                (volts, SWING_V[1], may),
+                (asked_v, ASKED_V, may),
+            ];
+            for (swings, (volts, swing_v, counts)) in self.swings[i].iter_mut().zip(seen) {
+                swings.look(volts, swing_v, counts);
             }
             self.same[i] = goes_on(self.same[i], step == 0);
             self.fast[i] = goes_on(self.fast[i], f64::from(step) > most_counts);

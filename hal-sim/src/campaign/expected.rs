@@ -77,7 +77,8 @@ const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 40);
 const NEARLY_STALLED: Cause = Cause {
     effect: Effect::NearlyAtEnd,
     within_ticks: None,
-    early_ticks: 6,
+    // The controller counts from when it limits the current, which rises some ticks later.
+    early_ticks: 16,
     ..STALLED
 };
 const HOT: Cause = Cause {
@@ -155,7 +156,7 @@ const DAMAGED: Cause = Cause {
 };
 
 /// Largest of the early ticks: for so long a fault may come before its cause.
-pub(super) const MOST_EARLY: u64 = 6;
+pub(super) const MOST_EARLY: u64 = 16;
 /// Ticks until the watchdog has bitten, the controller has started and its command side has told.
 pub(super) const RESTART_TICKS: u64 = 10 + 20 + COMMAND_SIDE_TICKS;
 

@@ -14,6 +14,8 @@ use super::rest::ToRest;
 pub enum Problem {
     /// A fault where there was nothing wrong.
     FalseAlarm,
+    /// The servo oscillates without a fault, in the machine too: the settings that it was told do not fit.
+    Unstable,
     /// The effect has passed its threshold and nothing was latched.
     Undetected,
     /// Latched so many ticks after the effect, more than it may be.
@@ -153,6 +155,9 @@ impl Outcome {
         let early = fault.tick < self.scenario.at;
         let mut kinds = expected.causes.iter().filter_map(|cause| cause.kind);
         let is_one = kinds.clone().any(|kind| kind == fault.kind);
+        if self.is_control && fault.kind == FaultKind::Oscillation && self.is_founded {
+            return Some(Problem::Unstable);
+        }
         if self.is_control || early || kinds.next().is_none() {
             return Some(Problem::FalseAlarm);
         }
@@ -183,6 +188,7 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FalseAlarm => f.write_str("false alarm"),
+            Self::Unstable => f.write_str("the servo oscillates without a fault"),
             Self::Undetected => f.write_str("not detected"),
             Self::Late(ticks) => write!(f, "detected {ticks} ticks late"),
             Self::WrongKind => f.write_str("reported as another fault"),

@@ -3,7 +3,7 @@
 use firmware::mode::Mode;
 
 use super::bound::{AFTERMATH, Moment};
-use super::effect::{Effects, Now};
+use super::effect::{Effect, Effects, Now};
 use super::expected::{Cause, MOST_EARLY, RESTART_TICKS};
 use super::inputs::{Inputs, Read};
 use super::outcome::{End, Outcome, Seen};
@@ -156,7 +156,14 @@ impl<'a> Watch<'a> {
     fn look_for_effects(&mut self, tick: u64, now: &Now<'_>) {
         // The judge may be behind.
         let is_done = (self.outcome.fault).is_some_and(|fault| tick > fault.tick + MOST_EARLY);
-        if self.outcome.is_control || tick < self.scenario.at || is_done {
+        if self.outcome.is_control {
+            // A servo that oscillates without a fault is told rightly; the machine's settings are wrong.
+            let swings = Effect::NearlyOscillates;
+            self.outcome.is_founded |=
+                !is_done && self.effects.has(swings, tick, self.scenario, now);
+            return;
+        }
+        if tick < self.scenario.at || is_done {
             return;
         }
         let causes = self.scenario.injection.expected().causes;
@@ -197,7 +204,7 @@ impl<'a> Watch<'a> {
             .filter(|(cause, _)| cause.kind == kind)
             .filter_map(|(cause, passed)| Some((cause, (*passed)?)))
             .collect();
-        outcome.is_founded = of_it.iter().any(|(cause, passed)| {
+        outcome.is_founded |= of_it.iter().any(|(cause, passed)| {
             (outcome.fault).is_none_or(|fault| *passed <= fault.tick + cause.early_ticks)
         });
         // What need not be latched has no instant from which to count.
