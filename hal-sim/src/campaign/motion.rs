@@ -1,5 +1,7 @@
 //! What the stage is told in a run: its reference, and a motion of some kind.
 
+use core::f64::consts::TAU;
+
 use crate::random::Random;
 
 /// Targets and starts lie within this, mm.
@@ -124,16 +126,20 @@ fn wave(lines: &mut Vec<(u64, String)>, random: &mut Random) -> u64 {
     FIRST_MOTION + u64::from(random.below(MOTION_TICKS))
 }
 
-/// Targets along a line, one after the other, which stop coming at some time.
+/// Targets along a line, one after the other, slowly at first and at last.
 fn stream(lines: &mut Vec<(u64, String)>, random: &mut Random) -> u64 {
     lines.push((FIRST_MOTION, "SPA 1 0x19001900 1".to_owned()));
     lines.push((FIRST_MOTION + 10, "SCT T 5".to_owned()));
-    let [x, y] = [0; 2].map(|_| random.between(-0.25, 0.25));
-    let turn = random.between(-0.5, 0.5);
-    let targets = u64::from(4 + random.below(30));
+    let [x, y] = [0; 2].map(|_| random.between(-6.0, 6.0));
+    let turn = random.between(-20.0, 20.0);
+    let targets = 20 + u64::from(random.below(30));
     for target in 0..targets {
         let at = FIRST_MOTION + 40 + target * STREAMED_EVERY;
-        lines.push((at, format!("MVR X {x:.4} Y {y:.4} W {turn:.4}")));
+        // From rest to rest.
+        let part = target as f64 / targets as f64;
+        let share = (1.0 - (TAU * part).cos()) / targets as f64;
+        let [x, y, turn] = [x, y, turn].map(|size| size * share);
+        lines.push((at, format!("MVR X {x:.5} Y {y:.5} W {turn:.5}")));
     }
     FIRST_MOTION + 40 + targets * STREAMED_EVERY
 }

@@ -160,6 +160,9 @@ pub(super) struct Faults {
     /// Run the run of this seed again, alone, and tell about it.
     #[arg(long, value_name = "SEED", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX), conflicts_with_all = ["runs", "seed", "jobs"])]
     pub(super) only: Option<u64>,
+    /// Seeds of runs whose problems are known: told, but no failure. One that has none any more is one.
+    #[arg(long, value_name = "SEEDS", value_delimiter = ',', value_parser = whole(0..=u64::MAX))]
+    pub(super) known: Vec<u64>,
     /// Write all runs into this file, as CSV.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
