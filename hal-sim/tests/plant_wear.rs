@@ -86,20 +86,24 @@ fn a_jammed_carriage_holds_the_platform() {
     );
 }
 
-/// Carriages that are driven against each other stop at their bumpers, and the energy of the blow is told.
+/// Carriages that are driven against each other stop at their bumpers, and the energy of the blow is told. The guides are longer than
+/// they are, or their ends would come first.
 #[test]
 fn carriages_meet_with_the_energy_that_they_have() {
-    let mut plant = ideal();
-    // Where two carriages are nearly as close as they can be, and no guide has ended; towards each other.
-    let place = (0..360)
-        .map(|degrees| f64::from(degrees).to_radians())
-        .find_map(|turn| {
-            plant.set_pose_at_rest([0.0885, 0.0, turn]);
-            let ends = plant.contacts();
-            let touches = plant.broken().is_none() && ends.iter().all(|end| end.pressed_m == 0.0);
-            (touches && closest_rad(&plant) < CARRIAGE_RAD + 0.02).then_some(turn)
-        });
-    let turn = place.expect("some orientation brings two carriages together");
+    let mut plant = Plant::new(PlantParameters {
+        imperfections: Imperfections::NONE,
+        guide_range_m: [2e-3, 0.3],
+        ..PlantParameters::REFERENCE
+    });
+    // Where two carriages are as close as they come 87 mm out; towards each other.
+    let mut closest_at = |turn: f64| {
+        plant.set_pose_at_rest([0.087, 0.0, turn]);
+        closest_rad(&plant)
+    };
+    let turns = (0..360).map(|degrees| f64::from(degrees).to_radians());
+    let turn = turns.min_by(|a, b| closest_at(*a).total_cmp(&closest_at(*b)));
+    let turn = turn.expect("there are 360");
+    assert!(closest_at(turn) > CARRIAGE_RAD, "they do not touch yet");
     let velocities = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, -0.2, 0.0]];
     let closing = |velocity: &[f64; 3]| {
         let mut plant = plant.clone();

@@ -88,12 +88,12 @@ impl Scenario {
 fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     let in_motion = FIRST_MOTION + u64::from(random.below(MOTION_TICKS));
     let just_held = motion.watched_from.max(HELD) + u64::from(random.below(60));
-    let stops = motion
+    let mut stops = motion
         .lines
         .iter()
         .filter(|(_, line)| line == "STP" || line == "HLT");
     let in_stop = stops
-        .last()
+        .next_back()
         .map(|(sent, _)| sent + u64::from(random.below(600)));
     match injection {
         Injection::DamagedSettings => 0,
