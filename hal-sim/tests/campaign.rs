@@ -1,11 +1,14 @@
 //! The campaign of faults: it finds nothing wrong with the controller, and would if there were.
 
 use firmware::fault::FaultKind;
-use hal_sim::campaign::{Campaign, Injection, NAMES, Outcome, Problem, Scenario, run, table};
+use hal_sim::campaign::{
+    Campaign, End, Injection, MARGIN, Measure, NAMES, Outcome, Problem, Scenario, ToRest, replay,
+    run, table,
+};
 
 const SHORT: Campaign = Campaign {
     runs: 12,
-    seed: 7,
+    seed: 9,
     jobs: 2,
 };
 
@@ -107,7 +110,7 @@ fn a_second_encoder_that_is_not_told_is_a_problem() {
 fn what_is_told_as_an_event_or_an_error_has_to_be_told() {
     for of in [
         |injection: &Injection| *injection == Injection::HostSilent,
-        |injection: &Injection| matches!(injection, Injection::Watchdog(_)),
+        |injection: &Injection| *injection == Injection::LoopStands,
         |injection: &Injection| *injection == Injection::QueueFull,
     ] {
         let good = noticed(of);
@@ -132,18 +135,87 @@ fn an_alarm_without_a_fault_is_a_problem() {
     }
 }
 
+/// Each measure is held to its own bound: just inside the margin it passes, just outside it is told.
 #[test]
-fn an_overrun_counts_where_it_could_have_been_prevented() {
-    let good = noticed(|injection| *injection == Injection::BridgeFault);
-    let avoidable = Outcome {
-        overrun_mm: 0.5,
-        unavoidable_mm: 0.0,
+fn what_goes_beyond_its_bound_is_a_problem() {
+    let good = noticed(|injection| *injection == Injection::EmergencyStop);
+    let bound = ToRest {
+        way_mm: 10.0,
+        turn_deg: 10.0,
+        depth_mm: 10.0,
+        blow_j: 10.0,
+        deviation_mm: 10.0,
+        rests: true,
+    };
+    let judged = |share: f64, measure: Measure| {
+        let mut reaction = ToRest {
+            rests: true,
+            ..ToRest::default()
+        };
+        *match measure {
+            Measure::Way => &mut reaction.way_mm,
+            Measure::Turn => &mut reaction.turn_deg,
+            Measure::Deviation => &mut reaction.deviation_mm,
+            Measure::Depth => &mut reaction.depth_mm,
+            Measure::Blow => &mut reaction.blow_j,
+        } = 10.0 * share;
+        let outcome = Outcome {
+            reaction,
+            bound: Some(bound),
+            ..good.clone()
+        };
+        outcome.problem()
+    };
+    for measure in Measure::ALL {
+        assert_eq!(judged(MARGIN, measure), None);
+        let broken = judged(MARGIN + 0.02, measure);
+        assert!(
+            matches!(broken, Some(Problem::Beyond(of, ..)) if of == measure),
+            "{broken:?}"
+        );
+    }
+}
+
+#[test]
+fn a_stage_that_could_rest_has_to() {
+    let good = noticed(|injection| *injection == Injection::EmergencyStop);
+    assert!(good.bound.is_some_and(|bound| bound.rests), "{good}");
+    let moving = Outcome {
+        end: End::Moving,
         ..good
     };
-    assert_eq!(avoidable.problem(), Some(Problem::LimitBroken(0.5)));
-    let unavoidable = Outcome {
-        unavoidable_mm: 0.4,
-        ..avoidable
+    assert_eq!(moving.problem(), Some(Problem::StillMoving));
+}
+
+/// A loop that stands still is cut by the watchdog alone, within its time; nothing in the run does it.
+#[test]
+fn the_watchdog_has_to_cut_in_time() {
+    let good = noticed(|injection| *injection == Injection::LoopStands);
+    let cut = good.cut.expect("the watchdog bites");
+    assert!((8..=10).contains(&(cut - good.scenario.at)), "{good}");
+    let late = Outcome {
+        cut: Some(good.scenario.at + 13),
+        ..good.clone()
     };
-    assert_eq!(unavoidable.problem(), None);
+    assert_eq!(late.problem(), Some(Problem::CutLate(3)));
+    let never = Outcome { cut: None, ..good };
+    assert!(matches!(never.problem(), Some(Problem::CutLate(_))));
+}
+
+/// Nothing tells an encoder that drifts slowly at rest; a load that falls off is seen in the currents.
+#[test]
+fn what_nobody_could_detect_is_told_from_what_nobody_has() {
+    let undetected = |of: fn(&Injection) -> bool| {
+        (1..)
+            .filter(|seed| of(&Scenario::new(*seed).injection))
+            .map(|seed| replay(seed)[0].clone())
+            .find(|outcome| outcome.detected().is_none())
+            .expect("one of so many")
+    };
+    let frames = undetected(|injection| matches!(injection, Injection::FewBadFrames(_)));
+    assert!(frames.differs.is_some_and(|times| times >= 1.0), "{frames}");
+    let drift = undetected(
+        |injection| matches!(injection, Injection::Drift(rad_s) if rad_s.abs() < 0.5e-3),
+    );
+    assert!(drift.differs.is_some_and(|times| times < 100.0), "{drift}");
 }

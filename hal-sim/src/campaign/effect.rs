@@ -1,16 +1,18 @@
 //! When what is broken passes the controller's thresholds: judged from the machine and its encoders, in other numbers than the
 //! controller's.
 
-use super::injection::{HEARTBEAT_TICKS, MISSED_EVERY, second};
+use super::injection::{HEARTBEAT_TICKS, Injection, MISSED_EVERY, second};
+use super::inputs::is_bad;
 use super::scenario::Scenario;
 use super::truth::{setpoint_turns, shown_errors_rad};
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::plant::AXES;
 use core::f64::consts::TAU;
-use firmware::control::units::CURRENT_A_PER_COUNT;
+use firmware::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
+use std::collections::VecDeque;
 
 /// Ticks in a row in which a low supply is one.
 const LOW_SUPPLY_TICKS: u64 = 4;
@@ -29,6 +31,21 @@ const NEARLY: f64 = 0.99;
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;
 
+/// Supply that is a fault, V, and how near to a threshold noise decides, V.
+const TOO_HIGH_V: f64 = 58.0;
+const NEAR_V: f64 = 0.15;
+/// Supply over which the brake resistor is on for certain, V, and ticks until it is full: 500 J at 356 - 50 W.
+const RESISTOR_ON_V: f64 = 54.05;
+const RESISTOR_FULL_TICKS: u64 = 32_680;
+/// A swing of a bridge's voltage that is one for certain, and that may be one, V; reversals and the ticks in which they come.
+const SWING_V: [f64; 2] = [26.0, 15.0];
+/// The same of what the velocity gain asks for, which may be three times as high where a pivot carries more.
+const ASKED_V: f64 = 6.0;
+const REVERSALS: [usize; 2] = [14, 4];
+const SWINGING_TICKS: u64 = 2_000;
+/// A setpoint that hardly moves, rad/s.
+const SLOW_RAD_S: f64 = 1.05;
+
 /// What passes a threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
@@ -36,8 +53,26 @@ pub enum Effect {
     AtOnce,
     /// One bad frame more than are bridged.
     BadFrames,
-    /// A low supply, seen often enough.
+    /// The first tick in which it drives.
+    Driven,
+    /// A low supply, seen often enough, and one that noise may take for that.
     LowSupply,
+    /// See above.
+    NearlyLowSupply,
+    /// A high supply, and one that noise may take for that.
+    HighSupply,
+    /// See above.
+    NearlyHighSupply,
+    /// The brake resistor has taken what it bears.
+    ResistorHot,
+    /// One frame more in a row that its CRC refuses than are bridged, and some.
+    BadInARow,
+    /// See above.
+    SomeBad,
+    /// A bridge's voltage goes to and fro, over and over, while the setpoint hardly moves; and something like it.
+    Oscillates,
+    /// See above.
+    NearlyOscillates,
     /// One late tick more than are forgiven.
     LateTicks,
     /// What the encoders show is too far from the setpoint.
@@ -68,6 +103,10 @@ pub struct Now<'a> {
     pub shown: &'a [Encoder; AXES],
     /// See `shown`.
     pub current_counts: [i16; AXES],
+    /// The supply as the tick has read it, ADC counts.
+    pub supply_counts: u16,
+    /// Whether it drives.
+    pub is_driven: bool,
     /// What the tick has computed: the platform's setpoint, the rates of the pivots' setpoints, the duties.
     pub position: Position,
     /// See `position`.
@@ -93,6 +132,13 @@ pub struct Effects<'a> {
     pause: [u64; AXES],
     /// Squares of the currents, A^2, smoothed.
     heat: [f64; AXES],
+    /// Ticks in a row of driving, of a low and of a high supply, of bad frames; and those with the brake resistor on.
+    driven: u64,
+    low: [u64; 2],
+    high: [u64; 2],
+    bad: [u64; AXES],
+    resistor_on: u64,
+    swings: [[Swings; 3]; AXES],
 }
 
 impl<'a> Effects<'a> {
@@ -110,6 +156,12 @@ impl<'a> Effects<'a> {
             nearly: [0; AXES],
             pause: [0; AXES],
             heat: [0.0; AXES],
+            driven: 0,
+            low: [0; 2],
+            high: [0; 2],
+            bad: [0; AXES],
+            resistor_on: 0,
+            swings: [const { [const { Swings::NONE }; 3] }; AXES],
         }
     }
 
@@ -122,13 +174,51 @@ impl<'a> Effects<'a> {
         let most_counts = fastest_rad_s / rate_hz / TAU * f64::from(COUNTS_PER_TURN);
         let full = FULL * f64::from(self.parameters.power.pwm_counts);
         let part = 1.0 - (-1.0 / (rate_hz * supervision.motor_heating_s)).exp();
+        let goes_on = |so_far: u64, holds: bool| if holds { so_far + 1 } else { 0 };
+        self.driven = goes_on(self.driven, now.is_driven);
+        let supply_v = f64::from(now.supply_counts) * SUPPLY_V_PER_COUNT;
+        for (i, near_v) in [-NEAR_V, NEAR_V].into_iter().enumerate() {
+            let is_low = now.is_driven && supply_v < supervision.supply_min_v + near_v;
+            self.low[i] = goes_on(self.low[i], is_low);
+            let is_high = now.is_driven && supply_v > TOO_HIGH_V - near_v;
+            self.high[i] = goes_on(self.high[i], is_high);
+        }
+        self.resistor_on += u64::from(supply_v > RESISTOR_ON_V);
         for i in 0..AXES {
+            let is_bad = is_bad(&now.shown[i]);
+            self.bad[i] = goes_on(self.bad[i], is_bad);
+            let is_slow = now
+                .rates_rad_s
+                .iter()
+                .all(|rate| f64::from(rate.abs()) < SLOW_RAD_S);
+            let volts =
+                f64::from(now.duty[i]) / f64::from(self.parameters.power.pwm_counts) * supply_v;
             let counts = now.shown[i].position();
             let half = COUNTS_PER_TURN / 2;
             let step = (counts.wrapping_sub(self.last[i]).wrapping_add(half) % COUNTS_PER_TURN)
                 .abs_diff(half);
+            let moved = counts.wrapping_sub(self.last[i]) % COUNTS_PER_TURN;
             self.last[i] = counts;
-            let goes_on = |so_far: u64, holds: bool| if holds { so_far + 1 } else { 0 };
+            // What the velocity gain makes of the encoder's rate is asked for whether the bridge can give it or not.
+            let signed = if moved < half {
+                f64::from(moved)
+            } else {
+                f64::from(moved) - f64::from(COUNTS_PER_TURN)
+            };
+            let asked_v = signed / f64::from(COUNTS_PER_TURN)
+                * TAU
+                * rate_hz
+                * self.parameters.servo.gains[i].velocity_v_s_rad;
+            // What may be one counts at any rate, what has to be found only where the setpoint hardly moves.
+            let may = now.is_driven;
+            let seen = [
+                (volts, SWING_V[0], may && is_slow),
+                (volts, SWING_V[1], may),
+                (asked_v, ASKED_V, may),
+            ];
+            for (swings, (volts, swing_v, counts)) in self.swings[i].iter_mut().zip(seen) {
+                swings.look(volts, swing_v, counts);
+            }
             self.same[i] = goes_on(self.same[i], step == 0);
             self.fast[i] = goes_on(self.fast[i], f64::from(step) > most_counts);
             let duty = f64::from(now.duty[i]).abs();
@@ -151,10 +241,24 @@ impl<'a> Effects<'a> {
         let bearable = supervision.motor_current_a * supervision.motor_current_a;
         let first = scenario.at + u64::from(scenario.injection.is_of_encoder());
         match effect {
+            Effect::AtOnce if matches!(scenario.injection, Injection::Both(_)) => {
+                tick >= scenario.at
+            }
             Effect::AtOnce => tick >= first,
             Effect::BadFrames => tick >= first + bridged,
-            Effect::LowSupply => tick >= first + LOW_SUPPLY_TICKS - 1,
+            Effect::Driven => tick >= first && self.driven > 0,
+            Effect::LowSupply => self.low[0] >= LOW_SUPPLY_TICKS,
+            Effect::NearlyLowSupply => self.low[1] > 0,
+            Effect::HighSupply => self.high[0] >= LOW_SUPPLY_TICKS,
+            Effect::NearlyHighSupply => self.high[1] > 0,
+            Effect::ResistorHot => self.resistor_on >= RESISTOR_FULL_TICKS,
+            Effect::BadInARow => self.bad[scenario.axis] > bridged,
+            // Frames that the CRC does not find belong to the row too.
+            Effect::SomeBad => self.bad[scenario.axis] >= 2,
+            Effect::Oscillates => self.has_swung(0),
+            Effect::NearlyOscillates => self.has_swung(1),
             Effect::LateTicks => tick >= first + MISSED_EVERY * u64::from(supervision.late_ticks),
+            Effect::FollowingError if self.driven == 0 => false,
             Effect::FollowingError => {
                 let errors = shown_errors_rad(now.shown, self.parameters, now.position);
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
@@ -171,6 +275,7 @@ impl<'a> Effects<'a> {
                 let is_moving = f64::from(now.rates_rad_s[i].abs()) > MOVING_RAD_S;
                 self.same[i] >= SAME_TICKS || (is_moving && self.same[i] >= bridged)
             }),
+            Effect::Overspeed | Effect::BrieflyOverspeed if self.driven == 0 => false,
             Effect::Overspeed => self.fast.iter().any(|&ticks| ticks >= LOOK_TICKS),
             Effect::BrieflyOverspeed => self.fast.iter().any(|&ticks| ticks > 0),
             Effect::AtEnd => self.at_end.iter().any(|&ticks| ticks > longest),
@@ -181,6 +286,12 @@ impl<'a> Effects<'a> {
         }
     }
 
+    fn has_swung(&self, which: usize) -> bool {
+        let of = if which == 0 { 0..1 } else { 1..3 };
+        (self.swings.iter().flat_map(|pivot| &pivot[of.clone()]))
+            .any(|swings| swings.reversals.len() >= REVERSALS[which])
+    }
+
     /// The platform's setpoint in the last tick, track radii.
     pub fn position(&self) -> [f64; 2] {
         [0, 1].map(|i| self.position[i] as f64 / 4_294_967_296.0)
@@ -189,11 +300,52 @@ impl<'a> Effects<'a> {
     /// The tick in which the second of two lost encoders is found.
     #[must_use]
     pub fn second_found(&self, scenario: &Scenario) -> Option<(u64, usize)> {
-        let super::Injection::TwoEncoders(ticks) = scenario.injection else {
+        let Injection::TwoEncoders(ticks) = scenario.injection else {
             return None;
         };
         let bridged = u64::from(self.parameters.supervision.bridged_frames);
         let tick = scenario.at + u64::from(ticks) + 1 + bridged;
         Some((tick, second(scenario.axis)))
+    }
+}
+
+/// Reversals of a voltage.
+#[derive(Clone, Debug)]
+struct Swings {
+    now: u64,
+    extreme: f64,
+    rising: bool,
+    /// The ticks of the last ones.
+    reversals: VecDeque<u64>,
+}
+
+impl Swings {
+    const NONE: Self = Self {
+        now: 0,
+        extreme: 0.0,
+        rising: false,
+        reversals: VecDeque::new(),
+    };
+
+    fn look(&mut self, volts: f64, swing_v: f64, counts: bool) {
+        self.now += 1;
+        if !counts {
+            self.extreme = volts;
+            return;
+        }
+        let beyond = if self.rising {
+            volts - self.extreme
+        } else {
+            self.extreme - volts
+        };
+        if beyond > 0.0 {
+            self.extreme = volts;
+        } else if beyond < -swing_v {
+            self.rising = !self.rising;
+            self.extreme = volts;
+            self.reversals.push_back(self.now);
+        }
+        let now = self.now;
+        self.reversals.retain(|at| at + SWINGING_TICKS >= now);
     }
 }

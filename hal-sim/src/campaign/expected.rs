@@ -3,7 +3,7 @@
 use firmware::fault::FaultKind as Kind;
 
 use super::effect::Effect;
-use super::injection::Injection;
+use super::injection::{Injection, Other};
 
 /// A reason for a fault, or for an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,11 +72,13 @@ const BRIEFLY_OVERSPEED: Cause = Cause {
 };
 
 /// Pivots are looked at in turn, every fourth tick.
-const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 6);
+/// A tenth of the shortest time that a run has: noise of the current makes pauses that the controller sees and the judge does not.
+const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 40);
 const NEARLY_STALLED: Cause = Cause {
     effect: Effect::NearlyAtEnd,
     within_ticks: None,
-    early_ticks: 6,
+    // The controller counts from when it limits the current, which rises some ticks later.
+    early_ticks: 16,
     ..STALLED
 };
 const HOT: Cause = Cause {
@@ -89,6 +91,64 @@ const NEARLY_HOT: Cause = Cause {
     within_ticks: None,
     ..HOT
 };
+const OSCILLATES: Cause = Cause {
+    early_ticks: 100,
+    ..cause(Effect::Oscillates, Kind::Oscillation, 400)
+};
+/// The judge sees the whole voltage, the controller what its feedback asks for.
+const NEARLY_OSCILLATES: Cause = Cause {
+    effect: Effect::NearlyOscillates,
+    within_ticks: None,
+    ..OSCILLATES
+};
+/// What a motion that goes wrong may be found by.
+const MOTION: &[Cause] = &[
+    FOLLOWING,
+    STILL,
+    STALLED,
+    NEARLY_STALLED,
+    HOT,
+    NEARLY_HOT,
+    OVERSPEED,
+    BRIEFLY_OVERSPEED,
+    OSCILLATES,
+    NEARLY_OSCILLATES,
+];
+const SUPPLY_LOW: Cause = cause(Effect::LowSupply, Kind::SupplyLow, 1);
+/// Near the threshold noise decides.
+const NEARLY_SUPPLY_LOW: Cause = Cause {
+    effect: Effect::NearlyLowSupply,
+    within_ticks: None,
+    ..SUPPLY_LOW
+};
+const SUPPLY_HIGH: Cause = cause(Effect::HighSupply, Kind::SupplyHigh, 1);
+const NEARLY_SUPPLY_HIGH: Cause = Cause {
+    effect: Effect::NearlyHighSupply,
+    within_ticks: None,
+    ..SUPPLY_HIGH
+};
+/// Two hundredths of the time that heats it, for the voltages of the thresholds.
+const RESISTOR_HOT: Cause = Cause {
+    early_ticks: 700,
+    ..cause(Effect::ResistorHot, Kind::BrakeResistorHot, 700)
+};
+const EMERGENCY_STOP: Cause = cause(Effect::AtOnce, Kind::EmergencyStop, 0);
+const SILENT: Cause = cause(Effect::BadFrames, Kind::EncoderSilent, 0);
+/// Bad frames in a row as they come, whatever is wrong with the last one.
+const BAD_IN_A_ROW: Cause = cause(Effect::BadInARow, Kind::EncoderCrc, 0);
+const SOME_BAD: Cause = Cause {
+    effect: Effect::SomeBad,
+    within_ticks: None,
+    ..BAD_IN_A_ROW
+};
+
+const fn some_bad(kind: Kind) -> Cause {
+    Cause {
+        kind: Some(kind),
+        ..SOME_BAD
+    }
+}
+
 /// Found before the first tick.
 const DAMAGED: Cause = Cause {
     early_ticks: 1,
@@ -96,42 +156,88 @@ const DAMAGED: Cause = Cause {
 };
 
 /// Largest of the early ticks: for so long a fault may come before its cause.
-pub(super) const MOST_EARLY: u64 = 6;
+pub(super) const MOST_EARLY: u64 = 16;
+/// Ticks until the watchdog has bitten, the controller has started and its command side has told.
+pub(super) const RESTART_TICKS: u64 = 10 + 20 + COMMAND_SIDE_TICKS;
 
 impl Injection {
     /// What the controller has to say.
     #[must_use]
     pub const fn expected(&self) -> Expected {
         let causes: &'static [Cause] = match self {
-            Self::Silent(_) | Self::TwoEncoders(_) => {
-                &const { [cause(Effect::BadFrames, Kind::EncoderSilent, 0)] }
-            }
+            Self::Silent(_) | Self::TwoEncoders(_) => &[SILENT],
             Self::BadCrc => &const { [cause(Effect::BadFrames, Kind::EncoderCrc, 0)] },
             Self::ErrorBit => &const { [cause(Effect::BadFrames, Kind::EncoderError, 0)] },
             Self::Jump(_) => &const { [cause(Effect::BadFrames, Kind::EncoderJump, 0)] },
             // Where the setpoint slows down, it is the drive that shows it.
             Self::Frozen => &const { [cause(Effect::FrozenWay, Kind::EncoderFrozen, 30), STILL] },
-            Self::BridgeFault => &const { [cause(Effect::AtOnce, Kind::BridgeFault, 0)] },
-            Self::SupplySag(_) => &const { [cause(Effect::LowSupply, Kind::SupplyLow, 0)] },
-            Self::EmergencyStop => &const { [cause(Effect::AtOnce, Kind::EmergencyStop, 0)] },
+            Self::BridgeFault => &const { [cause(Effect::Driven, Kind::BridgeFault, 1)] },
+            Self::SupplySag(_) => &[
+                SUPPLY_LOW,
+                NEARLY_SUPPLY_LOW,
+                FOLLOWING,
+                STALLED,
+                NEARLY_STALLED,
+            ],
+            Self::EmergencyStop => &[EMERGENCY_STOP],
             // At full speed the pivots lead by what was missed, which may be too far.
             Self::LateLoop => &const { [cause(Effect::LateTicks, Kind::LoopLate, 0), FOLLOWING] },
             Self::FewMissedTicks(_) | Self::DirectionStuck => &[FOLLOWING],
             Self::DriveLost | Self::Jam => &[FOLLOWING, STILL, STALLED, NEARLY_STALLED],
-            Self::Knock(_) | Self::Runaway(_) => &[FOLLOWING, OVERSPEED, BRIEFLY_OVERSPEED],
+            // A machine that is hit rings.
+            Self::Knock(_) | Self::Runaway(_) => MOTION,
             Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, STILL],
             Self::HotMotor(_) => &[HOT, NEARLY_HOT, FOLLOWING],
             Self::DamagedSettings => &[DAMAGED],
-            Self::Warning | Self::Watchdog(_) | Self::QueueFull => {
-                &const { [event(Effect::AtOnce)] }
+            Self::Warning | Self::QueueFull => &const { [event(Effect::AtOnce)] },
+            Self::LoopStands | Self::Crash => {
+                &const {
+                    [Cause {
+                        within_ticks: Some(RESTART_TICKS),
+                        ..event(Effect::AtOnce)
+                    }]
+                }
             }
             Self::HostSilent => &const { [event(Effect::Silence)] },
-            Self::FewBadFrames(_) => &[],
+            Self::FewBadFrames(_) | Self::SupplyRipple(..) | Self::Bursts(..) => &[],
+            Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
+            Self::ResistorHot(_) => &[RESISTOR_HOT],
+            Self::BitErrors(_) => {
+                &const {
+                    [
+                        BAD_IN_A_ROW,
+                        SOME_BAD,
+                        some_bad(Kind::EncoderSilent),
+                        some_bad(Kind::EncoderError),
+                        some_bad(Kind::EncoderJump),
+                        FOLLOWING,
+                        OVERSPEED,
+                        BRIEFLY_OVERSPEED,
+                    ]
+                }
+            }
+            Self::Both(other) => match other {
+                Other::EmergencyStop => &[SILENT, EMERGENCY_STOP],
+                Other::Supply => &[SILENT, SUPPLY_LOW, NEARLY_SUPPLY_LOW],
+                Other::Jam | Other::DriveLost => &[SILENT, FOLLOWING, STILL, STALLED],
+            },
+            Self::Drift(_)
+            | Self::Scale(_)
+            | Self::CurrentBias(_)
+            | Self::SupplyBias(_)
+            | Self::Fading(_)
+            | Self::Friction(_)
+            | Self::GuideJam
+            | Self::LooseCoupling(_)
+            | Self::LoadLost
+            | Self::ExchangedLines
+            | Self::Gain(_) => MOTION,
         };
         let told = match self {
             Self::Warning => Some("encoder warns"),
             Self::HostSilent => Some("no host heard"),
-            Self::Watchdog(_) => Some("start by the watchdog"),
+            Self::LoopStands => Some("start by the watchdog"),
+            Self::Crash => Some("start by a panic"),
             Self::QueueFull => Some("1005"),
             _ => None,
         };

@@ -1,11 +1,9 @@
-//! What is broken in a run, and how the simulated hardware does it.
+//! What is broken in a run.
 
-use firmware::parameters::Supervision;
+use firmware::parameters::{Parameters, Supervision};
 
-use crate::front::{Host, Wiring};
 use crate::machine::devices::EncoderFault;
-use crate::machine::plant::{AXES, External, Plant};
-use crate::random::Random;
+use crate::machine::plant::AXES;
 
 /// Something that breaks, for good unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,16 +50,65 @@ pub enum Injection {
     Wedged,
     /// An encoder falls silent, and so many ticks later the next one, while the stage is being stopped.
     TwoEncoders(u16),
-    /// The loop stands still for so many ticks until the watchdog bites, and the controller starts again.
-    Watchdog(u16),
+    /// The loop stands still. What happens then is the watchdog's.
+    LoopStands,
     /// A bit of the kept settings has flipped before the controller starts.
     DamagedSettings,
     /// Commands come faster than the tick can take them: they are refused, and the motion goes on.
     QueueFull,
+    /// The program ends itself, by a panic or a processor fault.
+    Crash,
+    /// The supply rises to this, V, for good.
+    SupplyHigh(f64),
+    /// The supply rises to this, V, at which the brake resistor is on for good.
+    ResistorHot(f64),
+    /// The supply has a ripple of this amplitude, V, and frequency, Hz: no fault.
+    SupplyRipple(f64, f64),
+    /// An encoder drifts by so much, rad/s.
+    Drift(f64),
+    /// An encoder's scale is off by this share from now on.
+    Scale(f64),
+    /// A contact fails over and over, so many frames of so many: no more in a row than are bridged.
+    Bursts(u8, u8),
+    /// This share of the bits of an encoder's frames is wrong.
+    BitErrors(f64),
+    /// An encoder is lost, and in the same tick something else breaks.
+    Both(Other),
+    /// A current sensor reads so many amperes more.
+    CurrentBias(f64),
+    /// The supply's sensor reads this share of what it should.
+    SupplyBias(f64),
+    /// A motor loses this share of its torque in a tenth of a second.
+    Fading(f64),
+    /// A ring's friction rises by this, N m, in a tenth of a second.
+    Friction(f64),
+    /// A carriage jams on its guide.
+    GuideJam,
+    /// A coupling comes loose by this to either side, rad.
+    LooseCoupling(f64),
+    /// The load falls off the platform.
+    LoadLost,
+    /// The plugs of two encoders are exchanged before the controller starts.
+    ExchangedLines,
+    /// A setting makes the velocity gain so many times as high.
+    Gain(f64),
+}
+
+/// What breaks in the same tick as an encoder falls silent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Other {
+    /// The emergency stop is pressed.
+    EmergencyStop,
+    /// The supply is gone.
+    Supply,
+    /// The next pivot is jammed.
+    Jam,
+    /// The next motor's wire breaks.
+    DriveLost,
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 24] = [
+pub const NAMES: [&str; 42] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -83,65 +130,43 @@ pub const NAMES: [&str; 24] = [
     "pivot runs away",
     "pivot wedged",
     "two encoders",
-    "watchdog",
+    "loop stands still",
     "settings damaged",
     "queue full",
+    "program crashes",
+    "supply too high",
+    "resistor overloaded",
+    "supply ripple",
+    "encoder drifts",
+    "encoder scale",
+    "bursts of bad frames",
+    "bit errors",
+    "encoder and another",
+    "current sensor bias",
+    "supply sensor bias",
+    "motor fades",
+    "friction rises",
+    "carriage jammed",
+    "coupling loose",
+    "load lost",
+    "encoders exchanged",
+    "gain too high",
 ];
 
-/// How long a pivot is hit: 4 ms.
-const KNOCK_TICKS: u64 = 80;
 /// One of so many ticks does not come.
 pub(super) const MISSED_EVERY: u64 = 5;
 /// Longest silence that a host has promised, ms, and in ticks.
 pub(super) const HEARTBEAT_MS: u64 = 30;
 pub(super) const HEARTBEAT_TICKS: u64 = HEARTBEAT_MS * 20;
-/// How long a ring is driven by something else: 15 ms.
-const RUNAWAY_TICKS: u64 = 300;
 /// What the pivots may be off on a stage that is to notice something else, rad.
 const LARGE_ERROR_RAD: f64 = 0.2;
-/// Bits of the frame that a bad one may have flipped: position, flags and CRC behind a preamble of ten clocks.
-const COVERED: u32 = 34;
-const LOWEST: u32 = 18;
-/// Reading off by less is bridged like bad frames and then taken for motion.
-const SMALLEST_JUMP: f64 = 60_000.0;
-const LARGEST_JUMP: f64 = 30_000_000.0;
+/// Current that a motor bears for ever on a stage that is to notice a hot one, A.
+pub(super) const HOT_A: f64 = 4.6;
+/// Ticks after the injection in which an effect is waited for, and those in which a brake resistor becomes too hot.
+const PATIENCE: u64 = 3_000;
+const HEATING: u64 = 40_000;
 
 impl Injection {
-    /// One of all, as likely each.
-    pub fn random(random: &mut Random, bridged: u8) -> Self {
-        match random.below(NAMES.len() as u32) {
-            0 if random.below(2) == 0 => Self::Silent(EncoderFault::StuckHigh),
-            0 => Self::Silent(EncoderFault::StuckLow),
-            1 => Self::BadCrc,
-            2 => Self::ErrorBit,
-            3 => Self::Frozen,
-            4 => Self::Jump(EncoderFault::Jump {
-                counts: (random.between(SMALLEST_JUMP, LARGEST_JUMP) * random.sign()) as i32,
-            }),
-            5 => Self::FewBadFrames(1 + random.below(u32::from(bridged)) as u8),
-            6 => Self::Warning,
-            7 => Self::BridgeFault,
-            8 => Self::DriveLost,
-            9 => Self::DirectionStuck,
-            10 => Self::SupplySag(random.between(0.0, 35.5)),
-            11 => Self::EmergencyStop,
-            12 => Self::Jam,
-            13 => Self::Knock(random.between(60.0, 120.0) * random.sign()),
-            14 => Self::FewMissedTicks(1 + random.below(9) as u8),
-            15 => Self::LateLoop,
-            16 => Self::HostSilent,
-            17 => Self::HotMotor(random.between(26.0, 30.0) * random.sign()),
-            18 => Self::Runaway(random.between(100.0, 180.0) * random.sign()),
-            19 => Self::Wedged,
-            // A controlled stop takes 1,200 ticks.
-            20 => Self::TwoEncoders(1 + random.below(1_200) as u16),
-            // 20 ms, by an oscillator that is good to -30 and +50 %.
-            21 => Self::Watchdog(280 + random.below(320) as u16),
-            22 => Self::DamagedSettings,
-            _ => Self::QueueFull,
-        }
-    }
-
     /// Place in [`NAMES`].
     #[must_use]
     pub const fn index(&self) -> usize {
@@ -167,9 +192,27 @@ impl Injection {
             Self::Runaway(_) => 18,
             Self::Wedged => 19,
             Self::TwoEncoders(_) => 20,
-            Self::Watchdog(_) => 21,
+            Self::LoopStands => 21,
             Self::DamagedSettings => 22,
             Self::QueueFull => 23,
+            Self::Crash => 24,
+            Self::SupplyHigh(_) => 25,
+            Self::ResistorHot(_) => 26,
+            Self::SupplyRipple(..) => 27,
+            Self::Drift(_) => 28,
+            Self::Scale(_) => 29,
+            Self::Bursts(..) => 30,
+            Self::BitErrors(_) => 31,
+            Self::Both(_) => 32,
+            Self::CurrentBias(_) => 33,
+            Self::SupplyBias(_) => 34,
+            Self::Fading(_) => 35,
+            Self::Friction(_) => 36,
+            Self::GuideJam => 37,
+            Self::LooseCoupling(_) => 38,
+            Self::LoadLost => 39,
+            Self::ExchangedLines => 40,
+            Self::Gain(_) => 41,
         }
     }
 
@@ -188,106 +231,65 @@ impl Injection {
             Self::HotMotor(_) => {
                 supervision.motor_heating_s = 0.12;
                 // Some of the weaker machines need 4 A for long in a motion of their own.
-                supervision.motor_current_a = 5.8;
+                supervision.motor_current_a = HOT_A;
             }
             _ => {}
         }
     }
 
-    /// Breaks it, or keeps it broken; before each tick from the first on, which has `age` 0.
-    pub fn apply(&self, host: &mut Host, axis: usize, age: u64, random: &mut Random) {
-        let encoder = &mut host.stage.encoders[axis];
-        match *self {
-            Self::Silent(fault) | Self::Jump(fault) => encoder.set_fault(fault),
-            Self::BadCrc => encoder.set_fault(bad_frame(random)),
-            Self::ErrorBit => encoder.set_fault(EncoderFault::ErrorBit),
-            Self::Frozen => encoder.set_fault(EncoderFault::Frozen),
-            Self::Warning => encoder.set_fault(EncoderFault::WarningBit),
-            Self::FewBadFrames(frames) if age < u64::from(frames) => {
-                encoder.set_fault(bad_frame(random));
-            }
-            Self::FewBadFrames(_) => {}
-            Self::BridgeFault => host.bridges[axis].set_fault(true),
-            Self::DriveLost => host.wiring[axis] = Wiring::Open,
-            Self::DirectionStuck => {
-                if age == 0 {
-                    let forward = host.bridges[axis].state().forward;
-                    host.wiring[axis] = Wiring::Direction { forward };
-                }
-            }
-            Self::SupplySag(volts) => {
-                if age == 0 {
-                    host.stage.set_supply_v(volts);
-                }
-            }
-            Self::EmergencyStop => host.emergency_stop = true,
-            Self::TwoEncoders(ticks) => {
-                encoder.set_fault(EncoderFault::StuckHigh);
-                if age >= u64::from(ticks) {
-                    host.stage.encoders[second(axis)].set_fault(EncoderFault::StuckLow);
-                }
-            }
-            Self::Jam | Self::Knock(_) | Self::HotMotor(_) | Self::Runaway(_) | Self::Wedged => {
-                self.push(&mut host.stage.plant, axis, age)
-            }
-            Self::FewMissedTicks(ticks) if age >= u64::from(ticks) * MISSED_EVERY => {}
-            Self::FewMissedTicks(_) | Self::LateLoop => {
-                if age.is_multiple_of(MISSED_EVERY) {
-                    host.miss_tick();
-                }
-            }
-            Self::Watchdog(ticks) if age == 0 => {
-                for _ in 0..ticks {
-                    host.miss_tick();
-                }
-            }
-            // What is not of the loop's hardware: the run does it.
-            Self::HostSilent | Self::Watchdog(_) | Self::DamagedSettings | Self::QueueFull => {}
+    /// Ticks after it in which an effect is waited for.
+    #[must_use]
+    pub const fn patience(&self) -> u64 {
+        match self {
+            Self::ResistorHot(_) => HEATING,
+            Self::HotMotor(_) => 2 * PATIENCE,
+            _ => PATIENCE,
         }
     }
 
-    /// What pushes the machine, from one tick to the next.
-    pub fn push(&self, plant: &mut Plant, axis: usize, age: u64) {
-        let mut external = External::default();
-        match *self {
-            Self::Jam | Self::Wedged if age == 0 => {
-                external.jammed_at_rad[axis] = Some(plant.pivots_rad()[axis]);
-            }
-            Self::Knock(torque_n_m) | Self::Runaway(torque_n_m) | Self::HotMotor(torque_n_m)
-                if age == 0 =>
-            {
-                external.ring_torque_n_m[axis] = torque_n_m;
-            }
-            Self::Knock(_) if age == KNOCK_TICKS => {}
-            Self::Runaway(_) if age == RUNAWAY_TICKS => {}
-            _ => return,
-        }
-        plant.set_external(external);
+    /// Whether somebody pulls who lets go of a stage that is braked or coasts.
+    #[must_use]
+    pub const fn lets_go(&self) -> bool {
+        matches!(self, Self::HotMotor(_))
     }
 
-    /// Whoever pulls at a ring that is held lets go when it is not held any more.
-    pub fn let_go(&self, plant: &mut Plant) {
-        if matches!(self, Self::HotMotor(_)) {
-            plant.set_external(External::default());
-        }
+    /// Whether it is there from the start.
+    #[must_use]
+    pub const fn is_before_start(&self) -> bool {
+        matches!(self, Self::DamagedSettings | Self::ExchangedLines)
+    }
+
+    /// Whether the program ticks no more, until something starts it again.
+    #[must_use]
+    pub const fn ends_program(&self) -> bool {
+        matches!(self, Self::LoopStands | Self::Crash)
+    }
+
+    /// A line that somebody sends in place of breaking something.
+    #[must_use]
+    pub fn line(&self, parameters: &Parameters) -> Option<String> {
+        let Self::Gain(factor) = *self else {
+            return None;
+        };
+        let gain = parameters.servo.gains[0].velocity_v_s_rad * factor;
+        Some(format!(
+            "CCL 1 ADVANCED\nSPA 1 0x54500301 {:.3}",
+            gain.min(500.0)
+        ))
     }
 
     /// The tick of age 0 is the first to see it: what breaks an encoder is seen with the next frame that is latched.
     #[must_use]
     pub const fn is_of_encoder(&self) -> bool {
-        self.index() <= 6 || matches!(self, Self::TwoEncoders(_))
+        self.index() <= 6
+            || matches!(
+                self,
+                Self::TwoEncoders(_) | Self::BitErrors(_) | Self::Both(_)
+            )
     }
 }
 
 /// The pivot whose encoder is lost after that of another one.
 pub(super) const fn second(axis: usize) -> usize {
     (axis + 1) % AXES
-}
-
-/// A burst of one to six flipped bits, which a CRC of six bits always finds.
-fn bad_frame(random: &mut Random) -> EncoderFault {
-    let burst = u64::from(1 | random.below(64));
-    let length = 64 - burst.leading_zeros();
-    let at = LOWEST + random.below(COVERED - length + 1);
-    EncoderFault::BadFrame { flip: burst << at }
 }

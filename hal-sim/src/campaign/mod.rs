@@ -1,29 +1,43 @@
 //! A campaign of faults: many short runs of the controller on simulated stages, in each of which something breaks.
 //!
-//! A run is what its seed says: a machine with every number up to 30 % off and 0 to 5 kg on it that the controller knows nothing
-//! of, a motion, a fault and the tick in which it comes. It is run twice, with the fault and without: the second must
-//! raise no alarm. The fault is done to the simulated hardware; the controller reads it through its own drivers.
+//! A run is what its seed says: a machine as a workshop builds it, a controller that was told its numbers, a motion, a fault and the tick
+//! in which it comes. It is run twice, with the fault and without: the second must raise no alarm. The fault is done to the simulated
+//! hardware; the controller reads it through its own drivers, and what starts it again is the simulated watchdog.
+//!
+//! What the controller makes of it is held to two things: it says in time what has happened, and the stage comes to rest within what
+//! masses, motors and the time to find it allow (`bound`). What it does not find is compared with the sound run: where its inputs
+//! differ by less than their noise, nobody could have found it (`inputs`).
 //!
 //! Not here, since nothing that reaches the controller brings them about: numbers that are none (frames and ADC counts are whole
-//! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach
-//! (the planner gives none). They have tests of their own, past the command side.
+//! numbers, and a parameter that makes one is out of its range or does not go with the others) and setpoints out of reach, out of the
+//! disk, the guides or too close (the planner gives none). They have tests of their own, past the command side; the crystal and the
+//! image's checksum have them on the emulated chip.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `injection`, `settings` | what breaks |
+//! | `injection`, `draw`, `apply`, `settings` | what breaks; how much; how the hardware does it |
 //! | `expected`, `effect` | what the controller has to say about it, and when that has passed its threshold |
-//! | `scenario` | from a seed to a run |
+//! | `scenario`, `motion` | from a seed to a run; what the stage is told |
 //! | `run`, `watch` | one run, and who looks on |
 //! | `outcome` | what came of a run |
-//! | `truth` | what the machine really did |
+//! | `truth`, `rest` | what the machine really did |
+//! | `bound` | how far it may go on, by physics |
+//! | `inputs` | whether the controller could have known |
 //! | `verdict` | whether the controller did what it has to |
 //! | `totals` | what the runs of each fault amount to |
-//! | `table`, `rows` | what is printed, and written |
+//! | `table`, `remedy`, `rows` | what is printed, and written |
 
+mod apply;
+mod bound;
+mod draw;
 mod effect;
 mod expected;
 mod injection;
+mod inputs;
+mod motion;
 mod outcome;
+mod remedy;
+mod rest;
 mod rows;
 mod run;
 mod scenario;
@@ -34,16 +48,18 @@ mod truth;
 mod verdict;
 mod watch;
 
+pub use bound::MARGIN;
 pub use effect::Effect;
 pub use expected::{Cause, Expected};
-pub use injection::{Injection, NAMES};
+pub use injection::{Injection, NAMES, Other};
 pub use outcome::{End, Outcome};
+pub use rest::ToRest;
 pub use rows::csv;
 pub use run::run;
 pub use scenario::Scenario;
 pub use table::table;
-pub use totals::{Total, totals};
-pub use verdict::Problem;
+pub use totals::{Spread, Total, totals};
+pub use verdict::{Measure, Problem};
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
@@ -98,5 +114,17 @@ impl Campaign {
 #[must_use]
 pub fn replay(seed: u64) -> [Outcome; 2] {
     let scenario = Scenario::new(seed);
-    [run(scenario.clone(), false), run(scenario, true)]
+    let mut pair = [run(scenario.clone(), false), run(scenario, true)];
+    if pair[0].detected().is_none() {
+        let mut with_other_noise = pair[1].scenario.clone();
+        with_other_noise.stage.seed = !with_other_noise.seed;
+        let other = run(with_other_noise, true);
+        let [broken, sound] = &mut pair;
+        broken.differs =
+            Some((broken.inputs).differ(&sound.inputs, &other.inputs, &broken.scenario));
+    }
+    for outcome in &mut pair {
+        outcome.inputs.clear();
+    }
+    pair
 }

@@ -1,5 +1,7 @@
 //! What came of a run, and what is seen of it while it goes on.
 
+use super::inputs::Inputs;
+use super::rest::ToRest;
 use super::scenario::Scenario;
 use firmware::fault::Fault;
 use firmware::mode::Mode;
@@ -26,14 +28,18 @@ pub struct Outcome {
     pub second: Option<(u64, usize)>,
     /// The tick of the event that tells of it where it is no fault.
     pub told: Option<u64>,
+    /// The tick in which the outputs were cut by the watchdog, or by the program itself.
+    pub cut: Option<u64>,
     /// Largest distance of the platform's centre from the path of its setpoint after the injection, mm.
     pub deviation_mm: f64,
-    /// Way of the centre (mm) and angle of the platform (deg) from the fault to the end.
-    pub travelled: (f64, f64),
-    /// Deepest that a guide was pressed into its end, mm.
-    pub overrun_mm: f64,
-    /// The same where the documented reaction begins in time, on the same machine; only told for a run that has an overrun.
-    pub unavoidable_mm: f64,
+    /// From when the reaction had to begin to the end.
+    pub reaction: ToRest,
+    /// The most that it may be; none where nothing has to react.
+    pub bound: Option<ToRest>,
+    /// What the tick has read from the injection on.
+    pub inputs: Inputs,
+    /// How much more that differs from the sound run than other noise makes it differ; told where nothing was found.
+    pub differs: Option<f64>,
     /// How it ended.
     pub end: End,
     /// What the plant says of its own equations, which end where the platform is torn out of its guides.

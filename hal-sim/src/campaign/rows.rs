@@ -7,7 +7,7 @@ use ::csv::Writer;
 use super::injection::NAMES;
 use super::outcome::Outcome;
 
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 23] = [
     "seed",
     "fault",
     "pivot",
@@ -18,10 +18,17 @@ const COLUMNS: [&str; 16] = [
     "latched_tick",
     "latency_ticks",
     "deviation_mm",
-    "travelled_mm",
-    "turned_deg",
-    "overrun_mm",
-    "unavoidable_mm",
+    "way_mm",
+    "way_bound_mm",
+    "turn_deg",
+    "turn_bound_deg",
+    "off_path_mm",
+    "off_path_bound_mm",
+    "depth_mm",
+    "depth_bound_mm",
+    "blow_j",
+    "blow_bound_j",
+    "inputs_differ",
     "end",
     "problem",
 ];
@@ -39,11 +46,12 @@ pub fn csv(outcomes: &[Outcome]) -> io::Result<Vec<u8>> {
     writer.into_inner().map_err(|error| error.into_error())
 }
 
-fn row(outcome: &Outcome) -> [String; 16] {
+fn row(outcome: &Outcome) -> [String; 23] {
     let scenario = &outcome.scenario;
     let fault = outcome.fault.as_ref();
     let told = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
     let mm = |value: f64| format!("{value:.4}");
+    let (was, most) = (outcome.reaction, outcome.bound.unwrap_or_default());
     let name = match outcome.is_control {
         true => "none",
         false => NAMES[scenario.injection.index()],
@@ -63,10 +71,17 @@ fn row(outcome: &Outcome) -> [String; 16] {
         told(fault.map(|fault| fault.tick)),
         told(outcome.latency_ticks()),
         mm(outcome.deviation_mm),
-        mm(outcome.travelled.0),
-        mm(outcome.travelled.1),
-        mm(outcome.overrun_mm),
-        mm(outcome.unavoidable_mm),
+        mm(was.way_mm),
+        mm(most.way_mm),
+        mm(was.turn_deg),
+        mm(most.turn_deg),
+        mm(was.deviation_mm),
+        mm(most.deviation_mm),
+        mm(was.depth_mm),
+        mm(most.depth_mm),
+        mm(was.blow_j),
+        mm(most.blow_j),
+        (outcome.differs).map_or_else(String::new, |times| format!("{times:.2}")),
         outcome.end.text().to_owned(),
         (outcome.problem()).map_or_else(String::new, |problem| problem.to_string()),
     ]

@@ -1,18 +1,18 @@
 //! One run of the campaign.
 
 use super::injection::Injection;
+use super::inputs::Read;
 use super::outcome::{End, Outcome, Seen};
+use super::rest::AT_REST_RAD_S;
 use super::scenario::Scenario;
 use super::settings::damaged;
 use super::truth::fastest_rad_s;
-use super::watch::{AT_REST_RAD_S, Watch};
+use super::watch::Watch;
 use crate::front::Host;
-use crate::machine::devices::{BridgeState, SettingsFlash};
-use crate::machine::plant::AXES;
+use crate::machine::devices::{SettingsFlash, Watchdog};
 use crate::random::Random;
 use crate::rig::{ControllerMemory, Rig};
-use firmware::drivers::power_stage::signed_current_counts;
-use firmware::gcs::{START_CAUSES, Session};
+use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::queues::Command;
 
@@ -22,8 +22,6 @@ const HEARTBEAT_EVERY: u64 = 200;
 const SERVICE_EVERY: u64 = 5;
 /// Ticks in which the queue is kept full until a line is refused: one on its way makes the others wait.
 const FLOOD_TICKS: u64 = 20;
-/// Periods from a reset to the first tick, in which the bridges sleep.
-const START_TICKS: u64 = 20;
 
 /// Runs a scenario, or the same without its injection.
 #[must_use]
@@ -43,21 +41,21 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
     let mut answers = Vec::new();
     let mut lines = scenario.lines.iter().peekable();
     let mut watch = Watch::new(&scenario, is_control);
+    rig.front.watchdog = Watchdog::new(random.between(0.0, 1.0));
     // What the controller's own count of ticks is behind.
     let mut restarted_at = 0;
+    let mut is_over = false;
 
     for tick in 1_u64.. {
         let age = tick.checked_sub(scenario.at).filter(|_| !is_control);
-        if let Some(age) = age {
+        rig.front.emergency_stop = scenario.presses(tick);
+        let is_let_go = is_over && scenario.injection.lets_go();
+        if let Some(age) = age.filter(|_| !is_let_go) {
             (scenario.injection).apply(&mut rig.front, scenario.axis, age, &mut random);
         }
-        if let (Injection::Watchdog(_), Some(0)) = (scenario.injection, age) {
-            for _ in 0..START_TICKS {
-                (rig.front.stage).advance_period([BridgeState::RESET; AXES]);
-            }
-            rig.reset(START_CAUSES[0]);
-            session = Session::new();
-            restarted_at = tick;
+        let hangs = age.is_some() && restarted_at == 0 && scenario.injection.ends_program();
+        if let (Some(0), Some(line)) = (age, scenario.injection.line(&scenario.parameters)) {
+            session.receive(format!("{line}\n").as_bytes());
         }
         if let (Injection::QueueFull, Some(0..FLOOD_TICKS)) = (scenario.injection, age)
             && watch.outcome.told.is_none()
@@ -65,20 +63,27 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             let refused = flood(&mut rig, &mut flooding);
             watch.outcome.told = refused.then_some(tick);
         }
-        let shown = rig.front.stage.encoders.clone();
-        let (currents, _) = rig.front.stage.analog();
-        let current_counts = currents.map(signed_current_counts);
-        let outputs = rig.tick(&mut seen);
-        watch.look(tick, &rig.front, (&shown, current_counts), &seen);
-        if seen
-            .sample()
-            .is_some_and(|sample| sample.mode == Mode::Fault)
-        {
+        let read = Read::next(&mut rig.front.stage);
+        let mut awake = false;
+        if !hangs {
+            awake = rig.tick(&mut seen).awake;
+        } else if let Some(reset) = rig.front.stand_still() {
+            rig.reset(reset.cause());
+            session = Session::new();
+            restarted_at = tick;
+        }
+        watch.look(tick, &rig.front, &read, &seen);
+        is_over = tick >= scenario.watched_from
+            && (seen.sample()).is_some_and(|sample| sample.mode == Mode::Fault);
+        if is_over {
             scenario.injection.let_go(&mut rig.front.stage.plant);
         }
         if watch.is_over(tick, &rig.front) {
-            watch.outcome.end = end(&rig.front, outputs.awake);
+            watch.outcome.end = end(&rig.front, awake);
             break;
+        }
+        if hangs {
+            continue;
         }
         // A host that is there says so, if only by an empty line.
         let is_silent = scenario.injection == Injection::HostSilent && age.is_some();
@@ -98,6 +103,9 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
             let _ = rig.service(&mut session, &mut answers);
         }
     }
+    if scenario.injection == Injection::ExchangedLines && !is_control {
+        watch.outcome.told = is_refused(&mut rig, &mut seen).then_some(scenario.at);
+    }
     if let Some(event) = scenario.injection.expected().told
         && scenario.injection != Injection::QueueFull
     {
@@ -111,6 +119,19 @@ pub fn run(scenario: Scenario, is_control: bool) -> Outcome {
         watch.outcome.told = told(&events, event).map(|tick| tick + restarted_at);
     }
     watch.finish()
+}
+
+/// Whether the stage has not been referenced, though it was told to.
+fn is_refused(rig: &mut Rig<'_>, seen: &mut Seen) -> bool {
+    let mut session = Session::new();
+    let mut answers = Vec::new();
+    session.receive(b"FRF? X\n");
+    for _ in 0..SERVICE_EVERY {
+        rig.tick(seen);
+        // Writing to a vector does not fail.
+        let _ = rig.service(&mut session, &mut answers);
+    }
+    answers.ends_with(b"0\n")
 }
 
 /// Fills the queue of the tick, and sends a line that needs a place in it; whether that is refused.

@@ -1,24 +1,52 @@
-//! The campaign as a table, a row a fault.
+//! The campaign as two tables, a row a fault: what came of it, and what nobody has noticed.
 
 use std::collections::BTreeMap;
 
 use super::injection::NAMES;
 use super::outcome::Outcome;
-use super::totals::{Total, totals};
+use super::remedy::REMEDIES;
+use super::totals::{Spread, Total, totals};
 
 const HEAD: [&str; 2] = [
-    "                                     latency, ticks  deviation  distance still        turned  end state               overruns",
-    "fault                runs quiet  det. median worst   worst, mm  median/worst, mm  worst, deg  braked/released/moving  count/worst, mm",
+    "                                     latency, ticks  way to rest, mm       turn to rest, deg     blows  energy of a blow, J   end state",
+    "fault                 runs det. wrong median worst   median / 99 % / worst median / 99 % / worst count  median / 99 % / worst braked/released/moving",
+];
+const UNSEEN: [&str; 2] = [
+    "What was not detected                runs: inputs differ by  platform off its path, mm",
+    "                                     less / more than noise  median / 99 % / worst      what a builder adds for it",
 ];
 
-/// The table, with a row for the runs without fault.
+/// The table, with a row for the runs without fault; then that of what was not detected.
 #[must_use]
 pub fn table(outcomes: &[Outcome]) -> String {
+    let totals = totals(outcomes);
     let mut text = format!("{}\n{}\n", HEAD[0], HEAD[1]);
-    for total in &totals(outcomes) {
+    for total in &totals {
         text += &row(total);
     }
-    text + &names(outcomes)
+    text += &names(outcomes);
+    text += &format!("\n{}\n{}\n", UNSEEN[0], UNSEEN[1]);
+    for (index, total) in totals.iter().enumerate().take(NAMES.len()) {
+        if total.hidden + total.harmless > 0 {
+            text += &unseen(total, REMEDIES[index]);
+        }
+    }
+    text
+}
+
+fn unseen(total: &Total, remedy: &str) -> String {
+    let runs = format!("{} / {}", total.hidden, total.harmless);
+    let off = spread(&total.undetected_deviation_mm);
+    format!("{:<36} {runs:<23} {off:<26} {remedy}\n", total.fault)
+}
+
+fn spread(spread: &Spread) -> String {
+    let Spread {
+        median,
+        most,
+        worst,
+    } = spread;
+    format!("{median:.2} / {most:.2} / {worst:.2}")
 }
 
 /// Which faults were told under more than one name, and how often under each.
@@ -45,24 +73,19 @@ fn row(total: &Total) -> String {
     let Total {
         fault,
         runs,
-        no_effect,
         detected,
-        latency_median_ticks: latency,
-        latency_worst_ticks: worst_latency,
-        deviation_worst_mm: deviation,
-        turned_worst_deg: turned,
+        wrong,
+        latency_ticks,
+        blows,
         ..
     } = total;
-    let way = format!(
-        "{:.2}/{:.2}",
-        total.travelled_median_mm, total.travelled_worst_mm
-    );
+    let latency = format!("{:>6.0} {:>5.0}", latency_ticks.median, latency_ticks.worst);
+    let [way, turn, blow] = [&total.way_mm, &total.turn_deg, &total.blow_j].map(spread);
     let ends = format!(
         "{}/{}/{}",
         total.ended_braked, total.ended_released, total.ended_moving
     );
-    let overruns = format!("{}/{:.2}", total.overruns, total.overrun_worst_mm);
     format!(
-        "{fault:<19} {runs:>5} {no_effect:>5} {detected:>5} {latency:>6.0} {worst_latency:>5.0} {deviation:>11.2}  {way:<16}  {turned:>10.2}  {ends:<22}  {overruns}\n"
+        "{fault:<20} {runs:>5} {detected:>4} {wrong:>5} {latency}   {way:<21} {turn:<21} {blows:>5}  {blow:<21} {ends}\n"
     )
 }

@@ -4,40 +4,68 @@ use serde::Serialize;
 
 use super::injection::NAMES;
 use super::outcome::{End, Outcome};
+use super::rest::ToRest;
 
-/// The runs with one fault, or those without. Units are in the names; medians and worsts of no run are 0.
+/// The runs with one fault, or those without. Units are in the names; those of no run are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Total {
     /// Which fault.
     pub fault: &'static str,
     /// All runs with it.
     pub runs: usize,
-    /// Those of them that were not detected and had no effect.
-    pub no_effect: usize,
     /// Those that were detected.
     pub detected: usize,
+    /// Those of the others in which the controller's inputs differ from the sound run's by less than noise.
+    pub hidden: usize,
+    /// Those in which they differ by more, and nothing has passed a threshold.
+    pub harmless: usize,
+    /// Those that are not as they should be.
+    pub wrong: usize,
     /// From the effect to its detection.
-    pub latency_median_ticks: f64,
-    /// The same, at worst.
-    pub latency_worst_ticks: f64,
-    /// Of the platform from its path, at worst.
-    pub deviation_worst_mm: f64,
-    /// Way of the centre from the fault to rest, where one was detected.
-    pub travelled_median_mm: f64,
-    /// The same, at worst.
-    pub travelled_worst_mm: f64,
-    /// Turn of the platform from the fault to rest, at worst.
-    pub turned_worst_deg: f64,
+    pub latency_ticks: Spread,
+    /// Way of the centre from when the reaction had to begin to rest.
+    pub way_mm: Spread,
+    /// Turn of the platform.
+    pub turn_deg: Spread,
+    /// Energy of the hardest blow against a guide's end or a carriage, of runs that have one.
+    pub blow_j: Spread,
+    /// Blows.
+    pub blows: usize,
+    /// Distance of the platform from its path, of runs that were detected and of the others.
+    pub deviation_mm: Spread,
+    /// See above.
+    pub undetected_deviation_mm: Spread,
     /// Runs that ended at rest, bridges braking.
     pub ended_braked: usize,
     /// At rest, bridges released.
     pub ended_released: usize,
     /// Still turning.
     pub ended_moving: usize,
-    /// Runs in which a guide met its end.
-    pub overruns: usize,
-    /// How far it was pressed in, at worst.
-    pub overrun_worst_mm: f64,
+}
+
+/// Median, 99th of a hundred, and worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Median.
+    pub median: f64,
+    /// What 99 of 100 stay under.
+    pub most: f64,
+    /// Worst.
+    pub worst: f64,
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.collect();
+        sorted.sort_by(f64::total_cmp);
+        let at = |place: usize| sorted.get(place).copied().unwrap_or(0.0);
+        let last = sorted.len().saturating_sub(1);
+        Self {
+            median: at(sorted.len() / 2),
+            most: at(last.min(sorted.len() * 99 / 100)),
+            worst: at(last),
+        }
+    }
 }
 
 /// One of each fault, in their order, and at last the runs without.
@@ -58,46 +86,40 @@ pub fn totals(outcomes: &[Outcome]) -> Vec<Total> {
 fn total(fault: &'static str, outcomes: &[&Outcome]) -> Total {
     let all = || outcomes.iter();
     let detected = || all().filter(|outcome| outcome.detected().is_some());
-    let [latency_median_ticks, latency_worst_ticks] = median_and_worst(
-        all()
-            .filter_map(|outcome| outcome.latency_ticks())
-            .map(|ticks| ticks as f64),
-    );
-    let [_, deviation_worst_mm] = median_and_worst(all().map(|outcome| outcome.deviation_mm));
-    let [travelled_median_mm, travelled_worst_mm] =
-        median_and_worst(detected().map(|outcome| outcome.travelled.0));
-    let [_, turned_worst_deg] = median_and_worst(detected().map(|outcome| outcome.travelled.1));
+    let undetected = || all().filter(|outcome| outcome.detected().is_none());
     let ended = |end: End| all().filter(|outcome| outcome.end == end).count();
-    let overruns = || {
-        all()
-            .map(|outcome| outcome.overrun_mm)
-            .filter(|&mm| mm > 0.0)
+    let reacted = |value: fn(&ToRest) -> f64| {
+        let reactions = all().filter(|outcome| outcome.bound.is_some());
+        Spread::of(reactions.map(|outcome| value(&outcome.reaction)))
     };
-    let [_, overrun_worst_mm] = median_and_worst(overruns());
+    let blows = || {
+        all()
+            .map(|outcome| outcome.reaction.blow_j)
+            .filter(|&joules| joules > 0.0)
+    };
+    let is_hidden = |outcome: &&&Outcome| outcome.differs.is_some_and(|times| times < 1.0);
     Total {
         fault,
         runs: outcomes.len(),
-        no_effect: all()
-            .filter(|outcome| outcome.detected().is_none() && outcome.effect.is_none())
-            .count(),
         detected: detected().count(),
-        latency_median_ticks,
-        latency_worst_ticks,
-        deviation_worst_mm,
-        travelled_median_mm,
-        travelled_worst_mm,
-        turned_worst_deg,
+        hidden: undetected().filter(is_hidden).count(),
+        harmless: (undetected().filter(|outcome| outcome.effect.is_none()))
+            .filter(|outcome| !is_hidden(outcome))
+            .count(),
+        wrong: all().filter(|outcome| outcome.problem().is_some()).count(),
+        latency_ticks: Spread::of(
+            all()
+                .filter_map(|outcome| outcome.latency_ticks())
+                .map(|ticks| ticks as f64),
+        ),
+        way_mm: reacted(|it| it.way_mm),
+        turn_deg: reacted(|it| it.turn_deg),
+        blow_j: Spread::of(blows()),
+        blows: blows().count(),
+        deviation_mm: Spread::of(detected().map(|outcome| outcome.deviation_mm)),
+        undetected_deviation_mm: Spread::of(undetected().map(|outcome| outcome.deviation_mm)),
         ended_braked: ended(End::Braked),
         ended_released: ended(End::Released),
         ended_moving: ended(End::Moving),
-        overruns: overruns().count(),
-        overrun_worst_mm,
     }
-}
-
-fn median_and_worst(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    let at = |place: Option<&f64>| place.copied().unwrap_or(0.0);
-    [at(sorted.get(sorted.len() / 2)), at(sorted.last())]
 }

@@ -4,7 +4,7 @@
 use core::f64::consts::TAU;
 
 use firmware::parameters::{EncoderMounting, Parameters};
-use kinematics::{Pose, inverse};
+use kinematics::{Pose, direct, inverse};
 
 use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
@@ -21,6 +21,21 @@ pub fn overrun_mm(plant: &Plant) -> f64 {
         .map(|rho_m| (inner_m - rho_m).max(rho_m - outer_m))
         .fold(0.0, f64::max)
         * 1e3
+}
+
+/// Where the platform's centre is by the true angles of its rings, mm, on a machine that is built as drawn: what the geometry of this
+/// one is off the drawing is nothing that a fault does.
+#[must_use]
+pub fn place_mm(plant: &Plant) -> [f64; 2] {
+    let radius_mm = plant.parameters().track_radius_m * 1e3;
+    match direct::<f64>(&plant.pivots_rad()) {
+        Ok(pose) => [pose.x * radius_mm, pose.y * radius_mm],
+        // Torn out of its guides: its true place is far enough off.
+        Err(_) => {
+            let [x_m, y_m, _] = plant.pose();
+            [x_m * 1e3, y_m * 1e3]
+        }
+    }
 }
 
 /// Largest rate of a pivot, rad/s.

@@ -4,13 +4,18 @@ use core::fmt;
 
 use firmware::fault::FaultKind;
 
-use super::outcome::Outcome;
+use super::bound::MARGIN;
+use super::injection::Injection;
+use super::outcome::{End, Outcome};
+use super::rest::ToRest;
 
 /// What is wrong with a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Problem {
     /// A fault where there was nothing wrong.
     FalseAlarm,
+    /// The servo oscillates without a fault, in the machine too: the settings that it was told do not fit.
+    Unstable,
     /// The effect has passed its threshold and nothing was latched.
     Undetected,
     /// Latched so many ticks after the effect, more than it may be.
@@ -23,9 +28,71 @@ pub enum Problem {
     WrongPivot,
     /// A second encoder was lost in the controlled stop, and that was not told, or not in time.
     SecondMissed,
-    /// A guide was pressed into its end, mm, which the documented reaction in time would have prevented.
-    LimitBroken(f64),
+    /// The outputs were cut so many ticks after the watchdog's time.
+    CutLate(u64),
+    /// It went on further, turned more, left its path by more, was pressed into an end more deeply, hit it harder than it may: what,
+    /// how much and the bound (with its margin).
+    Beyond(Measure, f64, f64),
+    /// It still turned where it could be at rest.
+    StillMoving,
 }
+
+/// What is held to a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Way, mm.
+    Way,
+    /// Turn, deg.
+    Turn,
+    /// Distance from the path, mm.
+    Deviation,
+    /// Depth in a guide's end, mm.
+    Depth,
+    /// Energy of a blow, J.
+    Blow,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Way,
+        Self::Turn,
+        Self::Deviation,
+        Self::Depth,
+        Self::Blow,
+    ];
+
+    const fn of(self, to_rest: &ToRest) -> f64 {
+        match self {
+            Self::Way => to_rest.way_mm,
+            Self::Turn => to_rest.turn_deg,
+            Self::Deviation => to_rest.deviation_mm,
+            Self::Depth => to_rest.depth_mm,
+            Self::Blow => to_rest.blow_j,
+        }
+    }
+
+    /// What a look between two samples may miss, and springs that let go: added to the bound.
+    const fn least(self) -> f64 {
+        match self {
+            Self::Way | Self::Deviation | Self::Turn => 0.05,
+            Self::Depth => 0.02,
+            Self::Blow => 1e-3,
+        }
+    }
+
+    const fn text(self) -> [&'static str; 2] {
+        match self {
+            Self::Way => ["mm until rest", "mm"],
+            Self::Turn => ["deg until rest", "deg"],
+            Self::Deviation => ["mm off the path", "mm"],
+            Self::Depth => ["mm into a guide's end", "mm"],
+            Self::Blow => ["J against an end", "J"],
+        }
+    }
+}
+/// Ticks in which the watchdog has cut the outputs: 0.49 ms.
+const CUT_TICKS: u64 = 10;
 
 impl Outcome {
     /// Ticks from the effect to the fault; a fault that came first has none.
@@ -45,10 +112,31 @@ impl Outcome {
     /// What is wrong with it, if anything.
     #[must_use]
     pub fn problem(&self) -> Option<Problem> {
-        self.wrong_report().or_else(|| {
-            let broken = self.overrun_mm > 0.0 && self.unavoidable_mm == 0.0;
-            broken.then_some(Problem::LimitBroken(self.overrun_mm))
-        })
+        (self.wrong_report())
+            .or_else(|| self.cut_late())
+            .or_else(|| self.beyond_bound())
+    }
+
+    fn cut_late(&self) -> Option<Problem> {
+        let injection = self.scenario.injection;
+        if self.is_control || !matches!(injection, Injection::LoopStands | Injection::Crash) {
+            return None;
+        }
+        let latest = self.scenario.at + CUT_TICKS;
+        let cut = self.cut.unwrap_or(u64::MAX);
+        (cut > latest).then(|| Problem::CutLate(cut - latest))
+    }
+
+    /// What came of the reaction, held to the most that it may be.
+    fn beyond_bound(&self) -> Option<Problem> {
+        let bound = self.bound.as_ref()?;
+        let broken = Measure::ALL.into_iter().find_map(|measure| {
+            let most = measure.of(bound) * MARGIN + measure.least();
+            let was = measure.of(&self.reaction);
+            (was > most).then_some(Problem::Beyond(measure, was, most))
+        });
+        let is_moving = self.end == End::Moving && bound.rests;
+        broken.or_else(|| is_moving.then_some(Problem::StillMoving))
     }
 
     fn wrong_report(&self) -> Option<Problem> {
@@ -67,6 +155,9 @@ impl Outcome {
         let early = fault.tick < self.scenario.at;
         let mut kinds = expected.causes.iter().filter_map(|cause| cause.kind);
         let is_one = kinds.clone().any(|kind| kind == fault.kind);
+        if self.is_control && fault.kind == FaultKind::Oscillation && self.is_founded {
+            return Some(Problem::Unstable);
+        }
         if self.is_control || early || kinds.next().is_none() {
             return Some(Problem::FalseAlarm);
         }
@@ -97,13 +188,19 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::FalseAlarm => f.write_str("false alarm"),
+            Self::Unstable => f.write_str("the servo oscillates without a fault"),
             Self::Undetected => f.write_str("not detected"),
             Self::Late(ticks) => write!(f, "detected {ticks} ticks late"),
             Self::WrongKind => f.write_str("reported as another fault"),
             Self::Unfounded => f.write_str("reported before anything had passed its threshold"),
             Self::SecondMissed => f.write_str("the second lost encoder is not told"),
             Self::WrongPivot => f.write_str("reported for another pivot"),
-            Self::LimitBroken(mm) => write!(f, "{mm:.3} mm into a guide's end, avoidably"),
+            Self::CutLate(ticks) => write!(f, "outputs cut {ticks} ticks late"),
+            Self::Beyond(measure, was, most) => {
+                let [what, unit] = measure.text();
+                write!(f, "{was:.3} {what}, more than {most:.3} {unit}")
+            }
+            Self::StillMoving => f.write_str("still moving where it could rest"),
         }
     }
 }

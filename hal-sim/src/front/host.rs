@@ -2,7 +2,8 @@
 
 use super::{ControlLoop, Front};
 use crate::machine::devices::{
-    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, SleepPin, Stage, StageParameters,
+    Bridge, BridgeState, DirectionPin, FaultPin, PwmPin, Reset, SleepPin, Stage, StageParameters,
+    Watchdog,
 };
 use crate::machine::plant::AXES;
 use firmware::control::{Inputs, Outputs};
@@ -58,6 +59,8 @@ pub struct Host {
     pub wiring: [Wiring; AXES],
     /// The tick before was late, or there should have been one more: what a host has no clock to find out.
     pub late: bool,
+    /// What starts the controller again.
+    pub watchdog: Watchdog,
     /// The tick before did not come.
     missed: bool,
     drivers: [Driver; AXES],
@@ -87,6 +90,7 @@ impl Host {
             emergency_stop: false,
             wiring: [Wiring::Sound; AXES],
             late: false,
+            watchdog: Watchdog::new(0.5),
             missed: false,
             drivers: drivers.try_into().ok().expect(three),
             control: ControlLoop::new(parameters),
@@ -107,7 +111,20 @@ impl Host {
         }
         self.stage.set_brake_resistor(outputs.brake_resistor);
         self.stage.advance_period(self.pins());
+        self.watchdog.feed();
         outputs
+    }
+
+    /// A period in which the program hangs, or starts again. The reset after which the next tick is due is told: the caller starts
+    /// the controller again then.
+    pub fn stand_still(&mut self) -> Option<Reset> {
+        let pins = if self.watchdog.is_cut() {
+            [BridgeState::RESET; AXES]
+        } else {
+            self.pins()
+        };
+        self.stage.advance_period(pins);
+        self.watchdog.step(self.stage.period_s())
     }
 
     /// A period in which the controller does not run: the bridges keep what the last tick gave them, and the next tick is

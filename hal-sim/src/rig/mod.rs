@@ -25,6 +25,6 @@ pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use conditions::run_conditions;
 pub use told::{
-    IDENTIFIED_LEARNING, Told, with_drives_told, with_inertia_scheduled, with_machine_told,
-    with_payload_told, with_ripple_told,
+    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_fitted, with_inertia_scheduled,
+    with_machine_told, with_payload_told, with_ripple_told,
 };

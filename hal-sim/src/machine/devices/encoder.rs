@@ -137,6 +137,12 @@ impl Encoder {
         self.offset_rad = offset_rad;
     }
 
+    /// See [`Self::set_offset`].
+    #[must_use]
+    pub const fn offset_rad(&self) -> f64 {
+        self.offset_rad
+    }
+
     /// Samples the ring at its angle (rad, multi-turn) and rate (rad/s).
     pub fn latch(&mut self, angle_rad: f64, rate_rad_s: f64) {
         if self.fault != Some(EncoderFault::Frozen) {

@@ -7,6 +7,7 @@
 //! | `bridge` | an H-bridge: pins in, voltage out |
 //! | `bus` | what lies between supply and bridges |
 //! | `analog` | what the ADC reads |
+//! | `watchdog` | what starts the controller again |
 //! | `wiring` | which plug is in which socket |
 //! | `flash` | where settings are kept |
 
@@ -17,6 +18,7 @@ mod bus;
 mod encoder;
 mod flash;
 mod stage;
+mod watchdog;
 mod wiring;
 
 pub use analog::AnalogParameters;
@@ -29,4 +31,5 @@ pub use bus::{Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
 pub use stage::{Stage, StageParameters};
+pub use watchdog::{EARLY_WARNING_S, Reset, Watchdog};
 pub use wiring::WiringParameters;

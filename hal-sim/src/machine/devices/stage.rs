@@ -211,6 +211,16 @@ impl Stage {
         }
     }
 
+    /// The analog inputs, to be changed from now on.
+    pub const fn analog_inputs(&mut self) -> &mut AnalogParameters {
+        &mut self.analog
+    }
+
+    /// Exchanges the plugs of two encoders.
+    pub fn exchange_encoders(&mut self, one: usize, other: usize) {
+        self.wiring.port_of_ring.swap(one, other);
+    }
+
     fn set_bus_v(&mut self, volts: f64) {
         self.bridge.supply_v = volts;
         self.plant.set_supply_v(volts);

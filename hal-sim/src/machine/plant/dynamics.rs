@@ -20,6 +20,7 @@ use kinematics::Scalar;
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::Body;
+use super::bumpers::Bumpers;
 use super::drive::{Drive, DriveModel};
 use super::friction::Friction;
 use super::geometry::{Geometry, GuideState, OffGuide};
@@ -28,7 +29,7 @@ use super::parameters::PlantParameters;
 use super::pivot_geometry::AXES;
 use super::state::State;
 
-/// Forces from outside, for tests and disturbances.
+/// Forces from outside, and what has worn or come loose: for tests and disturbances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct External {
     /// Force on the platform's centre along x and y, base frame, N.
@@ -39,11 +40,21 @@ pub struct External {
     pub ring_torque_n_m: [f64; AXES],
     /// Angle at which a ring is jammed, rad: by something about as stiff as the guides' ends.
     pub jammed_at_rad: [Option<f64>; AXES],
+    /// Place on its guide at which a carriage is jammed, m from the platform's centre.
+    pub guide_jammed_at_m: [Option<f64>; AXES],
+    /// Share of each motor's torque that is gone, and of its back-EMF: magnets that have lost their strength.
+    pub lost_torque: [f64; AXES],
+    /// Friction that each ring has more than it should, N m.
+    pub more_friction_n_m: [f64; AXES],
+    /// How far each coupling has come loose, to either side, rad at the ring.
+    pub loose_rad: [f64; AXES],
 }
 
 /// Stiffness of what jams a ring, N m/rad, and its damping, about half of what lets the ring not swing.
 const JAM_N_M_RAD: f64 = 1e5;
 const JAM_N_M_S_RAD: f64 = 50.0;
+/// Rate at which half of what friction has more acts, rad/s: slow enough for the integrator.
+const MORE_FRICTION_RAD_S: f64 = 0.02;
 /// A pivot on a rigid guide that is further off its line after a step, m, was torn off.
 const TORN_OFF_M: f64 = 1e-6;
 
@@ -61,6 +72,7 @@ pub(super) struct Dynamics {
     pub motor_friction: Friction,
     cable_stiffness_n_m: f64,
     pub guides: Guides,
+    pub bumpers: Bumpers,
     pub geometry: Geometry,
 }
 
@@ -91,6 +103,7 @@ impl Dynamics {
                 0.0
             },
             guides: Guides::new(parameters),
+            bumpers: Bumpers::new(parameters),
             geometry: Geometry::new(parameters),
         }
     }
@@ -135,8 +148,15 @@ impl Dynamics {
         let moment_kg_m = self.first_moment(state.pose.z);
         let mut forces = self.outer_forces(state, moment_kg_m, external);
         for i in 0..AXES {
-            self.add_drive(i, state, drives[i], step_s, &mut forces, &mut rate);
+            let drive = (drives[i], external);
+            self.add_drive(i, state, drive, step_s, &mut forces, &mut rate);
             self.add_guide(i, &guides[i], state, step_s, &mut forces, &mut rate);
+            if let Some(at_m) = external.guide_jammed_at_m[i] {
+                let jam_n =
+                    (self.guides).jam_n(&guides[i], &state.twist, state.ring_rad_s[i], at_m);
+                forces.platform += jam_n * guides[i].rho_by_pose();
+                forces.ring_n_m[i] += jam_n * guides[i].rho_by_ring_m();
+            }
         }
         let body = self.body.mass_matrix(moment_kg_m);
         if self.guides.are_rigid() {
@@ -155,7 +175,8 @@ impl Dynamics {
     fn outer_forces(&self, state: &State, moment_kg_m: [f64; 2], external: &External) -> Forces {
         let body = (self.body).forces(moment_kg_m, state.twist.z, self.gravity_m_s2);
         let [x_n, y_n] = external.force_n;
-        let mut ring_n_m = Vector3::from(external.ring_torque_n_m);
+        let mut ring_n_m = Vector3::from(external.ring_torque_n_m)
+            + (self.bumpers).torques_n_m(&state.ring_rad, &state.ring_rad_s);
         for (i, jammed) in external.jammed_at_rad.iter().enumerate() {
             if let Some(at_rad) = jammed {
                 ring_n_m[i] -= JAM_N_M_RAD * (state.ring_rad[i] - at_rad)
@@ -174,26 +195,31 @@ impl Dynamics {
         &self,
         i: usize,
         state: &State,
-        drive: Drive,
+        (drive, external): (Drive, &External),
         step_s: f64,
         forces: &mut Forces,
         rate: &mut State,
     ) {
         let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
         let error = self.drive.cyclic_error(i, motor_rad);
+        let windup_rad = motor_rad - error.angle_rad - state.ring_rad[i];
+        let loose_rad = external.loose_rad[i];
         let transmitted_n_m = self.drive.transmitted_torque(
-            motor_rad - error.angle_rad - state.ring_rad[i],
+            windup_rad - windup_rad.clamp(-loose_rad, loose_rad),
             motor_rad_s - error.slope * motor_rad_s - state.ring_rad_s[i],
         );
         let friction =
             (self.ring_friction).evaluate(state.ring_rad_s[i], state.bristle_rad[i], step_s);
-        forces.ring_n_m[i] += transmitted_n_m - friction.force;
+        let more_n_m = external.more_friction_n_m[i] * state.ring_rad_s[i]
+            / (state.ring_rad_s[i].abs() + MORE_FRICTION_RAD_S);
+        forces.ring_n_m[i] += transmitted_n_m - friction.force - more_n_m;
         rate.bristle_rad[i] = friction.bristle_rate;
         let motor_friction =
             (self.motor_friction).evaluate(motor_rad_s, state.motor_bristle_rad[i], step_s);
         rate.motor_bristle_rad[i] = motor_friction.bristle_rate;
         let current_a = state.current_a[i];
-        let constant_n_m_a = self.drive.torque_constant(motor_rad);
+        let constant_n_m_a =
+            self.drive.torque_constant(motor_rad) * (1.0 - external.lost_torque[i]);
         let motor_n_m = (self.drive).motor_torque(constant_n_m_a, current_a, motor_rad);
         // What a gear that is not even passes on, it takes by the same ratio.
         let taken_n_m = transmitted_n_m - error.slope * transmitted_n_m;

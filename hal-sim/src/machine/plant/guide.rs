@@ -77,6 +77,19 @@ impl Guides {
         }
     }
 
+    /// What holds a carriage that is jammed at a place of its guide, N along the guide: as stiff as the guide's end.
+    #[must_use]
+    pub fn jam_n(
+        &self,
+        guide: &GuideState,
+        twist: &Vector3<f64>,
+        ring_rad_s: f64,
+        at_m: f64,
+    ) -> f64 {
+        let rho_m_s = guide.rho_by_pose().dot(twist) + guide.rho_by_ring_m() * ring_rad_s;
+        self.stops.spring_n(at_m - guide.rho_m, rho_m_s)
+    }
+
     /// Energy stored in a guide: across, in its bristles and in its ends, J.
     #[must_use]
     pub fn energy_j(&self, guide: &GuideState, bristle_m: f64) -> f64 {

@@ -14,12 +14,15 @@
 //! | `pivot_geometry`, `built` | how a pivot, its ring and its guide are built; the reference stage's |
 //! | `geometry` | where a pivot lies on its guide, with every error of that |
 //! | `guide` | a guide's forces: across it, along it, at its ends |
-//! | `friction`, `stops` | friction by bristles, of rings and of guides; ends of the guides |
+//! | `friction`, `stops`, `bumpers` | friction by bristles, of rings and of guides; ends of the guides; the carriages' bumpers |
+//! | `contacts` | collisions, with their energy |
 //! | `surroundings` | the floor's shaking, the windings' warmth |
 //! | `dynamics` | the equations of motion |
 
 mod body;
 mod built;
+mod bumpers;
+mod contacts;
 mod drive;
 mod dynamics;
 mod friction;
@@ -34,6 +37,8 @@ mod surroundings;
 
 pub use body::Body;
 pub use built::ENCODER_HARMONICS_RAD;
+pub use bumpers::CARRIAGE_RAD;
+pub use contacts::{CONTACTS, Contact};
 pub use drive::{CyclicError, Drive, DriveModel};
 pub use dynamics::External;
 pub use friction::{Friction, FrictionState};
@@ -128,6 +133,12 @@ impl Plant {
     pub fn set_supply_v(&mut self, supply_v: f64) {
         self.parameters.supply_v = supply_v;
         self.dynamics.drive.set_supply_v(supply_v);
+    }
+
+    /// Changes the load on the platform, which keeps its velocity.
+    pub fn set_payload(&mut self, payload: Payload) {
+        self.parameters.payload = payload;
+        self.dynamics.body = Body::new(&self.parameters);
     }
 
     /// Integrates over `step_s` (3 to 16 us is what the parameters are made for) with constant drives: one classic
@@ -253,12 +264,13 @@ impl Plant {
             + 0.5 * self.parameters.motor_inertia_kg_m2 * motor_rad_s.norm_squared()
     }
 
-    /// Energy in the transmissions' springs, the guides, the bristles and the end stops, J.
+    /// Energy in the transmissions' springs, the guides, the bristles, the end stops and the bumpers, J.
     #[must_use]
     pub fn elastic_energy_j(&self) -> f64 {
         let state = &self.state;
         let guides = self.guides();
-        (0..AXES)
+        let bumpers_j = self.dynamics.bumpers.energy_j(&state.ring_rad);
+        let drives_j: f64 = (0..AXES)
             .map(|i| {
                 let error = self.dynamics.drive.cyclic_error(i, state.motor_rad[i]);
                 let windup_rad = state.motor_rad[i] - error.angle_rad - state.ring_rad[i];
@@ -267,7 +279,8 @@ impl Plant {
                     + (self.dynamics.motor_friction).energy_j(state.motor_bristle_rad[i])
                     + (self.dynamics.guides).energy_j(&guides[i], state.guide_bristle_m[i])
             })
-            .sum()
+            .sum();
+        drives_j + bumpers_j
     }
 
     fn guides(&self) -> [GuideState; AXES] {

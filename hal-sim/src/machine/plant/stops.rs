@@ -1,7 +1,4 @@
 //! The ends of the guides: stiff one-sided springs with dampers on rho.
-//!
-//! The carriages' own bumpers are not modelled: neighbouring carriages (20 deg wide) first touch with the centre
-//! 88.5 mm out, where at most orientations a guide has reached its end already.
 
 use super::parameters::PlantParameters;
 
@@ -32,12 +29,18 @@ impl EndStops {
             return 0.0;
         }
         // The sign of the compression is that of the push; a stop never pulls, whatever the damper wants.
-        let push_n = self.stiffness_n_m * compression_m - self.damping_n_s_m * rho_m_s;
+        let push_n = self.spring_n(compression_m, rho_m_s);
         if push_n * compression_m > 0.0 {
             push_n
         } else {
             0.0
         }
+    }
+
+    /// Force of spring and damper, N, that may pull too.
+    #[must_use]
+    pub const fn spring_n(&self, compression_m: f64, rho_m_s: f64) -> f64 {
+        self.stiffness_n_m * compression_m - self.damping_n_s_m * rho_m_s
     }
 
     /// Energy stored in the stop of one guide, J.

@@ -165,14 +165,18 @@ pub(super) struct Faults {
     /// Run the run of this seed again, alone, and tell about it.
     #[arg(long, value_name = "SEED", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX), conflicts_with_all = ["runs", "seed", "jobs"])]
     pub(super) only: Option<u64>,
+    /// Seeds of runs whose problems are known: told, but no failure. One that has none any more is one.
+    #[arg(long, value_name = "SEEDS", value_delimiter = ',', value_parser = whole(0..=u64::MAX))]
+    pub(super) known: Vec<u64>,
     /// Write all runs into this file, as CSV.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: runs, seed (both null with --only) and wall_s; faults, for each of them and at last for the runs without: fault, runs,
-    /// no_effect, detected, latency_median_ticks, latency_worst_ticks, deviation_worst_mm, travelled_median_mm,
-    /// travelled_worst_mm, turned_worst_deg, ended_braked, ended_released, ended_moving, overruns, overrun_worst_mm;
+    /// detected, hidden and harmless (not detected: inputs differ from the sound run's by less than noise, or by more), wrong,
+    /// latency_ticks, way_mm, turn_deg, blow_j, deviation_mm and undetected_deviation_mm (median, most, worst each: most is what 99 of 100
+    /// stay under), blows, ended_braked, ended_released, ended_moving;
     /// missed, the runs with a fault that are not as they should be, and alarms, the runs without; told, those runs one by
     /// one, with --only both: seed, is_control, fault, tick, latched, latched_tick, latency_ticks, problem, text.
     #[arg(long)]

@@ -1,5 +1,6 @@
 //! `tripivot faults`: the campaign of faults.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::num::NonZero;
 use std::path::Path;
@@ -76,10 +77,10 @@ pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
         let table = csv(&runs.outcomes).map_err(CliError::output)?;
         file.finish(&table).map_err(unwritable)?;
     }
-    match runs.wrong(false) + runs.wrong(true) {
+    match runs.news(&arguments.known) {
         0 => Ok(ExitCode::SUCCESS),
         count => Err(CliError::Fault(format!(
-            "{count} runs are not as they should be; --only SEED runs one again"
+            "{count} seeds are not as they should be, or not as they were known; --only SEED runs one again"
         ))),
     }
 }
@@ -121,6 +122,18 @@ impl Runs {
     fn wrong(&self, is_control: bool) -> usize {
         (self.outcomes.iter())
             .filter(|outcome| outcome.is_control == is_control && outcome.problem().is_some())
+            .count()
+    }
+
+    /// How many seeds have a problem that is not known, or have no more the one that is.
+    fn news(&self, known: &[u64]) -> usize {
+        let seed = |outcome: &Outcome| outcome.scenario.seed;
+        let wrong: BTreeSet<u64> = (self.outcomes.iter())
+            .filter(|outcome| outcome.problem().is_some())
+            .map(seed)
+            .collect();
+        wrong
+            .symmetric_difference(&known.iter().copied().collect())
             .count()
     }
 
