@@ -8,6 +8,7 @@ pub mod frequency_response;
 pub mod friction;
 mod least_squares;
 pub mod multisine;
+pub mod platform;
 pub mod record;
 mod spectrum;
 pub mod tuning;
