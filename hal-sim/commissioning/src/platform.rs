@@ -70,22 +70,30 @@ pub struct Platform {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PlatformError {
     /// Signals of different lengths, or fewer than a window.
-    #[error("the tour's angles and torques are not as long as each other, or shorter than a few windows of smoothing")]
+    #[error(
+        "the tour's angles and torques are not as long as each other, or shorter than a few windows of smoothing"
+    )]
     Lengths,
     /// No pose.
-    #[error("the angles at sample {sample} are none of the mechanism: set the encoders' zeros first")]
+    #[error(
+        "the angles at sample {sample} are none of the mechanism: set the encoders' zeros first"
+    )]
     NoPose {
         /// Which.
         sample: usize,
     },
     /// A tour that does not show it.
-    #[error("condition {condition:.0}: the tour does not tell the unknowns apart; go further out and shake along x, y and theta by turns")]
+    #[error(
+        "condition {condition:.0}: the tour does not tell the unknowns apart; go further out and shake along x, y and theta by turns"
+    )]
     Condition {
         /// As computed.
         condition: f64,
     },
     /// Torques of something else.
-    #[error("{percent} % of the torques are left over: wrong zeros, wrong motor constants, or something rubs")]
+    #[error(
+        "{percent} % of the torques are left over: wrong zeros, wrong motor constants, or something rubs"
+    )]
     Residual {
         /// Of the torques.
         percent: u32,
@@ -114,35 +122,54 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
     let contacts = contacts(tour, &raw, how).map(|contact| smoothed(&contact, window));
     let part = |k: usize| smoothed(&raw.iter().map(|pose| pose[k]).collect::<Vec<_>>(), window);
     let (x, y, theta) = (part(0), part(1), part(2));
-    let poses: Vec<_> = (0..x.len()).map(|k| Vector3::new(x[k], y[k], theta[k])).collect();
+    let poses: Vec<_> = (0..x.len())
+        .map(|k| Vector3::new(x[k], y[k], theta[k]))
+        .collect();
     let mut rows = Vec::new();
     let mut right = Vec::new();
     // Neighbours tell the same.
     for at in (1..poses.len() - 1).step_by((window / 4).max(1)) {
         let rubs = [0, 1, 2, 3, 4, 5].map(|k| contacts[k][at]);
-        let (matrix, known) = equations(&poses[at - 1..=at + 1], &rubs, tour.step_s, how.drive_inertia).ok_or(PlatformError::NoPose { sample: at })?;
+        let (matrix, known) = equations(
+            &poses[at - 1..=at + 1],
+            &rubs,
+            tour.step_s,
+            how.drive_inertia,
+        )
+        .ok_or(PlatformError::NoPose { sample: at })?;
         for i in 0..3 {
             rows.push(matrix[i]);
             right.push(torques[i][at] - known[i]);
         }
     }
     let right = DVector::from_vec(right);
-    let unknowns: Vec<usize> = (0..UNKNOWNS).filter(|&k| k != 4 || how.drive_inertia.is_none()).collect();
+    let unknowns: Vec<usize> = (0..UNKNOWNS)
+        .filter(|&k| k != 4 || how.drive_inertia.is_none())
+        .collect();
     let matrix = DMatrix::from_fn(rows.len(), unknowns.len(), |row, k| rows[row][unknowns[k]]);
-    let sizes = DVector::from_iterator(unknowns.len(), matrix.column_iter().map(|column| column.norm().max(1e-12)));
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| matrix[(row, k)] / sizes[k]);
+    let sizes = DVector::from_iterator(
+        unknowns.len(),
+        matrix.column_iter().map(|column| column.norm().max(1e-12)),
+    );
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| {
+        matrix[(row, k)] / sizes[k]
+    });
     let normal = scaled.tr_mul(&scaled);
     let eigen = normal.symmetric_eigenvalues();
     let condition = (eigen.max() / eigen.min().max(1e-300)).sqrt();
     if !(condition <= MOST_CONDITION) {
         return Err(PlatformError::Condition { condition });
     }
-    let inverse = normal.try_inverse().ok_or(PlatformError::Condition { condition })?;
+    let inverse = normal
+        .try_inverse()
+        .ok_or(PlatformError::Condition { condition })?;
     let solved = &inverse * scaled.tr_mul(&right);
     let left = (&scaled * &solved - &right).norm_squared();
     let residual = (left / right.norm_squared()).sqrt();
     if !(residual <= MOST_RESIDUAL) {
-        return Err(PlatformError::Residual { percent: (100.0 * residual) as u32 });
+        return Err(PlatformError::Residual {
+            percent: (100.0 * residual) as u32,
+        });
     }
     // Neighbouring rows err alike: a window's worth of them is one.
     let variance = left / right.len() as f64 * 4.0;
@@ -157,9 +184,18 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
         inertia_kg_m2: numbers[1],
         moment_kg_m: [numbers[2] / radius, numbers[3] / radius],
         drive_inertia: how.drive_inertia.unwrap_or(numbers[4]),
-        friction: [numbers[5..8].iter().sum::<f64>() / 3.0, numbers[8..11].iter().sum::<f64>() / 3.0],
+        friction: [
+            numbers[5..8].iter().sum::<f64>() / 3.0,
+            numbers[8..11].iter().sum::<f64>() / 3.0,
+        ],
         guide_n: numbers[11] / radius,
-        deviations: [deviations[0] / (radius * radius), deviations[1], deviations[2] / radius, deviations[3] / radius, deviations[4]],
+        deviations: [
+            deviations[0] / (radius * radius),
+            deviations[1],
+            deviations[2] / radius,
+            deviations[3] / radius,
+            deviations[4],
+        ],
         residual,
         condition,
     })
@@ -167,9 +203,20 @@ pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError
 
 /// Means under a Hann window, of as many values.
 fn smoothed(values: &[f64], window: usize) -> Vec<f64> {
-    let weights: Vec<f64> = (0..=window).map(|k| 1.0 - (TAU * (k as f64 + 0.5) / (window + 1) as f64).cos()).collect();
+    let weights: Vec<f64> = (0..=window)
+        .map(|k| 1.0 - (TAU * (k as f64 + 0.5) / (window + 1) as f64).cos())
+        .collect();
     let sum: f64 = weights.iter().sum();
-    values.windows(window + 1).map(|part| part.iter().zip(&weights).map(|(value, weight)| value * weight).sum::<f64>() / sum).collect()
+    values
+        .windows(window + 1)
+        .map(|part| {
+            part.iter()
+                .zip(&weights)
+                .map(|(value, weight)| value * weight)
+                .sum::<f64>()
+                / sum
+        })
+        .collect()
 }
 
 /// Poses: x and y in track radii, theta.
@@ -187,7 +234,11 @@ fn poses(tour: &Tour) -> Result<Vec<Vector3<f64>>, PlatformError> {
 fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>; 6] {
     let rhos: Vec<[f64; 3]> = (poses.iter())
         .map(|pose| {
-            let found = inverse(&Pose { x: pose.x, y: pose.y, theta: pose.z });
+            let found = inverse(&Pose {
+                x: pose.x,
+                y: pose.y,
+                theta: pose.z,
+            });
             found.map_or([0.0; 3], |found| found.guides.map(|guide| guide.rho()))
         })
         .collect();
@@ -209,16 +260,35 @@ fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>;
 }
 
 /// Coefficients of all unknowns for each ring's torque at the middle of three poses, and what is known of the torque.
-fn equations(poses: &[Vector3<f64>], rubs: &[f64; 6], step_s: f64, drive_inertia: Option<f64>) -> Option<([[f64; UNKNOWNS]; 3], [f64; 3])> {
+fn equations(
+    poses: &[Vector3<f64>],
+    rubs: &[f64; 6],
+    step_s: f64,
+    drive_inertia: Option<f64>,
+) -> Option<([[f64; UNKNOWNS]; 3], [f64; 3])> {
     let [before, now, after] = [poses[0], poses[1], poses[2]];
     let twist = (after - before) / (2.0 * step_s);
     let acceleration = (after - 2.0 * now + before) / (step_s * step_s);
-    let guides = inverse(&Pose { x: now.x, y: now.y, theta: now.z }).ok()?.guides;
+    let guides = inverse(&Pose {
+        x: now.x,
+        y: now.y,
+        theta: now.z,
+    })
+    .ok()?
+    .guides;
     let rates = jacobian(&guides) * twist;
     let accelerations = kinematics::pivot_accelerations(
         &guides,
-        &Twist { x: twist.x, y: twist.y, theta: twist.z },
-        &kinematics::Acceleration { x: acceleration.x, y: acceleration.y, theta: acceleration.z },
+        &Twist {
+            x: twist.x,
+            y: twist.y,
+            theta: twist.z,
+        },
+        &kinematics::Acceleration {
+            x: acceleration.x,
+            y: acceleration.y,
+            theta: acceleration.z,
+        },
     );
     let to_rings: Matrix3<f64> = jacobian_inverse(&guides).transpose();
     let (sin, cos) = now.z.sin_cos();
@@ -229,7 +299,8 @@ fn equations(poses: &[Vector3<f64>], rubs: &[f64; 6], step_s: f64, drive_inertia
     let mut rubbing = Vector3::zeros();
     for (guide, contact) in guides.iter().zip(&rubs[3..]) {
         let offset_by_pose = Vector3::new(-guide.sin, guide.cos, -guide.projection);
-        let by_pose = -(offset_by_pose * (guide.offset / guide.cosine)) - Vector3::new(guide.cos, guide.sin, guide.offset);
+        let by_pose = -(offset_by_pose * (guide.offset / guide.cosine))
+            - Vector3::new(guide.cos, guide.sin, guide.offset);
         rubbing += by_pose * *contact;
     }
     let columns = [
@@ -239,7 +310,10 @@ fn equations(poses: &[Vector3<f64>], rubs: &[f64; 6], step_s: f64, drive_inertia
         to_rings * (along_y * cos - along_x * sin),
         Vector3::from(accelerations),
     ];
-    let [guide, cable] = [to_rings * rubbing, to_rings * Vector3::new(now.x, now.y, 0.0)];
+    let [guide, cable] = [
+        to_rings * rubbing,
+        to_rings * Vector3::new(now.x, now.y, 0.0),
+    ];
     let mut rows = [[0.0; UNKNOWNS]; 3];
     for (i, row) in rows.iter_mut().enumerate() {
         for (k, column) in columns.iter().enumerate() {
@@ -251,5 +325,8 @@ fn equations(poses: &[Vector3<f64>], rubs: &[f64; 6], step_s: f64, drive_inertia
         row[12] = cable[i];
         row[13 + i] = 1.0;
     }
-    Some((rows, accelerations.map(|acceleration| drive_inertia.unwrap_or(0.0) * acceleration)))
+    Some((
+        rows,
+        accelerations.map(|acceleration| drive_inertia.unwrap_or(0.0) * acceleration),
+    ))
 }
