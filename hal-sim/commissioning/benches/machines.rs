@@ -1,4 +1,5 @@
-//! How well unknown machines are identified, as tables: `cargo bench -p commissioning`. `-- N` takes N machines in place of 20.
+//! How well unknown machines are identified, as tables: `cargo bench -p commissioning`. `-- N` takes N machines in place of 20, `-- N V W S` V volts rms, a
+//! rate of W rad/s, and machines from seed S on.
 
 #[path = "../tests/machine/mod.rs"]
 mod machine;
@@ -17,7 +18,8 @@ fn main() {
         ..PLAN
     };
     let (mut all, mut residuals): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
-    for seed in 0..machines {
+    let first = numbers.get(3).copied().unwrap_or(0.0) as u64;
+    for seed in first..first + machines {
         let parameters = unknown(seed);
         let found = identify(&parameters, &plan);
         all.push(errors(&parameters, &found));

@@ -3,7 +3,9 @@
 mod machine;
 
 use commissioning::chain::Place;
-use machine::truth::{GUESS, NAMES, errors, identify, resonances_hz};
+use commissioning::chain::{Chain, Load};
+use hal_sim::machine::plant::Plant;
+use machine::truth::{GUESS, NAMES, errors, identify, resonances_hz, ring_inertia};
 use machine::{PLAN, unknown};
 
 /// Of some of the machines of `cargo bench -p commissioning`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
@@ -53,5 +55,37 @@ fn resonances_of_the_chain_are_those_of_the_simulators_matrices() {
     let expected = resonances_hz(&parameters);
     for (found, expected) in GUESS.0.resonances_hz(&Place::centre()).iter().zip(expected) {
         assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+    }
+}
+
+/// What the rings move, against the simulator's mass matrix, away from the middle and with a load beside the centre.
+#[test]
+fn inertia_of_the_chain_is_that_of_the_simulators_matrices() {
+    let mut parameters = unknown(5).plant;
+    parameters.imperfections.geometry = false;
+    let payload = &parameters.payload;
+    let (sin, cos) = payload.direction_rad.sin_cos();
+    let moment = 0.1 * payload.mass_kg * payload.eccentricity_m;
+    let chain = Chain {
+        motor_inertia: parameters.motor_inertia_kg_m2,
+        ring_inertia: parameters.ring_inertia_kg_m2,
+        load: Load {
+            mass: 0.01 * (parameters.platform_mass_kg + payload.mass_kg),
+            inertia: parameters.platform_inertia_kg_m2
+                + payload.inertia_kg_m2
+                + payload.mass_kg * payload.eccentricity_m.powi(2),
+            moment: [moment * cos, moment * sin],
+        },
+        ..GUESS.0
+    };
+    for (x, y) in [(0.0, 0.0), (0.05, 0.03), (-0.02, 0.06)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_pose_at_rest([x, y, 0.0]);
+        let expected = ring_inertia(plant);
+        let found = chain.inertia(&Place::new(x / 0.1, y / 0.1).expect("inside"));
+        assert!(
+            (found - expected).norm() < 1e-4 * expected.norm(),
+            "{found} {expected}"
+        );
     }
 }

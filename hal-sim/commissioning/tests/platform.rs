@@ -269,6 +269,24 @@ fn tours_that_tell_nothing_are_refused() {
         platform(&still, &EVALUATION),
         Err(PlatformError::Condition { .. })
     ));
+    // Shaken in the middle alone: mass, inertia and rings are the same there.
+    let mut middle = tour.clone();
+    for (sample, time) in (1_200..16_000).map(|k| f64::from(k) * 5e-4).enumerate() {
+        let shake = |hz: f64| (TAU * hz * time).sin();
+        let angles = pivots([
+            0.005 * shake(3.1),
+            0.005 * shake(2.3),
+            2.0 * time + 0.1 * shake(3.7),
+        ]);
+        for (all, angle) in middle.angle_rad.iter_mut().zip(angles) {
+            all[sample] = angle;
+        }
+    }
+    let refused = platform(&middle, &EVALUATION);
+    assert!(
+        matches!(refused, Err(PlatformError::Condition { condition }) if condition < 1e6),
+        "{refused:?}"
+    );
     // A pivot whose torque is told with the wrong sign.
     let mut reversed = tour.clone();
     reversed.torque_n_m[2]

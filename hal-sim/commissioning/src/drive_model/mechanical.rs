@@ -53,8 +53,10 @@ pub const NAMES: [&str; 13] = [
     "moment y",
 ];
 
-/// What the model leaves out (play, gears that are not even), over a response.
+/// What the model leaves out, over a response: little where all moves as one, and more by the frequency, since play in the gears softens the
+/// transmission where it swings.
 const MODEL_ERROR: f64 = 0.01;
+const GROWS_FROM_HZ: f64 = 300.0;
 /// More of what is left is no fit.
 const MOST_RESIDUAL: f64 = 0.3;
 /// Starts: shares of the guessed stiffnesses of transmission and guides.
@@ -114,11 +116,10 @@ fn by_torque(line: &Line, drives: &[Electrical; 3]) -> Measured {
             .scale_mut(1.0 / drive.motor_constant);
     }
     let size = response.norm() / 3.0;
+    let share = MODEL_ERROR * (1.0 + (line.hz / GROWS_FROM_HZ).powi(2)).sqrt();
     for (deviation, response) in deviation.iter_mut().zip(response.iter()) {
-        *deviation = (deviation.powi(2)
-            + (MODEL_ERROR * response.norm()).powi(2)
-            + (MODEL_ERROR * size).powi(2))
-        .sqrt();
+        let left_out = share * response.norm().hypot(size);
+        *deviation = deviation.hypot(left_out);
     }
     Measured {
         hz: line.hz,

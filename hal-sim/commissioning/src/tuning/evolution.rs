@@ -116,7 +116,7 @@ mod tests {
                 .map(|k| 100.0 * (at[k + 1] - at[k] * at[k]).powi(2) + (1.0 - at[k]).powi(2))
                 .sum()
         };
-        let (at, least) = evolve(&DVector::from_element(4, -0.5), 0.5, 400, cost);
+        let (at, least) = evolve(&DVector::from_element(4, -0.5), 0.5, 250, cost);
         assert!(
             least < 1e-9 && (at - DVector::from_element(4, 1.0)).norm() < 1e-3,
             "{least}"
