@@ -55,8 +55,8 @@ fn windings_of_unknown_machines() {
     }
     // Motors are ahead of their rings for the first milliseconds, and only the rings are seen: that is what is left of L.
     for (name, off, median, worst) in [
-        ("R", &mut off_r, 0.0047, 0.012),
-        ("L", &mut off_l, 0.032, 0.099),
+        ("R", &mut off_r, 0.0053, 0.012),
+        ("L", &mut off_l, 0.035, 0.1),
     ] {
         off.sort_by(f64::total_cmp);
         println!("{name}: median {:.4}, worst {:.4}", off[15], off[29]);
