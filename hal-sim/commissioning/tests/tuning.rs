@@ -315,7 +315,7 @@ fn tuned_gains_give_the_margins_that_were_promised() {
     let found = compare(&stage, &with_gains(parameters, &tuned.gains), 0.0, "tuned");
     found.holds();
     assert!(found.median < 0.012 && found.worst < 0.18);
-    // What was asked for: as it comes this machine has 2.5 and is stiffer in nothing.
+    // What was asked for.
     assert!(
         tuned.margins.ms <= 1.9 && tuned.margins.resonance_peak <= 0.5 && tuned.margins.is_stable
     );
