@@ -66,7 +66,10 @@ impl Place {
     #[must_use]
     pub fn new(x: f64, y: f64) -> Option<Self> {
         let guides = guides_along_axes(x, y, f64::sqrt)?;
-        Some(Self { guides, jacobian: jacobian(&guides) })
+        Some(Self {
+            guides,
+            jacobian: jacobian(&guides),
+        })
     }
 
     /// In the middle.
@@ -99,7 +102,10 @@ impl Chain {
     #[must_use]
     pub fn inertia(&self, place: &Place) -> Matrix3<f64> {
         let drives = Matrix3::identity() * (self.motor_inertia + self.ring_inertia);
-        let inverse = place.jacobian.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN));
+        let inverse = place
+            .jacobian
+            .try_inverse()
+            .unwrap_or_else(|| Matrix3::repeat(f64::NAN));
         drives + inverse.transpose() * self.load.mass_matrix() * inverse
     }
 
@@ -110,8 +116,13 @@ impl Chain {
         let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
         let j = place.jacobian.map(Complex::from);
         let across = self.guide_stiffness + self.guide_damping * s;
-        let levers = Matrix3::from_diagonal(&Vector3::from(place.guides.map(|guide| across * guide.cosine * guide.cosine)));
-        let mut body = self.load.mass_matrix().map(Complex::from) * (s * s) + j.transpose() * levers * j;
+        let levers = Matrix3::from_diagonal(&Vector3::from(
+            place
+                .guides
+                .map(|guide| across * guide.cosine * guide.cosine),
+        ));
+        let mut body =
+            self.load.mass_matrix().map(Complex::from) * (s * s) + j.transpose() * levers * j;
         let along = self.along_stiffness + self.along_damping * s;
         for guide in &place.guides {
             // What the place on the guide changes by with x, y and theta.
@@ -119,17 +130,28 @@ impl Chain {
             body += row * row.transpose() * along;
         }
         let Some(carried) = body.try_inverse() else {
-            return Compliance { ring: nothing, motor: nothing };
+            return Compliance {
+                ring: nothing,
+                motor: nothing,
+            };
         };
         let spring = self.stiffness + self.damping * s;
         let motor = self.motor_inertia * s * s + spring;
-        let ring_alone = self.ring_inertia * s * s + self.viscous * s + spring - spring * spring / motor;
-        let rings = Matrix3::identity() * ring_alone + levers - levers * j * carried * j.transpose() * levers;
+        let ring_alone =
+            self.ring_inertia * s * s + self.viscous * s + spring - spring * spring / motor;
+        let rings = Matrix3::identity() * ring_alone + levers
+            - levers * j * carried * j.transpose() * levers;
         let Some(inverse) = rings.try_inverse() else {
-            return Compliance { ring: nothing, motor: nothing };
+            return Compliance {
+                ring: nothing,
+                motor: nothing,
+            };
         };
         let ring = inverse * (spring / motor);
-        Compliance { ring, motor: (Matrix3::identity() + ring * spring) / motor }
+        Compliance {
+            ring,
+            motor: (Matrix3::identity() + ring * spring) / motor,
+        }
     }
 
     /// Frequencies at which it swings by itself, Hz, the lowest first; motions that nothing holds are left out.
@@ -150,15 +172,24 @@ impl Chain {
             }
             spring(gap, self.guide_stiffness);
         }
-        mass.fixed_view_mut::<3, 3>(6, 6).copy_from(&self.load.mass_matrix());
+        mass.fixed_view_mut::<3, 3>(6, 6)
+            .copy_from(&self.load.mass_matrix());
         let Some(root) = mass.cholesky() else {
             return Vec::new();
         };
         let Some(inverse) = root.l().try_inverse() else {
             return Vec::new();
         };
-        let mut squares: Vec<f64> = (inverse * stiffness * inverse.transpose()).symmetric_eigenvalues().iter().copied().collect();
+        let mut squares: Vec<f64> = (inverse * stiffness * inverse.transpose())
+            .symmetric_eigenvalues()
+            .iter()
+            .copied()
+            .collect();
         squares.sort_by(f64::total_cmp);
-        squares.into_iter().skip(3).map(|square| square.max(0.0).sqrt() / TAU).collect()
+        squares
+            .into_iter()
+            .skip(3)
+            .map(|square| square.max(0.0).sqrt() / TAU)
+            .collect()
     }
 }

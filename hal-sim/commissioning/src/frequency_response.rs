@@ -50,7 +50,9 @@ pub enum ResponseError {
     #[error("a period of {0} ticks: it has to be a power of two, 4096 for instance")]
     Period(usize),
     /// Lines of a run that a window does not keep apart.
-    #[error("lines {0} and {1} of a run are too close: leave {LEAST_SPACING} bins between, and put what lies between into another run")]
+    #[error(
+        "lines {0} and {1} of a run are too close: leave {LEAST_SPACING} bins between, and put what lies between into another run"
+    )]
     Spacing(usize, usize),
     /// A line that no tick can show.
     #[error("line {0} is none: lines are from 1 to under half of the period's ticks")]
@@ -62,7 +64,9 @@ pub enum ResponseError {
         pivot: usize,
     },
     /// A pivot that has no whole period, or only one, in an experiment.
-    #[error("experiment {experiment} has {blocks} blocks of a period of pivot {pivot}: record two periods or more")]
+    #[error(
+        "experiment {experiment} has {blocks} blocks of a period of pivot {pivot}: record two periods or more"
+    )]
     TooShort {
         /// 1 to 3.
         experiment: usize,
@@ -87,7 +91,11 @@ pub fn frequency_response(runs: &[Run], timing: &Timing) -> Result<Vec<Line>, Re
     let mut lines = Vec::new();
     for run in runs {
         check(run)?;
-        let mut empty: Vec<Line> = run.bins.iter().map(|&bin| empty_line(run, bin, timing)).collect();
+        let mut empty: Vec<Line> = run
+            .bins
+            .iter()
+            .map(|&bin| empty_line(run, bin, timing))
+            .collect();
         for (experiment, records) in run.experiments.iter().enumerate() {
             for pivot in 0..3 {
                 let blocks = blocks(run, records, pivot, experiment)?;
@@ -116,7 +124,10 @@ fn check(run: &Run) -> Result<(), ResponseError> {
     if let Some(&bin) = (bins.iter()).find(|&&bin| bin == 0 || 2 * bin >= run.period_ticks) {
         return Err(ResponseError::Bin(bin));
     }
-    match bins.windows(2).find(|pair| pair[1] < pair[0] + LEAST_SPACING) {
+    match bins
+        .windows(2)
+        .find(|pair| pair[1] < pair[0] + LEAST_SPACING)
+    {
         Some(pair) => Err(ResponseError::Spacing(pair[0], pair[1])),
         None => Ok(()),
     }
@@ -151,19 +162,27 @@ impl Block {
 }
 
 /// Periods of a pivot in an experiment, each half a period after the last.
-fn blocks(run: &Run, records: &[Record], pivot: usize, experiment: usize) -> Result<Vec<Block>, ResponseError> {
+fn blocks(
+    run: &Run,
+    records: &[Record],
+    pivot: usize,
+    experiment: usize,
+) -> Result<Vec<Block>, ResponseError> {
     let mut blocks = Vec::new();
     let period = run.period_ticks;
     for record in records {
         let signals = &record.pivots[pivot];
-        let ticks = signals.ticks().ok_or(ResponseError::Lengths { pivot: pivot + 1 })?;
+        let ticks = signals
+            .ticks()
+            .ok_or(ResponseError::Lengths { pivot: pivot + 1 })?;
         let mut from = 0;
         while from + period <= ticks {
             let part = from..from + period;
             blocks.push(Block {
                 first_tick: (record.first_tick + from) % period,
                 period_ticks: period,
-                signals: [&signals.volts, &signals.current_a, &signals.angle_rad].map(|all| spectrum(&all[part.clone()])),
+                signals: [&signals.volts, &signals.current_a, &signals.angle_rad]
+                    .map(|all| spectrum(&all[part.clone()])),
             });
             from += period / 2;
         }
@@ -182,21 +201,36 @@ fn blocks(run: &Run, records: &[Record], pivot: usize, experiment: usize) -> Res
 #[must_use]
 pub fn hold(hz: f64, timing: &Timing) -> Complex<f64> {
     let half_turns = hz * timing.tick_s;
-    let size = if half_turns == 0.0 { 1.0 } else { (PI * half_turns).sin() / (PI * half_turns) };
+    let size = if half_turns == 0.0 {
+        1.0
+    } else {
+        (PI * half_turns).sin() / (PI * half_turns)
+    };
     size * Complex::cis(-TAU * hz * (timing.duty_s + 0.5 * timing.tick_s))
 }
 
 impl Line {
     fn fill(&mut self, blocks: &[Block], bin: usize, at: (usize, usize), timing: &Timing) {
         let sampled = |offset_s: f64| Complex::cis(-TAU * self.hz * offset_s);
-        let factors = [hold(self.hz, timing), sampled(timing.current_s), sampled(timing.angle_s)];
+        let factors = [
+            hold(self.hz, timing),
+            sampled(timing.current_s),
+            sampled(timing.angle_s),
+        ];
         let [volts, current, angle] = [0, 1, 2].map(|signal| {
-            let values: Vec<_> = blocks.iter().map(|block| block.signals[signal][bin] * block.phase(bin) * factors[signal]).collect();
+            let values: Vec<_> = blocks
+                .iter()
+                .map(|block| block.signals[signal][bin] * block.phase(bin) * factors[signal])
+                .collect();
             let count = values.len() as f64;
             let mean = values.iter().sum::<Complex<f64>>() / count;
-            let scatter = values.iter().map(|value| (value - mean).norm_sqr()).sum::<f64>() / (count - 1.0);
-            // Blocks that overlap by half share a sixth of their windows' energy.
-            (mean, (scatter / count * (1.0 + 2.0 / 36.0)).sqrt())
+            let scatter = values
+                .iter()
+                .map(|value| (value - mean).norm_sqr())
+                .sum::<f64>()
+                / (count - 1.0);
+            // Blocks that overlap by half are correlated by a sixth.
+            (mean, (scatter / count * (1.0 + 2.0 / 6.0)).sqrt())
         });
         self.volts[at] = volts.0;
         (self.current_a[at], self.current_deviation_a[at]) = current;
@@ -239,7 +273,10 @@ impl Line {
     pub fn quality(&self) -> f64 {
         (0..3)
             .map(|i| {
-                let (answer, noise) = (self.angle_rad[(i, i)].norm_sqr(), self.angle_deviation_rad[(i, i)].powi(2));
+                let (answer, noise) = (
+                    self.angle_rad[(i, i)].norm_sqr(),
+                    self.angle_deviation_rad[(i, i)].powi(2),
+                );
                 answer / (answer + noise)
             })
             .fold(1.0, f64::min)
@@ -249,7 +286,9 @@ impl Line {
 /// `outputs inputs^-1`.
 fn over(outputs: &Matrix3<Complex<f64>>, inputs: &Matrix3<Complex<f64>>) -> Matrix3<Complex<f64>> {
     let unknown = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    inputs.try_inverse().map_or(unknown, |inverse| outputs * inverse)
+    inputs
+        .try_inverse()
+        .map_or(unknown, |inverse| outputs * inverse)
 }
 
 fn deviation(outputs: &Matrix3<f64>, inputs: &Matrix3<Complex<f64>>) -> Matrix3<f64> {

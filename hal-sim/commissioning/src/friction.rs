@@ -50,19 +50,27 @@ pub enum FrictionError {
         backwards: usize,
     },
     /// Rates too near to each other.
-    #[error("the rates are too near to each other: let the largest be three times the smallest or more")]
+    #[error(
+        "the rates are too near to each other: let the largest be three times the smallest or more"
+    )]
     TooNear,
     /// Faster with less voltage.
-    #[error("the ring turns against its voltage: look at the polarity of the bridge and the encoder's direction")]
+    #[error(
+        "the ring turns against its voltage: look at the polarity of the bridge and the encoder's direction"
+    )]
     AgainstTheVolts,
     /// Less than none.
-    #[error("friction of {coulomb_n_m:.3} N m: the current is against the motion; look at the polarity of current and encoder")]
+    #[error(
+        "friction of {coulomb_n_m:.3} N m: the current is against the motion; look at the polarity of current and encoder"
+    )]
     Negative {
         /// As found.
         coulomb_n_m: f64,
     },
     /// Something else than friction.
-    #[error("currents differ by {percent} % of the friction from what friction would make of them: something catches, or the rates are not steady")]
+    #[error(
+        "currents differ by {percent} % of the friction from what friction would make of them: something catches, or the rates are not steady"
+    )]
     Uneven {
         /// Of the Coulomb friction.
         percent: u32,
@@ -82,26 +90,35 @@ pub fn friction(steady: &[SteadyRate], resistance_ohm: f64) -> Result<Friction, 
     let forwards = steady.iter().filter(|one| one.rate_rad_s > 0.0).count();
     let backwards = steady.iter().filter(|one| one.rate_rad_s < 0.0).count();
     if forwards < 2 || backwards < 2 {
-        return Err(FrictionError::TooFew { forwards, backwards });
+        return Err(FrictionError::TooFew {
+            forwards,
+            backwards,
+        });
     }
     let sizes = steady.iter().map(|one| one.rate_rad_s.abs());
-    let (least, most) = sizes.fold((f64::INFINITY, 0.0), |(least, most), size| (f64::min(least, size), f64::max(most, size)));
+    let (least, most) = sizes.fold((f64::INFINITY, 0.0), |(least, most), size| {
+        (f64::min(least, size), f64::max(most, size))
+    });
     if !(most >= LEAST_RANGE * least) {
         return Err(FrictionError::TooNear);
     }
-    let (volts, ..) = fit(steady, |one| one.volts - resistance_ohm * one.current_a).ok_or(FrictionError::TooNear)?;
+    let (volts, ..) = fit(steady, |one| one.volts - resistance_ohm * one.current_a)
+        .ok_or(FrictionError::TooNear)?;
     let motor_constant = volts.y;
     if !(motor_constant > 0.0) {
         return Err(FrictionError::AgainstTheVolts);
     }
-    let (numbers, deviations, left) = fit(steady, |one| one.current_a * motor_constant).ok_or(FrictionError::TooNear)?;
+    let (numbers, deviations, left) =
+        fit(steady, |one| one.current_a * motor_constant).ok_or(FrictionError::TooNear)?;
     let coulomb_n_m = numbers.x;
     if !(coulomb_n_m > 0.0) {
         return Err(FrictionError::Negative { coulomb_n_m });
     }
     let residual = left / coulomb_n_m;
     if residual > MOST_RESIDUAL {
-        return Err(FrictionError::Uneven { percent: (100.0 * residual) as u32 });
+        return Err(FrictionError::Uneven {
+            percent: (100.0 * residual) as u32,
+        });
     }
     Ok(Friction {
         motor_constant,
@@ -130,7 +147,10 @@ impl Friction {
 }
 
 /// Sign, rate and 1 to a value, by least squares; deviations and what is left.
-fn fit(steady: &[SteadyRate], value: impl Fn(&SteadyRate) -> f64) -> Option<(Vector3<f64>, Vector3<f64>, f64)> {
+fn fit(
+    steady: &[SteadyRate],
+    value: impl Fn(&SteadyRate) -> f64,
+) -> Option<(Vector3<f64>, Vector3<f64>, f64)> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     let row = |one: &SteadyRate| Vector3::new(one.rate_rad_s.signum(), one.rate_rad_s, 1.0);
     for one in steady {
@@ -139,7 +159,10 @@ fn fit(steady: &[SteadyRate], value: impl Fn(&SteadyRate) -> f64) -> Option<(Vec
     }
     let inverse = normal.try_inverse()?;
     let numbers = inverse * right;
-    let square: f64 = steady.iter().map(|one| (value(one) - row(one).dot(&numbers)).powi(2)).sum();
+    let square: f64 = steady
+        .iter()
+        .map(|one| (value(one) - row(one).dot(&numbers)).powi(2))
+        .sum();
     let variance = square / (steady.len() as f64 - 3.0).max(1.0);
     let deviations = inverse.diagonal().map(|d| (d.max(0.0) * variance).sqrt());
     Some((numbers, deviations, (square / steady.len() as f64).sqrt()))

@@ -18,7 +18,11 @@ const STEP: f64 = 1e-5;
 const ENOUGH: f64 = 1e-7;
 
 /// Minimises the sum of squares of what `residuals` gives. `None` where even the start gives no number.
-pub fn minimise(start: &DVector<f64>, steps: usize, residuals: impl Fn(&DVector<f64>) -> DVector<f64>) -> Option<Minimum> {
+pub fn minimise(
+    start: &DVector<f64>,
+    steps: usize,
+    residuals: impl Fn(&DVector<f64>) -> DVector<f64>,
+) -> Option<Minimum> {
     let (mut at, mut now) = (start.clone(), residuals(start));
     let mut cost = now.norm_squared();
     let mut damping = 1e-2;
@@ -53,7 +57,11 @@ pub fn minimise(start: &DVector<f64>, steps: usize, residuals: impl Fn(&DVector<
         }
     }
     let covariance = normal.try_inverse()?;
-    Some(Minimum { at, cost, covariance })
+    Some(Minimum {
+        at,
+        cost,
+        covariance,
+    })
 }
 
 fn slopes(at: &DVector<f64>, residuals: &impl Fn(&DVector<f64>) -> DVector<f64>) -> DMatrix<f64> {

@@ -51,14 +51,22 @@ impl Multisine {
 
 /// At most `count` different bins, as evenly spaced by their logarithm as whole numbers are, from one frequency to another.
 #[must_use]
-pub fn lines(period_ticks: usize, tick_s: f64, from_hz: f64, to_hz: f64, count: usize) -> Vec<usize> {
+pub fn lines(
+    period_ticks: usize,
+    tick_s: f64,
+    from_hz: f64,
+    to_hz: f64,
+    count: usize,
+) -> Vec<usize> {
     let bin_hz = 1.0 / (period_ticks as f64 * tick_s);
     let [first, last] = [from_hz / bin_hz, to_hz / bin_hz];
     let (mut bins, mut at) = (Vec::new(), first.round().max(1.0));
     for left in (1..count).rev() {
         bins.push(at as usize);
         // What is left is spaced by the logarithm; below, a bin at a time.
-        at = (at * (last / at).powf(1.0 / left as f64)).max(at + 1.0).round();
+        at = (at * (last / at).powf(1.0 / left as f64))
+            .max(at + 1.0)
+            .round();
     }
     bins.push(at as usize);
     bins.retain(|&bin| bin as f64 <= last + 0.5);
@@ -85,13 +93,20 @@ mod tests {
         assert!(bins.windows(2).all(|pair| pair[1] > pair[0]));
         for run in runs(&bins, 4) {
             assert!(run.len() <= 16);
-            assert!(run.windows(2).all(|pair| pair[1] >= pair[0] + LEAST_SPACING));
+            assert!(
+                run.windows(2)
+                    .all(|pair| pair[1] >= pair[0] + LEAST_SPACING)
+            );
         }
     }
 
     #[test]
     fn volts_are_as_asked_and_hardly_peak() {
-        let sines = Multisine::new(4096, runs(&lines(4096, 50e-6, 29.0, 3e3, 57), 4)[1].clone(), 1.5);
+        let sines = Multisine::new(
+            4096,
+            runs(&lines(4096, 50e-6, 29.0, 3e3, 57), 4)[1].clone(),
+            1.5,
+        );
         let volts = sines.period_v();
         let square = volts.iter().map(|v| v * v).sum::<f64>() / 4096.0;
         assert!((square.sqrt() - 1.5).abs() < 1e-9);

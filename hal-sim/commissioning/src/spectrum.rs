@@ -57,8 +57,16 @@ mod tests {
             .collect();
         let bins = spectrum(&values);
         // The line that is fitted to the sines takes a little of them.
-        assert!((bins[7] - Complex::from_polar(3.0, 0.3)).norm() < 1e-2, "{}", bins[7]);
-        assert!((bins[9] - Complex::from_polar(0.5, -1.0)).norm() < 1e-2, "{}", bins[9]);
+        assert!(
+            (bins[7] - Complex::from_polar(3.0, 0.3)).norm() < 1e-2,
+            "{}",
+            bins[7]
+        );
+        assert!(
+            (bins[9] - Complex::from_polar(0.5, -1.0)).norm() < 1e-2,
+            "{}",
+            bins[9]
+        );
         assert!(bins[40].norm() < 1e-4);
     }
 }

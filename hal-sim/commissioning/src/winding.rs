@@ -49,7 +49,9 @@ pub enum WindingError {
     #[error("no pulse in the record: its volts never pass {LEAST_V} V")]
     NoPulse,
     /// No current.
-    #[error("{volts} V drive no current: a wire or the winding is open, a plug is out, or the bridge sleeps")]
+    #[error(
+        "{volts} V drive no current: a wire or the winding is open, a plug is out, or the bridge sleeps"
+    )]
     Open {
         /// Largest voltage.
         volts: f64,
@@ -64,7 +66,9 @@ pub enum WindingError {
     #[error("the current is against the voltage: its sensor or the bridge's direction is reversed")]
     Reversed,
     /// A resistance that is not what the parameter says.
-    #[error("{resistance_ohm:.2} ohm is not within a factor of two of what was expected: another motor, or a bad contact")]
+    #[error(
+        "{resistance_ohm:.2} ohm is not within a factor of two of what was expected: another motor, or a bad contact"
+    )]
     Unexpected {
         /// As found.
         resistance_ohm: f64,
@@ -92,8 +96,16 @@ const LEAST_WAY_RAD: f64 = 5e-6;
 ///
 /// # Errors
 /// [`WindingError`].
-pub fn winding(pulses: &[Signals], timing: &Timing, guess: &WindingGuess) -> Result<Winding, WindingError> {
-    if pulses.is_empty() || pulses.iter().any(|pulse| pulse.ticks().is_none_or(|ticks| ticks < 3)) {
+pub fn winding(
+    pulses: &[Signals],
+    timing: &Timing,
+    guess: &WindingGuess,
+) -> Result<Winding, WindingError> {
+    if pulses.is_empty()
+        || pulses
+            .iter()
+            .any(|pulse| pulse.ticks().is_none_or(|ticks| ticks < 3))
+    {
         return Err(WindingError::Lengths);
     }
     let most = |values: &dyn Fn(&Signals) -> f64| pulses.iter().map(values).fold(0.0, f64::max);
@@ -105,14 +117,19 @@ pub fn winding(pulses: &[Signals], timing: &Timing, guess: &WindingGuess) -> Res
     if most(&|pulse| largest(&pulse.current_a)) < OPEN * expected_a {
         return Err(WindingError::Open { volts });
     }
-    let along: f64 = pulses.iter().flat_map(|pulse| pulse.volts.iter().zip(&pulse.current_a)).map(|(u, i)| u * i).sum();
+    let along: f64 = pulses
+        .iter()
+        .flat_map(|pulse| pulse.volts.iter().zip(&pulse.current_a))
+        .map(|(u, i)| u * i)
+        .sum();
     if along < 0.0 {
         return Err(WindingError::Reversed);
     }
     let residuals = |unknowns: &DVector<f64>| residuals(unknowns, pulses, timing, guess);
     let found = minimise(&DVector::zeros(5), 40, residuals).ok_or(WindingError::NoFit)?;
     let [r, l, _, d, _] = std::array::from_fn(|k| found.at[k]);
-    let (resistance_ohm, inductance_h) = (guess.resistance_ohm * r.exp(), guess.inductance_h * l.exp());
+    let (resistance_ohm, inductance_h) =
+        (guess.resistance_ohm * r.exp(), guess.inductance_h * l.exp());
     if resistance_ohm < SHORT * guess.resistance_ohm {
         return Err(WindingError::Short { resistance_ohm });
     }
@@ -124,7 +141,11 @@ pub fn winding(pulses: &[Signals], timing: &Timing, guess: &WindingGuess) -> Res
         resistance_ohm,
         inductance_h,
         dead_time_v: guess.dead_time_v + d,
-        deviations: [resistance_ohm * deviation(0), inductance_h * deviation(1), deviation(3)],
+        deviations: [
+            resistance_ohm * deviation(0),
+            inductance_h * deviation(1),
+            deviation(3),
+        ],
         sense: sense(pulses),
     })
 }
@@ -142,11 +163,20 @@ fn sense(pulses: &[Signals]) -> i8 {
         }
     }
     let way = way / pulses.len() as f64;
-    if way.abs() < LEAST_WAY_RAD { 0 } else { way.signum() as i8 }
+    if way.abs() < LEAST_WAY_RAD {
+        0
+    } else {
+        way.signum() as i8
+    }
 }
 
 /// Logarithms of resistance, inductance and motor constant over the guess; dead time over the guess, V; offset of the current, A.
-fn residuals(unknowns: &DVector<f64>, pulses: &[Signals], timing: &Timing, guess: &WindingGuess) -> DVector<f64> {
+fn residuals(
+    unknowns: &DVector<f64>,
+    pulses: &[Signals],
+    timing: &Timing,
+    guess: &WindingGuess,
+) -> DVector<f64> {
     let [r, l, k, d, offset] = std::array::from_fn(|place| unknowns[place]);
     let numbers = WindingGuess {
         resistance_ohm: guess.resistance_ohm * r.exp(),
@@ -158,9 +188,20 @@ fn residuals(unknowns: &DVector<f64>, pulses: &[Signals], timing: &Timing, guess
     let mut all = Vec::new();
     for pulse in pulses {
         let computed = currents(pulse, timing, &numbers);
-        all.extend(pulse.current_a.iter().zip(computed).map(|(measured, computed)| (measured - computed - offset) / NOISE_A));
+        all.extend(
+            pulse
+                .current_a
+                .iter()
+                .zip(computed)
+                .map(|(measured, computed)| (measured - computed - offset) / NOISE_A),
+        );
     }
-    all.extend([r / SPREADS[0], l / SPREADS[1], k / SPREADS[2], d / DEAD_TIME_SPREAD_V]);
+    all.extend([
+        r / SPREADS[0],
+        l / SPREADS[1],
+        k / SPREADS[2],
+        d / DEAD_TIME_SPREAD_V,
+    ]);
     DVector::from_vec(all)
 }
 
@@ -180,8 +221,10 @@ fn currents(pulse: &Signals, timing: &Timing, numbers: &WindingGuess) -> Vec<f64
             let old = ((change_s - step as f64 * step_s) / step_s).clamp(0.0, 1.0);
             let volts = old * before + (1.0 - old) * now;
             let slope = |current: f64| {
-                let lost = numbers.dead_time_v.min(volts.abs()) * (current / numbers.knee_a).clamp(-1.0, 1.0);
-                (volts - numbers.resistance_ohm * current - numbers.motor_constant * rate - lost) / numbers.inductance_h
+                let lost = numbers.dead_time_v.min(volts.abs())
+                    * (current / numbers.knee_a).clamp(-1.0, 1.0);
+                (volts - numbers.resistance_ohm * current - numbers.motor_constant * rate - lost)
+                    / numbers.inductance_h
             };
             let halfway = current + 0.5 * step_s * slope(current);
             current += step_s * slope(halfway);

@@ -21,9 +21,13 @@ fn friction_of_unknown_machines() {
         let found = [0, 1, 2].map(|drive| {
             let of_drive = &steady[drive];
             // Not known better than to 3 %.
-            let ohm = 1.03 * plant.resistance_ohm * (1.0 + 0.0039 * machine.stage.plant.windings_warmer_k()[drive]);
+            let ohm = 1.03
+                * plant.resistance_ohm
+                * (1.0 + 0.0039 * machine.stage.plant.windings_warmer_k()[drive]);
             let found = friction(of_drive, ohm).expect("friction");
-            off_constant.push((found.motor_constant / (constant * parameters.analog.supply_gain) - 1.0).abs());
+            off_constant.push(
+                (found.motor_constant / (constant * parameters.analog.supply_gain) - 1.0).abs(),
+            );
             // As the controller's meters have it.
             meters[drive] = parameters.analog.current_gain[drive] * parameters.analog.supply_gain;
             found
@@ -45,7 +49,12 @@ fn friction_of_unknown_machines() {
     for (name, off, median, worst) in figures {
         off.sort_by(f64::total_cmp);
         let last = off.len() - 1;
-        println!("{name}: median {:.4}, 90 % {:.4}, worst {:.4}", off[last / 2], off[last * 9 / 10], off[last]);
+        println!(
+            "{name}: median {:.4}, 90 % {:.4}, worst {:.4}",
+            off[last / 2],
+            off[last * 9 / 10],
+            off[last]
+        );
         assert!(off[last / 2] < median && off[last] < worst, "{name}");
     }
 }
@@ -58,8 +67,12 @@ fn friction_in_closed_form_is_found_again() {
             .enumerate()
             .map(|(k, rate)| SteadyRate {
                 rate_rad_s: rate,
-                current_a: (0.35 * rate.signum() + 0.06 * rate) / 2.5 + offset_a + bump_a * f64::from(k == 2),
-                volts: 2.1 * (0.35 * rate.signum() + 0.06 * rate) / 2.5 + 0.38 * rate.signum() + 2.5 * rate,
+                current_a: (0.35 * rate.signum() + 0.06 * rate) / 2.5
+                    + offset_a
+                    + bump_a * f64::from(k == 2),
+                volts: 2.1 * (0.35 * rate.signum() + 0.06 * rate) / 2.5
+                    + 0.38 * rate.signum()
+                    + 2.5 * rate,
             })
             .collect()
     };
@@ -70,14 +83,49 @@ fn friction_in_closed_form_is_found_again() {
     assert!((found.break_away_v - (2.1 * 0.35 / 2.5 + 0.38)).abs() < 1e-12);
     assert!(found.residual < 1e-9);
     // Something that catches at one rate.
-    assert!(matches!(friction(&steady(0.0, 0.2), 2.1), Err(FrictionError::Uneven { .. })));
-    let one_way: Vec<_> = steady(0.0, 0.0).into_iter().filter(|one| one.rate_rad_s > 0.0).collect();
-    assert_eq!(friction(&one_way, 2.1), Err(FrictionError::TooFew { forwards: 3, backwards: 0 }));
-    let more = [1.5, -1.5].map(|rate| SteadyRate { rate_rad_s: rate, current_a: 0.2 * f64::signum(rate), volts: 4.0 });
-    let near: Vec<_> = steady(0.0, 0.0).into_iter().chain(more).filter(|one| one.rate_rad_s.abs() < 2.0 && one.rate_rad_s.abs() > 0.5).collect();
+    assert!(matches!(
+        friction(&steady(0.0, 0.2), 2.1),
+        Err(FrictionError::Uneven { .. })
+    ));
+    let one_way: Vec<_> = steady(0.0, 0.0)
+        .into_iter()
+        .filter(|one| one.rate_rad_s > 0.0)
+        .collect();
+    assert_eq!(
+        friction(&one_way, 2.1),
+        Err(FrictionError::TooFew {
+            forwards: 3,
+            backwards: 0
+        })
+    );
+    let more = [1.5, -1.5].map(|rate| SteadyRate {
+        rate_rad_s: rate,
+        current_a: 0.2 * f64::signum(rate),
+        volts: 4.0,
+    });
+    let near: Vec<_> = steady(0.0, 0.0)
+        .into_iter()
+        .chain(more)
+        .filter(|one| one.rate_rad_s.abs() < 2.0 && one.rate_rad_s.abs() > 0.5)
+        .collect();
     assert_eq!(friction(&near, 2.1), Err(FrictionError::TooNear));
-    let reversed: Vec<_> = steady(0.0, 0.0).into_iter().map(|one| SteadyRate { current_a: -one.current_a, ..one }).collect();
-    assert!(matches!(friction(&reversed, 2.1), Err(FrictionError::Negative { .. })));
-    let against: Vec<_> = steady(0.0, 0.0).into_iter().map(|one| SteadyRate { volts: -one.volts, ..one }).collect();
+    let reversed: Vec<_> = steady(0.0, 0.0)
+        .into_iter()
+        .map(|one| SteadyRate {
+            current_a: -one.current_a,
+            ..one
+        })
+        .collect();
+    assert!(matches!(
+        friction(&reversed, 2.1),
+        Err(FrictionError::Negative { .. })
+    ));
+    let against: Vec<_> = steady(0.0, 0.0)
+        .into_iter()
+        .map(|one| SteadyRate {
+            volts: -one.volts,
+            ..one
+        })
+        .collect();
     assert_eq!(friction(&against, 2.1), Err(FrictionError::AgainstTheVolts));
 }

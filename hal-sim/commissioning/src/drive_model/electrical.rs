@@ -80,11 +80,22 @@ impl Equations {
     ///
     /// # Errors
     /// [`DriveError::NotRecorded`].
-    pub fn new(runs: &[Run], timing: &Timing, pivot: usize, knee_a: f64) -> Result<Self, DriveError> {
+    pub fn new(
+        runs: &[Run],
+        timing: &Timing,
+        pivot: usize,
+        knee_a: f64,
+    ) -> Result<Self, DriveError> {
         let mut rows = Vec::new();
         for run in runs {
             for record in run.experiments.iter().flatten() {
-                add_rows(&record.pivots[pivot], run.period_ticks, timing, knee_a, &mut rows);
+                add_rows(
+                    &record.pivots[pivot],
+                    run.period_ticks,
+                    timing,
+                    knee_a,
+                    &mut rows,
+                );
             }
         }
         if rows.is_empty() {
@@ -98,7 +109,11 @@ impl Equations {
 ///
 /// # Errors
 /// [`DriveError`].
-pub fn electrical(equations: &Equations, timing: &Timing, besides: &Besides<'_>) -> Result<Electrical, DriveError> {
+pub fn electrical(
+    equations: &Equations,
+    timing: &Timing,
+    besides: &Besides<'_>,
+) -> Result<Electrical, DriveError> {
     let pivot = equations.pivot + 1;
     let mut rows = equations.rows.clone();
     if let Some((chain, motor_constant)) = besides.mechanics {
@@ -129,12 +144,21 @@ fn add_rows(signals: &Signals, period: usize, timing: &Timing, knee_a: f64, rows
     let Some(ticks) = signals.ticks() else { return };
     let bin_hz = 1.0 / (period as f64 * timing.tick_s);
     let bins = BAND_HZ.map(|hz| (hz / bin_hz).ceil() as usize);
-    let lost: Vec<f64> = signals.current_a.iter().map(|current| (current / knee_a).clamp(-1.0, 1.0)).collect();
+    let lost: Vec<f64> = signals
+        .current_a
+        .iter()
+        .map(|current| (current / knee_a).clamp(-1.0, 1.0))
+        .collect();
     let mut from = 0;
     while from + period <= ticks {
         let part = from..from + period;
-        let [volts, current, angle, lost] =
-            [&signals.volts, &signals.current_a, &signals.angle_rad, &lost].map(|all| spectrum(&all[part.clone()]));
+        let [volts, current, angle, lost] = [
+            &signals.volts,
+            &signals.current_a,
+            &signals.angle_rad,
+            &lost,
+        ]
+        .map(|all| spectrum(&all[part.clone()]));
         for bin in bins[0]..bins[1].min(period / 2) {
             let hz = bin as f64 * bin_hz;
             let sampled = |offset_s: f64| Complex::cis(-TAU * hz * offset_s);
@@ -167,7 +191,12 @@ impl Row {
     /// Coefficients of the four numbers, with a current that has so much less for each volt told.
     fn coefficients(&self, image_a_v: Complex<f64>) -> [Complex<f64>; 4] {
         let current = self.current - self.told * image_a_v;
-        [current, current * Complex::new(0.0, TAU * self.hz), self.rate, self.lost]
+        [
+            current,
+            current * Complex::new(0.0, TAU * self.hz),
+            self.rate,
+            self.lost,
+        ]
     }
 }
 
@@ -188,11 +217,20 @@ fn images(hz: f64, timing: &Timing, [resistance_ohm, inductance_h]: [f64; 2]) ->
     sum
 }
 
-fn solve_without_images(rows: &[Row], constant: Option<f64>, timing: &Timing, winding: [f64; 2]) -> Found {
+fn solve_without_images(
+    rows: &[Row],
+    constant: Option<f64>,
+    timing: &Timing,
+    winding: [f64; 2],
+) -> Found {
     let mut cache = std::collections::HashMap::new();
     let images: Vec<_> = rows
         .iter()
-        .map(|row| *cache.entry(row.hz.to_bits()).or_insert_with(|| images(row.hz, timing, winding)))
+        .map(|row| {
+            *cache
+                .entry(row.hz.to_bits())
+                .or_insert_with(|| images(row.hz, timing, winding))
+        })
         .collect();
     solve_with(rows, constant, |k| images[k])
 }
@@ -224,13 +262,22 @@ fn solve_with(rows: &[Row], constant: Option<f64>, image: impl Fn(usize) -> Comp
         weights += 1.0;
     }
     let variance = 0.5 * square / f64::max(weights - 4.0, 1.0);
-    let deviations = inverse.diagonal().map(|d| (d.max(0.0) * variance).sqrt()).component_mul(&scale);
-    numbers.iter().all(|number| number.is_finite()).then_some((numbers, deviations))
+    let deviations = inverse
+        .diagonal()
+        .map(|d| (d.max(0.0) * variance).sqrt())
+        .component_mul(&scale);
+    numbers
+        .iter()
+        .all(|number| number.is_finite())
+        .then_some((numbers, deviations))
 }
 
 impl Row {
     fn residual(&self, numbers: &Vector4<f64>, image_a_v: Complex<f64>) -> Complex<f64> {
-        let said: Complex<f64> = (self.coefficients(image_a_v).iter()).zip(numbers.iter()).map(|(a, &number)| a * number).sum();
+        let said: Complex<f64> = (self.coefficients(image_a_v).iter())
+            .zip(numbers.iter())
+            .map(|(a, &number)| a * number)
+            .sum();
         self.volts - said
     }
 }
@@ -238,12 +285,17 @@ impl Row {
 /// Weights by the size that residuals have in each band, and less for those that stand out: a commutator's ripple is a line.
 fn weigh(rows: &mut [Row], found: &Found, timing: &Timing, winding: [f64; 2]) {
     let Some((numbers, _)) = found else { return };
-    let band = |hz: f64| (((hz / BAND_HZ[0]).ln() / (BAND_HZ[1] / BAND_HZ[0]).ln() * BANDS as f64) as usize).min(BANDS - 1);
+    let band = |hz: f64| {
+        (((hz / BAND_HZ[0]).ln() / (BAND_HZ[1] / BAND_HZ[0]).ln() * BANDS as f64) as usize)
+            .min(BANDS - 1)
+    };
     let mut cache = std::collections::HashMap::new();
     let sizes: Vec<f64> = rows
         .iter()
         .map(|row| {
-            let image = *cache.entry(row.hz.to_bits()).or_insert_with(|| images(row.hz, timing, winding));
+            let image = *cache
+                .entry(row.hz.to_bits())
+                .or_insert_with(|| images(row.hz, timing, winding));
             row.residual(numbers, image).norm()
         })
         .collect();

@@ -32,20 +32,31 @@ pub struct Mechanical {
     pub deviations: Vec<f64>,
     /// What is left of the responses, over them: root of the mean square over lines and entries.
     pub residual: f64,
-    /// Standard deviation of a motor and its ring together, over itself: for the sum both need not be known.
+    /// Standard deviation of a motor and its ring together, over itself: the sum is known better than either.
     pub drive_inertia_deviation: f64,
-    /// Standard deviations of mass and inertia of what is carried, over themselves, for [`Self::drive_inertia_deviation`] is theirs too.
-    pub load_deviations: [f64; 2],
 }
 
 /// What is fitted, in this order.
 pub const NAMES: [&str; 13] = [
-    "motor inertia", "ring inertia", "transmission stiffness", "transmission damping", "viscous friction", "guide stiffness",
-    "guide damping", "stiffness along a guide", "damping along a guide", "mass", "inertia", "moment x", "moment y",
+    "motor inertia",
+    "ring inertia",
+    "transmission stiffness",
+    "transmission damping",
+    "viscous friction",
+    "guide stiffness",
+    "guide damping",
+    "stiffness along a guide",
+    "damping along a guide",
+    "mass",
+    "inertia",
+    "moment x",
+    "moment y",
 ];
 
-/// What the model leaves out (play, gears that are not even), over a response.
+/// What the model leaves out, over a response: little where all moves as one, and more by the frequency, since play in the gears softens the
+/// transmission where it swings.
 const MODEL_ERROR: f64 = 0.01;
+const GROWS_FROM_HZ: f64 = 300.0;
 /// More of what is left is no fit.
 const MOST_RESIDUAL: f64 = 0.3;
 /// Starts: shares of the guessed stiffnesses of transmission and guides.
@@ -65,9 +76,16 @@ struct Measured {
 ///
 /// # Errors
 /// [`DriveError::NoFit`].
-pub fn mechanical(lines: &[Line], drives: &[Electrical; 3], guess: &Guess, to_hz: f64) -> Result<Mechanical, DriveError> {
+pub fn mechanical(
+    lines: &[Line],
+    drives: &[Electrical; 3],
+    guess: &Guess,
+    to_hz: f64,
+) -> Result<Mechanical, DriveError> {
     let place = Place::centre();
-    let measured: Vec<_> = (lines.iter().filter(|line| line.hz <= to_hz)).map(|line| by_torque(line, drives)).collect();
+    let measured: Vec<_> = (lines.iter().filter(|line| line.hz <= to_hz))
+        .map(|line| by_torque(line, drives))
+        .collect();
     let prior = to_unknowns(&guess.0);
     let residuals = |unknowns: &DVector<f64>| residuals(unknowns, &prior, &measured, &place);
     let mut starts: Vec<_> = (TRANSMISSIONS.iter())
@@ -81,22 +99,33 @@ pub fn mechanical(lines: &[Line], drives: &[Electrical; 3], guess: &Guess, to_hz
     let minimum = best.ok_or(DriveError::NoFit { percent: 100 })?;
     let found = from_minimum(&minimum, &measured, &place);
     if found.residual > MOST_RESIDUAL {
-        return Err(DriveError::NoFit { percent: (100.0 * found.residual) as u32 });
+        return Err(DriveError::NoFit {
+            percent: (100.0 * found.residual) as u32,
+        });
     }
     Ok(found)
 }
 
 fn by_torque(line: &Line, drives: &[Electrical; 3]) -> Measured {
-    let (mut response, mut deviation) = (line.angle_by_current(), line.angle_by_current_deviation());
+    let (mut response, mut deviation) =
+        (line.angle_by_current(), line.angle_by_current_deviation());
     for (i, drive) in drives.iter().enumerate() {
         response.column_mut(i).scale_mut(1.0 / drive.motor_constant);
-        deviation.column_mut(i).scale_mut(1.0 / drive.motor_constant);
+        deviation
+            .column_mut(i)
+            .scale_mut(1.0 / drive.motor_constant);
     }
     let size = response.norm() / 3.0;
+    let share = MODEL_ERROR * (1.0 + (line.hz / GROWS_FROM_HZ).powi(2)).sqrt();
     for (deviation, response) in deviation.iter_mut().zip(response.iter()) {
-        *deviation = (deviation.powi(2) + (MODEL_ERROR * response.norm()).powi(2) + (MODEL_ERROR * size).powi(2)).sqrt();
+        let left_out = share * response.norm().hypot(size);
+        *deviation = deviation.hypot(left_out);
     }
-    Measured { hz: line.hz, response, deviation }
+    Measured {
+        hz: line.hz,
+        response,
+        deviation,
+    }
 }
 
 /// A guess with other springs, and with an inertia that fits what the lowest lines show.
@@ -107,10 +136,18 @@ fn start(guess: &Chain, transmission: f64, guide: f64, measured: &[Measured]) ->
     chain.guide_stiffness *= guide;
     chain.guide_damping *= guide.sqrt();
     let place = Place::centre();
-    let low = measured.iter().find(|line| line.hz > 60.0).or(measured.first());
+    let low = measured
+        .iter()
+        .find(|line| line.hz > 60.0)
+        .or(measured.first());
     if let Some(line) = low {
         let share = (chain.compliance(line.hz, &place).ring[(0, 0)] / line.response[(0, 0)]).norm();
-        for inertia in [&mut chain.motor_inertia, &mut chain.ring_inertia, &mut chain.load.mass, &mut chain.load.inertia] {
+        for inertia in [
+            &mut chain.motor_inertia,
+            &mut chain.ring_inertia,
+            &mut chain.load.mass,
+            &mut chain.load.inertia,
+        ] {
             *inertia *= share;
         }
     }
@@ -121,11 +158,38 @@ fn start(guess: &Chain, transmission: f64, guide: f64, measured: &[Measured]) ->
 const MOMENT: f64 = 0.01;
 
 fn to_unknowns(chain: &Chain) -> DVector<f64> {
-    let Chain { motor_inertia, ring_inertia, stiffness, damping, viscous, guide_stiffness, guide_damping, along_stiffness, along_damping, load } = *chain;
+    let Chain {
+        motor_inertia,
+        ring_inertia,
+        stiffness,
+        damping,
+        viscous,
+        guide_stiffness,
+        guide_damping,
+        along_stiffness,
+        along_damping,
+        load,
+    } = *chain;
     let positive = [
-        motor_inertia, ring_inertia, stiffness, damping, viscous, guide_stiffness, guide_damping, along_stiffness, along_damping, load.mass, load.inertia,
+        motor_inertia,
+        ring_inertia,
+        stiffness,
+        damping,
+        viscous,
+        guide_stiffness,
+        guide_damping,
+        along_stiffness,
+        along_damping,
+        load.mass,
+        load.inertia,
     ];
-    DVector::from_iterator(13, positive.map(f64::ln).into_iter().chain(load.moment.map(|moment| moment / MOMENT)))
+    DVector::from_iterator(
+        13,
+        positive
+            .map(f64::ln)
+            .into_iter()
+            .chain(load.moment.map(|moment| moment / MOMENT)),
+    )
 }
 
 fn from_unknowns(unknowns: &DVector<f64>) -> Chain {
@@ -148,13 +212,17 @@ fn from_unknowns(unknowns: &DVector<f64>) -> Chain {
     }
 }
 
-fn residuals(unknowns: &DVector<f64>, prior: &DVector<f64>, measured: &[Measured], place: &Place) -> DVector<f64> {
+fn residuals(
+    unknowns: &DVector<f64>,
+    prior: &DVector<f64>,
+    measured: &[Measured],
+    place: &Place,
+) -> DVector<f64> {
     let chain = from_unknowns(unknowns);
     let mut all = Vec::with_capacity(18 * measured.len() + unknowns.len());
     for line in measured {
         let model = chain.compliance(line.hz, place).ring;
         for k in 0..9 {
-            // By the larger of the two beside a resonance: a model that is a little off must not be pulled by its own peak.
             let off = (line.response[k] - model[k]) / line.deviation[k];
             all.extend([off.re, off.im]);
         }
@@ -166,23 +234,25 @@ fn residuals(unknowns: &DVector<f64>, prior: &DVector<f64>, measured: &[Measured
 
 fn from_minimum(minimum: &Minimum, measured: &[Measured], place: &Place) -> Mechanical {
     let chain = from_unknowns(&minimum.at);
-    let (mut left, mut all) = (0.0, 0.0);
+    let mut left = 0.0;
     for line in measured {
-        let weight = line.hz.powi(4);
-        left += weight * (line.response - chain.compliance(line.hz, place).ring).norm_squared() / line.response.norm_squared() / weight;
-        all += 1.0;
+        let off = line.response - chain.compliance(line.hz, place).ring;
+        left += off.norm_squared() / line.response.norm_squared();
     }
     // Residuals are larger than what deviations say by what the model does not know.
     let grown = (minimum.cost / (18.0 * measured.len() as f64)).max(1.0);
     let covariance = &minimum.covariance * grown;
     let variance = |k: usize| covariance[(k, k)].max(0.0);
     let [motor, ring] = [chain.motor_inertia, chain.ring_inertia];
-    let sum = motor * motor * variance(0) + ring * ring * variance(1) + 2.0 * motor * ring * covariance[(0, 1)];
+    let sum = motor * motor * variance(0)
+        + ring * ring * variance(1)
+        + 2.0 * motor * ring * covariance[(0, 1)];
     Mechanical {
         chain,
-        deviations: (0..13).map(|k| variance(k).sqrt() * if k < 11 { 1.0 } else { MOMENT }).collect(),
-        residual: f64::sqrt(left / all),
+        deviations: (0..13)
+            .map(|k| variance(k).sqrt() * if k < 11 { 1.0 } else { MOMENT })
+            .collect(),
+        residual: f64::sqrt(left / measured.len() as f64),
         drive_inertia_deviation: sum.max(0.0).sqrt() / (motor + ring),
-        load_deviations: [variance(9).sqrt(), variance(10).sqrt()],
     }
 }

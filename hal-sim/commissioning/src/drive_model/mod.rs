@@ -9,7 +9,7 @@ mod electrical;
 mod mechanical;
 
 pub use electrical::{Besides, Electrical, Equations, electrical};
-pub use mechanical::{Guess, Mechanical, mechanical};
+pub use mechanical::{Guess, Mechanical, NAMES, mechanical};
 
 use crate::frequency_response::{Line, Run};
 use crate::record::Timing;
@@ -43,20 +43,40 @@ const PASSES: usize = 4;
 ///
 /// # Errors
 /// [`DriveError`].
-pub fn drive_model(runs: &[Run], lines: &[Line], timing: &Timing, known: &Known) -> Result<DriveModel, DriveError> {
+pub fn drive_model(
+    runs: &[Run],
+    lines: &[Line],
+    timing: &Timing,
+    known: &Known,
+) -> Result<DriveModel, DriveError> {
     let equations = |pivot: usize| Equations::new(runs, timing, pivot, known.knee_a);
     let equations = [equations(0)?, equations(1)?, equations(2)?];
     let all = |mechanics: Option<&DriveModel>| -> Result<[Electrical; 3], DriveError> {
         let one = |pivot: usize| {
-            let mechanics = mechanics.map(|model| (&model.mechanical.chain, model.electrical[pivot].motor_constant));
+            let mechanics = mechanics.map(|model| {
+                (
+                    &model.mechanical.chain,
+                    model.electrical[pivot].motor_constant,
+                )
+            });
             let motor_constant = known.motor_constants.map(|all| all[pivot]);
-            electrical(&equations[pivot], timing, &Besides { motor_constant, mechanics })
+            electrical(
+                &equations[pivot],
+                timing,
+                &Besides {
+                    motor_constant,
+                    mechanics,
+                },
+            )
         };
         Ok([one(0)?, one(1)?, one(2)?])
     };
     let with = |electrical: [Electrical; 3]| {
         let mechanical = mechanical(lines, &electrical, &known.guess, known.to_hz)?;
-        Ok(DriveModel { electrical, mechanical })
+        Ok(DriveModel {
+            electrical,
+            mechanical,
+        })
     };
     let mut model = with(all(None)?)?;
     for _ in 1..PASSES {
@@ -69,25 +89,33 @@ pub fn drive_model(runs: &[Run], lines: &[Line], timing: &Timing, known: &Known)
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
     /// Nothing of a pivot in any record.
-    #[error("pivot {pivot}: no record of volts, current and angle holds a period of it; record them together")]
+    #[error(
+        "pivot {pivot}: no record of volts, current and angle holds a period of it; record them together"
+    )]
     NotRecorded {
         /// 1 to 3.
         pivot: usize,
     },
     /// Signals from which nothing follows.
-    #[error("pivot {pivot}: volts, current and angle do not determine winding and motor; excite it while it turns")]
+    #[error(
+        "pivot {pivot}: volts, current and angle do not determine winding and motor; excite it while it turns"
+    )]
     NoMotion {
         /// 1 to 3.
         pivot: usize,
     },
     /// Numbers that no drive has.
-    #[error("pivot {pivot}: resistance, inductance or motor constant came out negative; look at polarity and wiring first")]
+    #[error(
+        "pivot {pivot}: resistance, inductance or motor constant came out negative; look at polarity and wiring first"
+    )]
     Senseless {
         /// 1 to 3.
         pivot: usize,
     },
     /// A model that does not follow what was measured.
-    #[error("the mechanics are not those of motors, rings and a platform: the model is off by {percent} % of the responses")]
+    #[error(
+        "the mechanics are not those of motors, rings and a platform: the model is off by {percent} % of the responses"
+    )]
     NoFit {
         /// Of what was measured.
         percent: u32,

@@ -44,18 +44,30 @@ pub const BEYOND: f64 = 1.5;
 #[must_use]
 pub fn sensitivity(plant: &Plant, gains: &Gains, tick_s: f64) -> Vec<Matrix3<Complex<f64>>> {
     let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    loops(plant, gains, tick_s).map(|l| (Matrix3::identity() + l).try_inverse().unwrap_or(nothing)).collect()
+    loops(plant, gains, tick_s)
+        .map(|l| (Matrix3::identity() + l).try_inverse().unwrap_or(nothing))
+        .collect()
 }
 
-fn loops<'a>(plant: &'a Plant, gains: &'a Gains, tick_s: f64) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
-    let shares = plant.inertia.map(|inertia| match gains.scheduled_inertia_kg_m2 {
-        scheduled if scheduled > 0.0 => inertia / scheduled,
-        _ => 1.0,
-    });
-    plant.hz.iter().zip(&plant.response).map(move |(&hz, response)| {
-        let servo = |i: usize| gains.pivots[i].response(hz, tick_s) * shares[i];
-        response * Matrix3::from_diagonal(&Vector3::new(servo(0), servo(1), servo(2)))
-    })
+fn loops<'a>(
+    plant: &'a Plant,
+    gains: &'a Gains,
+    tick_s: f64,
+) -> impl Iterator<Item = Matrix3<Complex<f64>>> + 'a {
+    let shares = plant
+        .inertia
+        .map(|inertia| match gains.scheduled_inertia_kg_m2 {
+            scheduled if scheduled > 0.0 => inertia / scheduled,
+            _ => 1.0,
+        });
+    plant
+        .hz
+        .iter()
+        .zip(&plant.response)
+        .map(move |(&hz, response)| {
+            let servo = |i: usize| gains.pivots[i].response(hz, tick_s) * shares[i];
+            response * Matrix3::from_diagonal(&Vector3::new(servo(0), servo(1), servo(2)))
+        })
 }
 
 /// The margins of a loop at one place.
@@ -108,7 +120,11 @@ impl Margins {
     /// The worse of each.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
-        let (ms, ms_hz) = if other.ms > self.ms { (other.ms, other.ms_hz) } else { (self.ms, self.ms_hz) };
+        let (ms, ms_hz) = if other.ms > self.ms {
+            (other.ms, other.ms_hz)
+        } else {
+            (self.ms, self.ms_hz)
+        };
         Self {
             is_stable: self.is_stable && other.is_stable,
             ms,
@@ -144,7 +160,8 @@ fn singular_squares(m: &Matrix3<Complex<f64>>) -> [f64; 3] {
     if !(spread > 1e-14 * mean) {
         return [mean; 3];
     }
-    let shape = (square - Matrix3::from_diagonal_element(Complex::from(mean))) / Complex::from(spread);
+    let shape =
+        (square - Matrix3::from_diagonal_element(Complex::from(mean))) / Complex::from(spread);
     let third = (0.5 * shape.determinant().re).clamp(-1.0, 1.0).acos() / 3.0;
     let [most, least] = [third, third + TAU / 3.0].map(|angle| mean + 2.0 * spread * angle.cos());
     [most, 3.0 * mean - most - least, least]
@@ -158,14 +175,21 @@ mod tests {
     fn singular_values_are_those_of_a_decomposition() {
         let mut seed = 1_u64;
         let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         };
         for _ in 0..200 {
             let m = Matrix3::from_fn(|_, _| Complex::new(random(), random()));
             let expected = m.singular_values();
             assert!((largest_singular(&m) - expected.max()).abs() < 1e-9);
-            assert!((least_singular(&m) - expected.min()).abs() < 1e-7, "{} {}", least_singular(&m), expected.min());
+            assert!(
+                (least_singular(&m) - expected.min()).abs() < 1e-7,
+                "{} {}",
+                least_singular(&m),
+                expected.min()
+            );
         }
     }
 }

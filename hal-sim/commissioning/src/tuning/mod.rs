@@ -62,7 +62,9 @@ pub enum TuningError {
     #[error("no plant to tune for: give at least the one in the middle of the disk")]
     NoPlant,
     /// Not even small gains keep the limits.
-    #[error("not even small gains keep the limits: look at the model's resonances and their damping")]
+    #[error(
+        "not even small gains keep the limits: look at the model's resonances and their damping"
+    )]
     NotEvenSmall,
 }
 
@@ -107,17 +109,32 @@ pub fn tune(
         limits,
     };
     let mut starts: Vec<_> = (starts(resonances_hz).into_iter())
-        .filter_map(|shape| search.best_velocity(&shape).map(|found| (found.margins.rejection, shape, found)))
+        .filter_map(|shape| {
+            search
+                .best_velocity(&shape)
+                .map(|found| (found.margins.rejection, shape, found))
+        })
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let ended = starts.iter().take(FOLLOWED).map(|(rejection, shape, found)| {
-        let unknowns = shape.iter().copied().chain([found.gains.pivots[0].velocity_v_s_rad]).map(f64::ln);
-        let start = DVector::from_iterator(shape.len() + 1, unknowns);
-        let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
-        let after = search.best_velocity(&shape_of(&at)).filter(|after| after.margins.rejection < *rejection);
-        after.unwrap_or(*found)
-    });
-    let found = ended.min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection)).ok_or(TuningError::NotEvenSmall)?;
+    let ended = starts
+        .iter()
+        .take(FOLLOWED)
+        .map(|(rejection, shape, found)| {
+            let unknowns = shape
+                .iter()
+                .copied()
+                .chain([found.gains.pivots[0].velocity_v_s_rad])
+                .map(f64::ln);
+            let start = DVector::from_iterator(shape.len() + 1, unknowns);
+            let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
+            let after = search
+                .best_velocity(&shape_of(&at))
+                .filter(|after| after.margins.rejection < *rejection);
+            after.unwrap_or(*found)
+        });
+    let found = ended
+        .min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection))
+        .ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
     gains.pivots = gains.pivots.map(|pivot| pivot.scaled(limits.share));
     let margins = search.margins(&gains);
@@ -137,7 +154,16 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
         for &second in places.iter().skip(k) {
             let spread = if first == second { 1.09 } else { 1.0 };
             for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
-                starts.push([position, corner, first / spread, 0.4, 0.2, second * spread, 0.4, 0.2]);
+                starts.push([
+                    position,
+                    corner,
+                    first / spread,
+                    0.4,
+                    0.2,
+                    second * spread,
+                    0.4,
+                    0.2,
+                ]);
             }
         }
     }
@@ -177,7 +203,8 @@ impl Search<'_> {
             PivotGains {
                 velocity_v_s_rad,
                 position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
-                integral_v_rad: velocity_v_s_rad * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
+                integral_v_rad: velocity_v_s_rad
+                    * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
                 notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
                 lead: Lead {
                     from_hz: drive.resistance_ohm / drive.inductance_h / TAU,
@@ -192,23 +219,35 @@ impl Search<'_> {
     }
 
     fn margins(&self, gains: &Gains) -> Margins {
-        let mut all = self.plants.iter().map(|plant| margins(plant, gains, self.tick_s));
-        let first = all.next().unwrap_or_else(|| unreachable!("there is a plant"));
+        let mut all = self
+            .plants
+            .iter()
+            .map(|plant| margins(plant, gains, self.tick_s));
+        let first = all
+            .next()
+            .unwrap_or_else(|| unreachable!("there is a plant"));
         all.fold(first, Margins::worse)
     }
 
     fn keeps(&self, margins: &Margins) -> bool {
-        margins.is_stable && margins.ms <= self.limits.ms && margins.resonance_peak <= self.limits.resonance_peak
+        margins.is_stable
+            && margins.ms <= self.limits.ms
+            && margins.resonance_peak <= self.limits.resonance_peak
     }
 
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
-        let velocity = unknowns[unknowns.len() - 1].exp().clamp(VELOCITY[0], VELOCITY[1]);
+        let velocity = unknowns[unknowns.len() - 1]
+            .exp()
+            .clamp(VELOCITY[0], VELOCITY[1]);
         let margins = self.margins(&self.gains(&shape_of(unknowns), velocity));
         if !margins.is_stable {
             return UNSTABLE;
         }
         let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
-        margins.rejection.ln() + PENALTY * (over(margins.ms, self.limits.ms) + over(margins.resonance_peak, self.limits.resonance_peak))
+        margins.rejection.ln()
+            + PENALTY
+                * (over(margins.ms, self.limits.ms)
+                    + over(margins.resonance_peak, self.limits.resonance_peak))
     }
 
     /// The largest velocity gain that keeps the limits.

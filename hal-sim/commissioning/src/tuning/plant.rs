@@ -28,30 +28,51 @@ const END: f64 = 0.98;
 pub fn grid(timing: &Timing) -> Vec<f64> {
     let end_hz = 0.5 * END / timing.tick_s;
     let step = (end_hz / FROM_HZ).ln() / (POINTS - 1) as f64;
-    (0..POINTS).map(|k| FROM_HZ * (step * k as f64).exp()).collect()
+    (0..POINTS)
+        .map(|k| FROM_HZ * (step * k as f64).exp())
+        .collect()
 }
 
 /// From volts at the terminals to the rings' angles, rad/V, as continuous signals: what [`Line::angle_by_volts`] measures.
 #[must_use]
-pub fn angle_by_volts(electrical: &[Electrical; 3], chain: &Chain, place: &Place, hz: f64) -> Matrix3<Complex<f64>> {
+pub fn angle_by_volts(
+    electrical: &[Electrical; 3],
+    chain: &Chain,
+    place: &Place,
+    hz: f64,
+) -> Matrix3<Complex<f64>> {
     let s = Complex::new(0.0, TAU * hz);
     let angles = chain.compliance(hz, place);
     let diagonal = |value: &dyn Fn(&Electrical) -> Complex<f64>| {
-        Matrix3::from_diagonal(&Vector3::new(value(&electrical[0]), value(&electrical[1]), value(&electrical[2])))
+        Matrix3::from_diagonal(&Vector3::new(
+            value(&electrical[0]),
+            value(&electrical[1]),
+            value(&electrical[2]),
+        ))
     };
     let constants = diagonal(&|drive| drive.motor_constant.into());
     let windings = diagonal(&|drive| drive.resistance_ohm + s * drive.inductance_h);
     let impedance = windings + constants * angles.motor * constants * s;
     let nothing = Matrix3::repeat(Complex::new(f64::NAN, f64::NAN));
-    impedance.try_inverse().map_or(nothing, |inverse| angles.ring * constants * inverse)
+    impedance
+        .try_inverse()
+        .map_or(nothing, |inverse| angles.ring * constants * inverse)
 }
 
 impl Plant {
     /// From the model, at a place.
     #[must_use]
-    pub fn from_model(electrical: &[Electrical; 3], chain: &Chain, place: &Place, timing: &Timing) -> Self {
+    pub fn from_model(
+        electrical: &[Electrical; 3],
+        chain: &Chain,
+        place: &Place,
+        timing: &Timing,
+    ) -> Self {
         let hz = grid(timing);
-        let response = hz.iter().map(|&hz| angle_by_volts(electrical, chain, place, hz) * seen(hz, timing)).collect();
+        let response = hz
+            .iter()
+            .map(|&hz| angle_by_volts(electrical, chain, place, hz) * seen(hz, timing))
+            .collect();
         Self {
             hz,
             response,
@@ -64,7 +85,10 @@ impl Plant {
     pub fn from_lines(lines: &[Line], inertia: [f64; 3], timing: &Timing) -> Self {
         Self {
             hz: lines.iter().map(|line| line.hz).collect(),
-            response: lines.iter().map(|line| line.angle_by_volts() * seen(line.hz, timing)).collect(),
+            response: lines
+                .iter()
+                .map(|line| line.angle_by_volts() * seen(line.hz, timing))
+                .collect(),
             inertia,
         }
     }

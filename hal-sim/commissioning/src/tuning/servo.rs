@@ -64,7 +64,10 @@ impl Notch {
 
 impl Lead {
     /// None.
-    pub const NONE: Self = Self { from_hz: 0.0, to_hz: 3_000.0 };
+    pub const NONE: Self = Self {
+        from_hz: 0.0,
+        to_hz: 3_000.0,
+    };
 
     fn response(&self, tangent: Complex<f64>, tick_s: f64) -> Complex<f64> {
         if self.from_hz <= 0.0 {
@@ -84,7 +87,11 @@ impl PivotGains {
         let tangent = Complex::new(0.0, (PI * hz * tick_s).tan());
         let rate = (1.0 - back) / tick_s + self.position_1_s;
         let collected = self.integral_v_rad * tick_s * back / (1.0 - back);
-        let filters: Complex<f64> = self.notches.iter().map(|notch| notch.response(tangent, tick_s)).product();
+        let filters: Complex<f64> = self
+            .notches
+            .iter()
+            .map(|notch| notch.response(tangent, tick_s))
+            .product();
         filters * self.lead.response(tangent, tick_s) * rate * (self.velocity_v_s_rad + collected)
     }
 

@@ -2,10 +2,12 @@
 //! ring's own encoder turns the rings and keeps them together.
 #![allow(dead_code)]
 
+use commissioning::frequency_response::Run;
 use commissioning::multisine::{Multisine, lines, runs};
 use commissioning::record::{Record, Timing};
-use commissioning::frequency_response::Run;
-use hal_sim::machine::devices::{BridgeState, COUNTS_PER_TURN, MAX_DUTY, Stage, StageParameters, WiringParameters};
+use hal_sim::machine::devices::{
+    BridgeState, COUNTS_PER_TURN, MAX_DUTY, Stage, StageParameters, WiringParameters,
+};
 use std::f64::consts::TAU;
 
 pub mod steady;
@@ -79,11 +81,14 @@ impl Machine {
         let (currents, supply) = self.stage.analog();
         self.supply_v += 0.01 * (f64::from(supply) * VOLTS_PER_COUNT * 20.0 - self.supply_v);
         self.last_rad = self.angle_rad;
-        for i in 0..3 {
-            self.current_a[i] = (f64::from(currents[i]) - 2048.0) * VOLTS_PER_COUNT / 0.2 - self.offset_a[i];
+        for (i, counts) in currents.into_iter().enumerate() {
+            self.current_a[i] =
+                (f64::from(counts) - 2048.0) * VOLTS_PER_COUNT / 0.2 - self.offset_a[i];
             let position = self.stage.encoders[i].position();
             let half = COUNTS_PER_TURN / 2;
-            let step = (position.wrapping_sub(self.counts[i]).wrapping_add(half) & (COUNTS_PER_TURN - 1)) as i32 - half as i32;
+            let step = (position.wrapping_sub(self.counts[i]).wrapping_add(half)
+                & (COUNTS_PER_TURN - 1)) as i32
+                - half as i32;
             self.counts[i] = position;
             self.angle_rad[i] += f64::from(step) * TAU / f64::from(COUNTS_PER_TURN);
         }
@@ -94,7 +99,12 @@ impl Machine {
             let counts = wanted.round().clamp(-full, full);
             self.residue[i] = wanted - counts;
             given[i] = counts / full * self.supply_v;
-            BridgeState { pulse: counts.abs() / full, forward: counts > 0.0, awake: true, fault: false }
+            BridgeState {
+                pulse: counts.abs() / full,
+                forward: counts > 0.0,
+                awake: true,
+                fault: false,
+            }
         });
         self.stage.advance_period(pins);
         given
@@ -106,7 +116,10 @@ impl Machine {
         let volts = [0, 1, 2].map(|i| {
             let rate = (self.angle_rad[i] - self.last_rad[i]) / TIMING.tick_s;
             let want = wants[i];
-            more_v[i] + 3.0 * want.rate_rad_s + velocity * (want.rate_rad_s - rate) + position * (want.angle_rad - self.angle_rad[i])
+            more_v[i]
+                + 3.0 * want.rate_rad_s
+                + velocity * (want.rate_rad_s - rate)
+                + position * (want.angle_rad - self.angle_rad[i])
         });
         let given = self.tick(volts);
         if let Some(record) = record {
@@ -134,7 +147,15 @@ pub struct Plan {
     pub lines: usize,
 }
 
-pub const PLAN: Plan = Plan { pose: [0.0; 3], rate_rad_s: 2.0, rms_v: 3.0, runs: 4, periods: 4, to_hz: 3_000.0, lines: 57 };
+pub const PLAN: Plan = Plan {
+    pose: [0.0; 3],
+    rate_rad_s: 2.0,
+    rms_v: 3.0,
+    runs: 4,
+    periods: 4,
+    to_hz: 3_000.0,
+    lines: 57,
+};
 
 pub struct Excited {
     pub runs: Vec<Run>,
@@ -152,7 +173,10 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
     let mut turn = |machine: &mut Machine, more_v: [f64; 3], record: Option<&mut Record>| {
         rate += (plan.rate_rad_s - rate) * 2e-3;
         phase_rad += rate * TIMING.tick_s;
-        let wants = [0, 1, 2].map(|i| Want { angle_rad: start[i] + phase_rad, rate_rad_s: rate });
+        let wants = [0, 1, 2].map(|i| Want {
+            angle_rad: start[i] + phase_rad,
+            rate_rad_s: rate,
+        });
         machine.servo_tick(wants, more_v, record);
     };
     for _ in 0..10_000 {
@@ -166,7 +190,10 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
             let sines = Multisine::new(PERIOD, bins, plan.rms_v);
             let volts = sines.period_v();
             let experiments = [0, 1, 2].map(|drive| {
-                let mut record = Record { first_tick: PERIOD, ..Record::default() };
+                let mut record = Record {
+                    first_tick: PERIOD,
+                    ..Record::default()
+                };
                 for tick in 0..(1 + plan.periods) * PERIOD {
                     let mut more_v = [0.0; 3];
                     more_v[drive] = volts[tick % PERIOD];
@@ -175,10 +202,18 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
                 }
                 vec![record]
             });
-            Run { period_ticks: PERIOD, bins: sines.bins, experiments }
+            Run {
+                period_ticks: PERIOD,
+                bins: sines.bins,
+                experiments,
+            }
         })
         .collect();
     let after_k = machine.stage.plant.windings_warmer_k();
     let warmer_k = [0, 1, 2].map(|i| 0.5 * (before_k[i] + after_k[i]));
-    Excited { runs, machine, warmer_k }
+    Excited {
+        runs,
+        machine,
+        warmer_k,
+    }
 }

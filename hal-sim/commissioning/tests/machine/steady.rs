@@ -20,7 +20,10 @@ fn steady_rates(machine: &mut Machine, rate: f64) -> [SteadyRate; 3] {
     for tick in 0..settle + ticks {
         speed += (rate - speed) * 2e-3;
         phase += speed * TIMING.tick_s;
-        let wants = [0, 1, 2].map(|i| Want { angle_rad: start[i] + phase, rate_rad_s: speed });
+        let wants = [0, 1, 2].map(|i| Want {
+            angle_rad: start[i] + phase,
+            rate_rad_s: speed,
+        });
         let mut record = Record::default();
         machine.servo_tick(wants, [0.0; 3], Some(&mut record));
         if tick >= settle {
@@ -30,14 +33,21 @@ fn steady_rates(machine: &mut Machine, rate: f64) -> [SteadyRate; 3] {
             }
         }
     }
-    sums.map(|[current_a, volts]| SteadyRate { rate_rad_s: rate, current_a, volts })
+    sums.map(|[current_a, volts]| SteadyRate {
+        rate_rad_s: rate,
+        current_a,
+        volts,
+    })
 }
 
 /// All of them, pivot by pivot.
 pub fn all_rates(machine: &mut Machine) -> [Vec<SteadyRate>; 3] {
     let gains = std::mem::replace(&mut machine.gains, [4.0, 200.0]);
     let rates: Vec<_> = (RATES.iter()).flat_map(|rate| [*rate, -rate]).collect();
-    let all: Vec<_> = rates.into_iter().map(|rate| steady_rates(machine, rate)).collect();
+    let all: Vec<_> = rates
+        .into_iter()
+        .map(|rate| steady_rates(machine, rate))
+        .collect();
     machine.gains = gains;
     [0, 1, 2].map(|pivot| all.iter().map(|pivots| pivots[pivot]).collect())
 }

@@ -4,8 +4,8 @@ use super::steady::all_rates;
 use super::{Excited, Machine, PLAN, Plan, TIMING, excite};
 use commissioning::chain::{Chain, Load, Place};
 use commissioning::drive_model::{DriveModel, Guess, Known, drive_model};
-use commissioning::friction::friction;
 use commissioning::frequency_response::{Line, frequency_response};
+use commissioning::friction::friction;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::Plant;
 use nalgebra::{DMatrix, Matrix3};
@@ -22,7 +22,11 @@ pub const GUESS: Guess = Guess(Chain {
     guide_damping: 1.7,
     along_stiffness: 1000.0,
     along_damping: 0.8,
-    load: Load { mass: 0.05, inertia: 0.025, moment: [0.0; 2] },
+    load: Load {
+        mass: 0.05,
+        inertia: 0.025,
+        moment: [0.0; 2],
+    },
 });
 
 /// Resistances of the windings as their pulses had them, roughly: what the motor constants are found with.
@@ -38,8 +42,14 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
     let mut machine = Machine::at(parameters, plan.pose);
     let steady = all_rates(&mut machine);
     let motor_constants = [0, 1, 2].map(|i| {
-        let warm = 1.0 + parameters.plant.winding.resistance_per_k * machine.stage.plant.windings_warmer_k()[i];
-        let found = friction(&steady[i], ROUGH_OHM * warm * parameters.plant.resistance_ohm).expect("there is friction");
+        let warm = 1.0
+            + parameters.plant.winding.resistance_per_k
+                * machine.stage.plant.windings_warmer_k()[i];
+        let found = friction(
+            &steady[i],
+            ROUGH_OHM * warm * parameters.plant.resistance_ohm,
+        )
+        .expect("there is friction");
         found.motor_constant
     });
     let known = Known {
@@ -51,7 +61,11 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
     let excited = excite(parameters, plan);
     let lines = frequency_response(&excited.runs, &TIMING).expect("there are responses");
     let model = drive_model(&excited.runs, &lines, &TIMING, &known).expect("there is a model");
-    Identified { excited, lines, model }
+    Identified {
+        excited,
+        lines,
+        model,
+    }
 }
 
 /// What is compared, in this order; errors over the true value, the worst of what there is three of.
@@ -73,37 +87,60 @@ pub const NAMES: [&str; 13] = [
 
 pub fn errors(parameters: &StageParameters, found: &Identified) -> [f64; 13] {
     let (plant, analog) = (&parameters.plant, &parameters.analog);
-    let DriveModel { electrical, mechanical } = &found.model;
+    let DriveModel {
+        electrical,
+        mechanical,
+    } = &found.model;
     let supply = analog.supply_gain;
     let current = analog.current_gain.iter().sum::<f64>() / 3.0;
     let inertia = ring_inertia(plant_at(parameters, PLAN.pose));
     let found_inertia = mechanical.chain.inertia(&Place::centre());
-    let worst = |error: &dyn Fn(usize) -> f64| (0..3).map(error).fold(0.0_f64, |most, error| if error.abs() > most.abs() { error } else { most });
+    let worst = |error: &dyn Fn(usize) -> f64| {
+        (0..3).map(error).fold(0.0_f64, |most, error| {
+            if error.abs() > most.abs() {
+                error
+            } else {
+                most
+            }
+        })
+    };
     let gain = |i: usize| analog.current_gain[i];
-    let ohm = |i: usize| plant.resistance_ohm * (1.0 + plant.winding.resistance_per_k * found.excited.warmer_k[i]);
+    let ohm = |i: usize| {
+        plant.resistance_ohm * (1.0 + plant.winding.resistance_per_k * found.excited.warmer_k[i])
+    };
     let constant = plant.gear_ratio * plant.torque_constant_n_m_a;
     let square = plant.track_radius_m * plant.track_radius_m;
     let payload = &plant.payload;
     let mass = square * (plant.platform_mass_kg + payload.mass_kg);
-    let load_inertia = plant.platform_inertia_kg_m2 + payload.inertia_kg_m2 + payload.mass_kg * payload.eccentricity_m.powi(2);
+    let load_inertia = plant.platform_inertia_kg_m2
+        + payload.inertia_kg_m2
+        + payload.mass_kg * payload.eccentricity_m.powi(2);
     let drive_inertia = plant.motor_inertia_kg_m2 + plant.ring_inertia_kg_m2;
     let resonances = resonances_hz(parameters);
     let found_resonances = mechanical.chain.resonances_hz(&Place::centre());
     let resonance = |k: usize| found_resonances[k] / resonances[k] - 1.0;
-    let all_resonances = (0..6).map(resonance).fold(0.0_f64, |most, error| if error.abs() > most.abs() { error } else { most });
+    let all_resonances = (0..6).map(resonance).fold(0.0_f64, |most, error| {
+        if error.abs() > most.abs() {
+            error
+        } else {
+            most
+        }
+    });
     // Meters that read too much make everything of volts and amperes as much larger: that is no error of the method.
     let torque = supply * current;
     let lost_v = 200e-9 * 40e3 * found.excited.machine.supply_v;
     [
         worst(&|i| {
-            let found = electrical[i].resistance_ohm / electrical[i].motor_constant * found_inertia[(i, i)];
+            let found =
+                electrical[i].resistance_ohm / electrical[i].motor_constant * found_inertia[(i, i)];
             found / (ohm(i) / constant * inertia[(i, i)] * supply * current / gain(i)) - 1.0
         }),
         worst(&|i| electrical[i].motor_constant / (constant * supply) - 1.0),
         worst(&|i| electrical[i].resistance_ohm / (ohm(i) * supply / gain(i)) - 1.0),
         worst(&|i| electrical[i].inductance_h / (plant.inductance_h * supply / gain(i)) - 1.0),
         worst(&|i| found_inertia[(i, i)] / (inertia[(i, i)] * torque) - 1.0),
-        (mechanical.chain.motor_inertia + mechanical.chain.ring_inertia) / (drive_inertia * torque) - 1.0,
+        (mechanical.chain.motor_inertia + mechanical.chain.ring_inertia) / (drive_inertia * torque)
+            - 1.0,
         mechanical.chain.load.mass / (mass * torque) - 1.0,
         mechanical.chain.load.inertia / (load_inertia * torque) - 1.0,
         resonance(0),
@@ -159,7 +196,11 @@ pub fn resonances_hz(parameters: &StageParameters) -> Vec<f64> {
         }
     }
     let all = mass.try_inverse().expect("masses") * stiffness;
-    let mut hz: Vec<f64> = all.complex_eigenvalues().iter().map(|square| square.re.max(0.0).sqrt() / TAU).collect();
+    let mut hz: Vec<f64> = all
+        .complex_eigenvalues()
+        .iter()
+        .map(|square| square.re.max(0.0).sqrt() / TAU)
+        .collect();
     hz.sort_by(f64::total_cmp);
     hz.split_off(3)
 }

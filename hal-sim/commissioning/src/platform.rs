@@ -1,0 +1,332 @@
+//! What is carried, from the torques of the rings over a tour.
+//!
+//! Along the tour every ring's torque is linear in what is sought:
+//!
+//! ```text
+//! T = J p'' + Tc z + b p' + T0 + J^-T (M q'' + forces of the turning moment + F z_rho drho/dq + k q)
+//! ```
+//!
+//! z are the contacts that rub, -1 to 1: signs of the rates but for a way of presliding after each reversal (Dahl's). A sign alone would be early
+//! there, and what it is early by is like an inertia.
+//!
+//! M is made of mass, inertia and first moment of platform and payload; F is the friction along the guides, k the cables' stiffness, p the ring angles,
+//! q the pose. Angles give the pose by the direct kinematics ([`kinematics::direct()`]); all signals are smoothed alike before anything is
+//! derived, so that what smoothing takes from one side it takes from the other.
+//!
+//! In the middle of the disk the inertia of the rings and that of what they carry cannot be told apart; a tour has to go out.
+
+use kinematics::{Pose, Twist, direct, inverse, jacobian, jacobian_inverse};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+/// A tour as it was recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tour {
+    /// Between samples, s.
+    pub step_s: f64,
+    /// Angles of the pivots with their zeros set, rad.
+    pub angle_rad: [Vec<f64>; 3],
+    /// Torques of the motors at the rings, N m: current times motor constant.
+    pub torque_n_m: [Vec<f64>; 3],
+}
+
+/// How a tour is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation {
+    /// Track radius, m.
+    pub track_radius_m: f64,
+    /// Length of the window with which all signals are smoothed, s.
+    pub smoothing_s: f64,
+    /// Inertia of a motor and its ring, kg m^2, where it is known; `None`: it is sought too.
+    pub drive_inertia: Option<f64>,
+    /// Presliding of the rings, rad (parameter 0x5450080A), and of carriages on their guides, track radii.
+    pub presliding: [f64; 2],
+}
+
+/// What is carried, as found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Platform {
+    /// Mass of platform and payload, kg.
+    pub mass_kg: f64,
+    /// Their inertia about the platform's centre, kg m^2.
+    pub inertia_kg_m2: f64,
+    /// Mass times its centre, along the platform's axes, kg m.
+    pub moment_kg_m: [f64; 2],
+    /// A motor and its ring, kg m^2.
+    pub drive_inertia: f64,
+    /// Friction of a ring with its motor, N m and N m s/rad: mean of the three.
+    pub friction: [f64; 2],
+    /// Friction of a carriage along its guide, N.
+    pub guide_n: f64,
+    /// Standard deviations of mass, inertia, moments and drive inertia, in units of theirs.
+    pub deviations: [f64; 5],
+    /// What is left of the torques, over them.
+    pub residual: f64,
+    /// Condition of the equations, every unknown counted in its own size: what noise and what the model leaves out may grow by.
+    pub condition: f64,
+}
+
+/// Why nothing follows from a tour.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PlatformError {
+    /// Signals of different lengths, or fewer than a window.
+    #[error(
+        "the tour's angles and torques are not as long as each other, or shorter than a few windows of smoothing"
+    )]
+    Lengths,
+    /// No pose.
+    #[error(
+        "the angles at sample {sample} are none of the mechanism: set the encoders' zeros first"
+    )]
+    NoPose {
+        /// Which.
+        sample: usize,
+    },
+    /// A tour that does not show it.
+    #[error(
+        "condition {condition:.0}: the tour does not tell the unknowns apart; go further out and shake along x, y and theta by turns"
+    )]
+    Condition {
+        /// As computed.
+        condition: f64,
+    },
+    /// Torques of something else.
+    #[error(
+        "{percent} % of the torques are left over: wrong zeros, wrong motor constants, or something rubs"
+    )]
+    Residual {
+        /// Of the torques.
+        percent: u32,
+    },
+}
+
+/// A larger condition is refused.
+pub const MOST_CONDITION: f64 = 100.0;
+/// More that is left is refused.
+pub const MOST_RESIDUAL: f64 = 0.25;
+const UNKNOWNS: usize = 16;
+
+/// What is carried, by linear least squares.
+///
+/// # Errors
+/// [`PlatformError`].
+pub fn platform(tour: &Tour, how: &Evaluation) -> Result<Platform, PlatformError> {
+    let samples = tour.angle_rad[0].len();
+    let window = ((how.smoothing_s / tour.step_s).round() as usize).max(2);
+    let all = tour.angle_rad.iter().chain(&tour.torque_n_m);
+    if all.clone().any(|signal| signal.len() != samples) || samples < 4 * window {
+        return Err(PlatformError::Lengths);
+    }
+    let torques = [0, 1, 2].map(|i| smoothed(&tour.torque_n_m[i], window));
+    let raw = poses(tour)?;
+    let contacts = contacts(tour, &raw, how).map(|contact| smoothed(&contact, window));
+    let part = |k: usize| smoothed(&raw.iter().map(|pose| pose[k]).collect::<Vec<_>>(), window);
+    let (x, y, theta) = (part(0), part(1), part(2));
+    let poses: Vec<_> = (0..x.len())
+        .map(|k| Vector3::new(x[k], y[k], theta[k]))
+        .collect();
+    let mut rows = Vec::new();
+    let mut right = Vec::new();
+    // Neighbours tell the same.
+    for at in (1..poses.len() - 1).step_by((window / 4).max(1)) {
+        let rubs = [0, 1, 2, 3, 4, 5].map(|k| contacts[k][at]);
+        let (matrix, known) = equations(
+            &poses[at - 1..=at + 1],
+            &rubs,
+            tour.step_s,
+            how.drive_inertia,
+        )
+        .ok_or(PlatformError::NoPose { sample: at })?;
+        for i in 0..3 {
+            rows.push(matrix[i]);
+            right.push(torques[i][at] - known[i]);
+        }
+    }
+    let right = DVector::from_vec(right);
+    let unknowns: Vec<usize> = (0..UNKNOWNS)
+        .filter(|&k| k != 4 || how.drive_inertia.is_none())
+        .collect();
+    let matrix = DMatrix::from_fn(rows.len(), unknowns.len(), |row, k| rows[row][unknowns[k]]);
+    let sizes = DVector::from_iterator(
+        unknowns.len(),
+        matrix.column_iter().map(|column| column.norm().max(1e-12)),
+    );
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, k| {
+        matrix[(row, k)] / sizes[k]
+    });
+    let normal = scaled.tr_mul(&scaled);
+    let eigen = normal.symmetric_eigenvalues();
+    let condition = (eigen.max() / eigen.min().max(1e-300)).sqrt();
+    if !(condition <= MOST_CONDITION) {
+        return Err(PlatformError::Condition { condition });
+    }
+    let inverse = normal
+        .try_inverse()
+        .ok_or(PlatformError::Condition { condition })?;
+    let solved = &inverse * scaled.tr_mul(&right);
+    let left = (&scaled * &solved - &right).norm_squared();
+    let residual = (left / right.norm_squared()).sqrt();
+    if !(residual <= MOST_RESIDUAL) {
+        return Err(PlatformError::Residual {
+            percent: (100.0 * residual) as u32,
+        });
+    }
+    // Neighbouring rows err alike: a window's worth of them is one.
+    let variance = left / right.len() as f64 * 4.0;
+    let (mut numbers, mut deviations) = ([0.0; UNKNOWNS], [0.0; UNKNOWNS]);
+    for (k, &unknown) in unknowns.iter().enumerate() {
+        numbers[unknown] = solved[k] / sizes[k];
+        deviations[unknown] = (inverse[(k, k)] * variance).sqrt() / sizes[k];
+    }
+    let radius = how.track_radius_m;
+    Ok(Platform {
+        mass_kg: numbers[0] / (radius * radius),
+        inertia_kg_m2: numbers[1],
+        moment_kg_m: [numbers[2] / radius, numbers[3] / radius],
+        drive_inertia: how.drive_inertia.unwrap_or(numbers[4]),
+        friction: [
+            numbers[5..8].iter().sum::<f64>() / 3.0,
+            numbers[8..11].iter().sum::<f64>() / 3.0,
+        ],
+        guide_n: numbers[11] / radius,
+        deviations: [
+            deviations[0] / (radius * radius),
+            deviations[1],
+            deviations[2] / radius,
+            deviations[3] / radius,
+            deviations[4],
+        ],
+        residual,
+        condition,
+    })
+}
+
+/// Means under a Hann window, of as many values.
+fn smoothed(values: &[f64], window: usize) -> Vec<f64> {
+    let weights: Vec<f64> = (0..=window)
+        .map(|k| 1.0 - (TAU * (k as f64 + 0.5) / (window + 1) as f64).cos())
+        .collect();
+    let sum: f64 = weights.iter().sum();
+    values
+        .windows(window + 1)
+        .map(|part| {
+            part.iter()
+                .zip(&weights)
+                .map(|(value, weight)| value * weight)
+                .sum::<f64>()
+                / sum
+        })
+        .collect()
+}
+
+/// Poses: x and y in track radii, theta.
+fn poses(tour: &Tour) -> Result<Vec<Vector3<f64>>, PlatformError> {
+    (0..tour.angle_rad[0].len())
+        .map(|sample| {
+            let angles = [0, 1, 2].map(|i| tour.angle_rad[i][sample]);
+            let pose = direct::<f64>(&angles).map_err(|_| PlatformError::NoPose { sample })?;
+            Ok(Vector3::new(pose.x, pose.y, pose.theta))
+        })
+        .collect()
+}
+
+/// Contacts of the three rings and of the three carriages, -1 to 1: `dz/ds = 1 - z sign(ds)` by the way s over the presliding.
+fn contacts(tour: &Tour, poses: &[Vector3<f64>], how: &Evaluation) -> [Vec<f64>; 6] {
+    let rhos: Vec<[f64; 3]> = (poses.iter())
+        .map(|pose| {
+            let found = inverse(&Pose {
+                x: pose.x,
+                y: pose.y,
+                theta: pose.z,
+            });
+            found.map_or([0.0; 3], |found| found.guides.map(|guide| guide.rho()))
+        })
+        .collect();
+    let [rings, guides] = how.presliding;
+    std::array::from_fn(|k| {
+        let (place, presliding): (Vec<f64>, f64) = match k {
+            0..3 => (tour.angle_rad[k].clone(), rings),
+            _ => (rhos.iter().map(|rhos| rhos[k - 3]).collect(), guides),
+        };
+        let mut contact = 0.0;
+        let mut all = vec![0.0];
+        for pair in place.windows(2) {
+            let way = (pair[1] - pair[0]) / presliding;
+            contact = (contact + way) / (1.0 + way.abs());
+            all.push(contact);
+        }
+        all
+    })
+}
+
+/// Coefficients of all unknowns for each ring's torque at the middle of three poses, and what is known of the torque.
+fn equations(
+    poses: &[Vector3<f64>],
+    rubs: &[f64; 6],
+    step_s: f64,
+    drive_inertia: Option<f64>,
+) -> Option<([[f64; UNKNOWNS]; 3], [f64; 3])> {
+    let [before, now, after] = [poses[0], poses[1], poses[2]];
+    let twist = (after - before) / (2.0 * step_s);
+    let acceleration = (after - 2.0 * now + before) / (step_s * step_s);
+    let guides = inverse(&Pose {
+        x: now.x,
+        y: now.y,
+        theta: now.z,
+    })
+    .ok()?
+    .guides;
+    let rates = jacobian(&guides) * twist;
+    let accelerations = kinematics::pivot_accelerations(
+        &guides,
+        &Twist {
+            x: twist.x,
+            y: twist.y,
+            theta: twist.z,
+        },
+        &kinematics::Acceleration {
+            x: acceleration.x,
+            y: acceleration.y,
+            theta: acceleration.z,
+        },
+    );
+    let to_rings: Matrix3<f64> = jacobian_inverse(&guides).transpose();
+    let (sin, cos) = now.z.sin_cos();
+    let (a, turning) = (acceleration, twist.z * twist.z);
+    // A moment along the base's x or y: M q'' and the centrifugal force of it.
+    let along_x = Vector3::new(-turning, a.z, a.y);
+    let along_y = Vector3::new(-a.z, -turning, -a.x);
+    let mut rubbing = Vector3::zeros();
+    for (guide, contact) in guides.iter().zip(&rubs[3..]) {
+        let offset_by_pose = Vector3::new(-guide.sin, guide.cos, -guide.projection);
+        let by_pose = -(offset_by_pose * (guide.offset / guide.cosine))
+            - Vector3::new(guide.cos, guide.sin, guide.offset);
+        rubbing += by_pose * *contact;
+    }
+    let columns = [
+        to_rings * Vector3::new(a.x, a.y, 0.0),
+        to_rings * Vector3::new(0.0, 0.0, a.z),
+        to_rings * (along_x * cos + along_y * sin),
+        to_rings * (along_y * cos - along_x * sin),
+        Vector3::from(accelerations),
+    ];
+    let [guide, cable] = [
+        to_rings * rubbing,
+        to_rings * Vector3::new(now.x, now.y, 0.0),
+    ];
+    let mut rows = [[0.0; UNKNOWNS]; 3];
+    for (i, row) in rows.iter_mut().enumerate() {
+        for (k, column) in columns.iter().enumerate() {
+            row[k] = column[i];
+        }
+        row[5 + i] = rubs[i];
+        row[8 + i] = rates[i];
+        row[11] = guide[i];
+        row[12] = cable[i];
+        row[13 + i] = 1.0;
+    }
+    Some((
+        rows,
+        accelerations.map(|acceleration| drive_inertia.unwrap_or(0.0) * acceleration),
+    ))
+}

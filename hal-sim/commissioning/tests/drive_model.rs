@@ -1,0 +1,92 @@
+//! Numbers of simulated machines against what they were built with, every imperfection on.
+
+mod machine;
+
+use commissioning::chain::Place;
+use commissioning::chain::{Chain, Load};
+use hal_sim::machine::plant::Plant;
+use machine::truth::{GUESS, NAMES, errors, identify, resonances_hz, ring_inertia};
+use machine::{PLAN, unknown};
+
+/// Of some of the machines of `cargo bench -p commissioning`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
+const WORST: [f64; 13] = [
+    0.0152, 0.0033, 0.0087, 0.0127, 0.0137, 0.026, 0.0281, 0.0643, 0.029, 0.107, 0.0097, 0.0068,
+    0.015,
+];
+
+#[test]
+fn unknown_machines_are_identified() {
+    for seed in [3, 12] {
+        let parameters = unknown(seed);
+        let found = identify(&parameters, &PLAN);
+        for ((error, worst), name) in errors(&parameters, &found)
+            .into_iter()
+            .zip(WORST)
+            .zip(NAMES)
+        {
+            println!("{seed} {name}: {:+.2} %", 100.0 * error);
+            assert!(error.abs() < worst, "{seed} {name}: {error}");
+        }
+        // What is not known of the split between motor and ring is said.
+        let mechanical = &found.model.mechanical;
+        assert!(mechanical.drive_inertia_deviation < mechanical.deviations[1]);
+        assert!(
+            found
+                .lines
+                .iter()
+                .filter(|line| line.hz < 1e3)
+                .all(|line| line.quality() > 0.95)
+        );
+    }
+}
+
+/// The chain against the simulator's own matrices: the guess's numbers in a machine have the guess's resonances.
+#[test]
+fn resonances_of_the_chain_are_those_of_the_simulators_matrices() {
+    let mut parameters = unknown(5);
+    let plant = &mut parameters.plant;
+    plant.motor_inertia_kg_m2 = GUESS.0.motor_inertia;
+    plant.ring_inertia_kg_m2 = GUESS.0.ring_inertia;
+    plant.transmission_stiffness_n_m_rad = GUESS.0.stiffness;
+    plant.guide_stiffness_n_m = GUESS.0.guide_stiffness / 0.01;
+    plant.platform_mass_kg = GUESS.0.load.mass / 0.01;
+    plant.platform_inertia_kg_m2 = GUESS.0.load.inertia;
+    plant.payload = hal_sim::machine::plant::Payload::NONE;
+    plant.imperfections.geometry = false;
+    let expected = resonances_hz(&parameters);
+    for (found, expected) in GUESS.0.resonances_hz(&Place::centre()).iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+    }
+}
+
+/// What the rings move, against the simulator's mass matrix, away from the middle and with a load beside the centre.
+#[test]
+fn inertia_of_the_chain_is_that_of_the_simulators_matrices() {
+    let mut parameters = unknown(5).plant;
+    parameters.imperfections.geometry = false;
+    let payload = &parameters.payload;
+    let (sin, cos) = payload.direction_rad.sin_cos();
+    let moment = 0.1 * payload.mass_kg * payload.eccentricity_m;
+    let chain = Chain {
+        motor_inertia: parameters.motor_inertia_kg_m2,
+        ring_inertia: parameters.ring_inertia_kg_m2,
+        load: Load {
+            mass: 0.01 * (parameters.platform_mass_kg + payload.mass_kg),
+            inertia: parameters.platform_inertia_kg_m2
+                + payload.inertia_kg_m2
+                + payload.mass_kg * payload.eccentricity_m.powi(2),
+            moment: [moment * cos, moment * sin],
+        },
+        ..GUESS.0
+    };
+    for (x, y) in [(0.0, 0.0), (0.05, 0.03), (-0.02, 0.06)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_pose_at_rest([x, y, 0.0]);
+        let expected = ring_inertia(plant);
+        let found = chain.inertia(&Place::new(x / 0.1, y / 0.1).expect("inside"));
+        assert!(
+            (found - expected).norm() < 1e-4 * expected.norm(),
+            "{found} {expected}"
+        );
+    }
+}
