@@ -48,7 +48,7 @@ fn wiring(machine: &StageParameters) -> ([u8; 3], [u8; 3]) {
 
 #[test]
 fn sound_machines_are_brought_up() {
-    for seed in [1, 2, 7, 11] {
+    for seed in [1, 8] {
         let machine = unknown(seed);
         let (output, folder) =
             commission(&format!("sound-{seed}"), &["--unknown", &seed.to_string()]);

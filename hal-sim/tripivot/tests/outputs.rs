@@ -17,6 +17,7 @@ const COMMANDS: &[&str] = &[
     "record",
     "settings",
     "board",
+    "commission",
     "machine",
     "sensitivity",
     "faults",

@@ -164,7 +164,10 @@ impl ExcitationRun {
         }
         if !is_ring && let Some(far) = ways.iter().position(|way| *way >= u64::from(until.way)) {
             const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
-            let way = ways.get(far).map_or(0.0, |way| *way as f32 * RAD);
+            let way = ways
+                .get(far)
+                .map_or(0, |way| u32::try_from(*way).unwrap_or(u32::MAX));
+            let way = way as f32 * RAD;
             self.finish(ExcitationEnd::Way, far, way);
             return None;
         }

@@ -102,7 +102,7 @@ impl Event {
 #[inline]
 pub(super) fn outcome(mode: Mode, event: Event) -> Outcome {
     // With a name, by which the image's linker finds it: what the tick reads lies in RAM there.
-    static TABLE: [(Event, [Outcome; 5]); 12] = TRANSITIONS;
+    static TABLE: [(Event, [Outcome; 6]); 14] = TRANSITIONS;
     // Both enumerations are in the table's order, which the tests hold.
     TABLE
         .get(event as usize)

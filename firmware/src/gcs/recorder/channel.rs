@@ -87,7 +87,7 @@ pub(super) const OPTIONS: &[RecordOption] = &[
     option(73, "motor output", " of pivot, duty from -1 to 1", |source| of_pivot(source, RawSignal::Duty)),
     option(200, "motor current", " of pivot, A", |source| of_pivot(source, RawSignal::Current)),
     option(201, "supply", ", V", |source| of_controller(source, Signal::Word(RawSignal::Supply))),
-    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
+    option(202, "state", ": 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault, 5 excited", |source| of_controller(source, Signal::Word(RawSignal::Mode))),
     option(203, "fault", ": kind of the latched one, 0 for none", |source| of_controller(source, Signal::Word(RawSignal::Fault))),
     option(204, "cost of the tick before", ", processor cycles", |source| of_controller(source, Signal::Word(RawSignal::Cost))),
     option(205, "integral", " of pivot, what its feedback has collected, V", |source| of_pivot(source, RawSignal::Integral)),

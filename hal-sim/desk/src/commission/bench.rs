@@ -129,7 +129,12 @@ impl<'a> Bench<'a> {
 
     /// The latched fault, behind a colon.
     pub fn fault(&mut self) -> std::result::Result<String, RecordError> {
-        let fault = self.machine.ask("FLT?")?.unwrap_or_default();
+        // A fault that comes while it is asked for is the error of the question.
+        let fault = match self.machine.ask("FLT?") {
+            Err(RecordError::Refused { .. }) => self.machine.ask("FLT?")?,
+            answer => answer?,
+        };
+        let fault = fault.unwrap_or_default();
         let fault = fault.trim();
         Ok(if fault.is_empty() || fault.starts_with("0 ") {
             String::new()

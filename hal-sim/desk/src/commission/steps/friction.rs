@@ -7,8 +7,8 @@ use crate::commission::known::{AXES, Known};
 use commissioning::friction::{Friction, SteadyRate, friction, mean};
 
 /// Rates, rad/s, and how long each is kept before it is measured, s.
-const RATES_RAD_S: [f64; 6] = [0.5, 1.0, 2.0, -0.5, -1.0, -2.0];
-const REACHED_S: f64 = 0.7;
+const RATES_RAD_S: [f64; 6] = [0.3, 1.0, 3.0, -0.3, -1.0, -3.0];
+const REACHED_S: f64 = 1.5;
 /// Rows of a record, and ticks from row to row: whole turns of the motor, of which the ring's turn has fifty.
 const ROWS: usize = 1_000;
 const MOST_ROWS: usize = 1_100;

@@ -52,14 +52,14 @@ pub static STEPS: &[Step] = &[
         run: reference::run,
     },
     Step {
-        name: "friction",
-        about: "turning at steady rates both ways: motor constants and friction",
-        run: friction::run,
-    },
-    Step {
         name: "gains",
         about: "the gains are raised until a kick rings on, in the middle and far out; half of that is used",
         run: gains::run,
+    },
+    Step {
+        name: "friction",
+        about: "turning at steady rates both ways: motor constants and friction",
+        run: friction::run,
     },
     Step {
         name: "verification",

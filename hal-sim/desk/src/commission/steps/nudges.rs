@@ -27,7 +27,7 @@ pub(super) fn run(
     bench.delay(0.05)?;
     let mut found = Vec::new();
     let mut volts = [0.0; AXES];
-    for bridge in 0..AXES {
+    for (bridge, volts) in volts.iter_mut().enumerate() {
         let there = nudge(bench, bridge, MOST_V)?;
         let back = nudge(bench, bridge, -MOST_V)?;
         if there.port != back.port || there.way_rad * back.way_rad > 0.0 {
@@ -45,7 +45,7 @@ pub(super) fn run(
         }
         known.port_of_bridge[bridge] = there.port;
         known.reversed_at_bridge[bridge] = there.way_rad < 0.0;
-        volts[bridge] = f64::max(there.volts, back.volts);
+        *volts = f64::max(there.volts, back.volts);
         found.push(Finding::new(
             format!("bridge {}", bridge + 1),
             format!(
@@ -162,5 +162,5 @@ fn set_order(bench: &mut Bench<'_>, known: &mut Known) -> Result<(), CommissionE
             (id::MOTOR_REVERSED + pivot as u32, motor),
         ])?;
     }
-    Ok(bench.delay(0.05)?)
+    bench.delay(0.05)
 }

@@ -43,7 +43,7 @@ impl SimulatedMachine {
     /// # Errors
     /// The file.
     pub fn new(stage: &StageParameters, seed: u64, settings: &Path) -> Result<Self, CliError> {
-        let mut stage = stage.clone();
+        let mut stage = *stage;
         stage.seed = seed;
         let flash = SettingsFlash::open(settings)?;
         let parameters = Parameters::REFERENCE.uncommissioned();
