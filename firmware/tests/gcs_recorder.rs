@@ -59,7 +59,7 @@ fn help() {
          73=motor output of pivot, duty from -1 to 1 \n\
          200=motor current of pivot, A \n\
          201=supply, V \n\
-         202=state: 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault \n\
+         202=state: 0 off, 1 holding, 2 moving, 3 fault, 4 stopping at a fault, 5 excited \n\
          203=fault: kind of the latched one, 0 for none \n\
          204=cost of the tick before, processor cycles \n\
          205=integral of pivot, what its feedback has collected, V \n\

@@ -139,6 +139,6 @@ fn pivot(random: &mut Random) -> PivotSetpoint {
         platform_torque: random.within(-6.0, 6.0) as f32,
         angle: Angle::from_units(random.within(-2e9, 2e9) as i64),
         current_counts: random.within(-1_400.0, 1_400.0) as i16,
-        learnt_volts: 0.0,
+        added_volts: 0.0,
     }
 }
