@@ -26,5 +26,5 @@ function words({ connected, referenced, mode, settled, target }) {
   if (!connected) return "";
   if (!referenced) return "not referenced";
   if (mode === "holding" && settled) return `on target: x ${shown(target[0], 2)}, y ${shown(target[1], 2)}, theta ${shown(target[2], 2)}`;
-  return { off: "servo off", holding: "holding", moving: "moving", stopping: "stopping at a fault", fault: "fault" }[mode] ?? "";
+  return { off: "servo off", holding: "holding", moving: "moving", stopping: "stopping at a fault", fault: "fault", exciting: "a motor is excited (EXC)" }[mode] ?? "";
 }

@@ -30,7 +30,7 @@ export class Stage extends EventTarget {
   help = [];
   /** Commands that the controller knows. */
   known = new Set();
-  /** "off", "holding", "moving", "stopping" at a fault, or "fault". */
+  /** "off", "holding", "moving", "stopping" at a fault, "fault", or "exciting". */
   mode = "off";
   fault = "";
   /** What `FLT?` tells besides: supervision that is looser than the reference, kept values that are not in force. */

@@ -3,7 +3,7 @@
 import { byId, report, setText } from "./dom.js";
 import { shown } from "./gcs.js";
 
-const WORDS = { off: "servo off", holding: "holding", moving: "moving", stopping: "stopping at a fault", fault: "fault" };
+const WORDS = { off: "servo off", holding: "holding", moving: "moving", stopping: "stopping at a fault", fault: "fault", exciting: "a motor is excited (EXC)" };
 const DECIMALS = 4;
 
 export function showState(stage) {
