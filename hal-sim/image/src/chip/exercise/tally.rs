@@ -144,7 +144,7 @@ mod tests {
         }
         let counted: Vec<_> = tally.by_doing().map(|(_, cost)| cost.ticks).collect();
         assert_eq!(counted, [2; 12]);
-        assert_eq!((tally.all().ticks, tally.all().worst), (20, 107));
+        assert_eq!((tally.all().ticks, tally.all().worst), (24, 107));
         let worst = tally.worst.expect("there were ticks");
         assert_eq!((worst.tick, worst.line.as_str()), (7, "7"));
     }
