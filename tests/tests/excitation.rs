@@ -135,6 +135,37 @@ fn a_servo_that_runs_away_is_a_fault_within_the_guard() {
     assert!((0.012..0.02).contains(&way), "{way}");
     assert_eq!(told(&mut bench, "END"), "fault");
     assert_eq!(bench.error_after("FLC"), "0");
+    // It is over: the next one may come.
+    assert_eq!(told(&mut bench, "RUNS"), "0");
+    assert_eq!(bench.error_after("EXC STEP 2 1 10"), "0");
+}
+
+/// Whatever ends it with the servo on, a fault or the servo off: it is over then.
+#[test]
+fn what_ends_the_servo_ends_it_too() {
+    for ends in ["SVO X 0", "emergency stop"] {
+        let mut bench = Bench::new(&reference());
+        assert_eq!(bench.error_after("FRF"), "0");
+        bench.settle();
+        assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
+        assert_eq!(bench.error_after("EXC SINES 2 1.5 5000 20 400 12"), "0");
+        bench.run(100);
+        if ends == "emergency stop" {
+            bench.rig.front.emergency_stop = true;
+            bench.run(10);
+            bench.rig.front.emergency_stop = false;
+            bench.run(1_000);
+            assert_eq!(told(&mut bench, "END"), "fault");
+            assert_eq!(bench.error_after("FLC"), "0");
+        } else {
+            assert_eq!(bench.error_after(ends), "0");
+            bench.run(2_000);
+            assert_eq!(told(&mut bench, "END"), "stopped");
+        }
+        assert_eq!(told(&mut bench, "RUNS"), "0", "{ends}");
+        assert_eq!(bench.mode(), Mode::Off, "{ends}");
+        assert_eq!(bench.error_after("EXC STEP 2 1 10"), "0", "{ends}");
+    }
 }
 
 #[test]
@@ -216,6 +247,9 @@ fn with_the_servo_on_it_is_added_to_the_servos_voltage() {
     bench.settle();
     assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
     assert_eq!(bench.error_after("EXC RING 1 1 50 100"), "89");
+    // Ways and currents are watched with the servo off alone.
+    assert_eq!(bench.error_after("EXC STEP 1 1 10 1"), "89");
+    assert_eq!(bench.error_after("EXC RAMP 1 1 10 1 1"), "89");
     let rest = bench.rms_error(4_000);
     assert_eq!(bench.error_after("EXC SINES 2 1.5 409.6 20 400 12"), "0");
     bench.run(400);

@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::in_flight::InFlight;
 use super::state::Commander;
-use crate::control::excitation::{Excitation, ExcitationReport, ExcitationSignal};
+use crate::control::excitation::{Excitation, ExcitationReport};
 use crate::mode::Mode;
 use crate::queues::{Command, CommandQueues};
 
@@ -12,8 +12,8 @@ impl Commander {
     ///
     /// # Errors
     /// [`CommandError::Busy`], [`CommandError::Faulted`], [`CommandError::Debugged`]; [`CommandError::InMotion`] while one is under way, a
-    /// recovery is, or a stage that was let go has not come to rest; [`CommandError::ServoOn`] where rings are to be held each by itself
-    /// and the servo holds the pose.
+    /// recovery is, or a stage that was let go has not come to rest; [`CommandError::ServoOn`] for one that
+    /// [needs the servo off](Excitation::needs_servo_off).
     pub fn begin_excitation(
         &mut self,
         excitation: Excitation,
@@ -32,10 +32,11 @@ impl Commander {
         if runs || self.is_recovering() || self.is_referencing() {
             return Err(CommandError::InMotion);
         }
-        let is_ring = matches!(excitation.signal, ExcitationSignal::Ring { .. });
         match mode {
             Mode::Off if self.rest.is_fast => return Err(CommandError::InMotion),
-            Mode::Holding | Mode::Moving if is_ring => return Err(CommandError::ServoOn),
+            Mode::Holding | Mode::Moving if excitation.needs_servo_off() => {
+                return Err(CommandError::ServoOn);
+            }
             _ => {}
         }
         self.ends_excitation = false;

@@ -64,7 +64,7 @@ impl State {
             commands: self.commands,
             refused: self.refused,
             peak_following_error_rad: self.settling.peak_error_rad(),
-            excitation: self.excitation.report,
+            excitation: self.excitation.report(self.mode),
             loop_counters: self.loop_counters,
             servo: self.servo_report(),
         }

@@ -227,7 +227,7 @@ impl State {
         if self.mode != Mode::Holding && !self.motion.is_moving() {
             self.finish_motion();
         }
-        if self.excitation.report.runs {
+        if self.excitation.request().is_some() {
             self.excitation.advance_added_volts();
         }
         *guides = Some([wanted.lengths, wanted.cosines]);

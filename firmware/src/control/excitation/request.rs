@@ -19,6 +19,13 @@ pub struct Excitation {
     pub guards: ExcitationGuards,
 }
 
+impl Excitation {
+    /// Whether it can be had with the servo off alone: there are no other servos, and nothing else looks for what ends it.
+    pub fn needs_servo_off(&self) -> bool {
+        matches!(self.signal, ExcitationSignal::Ring { .. }) || self.until != ExcitationUntil::TIME
+    }
+}
+
 /// What an excitation does.
 // There is no heap to box the sines in, and one excitation at a time.
 #[allow(clippy::large_enum_variant)]

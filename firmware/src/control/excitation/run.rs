@@ -2,6 +2,7 @@
 
 use super::request::{Excitation, ExcitationSignal};
 use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
+use crate::mode::Mode;
 use kinematics::Angle;
 
 /// Ticks for which the motors brake at the end: 20 ms, in which a ring comes to rest from any rate that the guards let it have.
@@ -56,8 +57,7 @@ pub(in crate::control) enum GuardBroken {
 #[derive(Clone, Debug, Default)]
 pub struct ExcitationRun {
     request: Option<Excitation>,
-    /// What came of it.
-    pub(in crate::control) report: ExcitationReport,
+    report: ExcitationReport,
     /// What it adds to the servos' voltages, with the servo on.
     pub(in crate::control) added_volts: [f32; 3],
     /// Ticks left of those in which the bridges wake up.
@@ -76,10 +76,6 @@ impl ExcitationRun {
             request: Some(request.clone()),
             setpoints: *pivots,
             waking_ticks: WAKING_TICKS,
-            report: ExcitationReport {
-                runs: true,
-                ..ExcitationReport::default()
-            },
             ..Self::default()
         };
     }
@@ -89,11 +85,18 @@ impl ExcitationRun {
         self.request.as_ref()
     }
 
+    /// What came of it.
+    pub(in crate::control) fn report(&self, mode: Mode) -> ExcitationReport {
+        ExcitationReport {
+            runs: self.request.is_some() || mode == Mode::Exciting,
+            ..self.report
+        }
+    }
+
     /// Whether braking is over too. To be asked once a tick when nothing is [under way](Self::request).
     pub(in crate::control) fn has_come_to_rest(&mut self) -> bool {
         self.braking_ticks = self.braking_ticks.saturating_sub(1);
-        self.report.runs = self.braking_ticks > 0;
-        !self.report.runs
+        self.braking_ticks == 0
     }
 
     /// Ends what is under way, for nothing that a pivot did.
@@ -117,13 +120,11 @@ impl ExcitationRun {
     #[inline(never)]
     pub(in crate::control) fn advance_added_volts(&mut self) {
         let Some(request) = &mut self.request else {
-            self.report.runs = false;
             return;
         };
         let (pivot, ticks) = (request.pivot, self.report.ticks);
         if ticks >= request.ticks {
             self.finish(ExcitationEnd::Time, pivot, 0.0);
-            self.report.runs = false;
             return;
         }
         let volts = request.volts_at(ticks);

@@ -4,7 +4,7 @@ use super::transitions::{Event, Outcome, outcome};
 use crate::control::command::Command;
 use crate::control::config::Config;
 use crate::control::encoder::Encoder;
-use crate::control::excitation::{Excitation, ExcitationEnd, ExcitationSignal};
+use crate::control::excitation::{Excitation, ExcitationEnd};
 use crate::control::referencing;
 use crate::control::state::State;
 use crate::fault::Fault;
@@ -139,9 +139,11 @@ impl State {
 
     /// Begins an excitation: one at a time, with encoders that answer, and with the servo on none that has its own.
     fn excite(&mut self, excitation: &Excitation, pivots: &[Angle; 3]) -> bool {
-        let is_ring = matches!(excitation.signal, ExcitationSignal::Ring { .. });
         let ready = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
-        if !ready || self.excitation.request().is_some() || is_ring && self.servo_on() {
+        if !ready
+            || self.excitation.request().is_some()
+            || excitation.needs_servo_off() && self.servo_on()
+        {
             return false;
         }
         if self.mode == Mode::Off {
