@@ -9,11 +9,13 @@
 //! frequency), of the current in the winding and of the ring's angle, as continuous signals. So delays of sampling and of the duty are in none
 //! of the responses.
 
-use crate::multisine::LEAST_SPACING;
 use crate::record::{Record, Timing};
 use crate::spectrum::spectrum;
 use nalgebra::{Complex, Matrix3};
 use std::f64::consts::{PI, TAU};
+
+/// Fewest bins between two sines of a run: so far apart that a Hann window over one period keeps them apart.
+const LEAST_SPACING: usize = 2;
 
 /// The records of three experiments with the same lines.
 #[derive(Clone, Debug, PartialEq)]

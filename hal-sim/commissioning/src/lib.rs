@@ -6,7 +6,6 @@
 //! |---|---|
 //! | [`record`] | what is recorded, and when within a tick each of it holds |
 //! | [`mod@winding`] | resistance and inductance from pulses at rest; opens, shorts, polarity |
-//! | [`multisine`] | periodic excitation |
 //! | [`mod@frequency_response`] | responses of all pivots to all drives, in open or closed loop, with their deviations |
 //! | [`mod@friction`] | friction and motor constants from steady rates both ways |
 //! | [`mod@drive_model`] | windings, inertias, springs and dampers from the responses |
@@ -33,7 +32,6 @@ pub mod drive_model;
 pub mod frequency_response;
 pub mod friction;
 mod least_squares;
-pub mod multisine;
 pub mod platform;
 pub mod record;
 mod spectrum;

@@ -1,12 +1,13 @@
 //! Responses of a linear machine whose answer is known in closed form, in open and in closed loop; and what is refused.
 
+mod machine;
+
 use commissioning::frequency_response::{Line, ResponseError, Run, frequency_response};
-use commissioning::multisine::{Multisine, lines, runs};
 use commissioning::record::{Record, Signals, Timing};
+use machine::{PERIOD, harmonics, period_v};
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
 
-const PERIOD: usize = 4096;
 /// Steps of the integration, us, and when within the period before a tick its samples are taken.
 const STEPS: usize = 50;
 const DUTY_AT: usize = 32;
@@ -56,8 +57,8 @@ fn step(state: &State, volts: &Vector3<f64>, mobility: &Matrix3<f64>) -> State {
 }
 
 /// Three experiments on rings that turn at 1 rad/s, with a feedback from the angles to the volts, V/rad.
-fn run(sines: &Multisine, feedback: f64, first_tick: usize) -> Run {
-    let volts = sines.period_v();
+fn run(bins: &[usize], feedback: f64, first_tick: usize) -> Run {
+    let volts = period_v(bins, 1.5);
     let mobility = INERTIA.try_inverse().expect("masses") * CONSTANT;
     let experiments = [0, 1, 2].map(|drive| {
         let mut state = [Vector3::zeros(), Vector3::repeat(1.0), Vector3::zeros()];
@@ -93,17 +94,9 @@ fn run(sines: &Multisine, feedback: f64, first_tick: usize) -> Run {
     });
     Run {
         period_ticks: PERIOD,
-        bins: sines.bins.clone(),
+        bins: bins.to_vec(),
         experiments,
     }
-}
-
-fn sines() -> Multisine {
-    Multisine::new(
-        PERIOD,
-        runs(&lines(PERIOD, TIMING.tick_s, 29.0, 3e3, 57), 4)[2].clone(),
-        1.5,
-    )
 }
 
 /// Worst distance of angles and currents from the closed form, over their size.
@@ -125,12 +118,12 @@ fn worst(lines: &[Line]) -> [f64; 2] {
 
 #[test]
 fn responses_are_those_of_the_closed_form() {
-    let sines = sines();
+    let bins = harmonics(2, 3e3);
     // Not at the beginning of a period: a record knows where it starts.
     for (feedback, first_tick) in [(0.0, 3 * PERIOD), (150.0, 3 * PERIOD + 777)] {
         let lines =
-            frequency_response(&[run(&sines, feedback, first_tick)], &TIMING).expect("responses");
-        assert_eq!(lines.len(), sines.bins.len());
+            frequency_response(&[run(&bins, feedback, first_tick)], &TIMING).expect("responses");
+        assert_eq!(lines.len(), bins.len());
         let [angle, current] = worst(&lines);
         println!("feedback {feedback} V/rad: angles off by {angle:.1e}, currents by {current:.1e}");
         assert!(angle < 2e-3 && current < 3e-3);
@@ -141,7 +134,7 @@ fn responses_are_those_of_the_closed_form() {
             ..TIMING
         };
         let off = worst(
-            &frequency_response(&[run(&sines, feedback, first_tick)], &late).expect("responses"),
+            &frequency_response(&[run(&bins, feedback, first_tick)], &late).expect("responses"),
         )[0];
         assert!(off > 0.01, "{off}");
     }
@@ -149,8 +142,8 @@ fn responses_are_those_of_the_closed_form() {
 
 #[test]
 fn what_cannot_be_evaluated_is_said() {
-    let sines = sines();
-    let sound = run(&sines, 0.0, 2 * PERIOD);
+    let bins = harmonics(2, 3e3);
+    let sound = run(&bins, 0.0, 2 * PERIOD);
     let with = |change: &dyn Fn(&mut Run)| {
         let mut run = sound.clone();
         change(&mut run);
@@ -185,8 +178,8 @@ fn what_cannot_be_evaluated_is_said() {
 /// Scatter from period to period is what the deviation says.
 #[test]
 fn deviations_are_those_of_the_noise() {
-    let sines = sines();
-    let clean = run(&sines, 0.0, 2 * PERIOD);
+    let bins = harmonics(2, 3e3);
+    let clean = run(&bins, 0.0, 2 * PERIOD);
     let expected = frequency_response(std::slice::from_ref(&clean), &TIMING).expect("responses");
     let mut seed = 7_u64;
     let mut noise = || {

@@ -1,10 +1,10 @@
 //! A simulated machine under voltages, as a controller's excitation gives them: no controller, no kinematics. A weak servo on each
 //! ring's own encoder turns the rings and keeps them together.
-#![allow(dead_code)]
+#![allow(dead_code)] // Each test file uses its part.
 
 use commissioning::frequency_response::Run;
-use commissioning::multisine::{Multisine, lines, runs};
 use commissioning::record::{Record, Timing};
+use firmware::control::excitation::{Multisine, PERIOD_TICKS, line_harmonics};
 use hal_sim::machine::devices::{
     BridgeState, COUNTS_PER_TURN, MAX_DUTY, Stage, StageParameters, WiringParameters,
 };
@@ -14,7 +14,7 @@ pub mod steady;
 pub mod truth;
 
 pub const TIMING: Timing = Timing::STAGE;
-pub const PERIOD: usize = 4096;
+pub const PERIOD: usize = PERIOD_TICKS as usize;
 const VOLTS_PER_COUNT: f64 = 3.3 / 4096.0;
 
 /// The machine of a seed, with plugs and directions as an earlier step has put them right.
@@ -141,20 +141,16 @@ pub struct Plan {
     pub pose: [f64; 3],
     pub rate_rad_s: f64,
     pub rms_v: f64,
-    pub runs: usize,
     pub periods: usize,
     pub to_hz: f64,
-    pub lines: usize,
 }
 
 pub const PLAN: Plan = Plan {
     pose: [0.0; 3],
     rate_rad_s: 2.0,
     rms_v: 3.0,
-    runs: 4,
     periods: 4,
     to_hz: 3_000.0,
-    lines: 57,
 };
 
 pub struct Excited {
@@ -162,6 +158,31 @@ pub struct Excited {
     pub machine: Machine,
     /// How warm the windings were halfway, K.
     pub warmer_k: [f64; 3],
+}
+
+/// Runs of an excitation: the controller has 16 sines at a time.
+pub const RUNS: u32 = 4;
+
+/// Harmonics of a run, as `EXC SINES` is told them: those of one lie between those of the others.
+pub fn harmonics(run: u32, to_hz: f64) -> Vec<usize> {
+    let highest = (to_hz * PERIOD as f64 * TIMING.tick_s).round() as u32;
+    let harmonics = line_harmonics(6 + run, highest - 40 * (RUNS - 1 - run), 14);
+    harmonics
+        .iter()
+        .map(|harmonic| *harmonic as usize)
+        .collect()
+}
+
+/// A period of what the controller makes of them, with so many volts rms.
+pub fn period_v(harmonics: &[usize], rms_v: f64) -> Vec<f64> {
+    let harmonics: Vec<u32> = harmonics.iter().map(|harmonic| *harmonic as u32).collect();
+    let period = |peak_v: f64| {
+        let mut sines = Multisine::new(&harmonics, peak_v);
+        let volts: Vec<f64> = (0..PERIOD).map(|_| f64::from(sines.next_volts())).collect();
+        volts
+    };
+    let square: f64 = period(1.0).iter().map(|volts| volts * volts).sum();
+    period(rms_v / (square / PERIOD as f64).sqrt())
 }
 
 /// The records of a plan, on a machine that turns without end.
@@ -183,12 +204,10 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
         turn(&mut machine, [0.0; 3], None);
     }
     let before_k = machine.stage.plant.windings_warmer_k();
-    let bins = lines(PERIOD, TIMING.tick_s, 29.0, plan.to_hz, plan.lines);
-    let runs = runs(&bins, plan.runs)
-        .into_iter()
-        .map(|bins| {
-            let sines = Multisine::new(PERIOD, bins, plan.rms_v);
-            let volts = sines.period_v();
+    let runs = (0..RUNS)
+        .map(|run| {
+            let bins = harmonics(run, plan.to_hz);
+            let volts = period_v(&bins, plan.rms_v);
             let experiments = [0, 1, 2].map(|drive| {
                 let mut record = Record {
                     first_tick: PERIOD,
@@ -204,7 +223,7 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
             });
             Run {
                 period_ticks: PERIOD,
-                bins: sines.bins,
+                bins,
                 experiments,
             }
         })
