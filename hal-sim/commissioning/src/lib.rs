@@ -1,6 +1,6 @@
 #![forbid(unsafe_code)]
-//! From records of an unknown machine to its numbers and to gains: the mathematics of commissioning. It knows no controller, no language and no
-//! simulated machine; records go in, numbers come out. SI units; angles in rad, torques and inertias as seen at the rings.
+//! From records of an unknown machine to its numbers and to gains: the mathematics of commissioning. It runs no controller, and knows no language
+//! and no simulated machine; records go in, numbers come out. SI units; angles in rad, torques and inertias as seen at the rings.
 //!
 //! | file | idea |
 //! |---|---|

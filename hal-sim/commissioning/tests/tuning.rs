@@ -5,7 +5,7 @@ use commissioning::chain::{Chain, Load, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
 use commissioning::tuning::{
-    Gains, Lead, Limits, Margins, Notch, PivotGains, Plant, margins, sensitivity, tune,
+    Gains, Limits, Margins, PivotGains, Plant, margins, sensitivity, tune,
 };
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::{self, Parameters};
@@ -68,46 +68,19 @@ fn model(stage: &StageParameters) -> (Chain, [Electrical; 3]) {
 }
 
 fn gains_of(parameters: &Parameters) -> Gains {
-    let pivots = [0, 1, 2].map(|i| {
-        let (gains, filters) = (&parameters.servo.gains[i], &parameters.servo.filters[i]);
-        PivotGains {
-            velocity_v_s_rad: gains.velocity_v_s_rad,
-            position_1_s: gains.position_1_s,
-            integral_v_rad: gains.integral_v_rad,
-            notches: filters.notches.map(|notch| Notch {
-                frequency_hz: notch.frequency_hz,
-                width_hz: notch.width_hz,
-                gain: notch.gain,
-            }),
-            lead: Lead {
-                from_hz: filters.lead.from_hz,
-                to_hz: filters.lead.to_hz,
-            },
-        }
-    });
+    let servo = &parameters.servo;
     Gains {
-        pivots,
-        scheduled_inertia_kg_m2: parameters.servo.scheduled_inertia_kg_m2,
+        pivots: [0, 1, 2].map(|i| PivotGains {
+            gains: servo.gains[i],
+            filters: servo.filters[i],
+        }),
+        scheduled_inertia_kg_m2: servo.scheduled_inertia_kg_m2,
     }
 }
 
 fn with_gains(mut parameters: Parameters, gains: &Gains) -> Parameters {
-    for (i, pivot) in gains.pivots.iter().enumerate() {
-        let place = &mut parameters.servo.gains[i];
-        place.velocity_v_s_rad = pivot.velocity_v_s_rad;
-        place.position_1_s = pivot.position_1_s;
-        place.integral_v_rad = pivot.integral_v_rad;
-        let filters = &mut parameters.servo.filters[i];
-        filters.notches = pivot.notches.map(|notch| parameters::Notch {
-            frequency_hz: notch.frequency_hz,
-            width_hz: notch.width_hz,
-            gain: notch.gain,
-        });
-        filters.lead = parameters::Lead {
-            from_hz: pivot.lead.from_hz,
-            to_hz: pivot.lead.to_hz,
-        };
-    }
+    parameters.servo.gains = gains.pivots.map(|pivot| pivot.gains);
+    parameters.servo.filters = gains.pivots.map(|pivot| pivot.filters);
     parameters.servo.scheduled_inertia_kg_m2 = gains.scheduled_inertia_kg_m2;
     parameters
 }
@@ -373,11 +346,12 @@ fn stability_is_that_of_the_characteristic_polynomial() {
             inertia: [1.0; 3],
         };
         let pivot = PivotGains {
-            velocity_v_s_rad: gain,
-            position_1_s: corner,
-            integral_v_rad: 0.0,
-            notches: [Notch::NONE; 2],
-            lead: Lead::NONE,
+            gains: parameters::Gains {
+                velocity_v_s_rad: gain,
+                position_1_s: corner,
+                integral_v_rad: 0.0,
+            },
+            filters: parameters::FeedbackFilters::NONE,
         };
         let found = margins(
             &plant,

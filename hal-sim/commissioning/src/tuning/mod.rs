@@ -18,11 +18,12 @@ mod servo;
 
 pub use margins::{BEYOND, Gains, Margins, REJECTION_HZ, margins, sensitivity};
 pub use plant::{Plant, angle_by_volts, grid};
-pub use servo::{Lead, Notch, PivotGains};
+pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
 use crate::record::Timing;
 use evolution::evolve;
+use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
@@ -123,7 +124,7 @@ pub fn tune(
             let unknowns = shape
                 .iter()
                 .copied()
-                .chain([found.gains.pivots[0].velocity_v_s_rad])
+                .chain([found.gains.pivots[0].gains.velocity_v_s_rad])
                 .map(f64::ln);
             let start = DVector::from_iterator(shape.len() + 1, unknowns);
             let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
@@ -201,14 +202,18 @@ impl Search<'_> {
             // A motor that takes more volts for its torque gets more.
             let velocity_v_s_rad = velocity * volts_per_torque(&drive) / first;
             PivotGains {
-                velocity_v_s_rad,
-                position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
-                integral_v_rad: velocity_v_s_rad
-                    * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
-                notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
-                lead: Lead {
-                    from_hz: drive.resistance_ohm / drive.inductance_h / TAU,
-                    to_hz: LEAD_TO_HZ,
+                gains: parameters::Gains {
+                    velocity_v_s_rad,
+                    position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
+                    integral_v_rad: velocity_v_s_rad
+                        * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
+                },
+                filters: FeedbackFilters {
+                    notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
+                    lead: Lead {
+                        from_hz: drive.resistance_ohm / drive.inductance_h / TAU,
+                        to_hz: LEAD_TO_HZ,
+                    },
                 },
             }
         });
