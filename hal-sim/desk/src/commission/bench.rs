@@ -1,28 +1,34 @@
 //! Questions, excitations and records, as the steps need them.
 
-use super::Machine;
 use super::found::{CommissionError, fail};
 use super::known::AXES;
-use crate::record::answer;
-use crate::record::{Record, RecordError};
+use super::{Machine, Task};
+use crate::record::desk::strange;
+use crate::record::{Record, RecordError, TABLES, answer};
 use commissioning::record::Signals;
 
-type Result<T> = std::result::Result<T, CommissionError>;
+type Answered<T> = Result<T, RecordError>;
+type Result<T, E = CommissionError> = std::result::Result<T, E>;
 
 /// Rows that are fetched at a time.
 const ROWS: usize = 256;
 /// Longest time that a stage is given to settle, s.
 const SETTLING_S: f64 = 5.0;
-/// Volts, current and angle of a pivot, as `DRC` takes them.
+/// Duty, current and angle of a pivot, as `DRC` takes them.
 const OF_PIVOT: [&str; 3] = ["73", "200", "2"];
 const SUPPLY: &str = "0 201";
-/// Parameter with a record's points, and the one with those before its trigger.
+/// Parameters: a record's points, those before its trigger, and the control period.
 const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
+const PERIOD: u32 = 0x0E00_0200;
+/// How often it is looked whether something has ended, s.
+const LOOK_S: f64 = 0.02;
 
 /// The machine as the steps see it.
 pub(super) struct Bench<'a> {
     machine: &'a mut dyn Machine,
+    /// Control period.
+    pub period_s: f64,
     /// Rows that a record has.
     points: usize,
 }
@@ -36,60 +42,71 @@ pub(super) struct Ended {
     pub seconds: f64,
 }
 
+/// A record of a pivot.
+pub(super) struct Recorded {
+    /// Volts, currents and angles.
+    pub signals: Signals,
+    /// Mean supply, V.
+    pub supply_v: f64,
+}
+
 impl<'a> Bench<'a> {
-    pub fn new(machine: &'a mut dyn Machine) -> Self {
-        Self { machine, points: 0 }
+    pub fn new(machine: &'a mut dyn Machine) -> Answered<Self> {
+        let mut bench = Self {
+            machine,
+            period_s: 0.0,
+            points: 0,
+        };
+        bench.period_s = bench.parameter(PERIOD)?;
+        Ok(bench)
     }
 
     /// A line, and its answer.
-    pub fn ask(&mut self, line: &str) -> Result<String> {
+    pub fn ask(&mut self, line: &str) -> Answered<String> {
         Ok(self.machine.ask(line)?.unwrap_or_default())
     }
 
-    pub fn delay(&mut self, seconds: f64) -> Result<()> {
-        Ok(self.machine.delay(seconds)?)
+    pub fn delay(&mut self, seconds: f64) -> Answered<()> {
+        self.machine.delay(seconds)
     }
 
-    pub fn request(&mut self, task: super::Task) -> Result<()> {
-        Ok(self.machine.request(task)?)
+    pub fn request(&mut self, task: Task) -> Answered<()> {
+        self.machine.request(task)
     }
 
     /// The text behind `name=` in the answer of a question.
-    pub fn text(&mut self, question: &str, name: &str) -> Result<String> {
+    fn text(&mut self, question: &str, name: &str) -> Answered<String> {
         let answer = self.ask(question)?;
         let found = (answer.lines()).find_map(|line| line.strip_prefix(name)?.strip_prefix('='));
         match found {
             Some(text) => Ok(text.trim().to_owned()),
-            None => Err(CommissionError::Controller(RecordError::Strange {
-                line: question.to_owned(),
-                answer,
-            })),
+            None => Err(strange(question, &answer)),
         }
     }
 
     /// The first number behind `name=` in the answer of a question.
-    pub fn number(&mut self, question: &str, name: &str) -> Result<f64> {
+    pub fn number(&mut self, question: &str, name: &str) -> Answered<f64> {
         let text = self.text(question, name)?;
         let first = text.split([' ', ',']).next().unwrap_or_default();
-        first.parse().map_err(|_| {
-            CommissionError::Controller(RecordError::Strange {
-                line: question.to_owned(),
-                answer: text.clone(),
-            })
-        })
+        first.parse().map_err(|_| strange(question, &text))
+    }
+
+    /// The number that a question answers alone.
+    pub fn number_of(&mut self, question: &str) -> Answered<f64> {
+        let answer = self.ask(question)?;
+        (answer.trim().parse()).map_err(|_| strange(question, &answer))
     }
 
     /// The value of a parameter.
-    pub fn parameter(&mut self, id: u32) -> Result<f64> {
+    pub fn parameter(&mut self, id: u32) -> Answered<f64> {
         let id = format!("1 0x{id:X}");
         self.number(&format!("SPA? {id}"), &id)
     }
 
     /// Sets parameters, four in a line.
-    pub fn set(&mut self, values: &[(u32, f64)]) -> Result<()> {
+    pub fn set(&mut self, values: &[(u32, f64)]) -> Answered<()> {
         for some in values.chunks(4) {
-            let settings: String = some
-                .iter()
+            let settings: String = (some.iter())
                 .map(|(id, value)| format!(" 1 0x{id:X} {value}"))
                 .collect();
             self.ask(&format!("SPA{settings}"))?;
@@ -98,7 +115,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Measured angles of the pivots, rad, with their turns.
-    pub fn pivots_rad(&mut self) -> Result<[f64; AXES]> {
+    pub fn pivots_rad(&mut self) -> Answered<[f64; AXES]> {
         let answer = self.ask("MON?")?;
         let angle = |number: usize| {
             let name = format!("PIVOT{number}=");
@@ -108,35 +125,24 @@ impl<'a> Bench<'a> {
         };
         match [angle(1), angle(2), angle(3)] {
             [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
-            _ => Err(CommissionError::Controller(RecordError::Strange {
-                line: "MON?".to_owned(),
-                answer,
-            })),
+            _ => Err(strange("MON?", &answer)),
         }
     }
 
     /// The controller's clock, s.
-    pub fn clock_s(&mut self) -> std::result::Result<f64, RecordError> {
-        let tick = self.number("MON?", "TICK");
-        let period = self.parameter(0x0E00_0200);
-        match (tick, period) {
-            (Ok(tick), Ok(period_s)) => Ok(tick * period_s),
-            (Err(CommissionError::Controller(error)), _)
-            | (_, Err(CommissionError::Controller(error))) => Err(error),
-            _ => Ok(0.0),
-        }
+    pub fn clock_s(&mut self) -> Answered<f64> {
+        Ok(self.number("MON?", "TICK")? * self.period_s)
     }
 
     /// The latched fault, behind a colon.
-    pub fn fault(&mut self) -> std::result::Result<String, RecordError> {
+    pub fn fault(&mut self) -> Answered<String> {
         // A fault that comes while it is asked for is the error of the question.
-        let fault = match self.machine.ask("FLT?") {
-            Err(RecordError::Refused { .. }) => self.machine.ask("FLT?")?,
+        let fault = match self.ask("FLT?") {
+            Err(RecordError::Refused { .. }) => self.ask("FLT?")?,
             answer => answer?,
         };
-        let fault = fault.unwrap_or_default();
         let fault = fault.trim();
-        Ok(if fault.is_empty() || fault.starts_with("0 ") {
+        Ok(if fault.starts_with("0 ") {
             String::new()
         } else {
             format!(": {fault}")
@@ -144,14 +150,17 @@ impl<'a> Bench<'a> {
     }
 
     /// Motors off, and what is kept in force again.
-    pub fn give_up(&mut self) -> std::result::Result<(), RecordError> {
-        for line in ["STP", "SVO X 0", "FLC"] {
-            let _ = self.machine.ask(line);
-        }
-        self.machine.delay(0.5)?;
-        // A controller that keeps nothing has nothing to go back to: it stays as the last step left it, uncommissioned.
-        let _ = self.machine.ask("CMS 0");
-        let _ = self.machine.ask("RPA");
+    ///
+    /// # Errors
+    /// What was refused of that: nothing drives then, and what the steps have set is in force.
+    pub fn give_up(&mut self) -> Answered<()> {
+        self.ask("STP")?;
+        self.ask("SVO X 0")?;
+        self.delay(0.5)?;
+        self.ask("FLC")?;
+        self.delay(0.1)?;
+        self.ask("CMS 0")?;
+        self.ask("RPA")?;
         Ok(())
     }
 
@@ -159,11 +168,12 @@ impl<'a> Bench<'a> {
     pub fn excite(&mut self, line: &str, seconds: f64) -> Result<Ended> {
         self.ask(line)?;
         self.delay(seconds)?;
-        self.ended()
+        self.excitation_end()
     }
 
-    fn ended(&mut self) -> Result<Ended> {
-        for _ in 0..100 {
+    /// Waits until the excitation under way is over.
+    pub fn excitation_end(&mut self) -> Result<Ended> {
+        for _ in 0..200 {
             if self.number("EXC?", "RUNS")? == 0.0 {
                 let by = self.text("EXC?", "END")?;
                 if by == "fault" {
@@ -173,103 +183,65 @@ impl<'a> Bench<'a> {
                         "something moves that should not: look at wires and encoders before the next try",
                     );
                 }
-                let ticks = self.number("EXC?", "TICKS")?;
-                let period_s = self.parameter(0x0E00_0200)?;
-                return Ok(Ended {
-                    by,
-                    seconds: ticks * period_s,
-                });
+                let seconds = self.number("EXC?", "TICKS")? * self.period_s;
+                return Ok(Ended { by, seconds });
             }
-            self.delay(0.05)?;
+            self.delay(LOOK_S)?;
         }
         fail("an excitation does not end", "STP ends it")
     }
 
-    /// What came of the excitation that was recorded.
-    pub fn excitation_end(&mut self) -> Result<Ended> {
-        self.ended()
-    }
-
-    /// The supply that is measured, V.
-    pub fn supply_v(&mut self) -> Result<f64> {
-        let text = self.ask("DRR? 1 1 1")?;
-        let mut record = Record::default();
-        let read = answer::read(&text, &mut record);
-        let value = record.rows.first().and_then(|row| row.first());
-        match (read, value) {
-            (Some(()), Some(volts)) => Ok(*volts),
-            _ => fail("the recorder has no supply", "see what HDR? lists"),
-        }
-    }
-
-    /// The number that a question answers alone.
-    pub fn number_of(&mut self, question: &str) -> Result<f64> {
-        let answer = self.ask(question)?;
-        answer.trim().parse().map_err(|_| {
-            CommissionError::Controller(RecordError::Strange {
-                line: question.to_owned(),
-                answer: answer.clone(),
-            })
-        })
+    /// Waits until the stage has settled after the reference: how long it took, s.
+    pub fn settle(&mut self) -> Result<f64> {
+        let start = self.clock_s()?;
+        self.wait_for_target(SETTLING_S)?;
+        Ok(self.clock_s()? - start)
     }
 
     /// Waits until a move is over and the stage has settled.
     pub fn wait_for_target(&mut self, seconds: f64) -> Result<()> {
         let end = self.clock_s()? + seconds;
-        loop {
-            if self.number("ONT? X", "X")? == 1.0 {
-                return Ok(());
-            }
+        while self.number("ONT? X", "X")? != 1.0 {
             let fault = self.fault()?;
             if !fault.is_empty() || self.clock_s()? > end {
                 return fail(
-                    format!("a move has not come to its end{fault}"),
-                    "something rubs or gives way, or the gains are far from this machine's",
+                    format!("a move has not come to its end in {seconds} s{fault}"),
+                    "something rubs or gives way, or the gains are far from this machine's; EVT? tells more",
                 );
             }
-            self.delay(0.05)?;
+            self.delay(LOOK_S)?;
         }
+        Ok(())
     }
 
-    /// Waits until the stage has settled: how long it took, s.
-    pub fn settle(&mut self) -> Result<f64> {
-        let start = self.clock_s()?;
-        loop {
-            let passed = self.clock_s()? - start;
-            if self.number("ONT? X", "X")? == 1.0 {
-                return Ok(passed);
-            }
-            if passed > SETTLING_S {
-                let fault = self.fault()?;
-                return fail(
-                    format!("the stage does not settle in {SETTLING_S} s{fault}"),
-                    "see what FLT? and EVT? tell",
-                );
-            }
-            self.delay(0.02)?;
+    /// Moves one after the other, each within so many seconds: the largest following error of a pivot, rad.
+    pub fn follow(&mut self, moves: &[&str], seconds: f64) -> Result<f64> {
+        self.number("LST?", PEAK)?;
+        for line in moves {
+            self.ask(line)?;
+            self.wait_for_target(seconds)?;
         }
+        Ok(self.number("LST?", PEAK)?)
     }
 
     /// Gives records so many rows: not in motion. Records that are shorter may then be made in motion.
-    pub fn reserve(&mut self, rows: usize) -> Result<()> {
+    pub fn reserve(&mut self, rows: usize) -> Answered<()> {
         self.ask(&format!("SPA 1 {POINTS} {rows} 1 {BEFORE} 0"))?;
         self.points = rows;
         Ok(())
     }
 
-    /// Volts, currents and angles of these pivots while a line is carried out: every tick, or less often.
+    /// A record of a pivot while a line is carried out: every tick, or less often.
     pub fn record(
         &mut self,
-        pivots: &[usize],
+        pivot: usize,
         rows: usize,
         every: usize,
         line: Option<&str>,
-    ) -> Result<Vec<Signals>> {
+    ) -> Answered<Recorded> {
         let mut tables = vec![SUPPLY.to_owned()];
-        for pivot in pivots {
-            tables.extend(OF_PIVOT.map(|option| format!("{} {option}", pivot + 1)));
-        }
-        tables.resize(crate::record::TABLES, "0 0".to_owned());
+        tables.extend(OF_PIVOT.map(|option| format!("{} {option}", pivot + 1)));
+        tables.resize(TABLES, "0 0".to_owned());
         for (number, table) in (1..).zip(&tables) {
             self.ask(&format!("DRC {number} {table}"))?;
         }
@@ -287,38 +259,45 @@ impl<'a> Bench<'a> {
                 self.ask("DRT 0 4 0")?;
             }
         }
-        let period_s = self.parameter(0x0E00_0200)?;
-        self.delay((rows * every) as f64 * period_s)?;
+        self.delay((rows * every) as f64 * self.period_s)?;
         for _ in 0..50 {
             if self.number("DRL? 1", "1")? >= rows as f64 {
                 break;
             }
-            self.delay(0.02)?;
+            self.delay(LOOK_S)?;
         }
+        let record = self.fetch(rows)?;
+        let column = |at: usize| record.rows.iter().map(move |row| row[at]);
+        let volts = column(1).zip(column(0));
+        Ok(Recorded {
+            signals: Signals {
+                volts: volts.map(|(duty, supply_v)| duty * supply_v).collect(),
+                current_a: column(2).collect(),
+                angle_rad: column(3).map(f64::to_radians).collect(),
+            },
+            supply_v: column(0).sum::<f64>() / rows as f64,
+        })
+    }
+
+    /// The rows of the record.
+    fn fetch(&mut self, rows: usize) -> Answered<Record> {
         let mut record = Record::default();
         while record.rows.len() < rows {
-            let (first, some) = (record.rows.len() + 1, ROWS.min(rows - record.rows.len()));
-            let question = format!("DRR? {first} {some}");
+            let done = record.rows.len();
+            let question = format!("DRR? {} {}", done + 1, ROWS.min(rows - done));
             let text = self.ask(&question)?;
-            if answer::read(&text, &mut record).is_none() || record.rows.len() < first {
-                return Err(CommissionError::Controller(RecordError::Strange {
-                    line: question,
-                    answer: text.chars().take(60).collect(),
-                }));
+            if answer::read(&text, &mut record).is_none() || record.rows.len() <= done {
+                return Err(strange(&question, &text));
             }
         }
-        let signals = |place: usize| {
-            let column = |k: usize| record.rows.iter().map(move |row| row[1 + 3 * place + k]);
-            let supply = record.rows.iter().map(|row| row[0]);
-            Signals {
-                volts: column(0)
-                    .zip(supply)
-                    .map(|(duty, volts)| duty * volts)
-                    .collect(),
-                current_a: column(1).collect(),
-                angle_rad: column(2).map(f64::to_radians).collect(),
-            }
-        };
-        Ok((0..pivots.len()).map(signals).collect())
+        Ok(record)
     }
 }
+
+/// The mean of some values.
+pub(super) fn average(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// What `LST?` tells of following errors since it was asked last.
+const PEAK: &str = "PEAK_ERROR_RAD";

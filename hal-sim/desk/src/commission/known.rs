@@ -5,7 +5,7 @@ pub(super) const AXES: usize = 3;
 
 /// What the steps have found; each uses what those before it did.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Known {
+pub(super) struct Known {
     /// Whether the encoder at each port counts down when the platform turns left.
     pub reversed_at_port: [bool; AXES],
     /// Whether the pivots of ports 1, 2, 3 follow each other to the left.
@@ -20,8 +20,6 @@ pub struct Known {
     pub bridges: [usize; AXES],
     /// Windings of the pivots' motors: ohm, H.
     pub windings: [[f64; 2]; AXES],
-    /// Motor constants at the rings, V s/rad.
-    pub motor_constants: [f64; AXES],
 }
 
 impl Known {

@@ -19,13 +19,13 @@ mod report;
 mod steps;
 
 pub use found::{CommissionError, Failure, Finding};
-pub use known::Known;
 pub use report::page;
 pub use steps::STEPS;
 
 use crate::record::{Desk, RecordError};
 use crate::web::Endpoint;
 use bench::Bench;
+use known::Known;
 
 /// A machine with its controller, and somebody beside it.
 pub trait Machine {
@@ -77,7 +77,7 @@ pub struct Step {
     pub name: &'static str,
     /// What it does.
     pub about: &'static str,
-    run: fn(&mut Bench<'_>, &mut Known) -> Result<Vec<Finding>, CommissionError>,
+    run: fn(&mut Bench<'_>, &mut Known, &mut Vec<Finding>) -> Result<(), CommissionError>,
 }
 
 /// What a step came to.
@@ -92,52 +92,62 @@ pub struct Done {
     pub seconds: f64,
 }
 
-/// Runs the steps until one fails, tells of each as it ends; what all of them came to, and what is known of the machine.
+/// Runs the steps until one fails, tells of each as it ends; what all of them came to.
 ///
-/// After a failure what is kept is in force again, and the motors are off.
+/// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so.
 ///
 /// # Errors
 /// [`RecordError`] when nobody answers, or no longer.
 pub fn run(
     machine: &mut dyn Machine,
     tell: &mut dyn FnMut(&Done),
-) -> Result<(Vec<Done>, Known), RecordError> {
-    let mut bench = Bench::new(machine);
+) -> Result<Vec<Done>, RecordError> {
+    let mut bench = Bench::new(machine)?;
     let (mut known, mut all) = (Known::default(), Vec::new());
     for step in STEPS {
         let start_s = bench.clock_s()?;
-        let result = (step.run)(&mut bench, &mut known);
-        let (findings, failure) = match result {
-            Ok(findings) => {
-                let failed = findings.iter().find(|finding| !finding.passed);
-                let failure =
-                    failed.map(|finding| Failure::new(finding.name.clone(), finding.advice));
-                (findings, failure)
-            }
-            Err(CommissionError::Failed(failure)) => (Vec::new(), Some(failure)),
+        let mut findings = Vec::new();
+        let failure = match (step.run)(&mut bench, &mut known, &mut findings) {
+            Ok(()) => (findings.iter().find(|finding| !finding.passed))
+                .map(|finding| Failure::new(finding.name.clone(), finding.advice)),
+            Err(CommissionError::Failed(failure)) => Some(failure),
             Err(CommissionError::Controller(error @ RecordError::Refused { .. })) => {
                 let fault = bench.fault()?;
-                let failure =
-                    Failure::new(format!("{error}{fault}"), "see what FLT? and EVT? tell");
-                (Vec::new(), Some(failure))
+                let what = format!("{error}{fault}");
+                Some(Failure::new(what, "see what FLT? and EVT? tell"))
             }
             Err(CommissionError::Controller(error)) => return Err(error),
+        };
+        let seconds = bench.clock_s()? - start_s;
+        let failure = match failure {
+            Some(failure) => Some(given_up(&mut bench, failure)?),
+            None => None,
         };
         let done = Done {
             step,
             findings,
             failure,
-            seconds: bench.clock_s()? - start_s,
+            seconds,
         };
         tell(&done);
         let failed = done.failure.is_some();
         all.push(done);
         if failed {
-            bench.give_up()?;
             break;
         }
     }
-    Ok((all, known))
+    Ok(all)
+}
+
+/// After a failure: everything as it was before, or what was refused of that.
+fn given_up(bench: &mut Bench<'_>, mut failure: Failure) -> Result<Failure, RecordError> {
+    match bench.give_up() {
+        Err(error @ RecordError::Refused { .. }) => {
+            failure.what += &format!("; and what is kept is not in force again: {error}");
+        }
+        done => done?,
+    }
+    Ok(failure)
 }
 
 /// A controller that runs, with somebody who reads standard error and presses Enter.

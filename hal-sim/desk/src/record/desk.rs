@@ -126,7 +126,7 @@ impl Desk {
     }
 }
 
-fn strange(line: &str, answer: &str) -> RecordError {
+pub(crate) fn strange(line: &str, answer: &str) -> RecordError {
     RecordError::Strange {
         line: line.to_owned(),
         answer: answer.chars().take(60).collect(),

@@ -1,23 +1,23 @@
 //! Turning without end at steady rates, both ways: motor constants from the volts, friction from the currents.
 
 use super::id;
-use crate::commission::bench::Bench;
+use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding, fail};
 use crate::commission::known::{AXES, Known};
-use commissioning::friction::{Friction, SteadyRate, friction, mean};
+use commissioning::friction::{SteadyRate, friction, mean};
 
 /// Rates, rad/s, and how long each is kept before it is measured, s.
 const RATES_RAD_S: [f64; 6] = [0.3, 1.0, 3.0, -0.3, -1.0, -3.0];
 const REACHED_S: f64 = 1.5;
-/// Rows of a record, and ticks from row to row: whole turns of the motor, of which the ring's turn has fifty.
+/// Rows of a record, about: it is of whole turns of the motor.
 const ROWS: usize = 1_000;
 const MOST_ROWS: usize = 1_100;
-const TICK_S: f64 = 50e-6;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-) -> Result<Vec<Finding>, CommissionError> {
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     let mut steady: [Vec<SteadyRate>; AXES] = Default::default();
     bench.reserve(MOST_ROWS)?;
     for rate in RATES_RAD_S {
@@ -33,11 +33,9 @@ pub(super) fn run(
     bench.wait_for_target(60.0)?;
     let mut all = Vec::new();
     for pivot in 0..AXES {
-        match friction(
-            &shared(&steady, pivot, known.windings[pivot][0]),
-            known.windings[pivot][0],
-        ) {
-            Ok(found) => all.push(found),
+        let resistance_ohm = known.windings[pivot][0];
+        match friction(&shared(&steady, pivot, resistance_ohm), resistance_ohm) {
+            Ok(measured) => all.push(measured),
             Err(error) => {
                 return fail(
                     format!("motor of pivot {}: {error}", pivot + 1),
@@ -46,8 +44,27 @@ pub(super) fn run(
             }
         }
     }
-    let all: [Friction; AXES] = [all[0], all[1], all[2]];
-    tell(bench, known, &all)
+    let [coulomb, viscous] = mean(&[all[0], all[1], all[2]]);
+    for (pivot, one) in all.iter().enumerate() {
+        let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+        bench.set(&[
+            (
+                id::of(id::TORQUE_CONSTANT, pivot),
+                one.motor_constant / gear,
+            ),
+            (id::of(id::COULOMB, pivot), coulomb),
+            (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
+        ])?;
+        found.push(Finding::told(
+            format!("motor of pivot {}", pivot + 1),
+            format!("{:.3} V s/rad at the ring", one.motor_constant),
+        ));
+    }
+    found.push(Finding::told(
+        "friction of a ring with its share of the platform, mean of three",
+        format!("{coulomb:.3} N m, and {viscous:.3} N m s/rad"),
+    ));
+    Ok(())
 }
 
 /// A pivot's with the mean of the three currents. Carriages that do not slide hold a torque between the rings, another one each time that
@@ -70,50 +87,15 @@ fn measure(bench: &mut Bench<'_>, pivot: usize, rate: f64) -> Result<SteadyRate,
         std::f64::consts::TAU / (rate.abs() * bench.parameter(id::of(id::GEAR_RATIO, pivot))?);
     // Ten turns of the motor at least, and a second.
     let turns = (1.0 / motor_turn_s).ceil().max(10.0);
-    let every = (turns * motor_turn_s / TICK_S / ROWS as f64)
+    let every = (turns * motor_turn_s / bench.period_s / ROWS as f64)
         .round()
         .max(1.0) as usize;
-    let rows = (turns * motor_turn_s / TICK_S / every as f64).round() as usize;
-    let signals = bench.record(&[pivot], rows, every, None)?.remove(0);
-    let average = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let seconds = (rows - 1) as f64 * every as f64 * TICK_S;
+    let rows = (turns * motor_turn_s / bench.period_s / every as f64).round() as usize;
+    let signals = bench.record(pivot, rows, every, None)?.signals;
+    let seconds = (rows - 1) as f64 * every as f64 * bench.period_s;
     Ok(SteadyRate {
         rate_rad_s: (signals.angle_rad[rows - 1] - signals.angle_rad[0]) / seconds,
         current_a: average(&signals.current_a),
         volts: average(&signals.volts),
     })
-}
-
-fn tell(
-    bench: &mut Bench<'_>,
-    known: &mut Known,
-    all: &[Friction; AXES],
-) -> Result<Vec<Finding>, CommissionError> {
-    let [coulomb, viscous] = mean(all);
-    let mut found = Vec::new();
-    // The servo off: what the drives are is a part of the loop.
-    for (pivot, one) in all.iter().enumerate() {
-        known.motor_constants[pivot] = one.motor_constant;
-        let gear = bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
-        bench.set(&[
-            (
-                id::of(id::TORQUE_CONSTANT, pivot),
-                one.motor_constant / gear,
-            ),
-            (id::of(id::COULOMB, pivot), coulomb),
-            (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
-        ])?;
-        found.push(Finding::told(
-            format!("motor of pivot {}", pivot + 1),
-            format!(
-                "{:.3} V s/rad at the ring, friction {:.2} N m",
-                one.motor_constant, one.coulomb_n_m
-            ),
-        ));
-    }
-    found.push(Finding::told(
-        "friction of a ring with its share of the platform, mean of three",
-        format!("{coulomb:.3} N m, and {viscous:.3} N m s/rad"),
-    ));
-    Ok(found)
 }

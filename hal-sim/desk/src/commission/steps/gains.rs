@@ -32,11 +32,11 @@ const LEAST_SHARE: f64 = 0.1;
 fn set(bench: &mut Bench<'_>, share: f64) -> Result<(), CommissionError> {
     let [position, velocity, integral] = WHOLE;
     let around = share.min(1.0);
-    bench.set(&[
+    Ok(bench.set(&[
         (id::POSITION_GAIN, position * around),
         (id::VELOCITY_GAIN, velocity * share),
         (id::INTEGRAL_GAIN, integral * share * around),
-    ])
+    ])?)
 }
 
 /// Encoder counts within which a loop counts as settled that is as slow as with the first share, and those of the machine.
@@ -59,11 +59,14 @@ fn at_rest(share: f64) -> f64 {
     (REST / share).clamp(REST, 1.0)
 }
 
-pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, CommissionError> {
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    _: &mut Known,
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     // At rest the loop would answer with an eighth of its gains.
     bench.set(&[(id::REST_STIFFNESS, 1.0)])?;
     bench.reserve(TICKS)?;
-    let mut found = Vec::new();
     let mut least = MOST_SHARE;
     for [x, y] in PLACES {
         set(bench, FIRST_SHARE)?;
@@ -92,7 +95,7 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
         share > LEAST_SHARE,
         "a transmission that gives way so much needs a notch (0x54500340), or to be made stiffer",
     ));
-    Ok(found)
+    Ok(())
 }
 
 /// The largest share, of those tried up to a limit, at which nothing rings.
@@ -119,15 +122,14 @@ fn ultimate(bench: &mut Bench<'_>, limit: f64) -> Result<f64, CommissionError> {
 /// Root mean square of the current's change from tick to tick, A, some time after a kick; `None` where that was a fault.
 fn ringing(bench: &mut Bench<'_>, pivot: usize) -> Result<Option<f64>, CommissionError> {
     let line = format!("EXC STEP {} {KICK_V} {KICK_MS}", pivot + 1);
-    let signals = match bench.record(&[pivot], TICKS, 1, Some(&line)) {
-        Ok(mut signals) => signals.remove(0),
-        Err(CommissionError::Controller(RecordError::Refused { .. })) => return recovered(bench),
-        Err(error) => return Err(error),
+    let record = match bench.record(pivot, TICKS, 1, Some(&line)) {
+        Err(RecordError::Refused { .. }) => return recovered(bench),
+        record => record?,
     };
     if !bench.fault()?.is_empty() {
         return recovered(bench);
     }
-    let end = &signals.current_a[TICKS - END..];
+    let end = &record.signals.current_a[TICKS - END..];
     let squares: f64 = end.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
     Ok(Some((squares / END as f64).sqrt()))
 }

@@ -30,12 +30,12 @@ const ADVICE: &str = "try it again: out of the middle first, then left by a quar
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-) -> Result<Vec<Finding>, CommissionError> {
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     bench.request(Task::Turn)?;
     let path = follow(bench)?;
     let (first, last) = (path[0], path[path.len() - 1]);
     let ways = [0, 1, 2].map(|i| last[i] - first[i]);
-    let mut found = Vec::new();
     for (port, way) in (1..).zip(ways) {
         found.push(Finding::new(
             format!("encoder at port {port}"),
@@ -67,7 +67,7 @@ pub(super) fn run(
         order.contrast > LEAST_CONTRAST,
         ADVICE,
     ));
-    Ok(found)
+    Ok(())
 }
 
 /// Angles while the person turns the platform, from where it has been pushed out of the middle.

@@ -19,13 +19,13 @@ const REST_S: f64 = 0.1;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-) -> Result<Vec<Finding>, CommissionError> {
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     bench.set(&[(id::EXCITATION_V, 2.0)])?;
     for (pivot, reversed) in (0..).zip(known.reversed_at_port) {
         bench.set(&[(id::ENCODER_REVERSED + pivot, f64::from(u8::from(reversed)))])?;
     }
     bench.delay(0.05)?;
-    let mut found = Vec::new();
     let mut volts = [0.0; AXES];
     for (bridge, volts) in volts.iter_mut().enumerate() {
         let there = nudge(bench, bridge, MOST_V)?;
@@ -85,7 +85,7 @@ pub(super) fn run(
     if ports == [0, 1, 2] {
         set_order(bench, known)?;
     }
-    Ok(found)
+    Ok(())
 }
 
 struct Nudge {
@@ -162,5 +162,5 @@ fn set_order(bench: &mut Bench<'_>, known: &mut Known) -> Result<(), CommissionE
             (id::MOTOR_REVERSED + pivot as u32, motor),
         ])?;
     }
-    bench.delay(0.05)
+    Ok(bench.delay(0.05)?)
 }

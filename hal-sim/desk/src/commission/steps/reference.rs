@@ -19,7 +19,11 @@ const MOVES: [&str; 6] = [
 const LONGEST_S: f64 = 60.0;
 const MOST_ERROR_RAD: f64 = 1e-3;
 
-pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, CommissionError> {
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    _: &mut Known,
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     // What its gains may be is not known yet.
     gains::begin_softly(bench)?;
     bench.ask("CMS 1")?;
@@ -27,25 +31,18 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
     let settled_s = bench.settle()?;
     let full = bench.number_of("VLS?")?;
     bench.ask(&format!("VLS {}", full * SPEED))?;
-    bench.ask("LST")?;
-    let _ = bench.number("LST?", "PEAK_ERROR_RAD")?;
-    for line in MOVES {
-        bench.ask(line)?;
-        bench.wait_for_target(LONGEST_S)?;
-    }
+    let error_rad = bench.follow(&MOVES, LONGEST_S)?;
     bench.ask(&format!("VLS {full}"))?;
-    let error_rad = bench.number("LST?", "PEAK_ERROR_RAD")?;
-    Ok(vec![
-        Finding::told(
-            "settled after the reference in",
-            format!("{settled_s:.2} s"),
-        ),
-        Finding::new(
-            "largest following error at a tenth of the speed",
-            format!("{:.0} urad", error_rad * 1e6),
-            format!("under {:.0}", MOST_ERROR_RAD * 1e6),
-            error_rad < MOST_ERROR_RAD,
-            "something rubs or gives way, or the gains are far from this machine's",
-        ),
-    ])
+    found.push(Finding::told(
+        "settled after the reference in",
+        format!("{settled_s:.2} s"),
+    ));
+    found.push(Finding::new(
+        "largest following error at a tenth of the speed",
+        format!("{:.0} urad", error_rad * 1e6),
+        format!("under {:.0}", MOST_ERROR_RAD * 1e6),
+        error_rad < MOST_ERROR_RAD,
+        "something rubs or gives way, or the gains are far from this machine's",
+    ));
+    Ok(())
 }

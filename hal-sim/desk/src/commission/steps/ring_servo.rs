@@ -14,8 +14,11 @@ const EVERY: usize = 20;
 const MOST_OVERSHOOT: f64 = 0.6;
 const MOST_LEFT: f64 = 0.1;
 
-pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, CommissionError> {
-    let mut found = Vec::new();
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    _: &mut Known,
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     for pivot in 0..AXES {
         for sign in [1.0, -1.0] {
             let line = format!(
@@ -24,8 +27,8 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
                 sign * WAY_MRAD
             );
             // Its last rows are of the time before it lets go.
-            let rows = (MS / 1e3 / 50e-6) as usize / EVERY - 20;
-            let signals = bench.record(&[pivot], rows, EVERY, Some(&line))?.remove(0);
+            let rows = (MS / 1e3 / bench.period_s) as usize / EVERY - 20;
+            let signals = bench.record(pivot, rows, EVERY, Some(&line))?.signals;
             bench.delay(0.3)?;
             bench.excitation_end()?;
             let start = signals.angle_rad[0];
@@ -49,5 +52,5 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
             ));
         }
     }
-    Ok(found)
+    Ok(())
 }

@@ -15,13 +15,13 @@ const TICKS: usize = 100;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-) -> Result<Vec<Finding>, CommissionError> {
-    let mut found = Vec::new();
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     for pivot in 0..AXES {
         let mut pulses = Vec::new();
         for volts in PULSES_V {
             let line = format!("EXC STEP {} {volts} {PULSE_MS}", pivot + 1);
-            pulses.push(bench.record(&[pivot], TICKS, 1, Some(&line))?.remove(0));
+            pulses.push(bench.record(pivot, TICKS, 1, Some(&line))?.signals);
             bench.delay(0.1)?;
         }
         let guess = guess(bench, pivot)?;
@@ -57,7 +57,7 @@ pub(super) fn run(
             "",
         ));
     }
-    Ok(found)
+    Ok(())
 }
 
 fn guess(bench: &mut Bench<'_>, pivot: usize) -> Result<WindingGuess, CommissionError> {

@@ -1,7 +1,7 @@
 //! Encoders, supply and current sensors at rest, with the bridges asleep.
 
 use super::id;
-use crate::commission::bench::Bench;
+use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding};
 use crate::commission::known::{AXES, Known};
 
@@ -13,7 +13,11 @@ const MOST_OFFSET_A: f64 = 0.05;
 /// How far the supply may be off its nominal value.
 const SUPPLY_SHARE: f64 = 0.1;
 
-pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, CommissionError> {
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    _: &mut Known,
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     bench.ask("CCL 1 ADVANCED")?;
     bench.ask("SVO X 0")?;
     bench.ask("FLC")?;
@@ -28,7 +32,6 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
     }
     bench.set(&[(id::ENCODER_ORDER, 123.0), (id::BRIDGE_ORDER, 123.0)])?;
     bench.delay(0.05)?;
-    let mut found = Vec::new();
     for port in 1..=AXES {
         let answers = bench.number("TST?", &format!("ENCODER{port}"))? == 1.0;
         found.push(Finding::new(
@@ -44,12 +47,12 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
         ));
     }
     if found.iter().any(|finding| !finding.passed) {
-        return Ok(found);
+        return Ok(());
     }
     let (mut supply_v, nominal_v) = (0.0, bench.parameter(id::NOMINAL_SUPPLY)?);
     for pivot in 0..AXES {
-        let signals = bench.record(&[pivot], TICKS, 1, None)?.remove(0);
-        let noise_rad = deviation(&signals.angle_rad);
+        let record = bench.record(pivot, TICKS, 1, None)?;
+        let noise_rad = deviation(&record.signals.angle_rad);
         found.push(Finding::new(
             format!("noise of the encoder at port {}", pivot + 1),
             format!("{:.0} nrad rms", noise_rad * 1e9),
@@ -57,7 +60,7 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
             noise_rad < MOST_NOISE_RAD,
             "is the machine at rest? If so: shield and termination of its cable",
         ));
-        let offset_a = mean(&signals.current_a);
+        let offset_a = average(&record.signals.current_a);
         found.push(Finding::new(
             format!("offset of current sensor {}", pivot + 1),
             format!("{:.0} mA", offset_a * 1e3),
@@ -65,7 +68,7 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
             offset_a.abs() < MOST_OFFSET_A,
             "the sensor's reference and its filter",
         ));
-        supply_v = bench.supply_v()?;
+        supply_v = record.supply_v;
     }
     found.push(Finding::new(
         "supply",
@@ -74,16 +77,11 @@ pub(super) fn run(bench: &mut Bench<'_>, _: &mut Known) -> Result<Vec<Finding>, 
         (supply_v / nominal_v - 1.0).abs() < SUPPLY_SHARE,
         "the supply, its fuse and contactor; parameter 0x54500806 is the nominal one",
     ));
-    Ok(found)
+    Ok(())
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-/// About a straight line would be better where something creeps; at rest nothing does.
 fn deviation(values: &[f64]) -> f64 {
-    let mean = mean(values);
+    let mean = average(values);
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (squares / values.len().max(1) as f64).sqrt()
 }

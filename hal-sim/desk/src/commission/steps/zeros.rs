@@ -2,24 +2,26 @@
 
 use super::id;
 use crate::commission::Task;
-use crate::commission::bench::Bench;
+use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding};
 use crate::commission::known::{AXES, Known};
 use std::f64::consts::TAU;
 
 /// Counts of a turn.
 const COUNTS: f64 = 67_108_864.0;
-/// What the angles are off after it, rad: a count or two.
+/// Ticks over whose mean an angle is read.
+const TICKS: usize = 1_000;
+/// What the angles are off after it, rad: three counts.
 const MOST_LEFT_RAD: f64 = 3e-7;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-) -> Result<Vec<Finding>, CommissionError> {
+    found: &mut Vec<Finding>,
+) -> Result<(), CommissionError> {
     bench.request(Task::PutOnJig)?;
     bench.delay(0.2)?;
-    let mut found = Vec::new();
-    let angles = bench.pivots_rad()?;
+    let angles = read(bench)?;
     for (pivot, angle) in angles.into_iter().enumerate() {
         let target = TAU * pivot as f64 / AXES as f64;
         let sign = if known.reversed_at_port[known.ports[pivot]] {
@@ -38,7 +40,7 @@ pub(super) fn run(
         ));
     }
     bench.delay(0.1)?;
-    let angles = bench.pivots_rad()?;
+    let angles = read(bench)?;
     let left = (0..AXES)
         .map(|pivot| {
             let off = (angles[pivot] - TAU * pivot as f64 / AXES as f64) / TAU;
@@ -47,10 +49,19 @@ pub(super) fn run(
         .fold(0.0, f64::max);
     found.push(Finding::new(
         "pivots in the jig, off 0, 120 and 240 deg",
-        format!("{:.2} urad at most", left * 1e6),
+        format!("{:.3} urad at most", left * 1e6),
         format!("under {:.1}", MOST_LEFT_RAD * 1e6),
-        left < MOST_LEFT_RAD + 1e-6,
+        left < MOST_LEFT_RAD,
         "the platform has moved in the jig: put it in again",
     ));
-    Ok(found)
+    Ok(())
+}
+
+/// Mean angles of the pivots.
+fn read(bench: &mut Bench<'_>) -> Result<[f64; AXES], CommissionError> {
+    let mut angles = [0.0; AXES];
+    for (pivot, angle) in angles.iter_mut().enumerate() {
+        *angle = average(&bench.record(pivot, TICKS, 1, None)?.signals.angle_rad);
+    }
+    Ok(angles)
 }

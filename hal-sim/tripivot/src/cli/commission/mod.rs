@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         "machine".to_owned()
     };
     let mut written = Ok(());
-    let (all, _) = run_steps(machine.as_mut(), &mut |done| {
+    let all = run_steps(machine.as_mut(), &mut |done| {
         if written.is_ok() {
             written = io::stdout().write_all(told(done).as_bytes());
         }
