@@ -59,8 +59,14 @@ pub fn tick_and_drive<'a>(
     observe: impl FnOnce(&mut TickQueues<'a>, &Sample),
 ) {
     state.tick = state.tick.wrapping_add(1);
-    let (frames, currents) = (config.wiring).of_pivots(&inputs.frames, &inputs.current_counts);
-    let mut pivots = decode(config, &mut state.encoders, &frames);
+    let sorted;
+    let (frames, currents) = if config.wiring.is_straight() {
+        (&inputs.frames, &inputs.current_counts)
+    } else {
+        sorted = (config.wiring).of_pivots(&inputs.frames, &inputs.current_counts);
+        (&sorted.0, &sorted.1)
+    };
+    let mut pivots = decode(config, &mut state.encoders, frames);
     // An average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.supply == 0.0 {
@@ -85,19 +91,19 @@ pub fn tick_and_drive<'a>(
     if let Some([taken_j, most_j]) = overload {
         state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
     }
-    state.check_motor_heat(config, &currents);
+    state.check_motor_heat(config, currents);
 
     let point = advance(config, state);
     state.advance_trial(config, queues.trial);
     let setpoint = state.motion.centre().platform_setpoint(&point);
     let mut guides = None;
     let driven = if drives && state.servo_on() {
-        state.drive(config, &setpoint, &mut pivots, &currents, &mut guides)
+        state.drive(config, &setpoint, &mut pivots, currents, &mut guides)
     } else {
         None
     };
     let excited = if state.mode == Mode::Exciting {
-        state.drive_excited(config, &pivots, &currents)
+        state.drive_excited(config, &pivots, currents)
     } else {
         [Duty(0); 3]
     };
@@ -137,7 +143,7 @@ pub fn tick_and_drive<'a>(
         pivot_rates: rates,
         pivots,
         duty,
-        current_counts: currents,
+        current_counts: *currents,
         supply_counts: inputs.supply_counts,
         tick_cycles: inputs.tick_cycles,
         commands: state.commands,

@@ -13,7 +13,7 @@ pub struct WiringConfig {
     pivots: ConnectorOrder,
     /// 1, or -1 where a positive voltage turns the ring to smaller angles.
     directions: [i16; 3],
-    /// Everything is where it is called, so that there is nothing to do: what the tick is spared.
+    /// Kept, since the tick asks each time.
     is_straight: bool,
 }
 
@@ -40,23 +40,20 @@ impl WiringConfig {
         self.encoders == other.encoders
     }
 
-    /// The pivots' frames and currents: positive ones turn a ring to larger angles.
+    /// Everything is where it is called: what the ports have is the pivots'.
     #[inline]
+    pub fn is_straight(&self) -> bool {
+        self.is_straight
+    }
+
+    /// The pivots' frames and currents: positive ones turn a ring to larger angles.
+    #[cold]
+    #[inline(never)]
     pub fn of_pivots(
         &self,
         frames: &[RawFrame; 3],
         current_counts: &[i16; 3],
     ) -> ([RawFrame; 3], [i16; 3]) {
-        if self.is_straight {
-            (*frames, *current_counts)
-        } else {
-            self.sort(frames, current_counts)
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn sort(&self, frames: &[RawFrame; 3], current_counts: &[i16; 3]) -> ([RawFrame; 3], [i16; 3]) {
         let [one, two, three] = self.bridges.of_pivots(current_counts);
         let [a, b, c] = self.directions;
         (

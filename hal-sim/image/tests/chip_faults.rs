@@ -448,12 +448,11 @@ fn slow(instructions_per_second: u64) -> (String, usize) {
     (told, outcome.resets.len())
 }
 
-/// Whichever is found first: that duties were late, or that what follows them has held up the next latch. 95 million instructions a second
-/// are 1.77 cycles each; the model of core and memories has 1.6 at the most pessimistic.
+/// Whichever is found first: that duties were late, or that what follows them has held up the next latch.
 #[test]
 fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counted() {
     let late = ["control loop late too often", "encoder "];
-    for (rate, told_is) in [(78_000_000, &late[..]), (95_000_000, &["0 no fault"])] {
+    for (rate, told_is) in [(78_000_000, &late[..]), (93_000_000, &["0 no fault"])] {
         let (told, resets) = slow(rate);
         println!("{rate}: {resets} resets, {told}");
         let is_told = told_is.iter().any(|is| told.contains(is));

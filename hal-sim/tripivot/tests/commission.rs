@@ -151,8 +151,8 @@ fn machines_with_a_defect_are_refused_where_it_shows() {
         let (output, folder) = commission(name, &["--unknown", "1", "--set", set]);
         let told = text(&output);
         assert_eq!(output.status.code(), Some(1), "{name}\n{told}");
-        let steps = told.lines().filter(|line| line.ends_with(" s)"));
-        let last = steps.last().expect("a step");
+        let mut steps = told.lines().filter(|line| line.ends_with(" s)"));
+        let last = steps.next_back().expect("a step");
         assert!(last.starts_with(&format!("{step}: ")), "{name}: {last}");
         assert!(told.contains(says), "{name}\n{told}");
         assert!(told.contains("what to do: ") && told.contains("not commissioned in"));

@@ -392,7 +392,7 @@ pub const SECTIONS: &[Section] = &[
                 the manuals leave open is guessed three times. Modelled, not measured: it may be some 6 % off, and what DMA takes of the \
                 RAM is not in it. \
                 [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
-                `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2.5 % off \
+                `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2 % off \
                 `llvm-mca`'s.",
         command: "cargo chip-cycles",
         short: Some("cargo chip-cycles --ticks 100"),

@@ -119,72 +119,87 @@ impl ExcitationRun {
     #[cold]
     #[inline(never)]
     pub(in crate::control) fn advance_added_volts(&mut self) {
-        let Some(request) = &mut self.request else {
-            return;
-        };
-        let (pivot, ticks) = (request.pivot, self.report.ticks);
-        if ticks >= request.ticks {
-            self.finish(ExcitationEnd::Time, pivot, 0.0);
-            return;
-        }
-        let volts = request.volts_at(ticks);
-        self.report.ticks = ticks + 1;
-        if let Some(added) = self.added_volts.get_mut(pivot) {
+        if let Some((pivot, volts)) = self.advance()
+            && let Some(added) = self.added_volts.get_mut(pivot)
+        {
             *added = volts;
         }
     }
 
-    /// Volts of the pivot that is excited, with the servo off; `None` when it has ended.
+    /// Goes a tick on with the servo off: volts of the pivot that is excited; none while the bridges wake up, or when it has ended.
     pub(in crate::control) fn next_volts(
         &mut self,
         pivots: &[Angle; 3],
         current_counts: &[i16; 3],
     ) -> Option<(usize, f32)> {
-        let request = self.request.as_mut()?;
-        let (pivot, ticks) = (request.pivot, self.report.ticks);
         if self.waking_ticks > 0 {
             self.waking_ticks -= 1;
             return None;
         }
-        if ticks >= request.ticks {
+        if let Some((end, pivot, value)) = self.reached(pivots, current_counts) {
+            self.finish(end, pivot, value);
+        }
+        self.advance_ring();
+        self.advance()
+    }
+
+    /// What was to end it.
+    fn reached(
+        &self,
+        pivots: &[Angle; 3],
+        current_counts: &[i16; 3],
+    ) -> Option<(ExcitationEnd, usize, f32)> {
+        let Excitation { pivot, until, .. } = *self.request.as_ref()?;
+        let current = current_counts.get(pivot)?.unsigned_abs();
+        if current >= until.current_counts {
+            let value = f32::from(current) * CURRENT_A_PER_COUNT as f32;
+            return Some((ExcitationEnd::Current, pivot, value));
+        }
+        for (i, way) in self.ways(pivots).into_iter().enumerate() {
+            if way >= until.way {
+                const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
+                return Some((ExcitationEnd::Way, i, way as f32 * RAD));
+            }
+        }
+        None
+    }
+
+    /// How far the pivots are from their setpoints, 2^-32 turns.
+    fn ways(&self, pivots: &[Angle; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|i| {
+            let way = (pivots[i] - self.setpoints[i]).units().unsigned_abs();
+            u32::try_from(way).unwrap_or(u32::MAX)
+        })
+    }
+
+    /// The ring's setpoint goes on, as long as it has way left.
+    fn advance_ring(&mut self) {
+        let Some(Excitation {
+            pivot,
+            signal: ExcitationSignal::Ring { way, step },
+            ..
+        }) = self.request
+        else {
+            return;
+        };
+        let left = way - self.moved;
+        let step = left.unsigned_abs().min(step) as i32 * left.signum();
+        self.moved += step;
+        if let Some(setpoint) = self.setpoints.get_mut(pivot) {
+            *setpoint += Angle::from_units(i64::from(step));
+        }
+    }
+
+    /// The pivot and its volts, until the time is over.
+    fn advance(&mut self) -> Option<(usize, f32)> {
+        let request = self.request.as_mut()?;
+        let (pivot, tick) = (request.pivot, self.report.ticks);
+        if tick >= request.ticks {
             self.finish(ExcitationEnd::Time, pivot, 0.0);
             return None;
         }
-        let until = request.until;
-        let current = current_counts
-            .get(pivot)
-            .map_or(0, |counts| counts.unsigned_abs());
-        let ways = [0, 1, 2].map(|i| (pivots[i] - self.setpoints[i]).units().unsigned_abs());
-        let is_ring = matches!(request.signal, ExcitationSignal::Ring { .. });
-        let volts = request.volts_at(ticks);
-        self.report.ticks = ticks + 1;
-        if current >= until.current_counts {
-            let value = f32::from(current) * CURRENT_A_PER_COUNT as f32;
-            self.finish(ExcitationEnd::Current, pivot, value);
-            return None;
-        }
-        if !is_ring && let Some(far) = ways.iter().position(|way| *way >= u64::from(until.way)) {
-            const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;
-            let way = ways
-                .get(far)
-                .map_or(0, |way| u32::try_from(*way).unwrap_or(u32::MAX));
-            let way = way as f32 * RAD;
-            self.finish(ExcitationEnd::Way, far, way);
-            return None;
-        }
-        if let Some(Excitation {
-            signal: ExcitationSignal::Ring { way, step },
-            ..
-        }) = &self.request
-        {
-            let left = way - self.moved;
-            let step = left.unsigned_abs().min(*step) as i32 * left.signum();
-            self.moved += step;
-            if let Some(setpoint) = self.setpoints.get_mut(pivot) {
-                *setpoint += Angle::from_units(i64::from(step));
-            }
-        }
-        Some((pivot, volts))
+        self.report.ticks = tick + 1;
+        Some((pivot, request.volts_at(tick)))
     }
 
     /// Whether a pivot has left what the guards allow, with the servo off.
@@ -194,10 +209,8 @@ impl ExcitationRun {
         steps: [i32; 3],
     ) -> Option<GuardBroken> {
         let guards = &self.request.as_ref()?.guards;
-        for i in 0..3 {
-            let way = (pivots[i] - self.setpoints[i]).units().unsigned_abs();
-            if way > u64::from(guards.way) {
-                let way = u32::try_from(way).unwrap_or(u32::MAX);
+        for (i, way) in self.ways(pivots).into_iter().enumerate() {
+            if way > guards.way {
                 return Some(GuardBroken::Way(i, way, guards.way));
             }
             let step = steps[i].unsigned_abs();
