@@ -14,7 +14,7 @@ use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Slots of the command queue (one is lost to the ring).
-pub const COMMAND_SLOTS: usize = 5;
+pub const COMMAND_SLOTS: usize = 3;
 
 /// Storage of both queues, of the data recorder, and of a trial of iterative learning.
 pub struct Queues {

@@ -3,13 +3,13 @@
 //! The ideal solution, and from there Newton's method on [`corrected_inverse`]: what the encoders would read there
 //! against what they do. The same function both ways makes the setpoint of a measured pose the reading.
 
-use crate::corrected_inverse::corrected_inverse;
+use crate::corrected_inverse::{CorrectedInverse, corrected_inverse};
 use crate::corrected_rates::corrected_direct_rates;
 use crate::corrected_scalar::CorrectedScalar;
 use crate::corrections::Corrections;
 use crate::curves::Curves;
 use crate::direct::{DirectError, direct};
-use crate::inverse::InverseError;
+use crate::line::Line;
 use crate::pose::Pose;
 
 /// The pose in which the encoders read `encoders`, of which the first tells the turn, after `steps` of Newton's method.
@@ -45,19 +45,39 @@ pub fn refine<T: CorrectedScalar, C: Curves<T>>(
     encoders: &[T::Angle; 3],
     corrections: &Corrections<T, C>,
 ) -> Result<Pose<T>, DirectError> {
-    let at = corrected_inverse(pose, corrections).map_err(|error| match error {
-        InverseError::NotFinite => DirectError::NotFinite,
-        InverseError::OutsideTrack => DirectError::OutsideTrack,
-    })?;
-    // Readings of single-turn encoders may be whole turns apart.
-    let missing = [0, 1, 2].map(|i| {
+    let at = corrected_inverse(pose, corrections)?;
+    Ok(newton_step(
+        pose,
+        &at,
+        &corrections.lines,
+        &missing_rad(&at, encoders),
+    ))
+}
+
+/// What encoders read more than in a pose. Readings of single-turn encoders may be whole turns apart.
+#[inline(always)]
+pub fn missing_rad<T: CorrectedScalar>(
+    at: &CorrectedInverse<T>,
+    encoders: &[T::Angle; 3],
+) -> [T::Correction; 3] {
+    [0, 1, 2].map(|i| {
         let there = at.encoders[i];
         T::angle_to_correction(T::near(encoders[i], there) - there)
-    });
-    let step = corrected_direct_rates(&at, &corrections.lines, &missing);
-    Ok(Pose {
+    })
+}
+
+/// The pose in which the encoders read so much more than in this one, to first order.
+#[inline(always)]
+pub fn newton_step<T: CorrectedScalar>(
+    pose: &Pose<T>,
+    at: &CorrectedInverse<T>,
+    lines: &[Line<T>; 3],
+    missing_rad: &[T::Correction; 3],
+) -> Pose<T> {
+    let step = corrected_direct_rates(at, lines, missing_rad);
+    Pose {
         x: pose.x + T::from_correction(step.x),
         y: pose.y + T::from_correction(step.y),
         theta: pose.theta + T::angle_from_correction(step.theta),
-    })
+    }
 }

@@ -45,6 +45,7 @@ pub fn corrected_pivot_motion<T: CorrectedScalar>(
 /// The platform's velocity in the base frame from the encoders' `rates` in rad/s, in a pose. Guides may point anywhere:
 /// Cramer's rule on `-sin t_i x' + cos t_i y' + rho_i theta' = R c_i psi_i'`, where
 /// [`direct_rates`](crate::direct_rates) needs them 120 deg apart.
+#[inline]
 pub fn corrected_direct_rates<T: CorrectedScalar>(
     at: &CorrectedInverse<T>,
     lines: &[Line<T>; 3],

@@ -41,6 +41,15 @@ impl fmt::Display for DirectError {
 
 impl core::error::Error for DirectError {}
 
+impl From<InverseError> for DirectError {
+    fn from(error: InverseError) -> Self {
+        match error {
+            InverseError::NotFinite => Self::NotFinite,
+            InverseError::OutsideTrack => Self::OutsideTrack,
+        }
+    }
+}
+
 /// A complex number: the pivots as points, and their transform.
 #[derive(Clone, Copy)]
 struct Complex<T> {

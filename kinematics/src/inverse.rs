@@ -94,7 +94,7 @@ pub(crate) struct GuideSeen<T> {
 }
 
 /// The drawn guides of a pose inside the track, as the track's centre sees them.
-#[inline]
+#[inline(always)]
 pub(crate) fn see_guides<T: Scalar>(pose: &Pose<T>) -> Result<[GuideSeen<T>; 3], InverseError> {
     if !(pose.x.is_finite() && pose.y.is_finite() && T::angle_is_finite(pose.theta)) {
         return Err(InverseError::NotFinite);

@@ -115,12 +115,12 @@ pub mod series;
 
 pub use angle::Angle;
 pub use coefficients::{COEFFICIENTS, PivotCoefficients};
-pub use corrected_direct::{corrected_direct, refine};
+pub use corrected_direct::{corrected_direct, missing_rad, newton_step, refine};
 pub use corrected_inverse::{CorrectedInverse, corrected_inverse};
 pub use corrected_rates::{corrected_direct_rates, corrected_pivot_motion};
 pub use corrected_scalar::CorrectedScalar;
 pub use corrections::{CoefficientError, Corrections, check_coefficients};
-pub use curves::{CurvePoint, Curves, RingErrors};
+pub use curves::{CurvePoint, Curves, RingErrors, Tangents};
 pub use direct::{DirectError, direct, direct_rates};
 pub use feasibility::{Infeasible, Margins, feasibility, margins};
 pub use geometry::{

@@ -3,10 +3,13 @@
 use crate::coefficients::PivotCoefficients;
 use crate::corrected_scalar::CorrectedScalar;
 use crate::curves::{CurvePoint, Curves, RingErrors};
-use crate::scalar::Real;
+use crate::scalar::{Real, Scalar};
 
 /// The straightness is a sum of Legendre polynomials of (rho - 1) over this.
 const STRAIGHTNESS_SPAN: f64 = 0.8;
+/// As far from 1 the polynomials are taken, some beyond a guide's mechanical ends: it goes on straight further out,
+/// where they would grow without bounds.
+const STRAIGHTNESS_REACH: f64 = 0.85;
 /// Order of the runout's first pair.
 const FIRST_RUNOUT: usize = 2;
 
@@ -19,6 +22,13 @@ pub struct Series<T> {
 }
 
 impl<T: Real> Series<T> {
+    /// No errors.
+    pub const ZERO: Self = Self {
+        encoder_rad: [[T::ZERO; 2]; 12],
+        runout: [[T::ZERO; 2]; 5],
+        straightness: [T::ZERO; 8],
+    };
+
     /// The series of a pivot.
     #[must_use]
     pub fn new(coefficients: &PivotCoefficients) -> Self {
@@ -31,31 +41,45 @@ impl<T: Real> Series<T> {
     }
 }
 
-impl<T: Real + CorrectedScalar<Correction = T>> Curves<T> for Series<T> {
+impl<T: CorrectedScalar> Curves<T> for Series<T::Correction> {
     fn are_zero(&self) -> bool {
         let pairs = self.encoder_rad.iter().chain(&self.runout);
-        (pairs.flatten().chain(&self.straightness)).all(|&number| number == T::ZERO)
+        (pairs.flatten().chain(&self.straightness)).all(|&number| number == T::Correction::ZERO)
     }
 
-    fn ring_errors(&self, ring: T) -> RingErrors<T> {
+    #[inline(always)]
+    fn ring_errors(&self, ring: T::Angle) -> RingErrors<T::Correction> {
         let (sine, cosine) = T::sin_cos(ring);
+        let [cosine, sine] = [cosine, sine].map(T::to_correction);
         RingErrors {
             encoder: fourier(&self.encoder_rad, 1, [cosine, sine]),
             runout: fourier(&self.runout, FIRST_RUNOUT, [cosine, sine]),
         }
     }
 
-    fn straightness(&self, rho: T) -> CurvePoint<T> {
-        let per_radius = T::from_f64(1.0 / STRAIGHTNESS_SPAN);
-        let point = legendre(&self.straightness, (rho - T::ONE) * per_radius);
+    #[inline(always)]
+    fn straightness(&self, rho: T::Correction) -> CurvePoint<T::Correction> {
+        let per_radius = T::Correction::from_f64(1.0 / STRAIGHTNESS_SPAN);
+        let reach = T::Correction::from_f64(STRAIGHTNESS_REACH);
+        let place = rho - T::Correction::ONE;
+        let inside = if place > reach {
+            reach
+        } else if place < -reach {
+            -reach
+        } else {
+            place
+        };
+        let point = legendre(&self.straightness, inside * per_radius);
+        let slope = point.slope * per_radius;
         CurvePoint {
-            value: point.value,
-            slope: point.slope * per_radius,
+            value: point.value + slope * (place - inside),
+            slope,
         }
     }
 }
 
 /// The sum of `pair . (cos k psi, sin k psi)` from k = `first` on, from the cosine and sine of psi.
+#[inline(always)]
 fn fourier<T: Real>(pairs: &[[T; 2]], first: usize, [cosine, sine]: [T; 2]) -> CurvePoint<T> {
     let turned = |[c, s]: [T; 2]| [c * cosine - s * sine, s * cosine + c * sine];
     let (mut harmonic, mut order) = ([cosine, sine], T::ONE);
@@ -74,6 +98,7 @@ fn fourier<T: Real>(pairs: &[[T; 2]], first: usize, [cosine, sine]: [T; 2]) -> C
 
 /// The sum of `sizes[k]` times the Legendre polynomial of order k + 2 at `x`, by Bonnet's recursion
 /// `(n + 1) P(n+1) = (2 n + 1) x P(n) - n P(n-1)` and `P'(n+1) = P'(n-1) + (2 n + 1) P(n)`.
+#[inline(always)]
 fn legendre<T: Real>(sizes: &[T], x: T) -> CurvePoint<T> {
     let mut last = CurvePoint {
         value: T::ONE,

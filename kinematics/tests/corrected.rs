@@ -101,7 +101,7 @@ proptest! {
             ];
             let (sin, cos) = (guide_angle(pose.theta, i) + built.guide_error_rad).sin_cos();
             let (rho, side) = (x * cos + y * sin, y * cos - x * sin);
-            let gap = side - built.guide_offset - Curves::<f64>::straightness(&machine.curves[i], rho).value;
+            let gap: f64 = side - built.guide_offset - Curves::<f64>::straightness(&machine.curves[i], rho).value;
             prop_assert!(gap.abs() < 4e-11, "{gap}");
             prop_assert!((solved.guides[i].rho() - rho).abs() < 4e-4);
         }

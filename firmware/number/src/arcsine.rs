@@ -32,11 +32,13 @@ const QUARTER_TURN: i32 = 1 << 30;
 
 /// asin(d) and sqrt(1 - d^2) of three; `None` unless every |d| < 1. Error of the angles under 4e-9 rad, the
 /// conditioning of the second form near |d| = 1 aside.
-#[inline]
+// Inlined into the loop's two inverse kinematics: calls and results through memory would cost both.
+#[inline(always)]
 pub(super) fn asin_cos(d: [Fixed; 3]) -> Option<[(Angle, Fixed); 3]> {
-    let [Some(one), Some(two), Some(three)] = d.map(Argument::new) else {
-        return None;
-    };
+    let [d_1, d_2, d_3] = d;
+    let one = Argument::new(d_1)?;
+    let two = Argument::new(d_2)?;
+    let three = Argument::new(d_3)?;
     let arguments = [one, two, three];
     let turns = horner(arguments.map(|argument| argument.square));
     Some([0, 1, 2].map(|i| {

@@ -32,7 +32,7 @@ impl Scalar for Fixed {
         trigonometric::sin_cos(angle.fraction())
     }
 
-    #[inline]
+    #[inline(always)]
     fn asin_cos(sines: [Self; 3]) -> Option<[(Angle, Self); 3]> {
         arcsine::asin_cos(sines)
     }

@@ -1,5 +1,6 @@
 //! What the command side asks of the tick.
 
+use super::calibrated::CalibrationInForce;
 use super::config::Config;
 use super::excitation::Excitation;
 use crate::motion::{Plan, RotationCentre};
@@ -21,6 +22,8 @@ pub enum Command {
     /// Compute with these constants from now on. Refused in motion, and with the servo on where it changes what the
     /// encoders' readings mean; such a change takes the reference.
     Configure(Config),
+    /// The machine is as this calibration has it from now on. Refused but with the servo off.
+    Calibrate(CalibrationInForce),
     /// Put a known voltage on a motor: alone with the servo off, else besides what the servo asks for.
     Excite(Excitation),
     /// End that.
@@ -31,4 +34,5 @@ pub enum Command {
 
 // Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
 const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());
+const _: () = assert!(size_of::<CalibrationInForce>() <= size_of::<Plan>());
 const _: () = assert!(size_of::<Excitation>() <= size_of::<Plan>());

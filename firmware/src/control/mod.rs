@@ -11,6 +11,7 @@
 //! | `referencing` | turns for theta and the pivots from single-turn encoders |
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
+//! | `calibrated` | the same of a machine that is calibrated, and the pose of its encoders |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `brake_resistor` | what takes the energy that the motors give back |
 //! | `excitation/` | a known voltage on a motor, to see what the machine is |
@@ -28,6 +29,7 @@
 //! | `loop_counters` | what the loop counts between two snapshots |
 
 mod brake_resistor;
+mod calibrated;
 mod command;
 pub mod config;
 pub mod encoder;
@@ -53,6 +55,7 @@ mod trial;
 pub mod units;
 mod wiring;
 
+pub use calibrated::CalibrationInForce;
 pub use command::Command;
 pub use observers::TickObservers;
 pub use snapshot::{SNAPSHOT_SLOTS, ServoReport, Snapshot};

@@ -53,7 +53,7 @@ pub(super) fn pivot_setpoints(config: &Config, setpoint: &Setpoint) -> Option<Pi
 
 /// The pose of a position, as far as it is one of the mechanism.
 #[inline]
-fn pose(position: &Position) -> Option<Pose<Fixed>> {
+pub(super) fn pose(position: &Position) -> Option<Pose<Fixed>> {
     Some(Pose {
         x: Fixed::from_position(position[0])?,
         y: Fixed::from_position(position[1])?,

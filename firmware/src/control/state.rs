@@ -1,6 +1,7 @@
 //! What a tick is given, what it gives, and what the loop remembers between ticks.
 
 use super::brake_resistor::BrakeResistor;
+use super::calibrated::Calibrated;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::excitation::ExcitationRun;
@@ -60,6 +61,7 @@ pub struct State {
     pub(super) lost_pivot: Option<usize>,
     pub(super) referenced: bool,
     pub(super) encoders: [Encoder; 3],
+    pub(super) calibrated: Calibrated,
     pub(super) motion: PlanFollower,
     pub(super) servo: [PivotServo; 3],
     pub(super) trial: Trial,

@@ -126,6 +126,7 @@ pub fn tick_and_drive<'a>(
         .count_tick(inputs.tick_cycles, inputs.late);
     if let Some(guides) = &guides {
         state.learn(config, guides, slot);
+        state.look_up_curves(slot, &target, &guides[0]);
     }
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
@@ -213,7 +214,12 @@ impl State {
             return None;
         }
         // Used where it lies.
-        let Some(wanted) = &pivot_setpoints(config, setpoint) else {
+        let wanted = if self.calibrated.is_on {
+            self.calibrated.pivot_setpoints(config, setpoint)
+        } else {
+            pivot_setpoints(config, setpoint)
+        };
+        let Some(wanted) = &wanted else {
             self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
             return None;
         };

@@ -8,8 +8,8 @@ use heapless::Vec;
 pub const RECORDER_TABLES: usize = 8;
 /// Words of the widest row: some signals are worked out of several words.
 pub const MAX_ROW_WORDS: usize = 11;
-/// Words of the data recorder. The widest rows, of 11 words, are fewer: 1,675.
-pub const RECORDER_WORDS: usize = MAX_RECORD_ROWS * 9;
+/// Words of the data recorder. The widest rows, of 11 words, are fewer: 1,582.
+pub const RECORDER_WORDS: usize = MAX_RECORD_ROWS * 17 / 2;
 
 const _: () = assert!(MAX_RECORD_ROWS * RECORDER_TABLES >= 16_384);
 

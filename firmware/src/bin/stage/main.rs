@@ -145,6 +145,7 @@ mod app {
         queues: Queues = Queues::new(),
         samples: SampleQueue = SampleQueue::new(),
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
+        #[unsafe(link_section = ".ccm.session")]
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
         #[unsafe(link_section = ".ccm.state")]
         state_place: MaybeUninit<State> = MaybeUninit::uninit(),

@@ -11,7 +11,7 @@ use crate::fault::Fault;
 use crate::mode::Mode;
 use crate::motion::Position;
 use crate::number::Fixed;
-use kinematics::{Angle, DirectError, Pose, direct};
+use kinematics::{Angle, Pose};
 
 impl State {
     /// Handles a command as the table of transitions has it.
@@ -55,6 +55,7 @@ impl State {
                 // At rest, as it is now, it is taken.
                 let _ = self.motion.set_centre(*centre);
             }
+            Command::Calibrate(wanted) => self.calibrated.set(wanted),
             // The servo is on already, or goes off, which is all there is to it.
             Command::Servo(false) | Command::EndExcitation => {
                 self.excitation.end(ExcitationEnd::Stopped);
@@ -93,7 +94,10 @@ impl State {
                 true
             }
             Command::Excite(excitation) => self.excite(excitation, pivots),
-            Command::Centre(_) | Command::Configure(_) | Command::EndExcitation => false,
+            Command::Centre(_)
+            | Command::Configure(_)
+            | Command::Calibrate(_)
+            | Command::EndExcitation => false,
         }
     }
 
@@ -103,7 +107,10 @@ impl State {
             .encoders
             .iter()
             .all(|encoder| encoder.unusable().is_none());
-        let (true, Ok(pose)) = (ready, measured_pose(pivots)) else {
+        if !ready {
+            return false;
+        }
+        let Ok(pose) = self.calibrated.measured_pose(pivots) else {
             return false;
         };
         let (theta, unwrapped) = referencing::within_one_turn(pose.theta, pivots);
@@ -117,7 +124,10 @@ impl State {
 
     /// Servo on, at the pose where the stage is.
     fn hold(&mut self, config: &Config, pivots: &[Angle; 3]) -> bool {
-        let (true, Ok(pose)) = (self.referenced, measured_pose(pivots)) else {
+        if !self.referenced {
+            return false;
+        }
+        let Ok(pose) = self.calibrated.measured_pose(pivots) else {
             return false;
         };
         self.hold_at(config, &pose);
@@ -195,6 +205,8 @@ fn event_of(config: &Config, command: &Command) -> Event {
                 Event::Mounting
             }
         }
+        // What the readings mean is another pose.
+        Command::Calibrate(_) => Event::Mounting,
         Command::Excite(_) => Event::Excite,
         Command::EndExcitation => Event::EndExcitation,
         Command::Acknowledge => Event::Acknowledge,
@@ -208,10 +220,4 @@ fn position(pose: &Pose<Fixed>) -> Position {
         pose.y.to_position(),
         pose.theta.units(),
     ]
-}
-
-/// The pose of measured pivots: in a function of the loop's own, which the image's linker finds.
-#[inline(never)]
-fn measured_pose(pivots: &[Angle; 3]) -> Result<Pose<Fixed>, DirectError> {
-    direct(pivots)
 }

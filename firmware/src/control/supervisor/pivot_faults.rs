@@ -48,7 +48,8 @@ impl State {
         let limits = &config.limits;
         let i = inspection.pivot;
         let separation = (inspection.next - inspection.angle).fraction();
-        if separation < limits.min_separation {
+        let closer = self.calibrated.margins.separation;
+        if separation.saturating_add(closer) < limits.min_separation {
             self.raise_angle_fault(
                 FaultKind::PivotsTooClose,
                 i,

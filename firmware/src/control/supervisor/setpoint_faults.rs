@@ -48,7 +48,9 @@ impl State {
         pivot: usize,
         rho: f32,
     ) -> bool {
+        let margin = self.calibrated.margins.guide;
         let [least, most] = config.limits.guide_range;
+        let (least, most) = (least - margin, most + margin);
         let within = rho >= least && rho <= most;
         if !within && self.max_radius_squared <= config.limits.max_radius_squared {
             let limit = if rho < least { least } else { most };
