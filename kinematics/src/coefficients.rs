@@ -45,4 +45,53 @@ impl PivotCoefficients {
         runout: [[0.0; 2]; 5],
         straightness: [0.0; 8],
     };
+
+    /// The numbers of a pivot, in the order of their fields.
+    #[must_use]
+    pub fn to_list(&self) -> [f64; COEFFICIENTS] {
+        let mut list = [0.0; COEFFICIENTS];
+        let [x, y] = self.ring_centre;
+        let lines = [
+            self.encoder_zero_rad,
+            self.radius_error,
+            x,
+            y,
+            self.guide_error_rad,
+            self.guide_offset,
+        ];
+        let curves = (self.encoder_rad.as_flattened().iter())
+            .chain(self.runout.as_flattened())
+            .chain(&self.straightness);
+        for (place, &number) in list.iter_mut().zip(lines.iter().chain(curves)) {
+            *place = number;
+        }
+        list
+    }
+
+    /// A pivot of these numbers.
+    #[must_use]
+    pub fn from_list(list: &[f64; COEFFICIENTS]) -> Self {
+        let mut pivot = Self::IDEAL;
+        let [
+            zero_rad,
+            radius_error,
+            x,
+            y,
+            guide_error_rad,
+            guide_offset,
+            curves @ ..,
+        ] = list;
+        pivot.encoder_zero_rad = *zero_rad;
+        pivot.radius_error = *radius_error;
+        pivot.ring_centre = [*x, *y];
+        pivot.guide_error_rad = *guide_error_rad;
+        pivot.guide_offset = *guide_offset;
+        let places = (pivot.encoder_rad.as_flattened_mut().iter_mut())
+            .chain(pivot.runout.as_flattened_mut())
+            .chain(&mut pivot.straightness);
+        for (place, &number) in places.zip(curves) {
+            *place = number;
+        }
+        pivot
+    }
 }

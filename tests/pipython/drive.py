@@ -92,8 +92,8 @@ class Drive(Programs):
 
     def test_every_command_that_is_listed_is_known_to_the_client(self):
         # `WAV` has a function for each of its types.
-        own = {"CMS", "EXC", "FLC", "HBT", "ILC", "JRC", "JTM", "LST", "OWN", "RCV", "WAC", "WAV"}
-        own |= {"qCMS", "qEVT", "qEXC", "qFLR", "qFLT", "qHBT", "qILC", "qJTM", "qMON", "qOWN", "qRCV", "qTST"}
+        own = {"CAL", "CMS", "EXC", "FLC", "HBT", "ILC", "JRC", "JTM", "LST", "OWN", "RCV", "WAC", "WAV"}
+        own |= {"qCAL", "qCMS", "qEVT", "qEXC", "qFLR", "qFLT", "qHBT", "qILC", "qJTM", "qMON", "qOWN", "qRCV", "qTST"}
         missing = [name for name in self.stage.funcs if not hasattr(self.stage, name)]
         self.assertEqual(set(missing), own)
 

@@ -21,9 +21,9 @@ def section_of_page(title):
 
 
 def name_of(line):
-    """The command's name: what stands before its parameters. `MAC`, `ILC` and `EXC` have a second word."""
+    """The command's name: what stands before its parameters. `MAC`, `ILC`, `EXC` and `CAL` have a second word."""
     words = line.split()
-    return " ".join(words[:2]) if words[0] in ("MAC", "ILC", "EXC") else words[0]
+    return " ".join(words[:2]) if words[0] in ("MAC", "ILC", "EXC", "CAL") else words[0]
 
 
 class GcsPage(unittest.TestCase):

@@ -5,12 +5,14 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`calibrated`] | a stage as it was built, and its calibration as lines |
 //! | [`trouble`] | ways to break a bench |
 //! | [`repeated`] | a way that is repeated, for iterative learning |
 //! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |
 //! | [`fuzz`] | random sessions and settings, and what has to hold whatever is sent |
 //! | [`measured`] | `hal-sim/MEASURED.md`: figures with the commands that give them |
 
+pub mod calibrated;
 pub mod fuzz;
 pub mod ideal;
 pub mod measured;

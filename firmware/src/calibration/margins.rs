@@ -1,9 +1,9 @@
 //! How far the pivots of a built machine stand from where the planners take them to be: these plan for the drawing.
 
-use super::Calibration;
+use super::{Calibration, IDEAL};
 use crate::number::Fixed;
 use core::fmt;
-use kinematics::{Angle, Geometry, Pose, Scalar, corrected_inverse, inverse};
+use kinematics::{Angle, CorrectedInverse, Geometry, Pose, Scalar, corrected_inverse};
 
 /// Directions of the centre on the disk's rim, and orientations at each: the guides' ends and the closest pivots are
 /// reached there.
@@ -82,14 +82,14 @@ impl CalibrationMargins {
 
     /// In one pose.
     fn at(pose: &Pose<Fixed>, calibration: &Calibration) -> Option<Self> {
-        let drawn = inverse(pose).ok()?;
-        let built = corrected_inverse(pose, calibration).ok()?;
+        let drawn = solved(pose, &IDEAL)?;
+        let built = solved(pose, calibration)?;
         let mut worst = Self::NONE;
         for i in 0..3 {
             let next = (i + 1) % 3;
-            let place = drawn.guides[i].map(Fixed::to_f32).rho();
+            let place = drawn.guides[i].rho();
             let apart = |angles: &[Angle; 3]| angles[next] - angles[i];
-            let closer = apart(&drawn.pivots) - apart(&built.encoders);
+            let closer = apart(&drawn.encoders) - apart(&built.encoders);
             worst = worst.max(Self {
                 guide: (built.guides[i].rho() - place).abs(),
                 separation: u32::try_from(closer.near(Angle::ZERO).units().max(0)).ok()?,
@@ -108,6 +108,12 @@ impl CalibrationMargins {
             separation: self.separation.max(other.separation),
         }
     }
+}
+
+/// Once in the image: it is long. The drawn machine is solved by it too, so that the tick's own inverse is the tick's alone.
+#[inline(never)]
+fn solved(pose: &Pose<Fixed>, calibration: &Calibration) -> Option<CorrectedInverse<Fixed>> {
+    corrected_inverse(pose, calibration).ok()
 }
 
 /// One of `count` even steps of a turn.

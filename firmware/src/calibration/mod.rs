@@ -7,14 +7,26 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `machine` | a calibrated machine: its numbers, whose they are, how they came about |
 //! | `margins` | how far the pivots of a built machine stand from where the planners take them to be |
 
+mod machine;
 mod margins;
 
 use crate::number::Fixed;
-use kinematics::{Corrections, Series};
+use kinematics::{Corrections, Line, Series};
 
+pub use machine::{
+    BeyondLimits, BuiltMachine, CALIBRATION_TEXT_BYTES, CalibrationNumbers, CalibrationText,
+    MachineCalibration,
+};
 pub use margins::{CalibrationMargins, MarginsTooLarge};
 
 /// What the corrected kinematics take in the tick: the lines of the three pivots and their curves.
 pub type Calibration = Corrections<Fixed, Series<f32>>;
+
+/// The calibration of a machine as drawn.
+pub const IDEAL: Calibration = Corrections {
+    lines: [Line::IDEAL; 3],
+    curves: [Series::ZERO; 3],
+};

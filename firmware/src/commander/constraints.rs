@@ -10,6 +10,9 @@ impl Commander {
     pub(super) fn constraints(&self) -> Constraints {
         let radius_mm = self.base_constraints.geometry.radius_mm;
         let mut constraints = self.base_constraints;
+        let share = self.calibrating.pivot_share();
+        constraints.limits.pivot_rate_rad_s *= share;
+        constraints.limits.pivot_acceleration_rad_s2 *= share;
         constraints.rotation_centre = self.radii(self.active_frames.tool.origin());
         let [x, y] = self.active_frames.zero;
         for (bounds, (axis, zero, per_unit)) in (constraints.bounds.iter_mut()).zip([

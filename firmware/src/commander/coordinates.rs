@@ -3,9 +3,10 @@
 use super::axis::{Axis, Coordinates, Travel};
 use super::error::CommandError;
 use super::frames::{ActiveFrames, Transform};
+use crate::calibration::BuiltMachine;
 use crate::control::held_position::STEPS_PER_UNIT;
 use crate::motion::{Constraints, Position, check_target};
-use kinematics::{Angle, Geometry, direct};
+use kinematics::{Angle, Geometry, Pose, corrected_direct, direct};
 
 /// Travel of W: 10,000 turns. The motion layer counts much further; this is what a typing error may cost.
 const W_TRAVEL_DEG: f64 = 3_600_000.0;
@@ -111,15 +112,30 @@ pub(crate) fn measured(
     pivots: &[Angle; 3],
     active_frames: &ActiveFrames,
     geometry: &Geometry,
+    built: Option<&BuiltMachine>,
 ) -> Option<Coordinates> {
     // Whole turns go around the floating point: they would cost it digits.
     let turns = pivots[0].turns();
     let whole = Angle::from_units(i64::from(turns) << 32);
-    let pose = direct::<f64>(&pivots.map(|pivot| (pivot - whole).radians())).ok()?;
+    let pose = shown_pose(&pivots.map(|pivot| (pivot - whole).radians()), built)?;
     let mm = |radii: f64| radii * geometry.radius_mm;
     Some(active_frames.target_at(&Transform {
         x_mm: mm(pose.x),
         y_mm: mm(pose.y),
         w_deg: pose.theta.to_degrees() + f64::from(turns) * 360.0,
     }))
+}
+
+/// Of Newton's method, in double precision: 1e-11 rad are left.
+const NEWTON_STEPS: u32 = 3;
+
+/// The pose that encoders show, on a machine as drawn or on this one.
+pub(super) fn shown_pose(
+    encoders_rad: &[f64; 3],
+    built: Option<&BuiltMachine>,
+) -> Option<Pose<f64>> {
+    match built {
+        None => direct(encoders_rad).ok(),
+        Some(built) => corrected_direct(encoders_rad, built, NEWTON_STEPS).ok(),
+    }
 }

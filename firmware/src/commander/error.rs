@@ -65,6 +65,8 @@ pub enum CommandError {
     StreamFull,
     /// Parameters that had been accepted were refused by the tick.
     ConfigurationRefused,
+    /// The corrected kinematics do not hold for this calibration.
+    CalibrationBeyondLimits,
     /// About frames and the centre of rotation.
     Frame(FrameError),
     /// About waveforms.
@@ -127,6 +129,9 @@ impl fmt::Display for CommandError {
             Self::RadiusWithToolFrame => f.write_str("a tool frame is in force"),
             Self::StreamDry => f.write_str("streamed targets did not come in time"),
             Self::StreamFull => f.write_str("streamed targets come too fast"),
+            Self::CalibrationBeyondLimits => {
+                f.write_str("a number of the calibration is beyond its limit")
+            }
             Self::ConfigurationRefused => f.write_str("the control loop refuses the parameters"),
         }
     }

@@ -58,6 +58,7 @@ pub mod wave;
 pub(crate) mod coordinates;
 
 mod advance;
+mod calibration;
 mod configure;
 mod constraints;
 mod error;

@@ -8,6 +8,7 @@ use super::furthest_target::furthest_target;
 use super::in_flight::InFlight;
 use super::quantity::Quantity;
 use super::state::Commander;
+use crate::calibration::BuiltMachine;
 use crate::mode::Mode;
 use crate::motion::{Position, check_line};
 use kinematics::Angle;
@@ -104,6 +105,15 @@ impl Commander {
     /// Measured pose, in the frames in force. Without a reference there is none: 0. With pivots that are no pose (a
     /// fault) the setpoint stands for it.
     pub fn measured(&self) -> Coordinates {
+        self.measured_on(self.built().as_ref())
+    }
+
+    /// The same of a machine as drawn, whatever its calibration says.
+    pub fn measured_as_drawn(&self) -> Coordinates {
+        self.measured_on(None)
+    }
+
+    fn measured_on(&self, built: Option<&BuiltMachine>) -> Coordinates {
         let Some(snapshot) = self.snapshot.as_ref().filter(|s| s.referenced) else {
             return Coordinates::default();
         };
@@ -111,6 +121,7 @@ impl Commander {
             &snapshot.pivots,
             &self.active_frames,
             &self.base_constraints.geometry,
+            built,
         )
         .unwrap_or_else(|| {
             coordinates(
@@ -138,6 +149,7 @@ impl Commander {
                 &pivots,
                 &self.active_frames,
                 &self.base_constraints.geometry,
+                None,
             )
         });
         let now = self.pivots().and_then(|pivots| {
@@ -145,6 +157,7 @@ impl Commander {
                 &pivots,
                 &self.active_frames,
                 &self.base_constraints.geometry,
+                None,
             )
         });
         let (Some(then), Some(now)) = (then, now) else {

@@ -1,10 +1,11 @@
 //! Whether the pose that the encoders show is one that the stage can take: the one free hint at wrong wiring and wrong zeros.
 
-use super::coordinates::{DEGREES_A_TURN, UNITS_PER_RADIUS};
+use super::coordinates::{DEGREES_A_TURN, UNITS_PER_RADIUS, shown_pose};
+use crate::calibration::BuiltMachine;
 use crate::parameters::Parameters;
 use crate::queues::Snapshot;
 use core::f64::consts::TAU;
-use kinematics::{Angle, Geometry, Pose, direct, margins};
+use kinematics::{Angle, Geometry, Pose, margins};
 
 /// How far out of its reach the stage may be taken over: as far as the supervisor lets it go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +29,12 @@ impl ReachMargins {
     }
 
     /// The pose that the encoders show, mm, mm and deg, if all of them answer and it is none that the stage can take.
-    pub fn pose_outside(&self, snapshot: &Snapshot) -> Option<[f64; 3]> {
-        let pose = shown_pose(snapshot)?;
+    pub fn pose_outside(
+        &self,
+        snapshot: &Snapshot,
+        built: Option<&BuiltMachine>,
+    ) -> Option<[f64; 3]> {
+        let pose = pose_of(snapshot, built)?;
         let is_inside = margins(&self.geometry, &pose).is_ok_and(|room| {
             room.disk >= -self.disk
                 && room.guide_start.min(room.guide_end) >= -self.guide
@@ -43,12 +48,12 @@ impl ReachMargins {
 }
 
 /// The pose that the encoders show, within one turn, if all of them answer and it is one.
-fn shown_pose(snapshot: &Snapshot) -> Option<Pose<f64>> {
+fn pose_of(snapshot: &Snapshot, built: Option<&BuiltMachine>) -> Option<Pose<f64>> {
     if snapshot.encoder_faults != [None; 3] {
         return None;
     }
     let single_turn = |angle: Angle| f64::from(angle.units() as u32) / UNITS_PER_RADIUS * TAU;
-    direct::<f64>(&snapshot.pivots.map(single_turn)).ok()
+    shown_pose(&snapshot.pivots.map(single_turn), built)
 }
 
 /// The smallest angle between two pivots, rad.

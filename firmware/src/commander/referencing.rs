@@ -56,7 +56,10 @@ impl Commander {
             Referencing::Failed(CommandError::Faulted)
         } else if snapshot.referenced {
             Referencing::Done
-        } else if let Some(pose) = self.reach_margins.pose_outside(snapshot) {
+        } else if let Some(pose) = self
+            .reach_margins
+            .pose_outside(snapshot, self.built().as_ref())
+        {
             Referencing::Failed(CommandError::ReferenceOutside(pose))
         } else if snapshot.tick >= self.referencing_deadline {
             Referencing::Failed(CommandError::ReferencingFailed)

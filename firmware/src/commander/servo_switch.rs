@@ -44,7 +44,10 @@ impl Commander {
                 if self.rest.is_fast {
                     return Err(CommandError::InMotion);
                 }
-                if let Some(pose) = self.reach_margins.pose_outside(snapshot) {
+                if let Some(pose) = self
+                    .reach_margins
+                    .pose_outside(snapshot, self.built().as_ref())
+                {
                     return Err(CommandError::ReferenceOutside(pose));
                 }
                 self.send(Command::Servo(true), InFlight::Other, queues)

@@ -1,6 +1,7 @@
 //! What is known of the stage and asked of it, and how snapshots change it.
 
 use super::axis::{AxisSet, AxisValues, Coordinates};
+use super::calibration::Calibrating;
 use super::coordinates::coordinates;
 use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
@@ -45,6 +46,7 @@ pub struct Commander {
     pub(super) is_debugged: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
+    pub(super) calibrating: Calibrating,
     pub(super) frames: FrameTree,
     /// What targets mean, with the frames in force.
     pub(super) active_frames: ActiveFrames,
@@ -101,6 +103,7 @@ impl Commander {
             commissioned: parameters.commissioned,
             is_debugged: false,
             cycle_ms: DEFAULT_CYCLE_MS,
+            calibrating: Calibrating::default(),
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,
             snapshot: None,

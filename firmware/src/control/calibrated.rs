@@ -4,7 +4,7 @@ use super::config::Config;
 use super::pivot_setpoints::{PivotSetpoints, pose};
 use super::servo::platform_torques;
 use super::state::State;
-use crate::calibration::{Calibration, CalibrationMargins};
+use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
 use crate::motion::Setpoint;
 use crate::number::Fixed;
 use kinematics::{
@@ -40,10 +40,7 @@ pub(super) struct Calibrated {
 impl CalibrationInForce {
     /// As drawn.
     pub const OFF: Self = Self {
-        calibration: Corrections {
-            lines: [Line::IDEAL; 3],
-            curves: [Series::ZERO; 3],
-        },
+        calibration: IDEAL,
         margins: CalibrationMargins::NONE,
     };
 }

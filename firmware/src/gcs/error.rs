@@ -117,6 +117,12 @@ pub enum ErrorCode {
     NotCommissioned = 4005,
     /// A debugger is attached, which can halt the loop while the motors drive: nothing drives unless a parameter allows it.
     Debugged = 4006,
+    /// A calibration has not come whole: numbers are missing, or its checksum is another.
+    CalibrationDamaged = 4007,
+    /// A calibration has numbers that no machine has, or that the corrections do not hold for.
+    CalibrationBeyondLimits = 4008,
+    /// A calibration is that of another machine.
+    CalibrationOfAnother = 4009,
 }
 
 impl ErrorCode {
@@ -149,6 +155,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::NotReady => Self::NotReady,
             CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Debugged => Self::Debugged,
+            CommandError::CalibrationBeyondLimits => Self::CalibrationBeyondLimits,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest | CommandError::ServoOn => {

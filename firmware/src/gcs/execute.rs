@@ -53,6 +53,7 @@ impl Interpreter {
             Action::AxisVelocity(values) => Ok(self.commander.set_axis_velocity(&values)?),
             Action::Wave(action) => Ok(self.commander.change_waves(&action, queues)?),
             Action::Repeat(action) => self.change_repeated_moves(&action, session, queues),
+            Action::Calibrate(action) => self.change_calibration(&action, session, queues),
             Action::Excite(request) => self.excite(&request, session, queues),
             Action::Frame(action) => Ok(self.commander.change_frames(&action, queues)?),
             Action::SoftLowest(values) => {

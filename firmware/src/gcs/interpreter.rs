@@ -1,5 +1,6 @@
 //! What all connections share.
 
+use super::calibration::GatheredCalibration;
 use super::connections::Connections;
 use super::error::ErrorCode;
 use super::events::{BoardNotice, Crash, Event, EventLog};
@@ -51,6 +52,7 @@ pub struct Interpreter {
     pub(super) jogs: Jogs,
     pub(super) ownership: Ownership,
     pub(super) recovery_owner: RecoveryOwner,
+    pub(super) gathered_calibration: Option<GatheredCalibration>,
     pub(super) wants_restart: bool,
     /// What `TST?` asks, where there is one.
     pub(super) board: Option<&'static dyn Board>,
@@ -82,6 +84,7 @@ impl Interpreter {
             jogs: Jogs::default(),
             ownership: Ownership::default(),
             recovery_owner: RecoveryOwner::default(),
+            gathered_calibration: None,
             wants_restart: false,
             board: None,
             macros: Macros::default(),

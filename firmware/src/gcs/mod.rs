@@ -33,6 +33,7 @@
 //! |---|---|
 //! | `frames`, `wave` | coordinate systems and the centre of rotation; waveforms |
 //! | `parameter`, `persistence` | parameters; what is stored over a restart |
+//! | `calibration` | `CAL`: what a built machine is off the drawing |
 //! | `excitation` | `EXC`: a known voltage on a motor |
 //! | `iterative_learning` | `ILC`: moves that are repeated |
 //! | `macros`, `variables` | lines that are stored and carried out later; values in lines |
@@ -51,6 +52,7 @@
 //! questions, which are answered: a script does not go on after a stop, and a client gets its answers.
 
 mod arguments;
+mod calibration;
 mod connection_number;
 mod connections;
 mod error;

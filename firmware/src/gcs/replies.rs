@@ -62,6 +62,8 @@ impl Interpreter {
             Query::Joysticks(named) => joysticks(named, out),
             Query::Events => self.reply_events(out),
             Query::Statistics => self.reply_statistics(out),
+            Query::Calibration => self.reply_calibration(out),
+            Query::PositionAsDrawn => self.reply_position_as_drawn(out),
             Query::Excitation => self.reply_excitation(out),
             Query::RepeatedMoves => self.reply_repeated_moves(out),
             Query::Fault => self.reply_fault(out),

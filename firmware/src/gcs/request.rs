@@ -1,5 +1,6 @@
 //! What a line or a single byte asks for.
 
+use super::calibration::CalibrationAction;
 use super::excitation::ExcitationRequest;
 use super::frames::FrameQuery;
 use super::iterative_learning::LearnAction;
@@ -101,6 +102,10 @@ pub enum Query {
     RepeatedMoves,
     /// `EXC?`
     Excitation,
+    /// `CAL?`
+    Calibration,
+    /// `CAL POS?`
+    PositionAsDrawn,
     /// `#4`
     Status,
     /// `#5`
@@ -147,6 +152,8 @@ pub enum Action {
     Wave(WaveChange),
     /// Tables of moves that are repeated.
     Repeat(LearnAction),
+    /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`.
+    Calibrate(CalibrationAction),
     /// A known voltage on a motor.
     Excite(ExcitationRequest),
     /// Frames and the centre of rotation.

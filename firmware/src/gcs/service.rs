@@ -70,6 +70,7 @@ impl Interpreter {
             && !self.parameters.supervision.debugger_allowed;
         self.commander.set_debugged(may_be_halted);
         self.revert_if_refused();
+        self.commander.send_due_calibration(queues);
         self.commander.advance_pending(queues);
         self.keep_learnt(queues);
         self.watch_heartbeat(queues);

@@ -1,6 +1,7 @@
 //! The table of commands. Parsing, `HLP?` and dispatch all read it: what is not here does not exist.
 
 use super::arguments::{axis_identifiers, joysticks};
+use super::calibration::{CalibrationAction, parse as calibration};
 use super::excitation::parse as excitation;
 use super::frames::parse as frames;
 use super::iterative_learning::parse as learning;
@@ -56,6 +57,46 @@ pub(super) static COMMANDS: &[Entry] = &[
         variables::add,
         "<variable> <number> <number> set variable to the sum",
     ),
+    own(
+        "CAL BEG",
+        calibration::begin,
+        "<serial> <date> [<C>] begin a calibration of this machine",
+    ),
+    entry(
+        "CAL DEL",
+        Syntax::Plain(Request::Act(Action::Calibrate(CalibrationAction::Forget))),
+        "forget the calibration",
+    ),
+    own(
+        "CAL END",
+        calibration::end,
+        "<checksum> compute with the calibration that was begun, and keep it",
+    ),
+    entry(
+        "CAL OFF",
+        Syntax::Plain(Request::Act(Action::Calibrate(CalibrationAction::Switch(
+            false,
+        )))),
+        "compute as if the machine were as drawn",
+    ),
+    entry(
+        "CAL ON",
+        Syntax::Plain(Request::Act(Action::Calibrate(CalibrationAction::Switch(
+            true,
+        )))),
+        "compute with the calibration again",
+    ),
+    ask(
+        "CAL POS?",
+        Query::PositionAsDrawn,
+        "get real position without the calibration",
+    ),
+    own(
+        "CAL SET",
+        calibration::set,
+        "<pivot> <first> {<number>} set numbers of the calibration that was begun",
+    ),
+    ask("CAL?", Query::Calibration, "get which calibration there is"),
     own(
         "CCL",
         parameter::level,

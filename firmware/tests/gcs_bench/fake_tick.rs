@@ -171,7 +171,7 @@ impl<'q> FakeTick<'q> {
                 self.log.push("configure");
                 self.config = config;
             }
-            Command::Excite(_) | Command::EndExcitation => {}
+            Command::Excite(_) | Command::EndExcitation | Command::Calibrate(_) => {}
             Command::Acknowledge => {
                 self.log.push("acknowledge");
                 self.now.fault = None;

@@ -16,50 +16,13 @@ pub const STRAIGHTNESS: usize = RUNOUT + 10;
 /// The numbers of a pivot, in the order of their fields.
 #[must_use]
 pub fn to_list(pivot: &PivotCoefficients) -> [f64; COEFFICIENTS] {
-    let mut list = [0.0; COEFFICIENTS];
-    let [x, y] = pivot.ring_centre;
-    let lines = [
-        pivot.encoder_zero_rad,
-        pivot.radius_error,
-        x,
-        y,
-        pivot.guide_error_rad,
-        pivot.guide_offset,
-    ];
-    let curves = (pivot.encoder_rad.as_flattened().iter())
-        .chain(pivot.runout.as_flattened())
-        .chain(&pivot.straightness);
-    for (place, &number) in list.iter_mut().zip(lines.iter().chain(curves)) {
-        *place = number;
-    }
-    list
+    pivot.to_list()
 }
 
 /// A pivot of these numbers.
 #[must_use]
 pub fn from_list(list: &[f64; COEFFICIENTS]) -> PivotCoefficients {
-    let mut pivot = PivotCoefficients::IDEAL;
-    let [
-        zero_rad,
-        radius_error,
-        x,
-        y,
-        guide_error_rad,
-        guide_offset,
-        curves @ ..,
-    ] = list;
-    pivot.encoder_zero_rad = *zero_rad;
-    pivot.radius_error = *radius_error;
-    pivot.ring_centre = [*x, *y];
-    pivot.guide_error_rad = *guide_error_rad;
-    pivot.guide_offset = *guide_offset;
-    let places = (pivot.encoder_rad.as_flattened_mut().iter_mut())
-        .chain(pivot.runout.as_flattened_mut())
-        .chain(&mut pivot.straightness);
-    for (place, &number) in places.zip(curves) {
-        *place = number;
-    }
-    pivot
+    PivotCoefficients::from_list(list)
 }
 
 /// Size of a number on machines of a good workshop, one standard deviation, track radii or rad, for a track of 100 mm: zeros found to

@@ -47,7 +47,9 @@ impl Commander {
         if snapshot.encoder_faults != [None; 3] {
             return Err(CommandError::ReferencingFailed);
         }
-        let outside = self.reach_margins.pose_outside(snapshot);
+        let outside = self
+            .reach_margins
+            .pose_outside(snapshot, self.built().as_ref());
         let pose = outside
             .filter(|_| snapshot.mode == Mode::Off)
             .ok_or(CommandError::NothingToRecover)?;

@@ -9,11 +9,13 @@
 //! | 1 | number of macros |
 //! | each 1, n, 2, n | length of the name, name, length of the text, text |
 //! | from version 3 on | tables, see `stored_moves` |
+//! | from version 4 on | the calibration, see `stored_calibration` |
 //!
 //! Numbers begin with their lowest byte.
 
 use super::names::{read_name, write_name};
 use super::state::{KeptParameters, MAX_UNUSABLE, UnusableValues};
+use super::stored_calibration;
 use super::stored_moves::{self, MOVES_BYTES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
@@ -26,14 +28,17 @@ use crate::settings_store::{Reader, Sink, StoreError, StoredSettings, Unusable, 
 use embedded_storage::nor_flash::NorFlash;
 
 /// Newest version of the table above, and of what it leaves out: since 2 the controller by itself knows no zeros, so that an older firmware
-/// would take its own for those of a machine whose zeros are 0; since 3 there are tables of repeated moves.
-const VERSION: u16 = 3;
+/// would take its own for those of a machine whose zeros are 0; since 3 there are tables of repeated moves; since 4 there is a calibration.
+const VERSION: u16 = 4;
+/// The newest without a calibration.
+const VERSION_WITHOUT_CALIBRATION: u16 = 3;
 /// The newest without tables.
 const VERSION_WITHOUT_MOVES: u16 = 2;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
 
-/// Bytes that the longest settings take in the flash: a sector must have them.
+/// Bytes that the longest settings take in the flash, without a calibration: a sector must have them. What macros and tables that fill
+/// their memories leave of a sector is 300 bytes too few for a calibration, of 647: that is refused then as too long.
 pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
 /// Bytes of the longest contents.
 const MAX_CONTENTS_BYTES: usize =
@@ -75,10 +80,13 @@ fn write<S: Sink>(
     trial: &TrialControl<'_>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    // An older firmware can read what has no tables.
+    // An older firmware can read what has no tables and no calibration.
+    let calibration = interpreter.commander.calibration();
     let has_moves = interpreter.commander.is_move_kept(None);
-    let version = if has_moves {
+    let version = if calibration.is_some() {
         VERSION
+    } else if has_moves {
+        VERSION_WITHOUT_CALIBRATION
     } else {
         VERSION_WITHOUT_MOVES
     };
@@ -100,8 +108,11 @@ fn write<S: Sink>(
         sink.put(&(text.len() as u16).to_le_bytes())?;
         sink.put(text)?;
     }
-    if has_moves {
+    if version > VERSION_WITHOUT_MOVES {
         stored_moves::write(&interpreter.commander, trial, sink)?;
+    }
+    if let Some(calibration) = calibration {
+        stored_calibration::write(calibration, sink)?;
     }
     Ok(())
 }
@@ -131,10 +142,15 @@ fn read<F: NorFlash>(
         if version > VERSION_WITHOUT_MOVES {
             stored_moves::read(reader, &mut interpreter.commander, trial)?;
         }
+        if version > VERSION_WITHOUT_CALIBRATION {
+            let calibration = stored_calibration::read(reader)?;
+            interpreter.commander.restore_calibration(Some(calibration));
+        }
         reader.is_at_end().then_some(())
     };
     if rest().is_none() {
         interpreter.forget_macros();
+        interpreter.commander.restore_calibration(None);
         // All of them can be forgotten, whatever there is.
         let _ = interpreter.commander.forget_move(None, trial);
         return Err(Unusable::Damaged);

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `state` | what is stored, and what is to be |
 //! | `contents` | what stands in the store |
+//! | `stored_calibration` | the calibration, as it is stored |
 //! | `stored_moves` | and of the tables of repeated moves |
 //! | `names` | names in it |
 //! | `execute` | `WPA` and `RPA` |
@@ -16,6 +17,7 @@ mod contents;
 mod execute;
 mod names;
 mod state;
+mod stored_calibration;
 mod stored_moves;
 
 pub use contents::{Contents, STORED_BYTES};

@@ -10,6 +10,7 @@
 use super::channel::Channel;
 use super::scales::RecordRow;
 use super::state::Record;
+use crate::calibration::BuiltMachine;
 use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
 use heapless::String;
@@ -39,6 +40,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
+        built: Option<&BuiltMachine>,
     ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
@@ -47,7 +49,7 @@ impl RecordReadout {
             let _ = line.write_str(" \n");
             self.header_lines_written += 1;
         } else {
-            let _ = self.row_line(record, recorder, &mut line);
+            let _ = self.row_line(record, recorder, built, &mut line);
             self.left -= 1;
             let _ = line.write_str(if self.left == 0 { "\n" } else { " \n" });
         }
@@ -84,6 +86,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
+        built: Option<&BuiltMachine>,
         line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
         let mut row = record.map(|record| RecordRow {
@@ -92,6 +95,7 @@ impl RecordReadout {
             scales: &record.scales,
             row: self.row,
             every: record.setup.every,
+            built,
             pose: None,
         });
         self.row += 1;

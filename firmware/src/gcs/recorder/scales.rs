@@ -1,6 +1,7 @@
 //! From the words of a row to mm, deg and s.
 
 use super::channel::{Channel, PIVOTS, Signal, setpoint};
+use crate::calibration::BuiltMachine;
 use crate::commander::coordinates::measured;
 use crate::commander::frames::ActiveFrames;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
@@ -75,6 +76,8 @@ pub(super) struct RecordRow<'a> {
     pub row: i64,
     /// Ticks from row to row.
     pub every: u32,
+    /// What the machine is off the drawing, if that is known: what its encoders read is a pose by it.
+    pub built: Option<&'a BuiltMachine>,
     /// Measured pose, once somebody has asked.
     pub pose: Option<[f64; 3]>,
 }
@@ -110,7 +113,8 @@ impl RecordRow<'_> {
             return pose;
         }
         let pivots = PIVOTS.map(|pivot| Angle::from_units(self.integer(pivot) << 4));
-        let pose = measured(&pivots, &ActiveFrames::BASE, &self.scales.geometry)
+        let frames = &ActiveFrames::BASE;
+        let pose = measured(&pivots, frames, &self.scales.geometry, self.built)
             .map_or([f64::NAN; 3], |pose| [pose[0], pose[1], pose[5]]);
         self.pose = Some(pose);
         pose

@@ -1,0 +1,114 @@
+//! The calibration of a built machine: sent to the tick, and taken into account wherever encoders become a pose.
+
+use super::error::CommandError;
+use super::in_flight::InFlight;
+use super::state::Commander;
+use crate::calibration::{BuiltMachine, MachineCalibration};
+use crate::control::CalibrationInForce;
+use crate::mode::Mode;
+use crate::queues::{Command, CommandQueues};
+
+/// The calibration that there is, and what of it the tick has.
+#[derive(Default)]
+pub(super) struct Calibrating {
+    kept: Option<MachineCalibration>,
+    /// It was kept over a restart, and the tick does not have it yet.
+    is_due: bool,
+    /// Share of the pivots' limits that plans may use.
+    share: Option<f64>,
+}
+
+impl Calibrating {
+    /// See [`MachineCalibration::pivot_share`]; 1 exactly where nothing is corrected.
+    pub fn pivot_share(&self) -> f64 {
+        self.share.unwrap_or(1.0)
+    }
+
+    fn keep(&mut self, wanted: Option<MachineCalibration>) {
+        self.share = (wanted.as_ref())
+            .filter(|wanted| wanted.is_on)
+            .map(MachineCalibration::pivot_share);
+        self.kept = wanted;
+    }
+}
+
+impl Commander {
+    /// The calibration that there is, whether it counts or not.
+    pub fn calibration(&self) -> Option<&MachineCalibration> {
+        self.calibrating.kept.as_ref()
+    }
+
+    /// What the machine is off the drawing; `None` where nothing is corrected.
+    pub(crate) fn built(&self) -> Option<BuiltMachine> {
+        self.calibration().and_then(MachineCalibration::built)
+    }
+
+    /// Another calibration from now on, or none: all of it or, with an error, nothing.
+    ///
+    /// # Errors
+    /// [`CommandError::ServoOn`], [`CommandError::InMotion`]; [`CommandError::CalibrationBeyondLimits`];
+    /// [`CommandError::Busy`] when the tick cannot be told.
+    pub fn calibrate(
+        &mut self,
+        wanted: Option<MachineCalibration>,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        let mode = self.current_snapshot().map(|snapshot| snapshot.mode);
+        match mode {
+            None => return Err(CommandError::Busy),
+            Some(Mode::Off | Mode::Fault) => {}
+            Some(Mode::Holding) => return Err(CommandError::ServoOn),
+            Some(Mode::Moving | Mode::Stopping | Mode::Exciting) => {
+                return Err(CommandError::InMotion);
+            }
+        }
+        self.send_calibration(wanted.as_ref(), queues)?;
+        self.calibrating.keep(wanted);
+        Ok(())
+    }
+
+    /// The calibration that was kept over a restart.
+    pub fn restore_calibration(&mut self, kept: Option<MachineCalibration>) {
+        self.calibrating.is_due = kept.as_ref().is_some_and(|kept| kept.is_on);
+        self.calibrating.keep(kept);
+    }
+
+    /// Tells the tick of one that was kept, as soon as that can be told anything: before any line does.
+    pub(crate) fn send_due_calibration(&mut self, queues: &mut CommandQueues<'_>) {
+        if !self.calibrating.is_due || self.current_snapshot().is_none() {
+            return;
+        }
+        self.calibrating.is_due = false;
+        let kept = self.calibrating.kept.take();
+        if let Err(error) = self.calibrate(kept.clone(), queues) {
+            // It is there, and does not count.
+            self.calibrating.keep(kept.map(|kept| MachineCalibration {
+                is_on: false,
+                ..kept
+            }));
+            self.report_late(error);
+        }
+    }
+
+    // In a frame of its own: what is made there is not on the stack while a line is planned.
+    #[inline(never)]
+    fn send_calibration(
+        &mut self,
+        wanted: Option<&MachineCalibration>,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        let mut in_force = CalibrationInForce::OFF;
+        if let Some(wanted) = wanted {
+            // One that does not count must be such that it can.
+            let (calibration, margins) = (wanted.for_tick(&self.base_constraints.geometry))
+                .map_err(|_| CommandError::CalibrationBeyondLimits)?;
+            if wanted.is_on {
+                in_force = CalibrationInForce {
+                    calibration,
+                    margins,
+                };
+            }
+        }
+        self.send(Command::Calibrate(in_force), InFlight::Other, queues)
+    }
+}
