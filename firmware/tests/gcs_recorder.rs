@@ -322,7 +322,7 @@ fn fewer_tables_leave_room_for_more_points() {
     assert_eq!(bench.error_after("SPA 1 0x16000201 17408"), "0");
     // More tables leave fewer again.
     assert_eq!(bench.error_after("DRC 2 Y 1"), "0");
-    assert_eq!(bench.say("SPA? 1 0x16000201\n"), "1 0x16000201=9216\n");
+    assert_eq!(bench.say("SPA? 1 0x16000201\n"), "1 0x16000201=8704\n");
     assert_eq!(bench.error_after("DRC 3 W 1 4 X 70"), "0");
     assert_eq!(bench.error_after("SPA 1 0x16000201 4096"), "0");
     // The three errors of the pose, and five signals more, are the widest.
