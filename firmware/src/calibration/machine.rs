@@ -3,9 +3,7 @@
 use super::{Calibration, CalibrationMargins};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::String;
-use kinematics::{
-    COEFFICIENTS, Corrections, Geometry, PivotCoefficients, Series, check_coefficients,
-};
+use kinematics::{COEFFICIENTS, Corrections, Geometry, PivotCoefficients, Series};
 
 /// Longest serial number, and longest date.
 pub const CALIBRATION_TEXT_BYTES: usize = 32;
@@ -82,7 +80,7 @@ impl MachineCalibration {
 
     /// For the command side, if it counts.
     pub fn built(&self) -> Option<BuiltMachine> {
-        if !self.is_on || check_coefficients(&self.pivots()).is_err() {
+        if !self.is_on {
             return None;
         }
         Corrections::new(&self.pivots(), Series::new).ok()

@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::in_flight::InFlight;
 use super::state::Commander;
-use crate::calibration::{BuiltMachine, MachineCalibration};
+use crate::calibration::MachineCalibration;
 use crate::control::CalibrationInForce;
 use crate::mode::Mode;
 use crate::queues::{Command, CommandQueues};
@@ -39,8 +39,8 @@ impl Commander {
     }
 
     /// What the machine is off the drawing; `None` where nothing is corrected.
-    pub(crate) fn built(&self) -> Option<BuiltMachine> {
-        self.calibration().and_then(MachineCalibration::built)
+    pub(crate) fn built(&self) -> Option<&MachineCalibration> {
+        self.calibration().filter(|calibration| calibration.is_on)
     }
 
     /// Another calibration from now on, or none: all of it or, with an error, nothing.
@@ -74,6 +74,8 @@ impl Commander {
     }
 
     /// Tells the tick of one that was kept, as soon as that can be told anything: before any line does.
+    // In a frame of its own, see `send_calibration`.
+    #[inline(never)]
     pub(crate) fn send_due_calibration(&mut self, queues: &mut CommandQueues<'_>) {
         if !self.calibrating.is_due || self.current_snapshot().is_none() {
             return;

@@ -3,7 +3,7 @@
 use super::axis::{Axis, Coordinates, Travel};
 use super::error::CommandError;
 use super::frames::{ActiveFrames, Transform};
-use crate::calibration::BuiltMachine;
+use crate::calibration::MachineCalibration;
 use crate::control::held_position::STEPS_PER_UNIT;
 use crate::motion::{Constraints, Position, check_target};
 use kinematics::{Angle, Geometry, Pose, corrected_direct, direct};
@@ -112,7 +112,7 @@ pub(crate) fn measured(
     pivots: &[Angle; 3],
     active_frames: &ActiveFrames,
     geometry: &Geometry,
-    built: Option<&BuiltMachine>,
+    built: Option<&MachineCalibration>,
 ) -> Option<Coordinates> {
     // Whole turns go around the floating point: they would cost it digits.
     let turns = pivots[0].turns();
@@ -132,10 +132,16 @@ const NEWTON_STEPS: u32 = 3;
 /// The pose that encoders show, on a machine as drawn or on this one.
 pub(super) fn shown_pose(
     encoders_rad: &[f64; 3],
-    built: Option<&BuiltMachine>,
+    built: Option<&MachineCalibration>,
 ) -> Option<Pose<f64>> {
     match built {
         None => direct(encoders_rad).ok(),
-        Some(built) => corrected_direct(encoders_rad, built, NEWTON_STEPS).ok(),
+        Some(built) => built_pose(encoders_rad, built),
     }
+}
+
+// In a frame of its own: the exact numbers of a machine are long, and callers plan.
+#[inline(never)]
+fn built_pose(encoders_rad: &[f64; 3], built: &MachineCalibration) -> Option<Pose<f64>> {
+    corrected_direct(encoders_rad, &built.built()?, NEWTON_STEPS).ok()
 }

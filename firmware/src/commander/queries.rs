@@ -8,7 +8,7 @@ use super::furthest_target::furthest_target;
 use super::in_flight::InFlight;
 use super::quantity::Quantity;
 use super::state::Commander;
-use crate::calibration::BuiltMachine;
+use crate::calibration::MachineCalibration;
 use crate::mode::Mode;
 use crate::motion::{Position, check_line};
 use kinematics::Angle;
@@ -105,7 +105,7 @@ impl Commander {
     /// Measured pose, in the frames in force. Without a reference there is none: 0. With pivots that are no pose (a
     /// fault) the setpoint stands for it.
     pub fn measured(&self) -> Coordinates {
-        self.measured_on(self.built().as_ref())
+        self.measured_on(self.built())
     }
 
     /// The same of a machine as drawn, whatever its calibration says.
@@ -113,7 +113,7 @@ impl Commander {
         self.measured_on(None)
     }
 
-    fn measured_on(&self, built: Option<&BuiltMachine>) -> Coordinates {
+    fn measured_on(&self, built: Option<&MachineCalibration>) -> Coordinates {
         let Some(snapshot) = self.snapshot.as_ref().filter(|s| s.referenced) else {
             return Coordinates::default();
         };

@@ -1,7 +1,7 @@
 //! Whether the pose that the encoders show is one that the stage can take: the one free hint at wrong wiring and wrong zeros.
 
 use super::coordinates::{DEGREES_A_TURN, UNITS_PER_RADIUS, shown_pose};
-use crate::calibration::BuiltMachine;
+use crate::calibration::MachineCalibration;
 use crate::parameters::Parameters;
 use crate::queues::Snapshot;
 use core::f64::consts::TAU;
@@ -32,7 +32,7 @@ impl ReachMargins {
     pub fn pose_outside(
         &self,
         snapshot: &Snapshot,
-        built: Option<&BuiltMachine>,
+        built: Option<&MachineCalibration>,
     ) -> Option<[f64; 3]> {
         let pose = pose_of(snapshot, built)?;
         let is_inside = margins(&self.geometry, &pose).is_ok_and(|room| {
@@ -48,7 +48,7 @@ impl ReachMargins {
 }
 
 /// The pose that the encoders show, within one turn, if all of them answer and it is one.
-fn pose_of(snapshot: &Snapshot, built: Option<&BuiltMachine>) -> Option<Pose<f64>> {
+fn pose_of(snapshot: &Snapshot, built: Option<&MachineCalibration>) -> Option<Pose<f64>> {
     if snapshot.encoder_faults != [None; 3] {
         return None;
     }

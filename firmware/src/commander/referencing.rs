@@ -56,10 +56,7 @@ impl Commander {
             Referencing::Failed(CommandError::Faulted)
         } else if snapshot.referenced {
             Referencing::Done
-        } else if let Some(pose) = self
-            .reach_margins
-            .pose_outside(snapshot, self.built().as_ref())
-        {
+        } else if let Some(pose) = self.reach_margins.pose_outside(snapshot, self.built()) {
             Referencing::Failed(CommandError::ReferenceOutside(pose))
         } else if snapshot.tick >= self.referencing_deadline {
             Referencing::Failed(CommandError::ReferencingFailed)

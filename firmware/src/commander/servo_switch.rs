@@ -1,11 +1,10 @@
 //! The servo on and off. A stage in motion is stopped on its path before it is let go, and taken over only at rest.
 
 use super::error::CommandError;
-use super::in_flight::InFlight;
 use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::Stop;
-use crate::queues::{Command, CommandQueues};
+use crate::queues::CommandQueues;
 
 impl Commander {
     /// Servo on or off. Before referencing there is no pose to hold: on is accepted, as clients send it first, and
@@ -44,22 +43,17 @@ impl Commander {
                 if self.rest.is_fast {
                     return Err(CommandError::InMotion);
                 }
-                if let Some(pose) = self
-                    .reach_margins
-                    .pose_outside(snapshot, self.built().as_ref())
-                {
+                if let Some(pose) = self.reach_margins.pose_outside(snapshot, self.built()) {
                     return Err(CommandError::ReferenceOutside(pose));
                 }
-                self.send(Command::Servo(true), InFlight::Other, queues)
+                self.send_servo(true, queues)
             }
             (true, _) => {
                 self.check_may_drive()?;
                 self.off_at_rest = false;
                 Ok(())
             }
-            (false, Mode::Holding) if !self.is_motion_pending() => {
-                self.send(Command::Servo(false), InFlight::Other, queues)
-            }
+            (false, Mode::Holding) if !self.is_motion_pending() => self.send_servo(false, queues),
             (false, Mode::Holding | Mode::Moving) => {
                 self.off_at_rest = true;
                 self.stop(Stop::Urgent, queues);
@@ -79,7 +73,7 @@ impl Commander {
             Mode::Holding if self.is_motion_pending() || self.current_snapshot().is_none() => {}
             Mode::Holding => {
                 // A full queue: again at the next snapshot.
-                let sent = self.send(Command::Servo(false), InFlight::Other, queues);
+                let sent = self.send_servo(false, queues);
                 self.off_at_rest = sent.is_err();
             }
             Mode::Off | Mode::Stopping | Mode::Fault | Mode::Exciting => self.off_at_rest = false,

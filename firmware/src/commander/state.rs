@@ -300,4 +300,15 @@ impl Commander {
         self.in_flight = Some(in_flight);
         Ok(())
     }
+
+    /// Servo on or off.
+    // In a frame of its own: a command has the length of a plan, and callers plan.
+    #[inline(never)]
+    pub(super) fn send_servo(
+        &mut self,
+        on: bool,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        self.send(Command::Servo(on), InFlight::Other, queues)
+    }
 }

@@ -52,6 +52,13 @@ impl Interpreter {
     // A frame of its own, as `handle` and `execute` have: what one needs on the stack is not there below the other.
     #[inline(never)]
     pub fn advance(&mut self, queues: &mut CommandQueues<'_>) {
+        self.carry_on(queues);
+        self.run_macro(queues);
+    }
+
+    /// The same but for a macro, whose lines need all of the stack that is left.
+    #[inline(never)]
+    fn carry_on(&mut self, queues: &mut CommandQueues<'_>) {
         // One at most, so that a call depends on nothing that happens while it lasts; another one waits for the next
         // call.
         if let Some(snapshot) = queues.snapshot() {
@@ -76,7 +83,6 @@ impl Interpreter {
         self.watch_heartbeat(queues);
         self.end_jogs(queues);
         self.advance_recovery(queues);
-        self.run_macro(queues);
     }
 
     /// Sets the error of every connection.

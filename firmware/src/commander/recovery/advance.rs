@@ -47,9 +47,7 @@ impl Commander {
         if snapshot.encoder_faults != [None; 3] {
             return Err(CommandError::ReferencingFailed);
         }
-        let outside = self
-            .reach_margins
-            .pose_outside(snapshot, self.built().as_ref());
+        let outside = self.reach_margins.pose_outside(snapshot, self.built());
         let pose = outside
             .filter(|_| snapshot.mode == Mode::Off)
             .ok_or(CommandError::NothingToRecover)?;
@@ -90,7 +88,7 @@ impl Commander {
             (Mode::Holding, _) if self.is_motion_pending() => {}
             (Mode::Holding, _) if recovery.is_given_up => {
                 // A full queue: again at the next snapshot. So below.
-                let _ = self.send(Command::Servo(false), InFlight::Other, queues);
+                let _ = self.send_servo(false, queues);
             }
             (Mode::Holding, Step::Drive) => {
                 let is_settled = self.snapshot().is_some_and(|snapshot| snapshot.settled);

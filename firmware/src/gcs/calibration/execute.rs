@@ -23,6 +23,8 @@ pub(in crate::gcs) struct GatheredCalibration {
 
 impl Interpreter {
     /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`.
+    // In a frame of its own: calibrations that are copied there are not on the stack while a line is planned.
+    #[inline(never)]
     pub(in crate::gcs) fn change_calibration(
         &mut self,
         action: &CalibrationAction,

@@ -10,7 +10,7 @@
 use super::channel::Channel;
 use super::scales::RecordRow;
 use super::state::Record;
-use crate::calibration::BuiltMachine;
+use crate::calibration::MachineCalibration;
 use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
 use heapless::String;
@@ -40,7 +40,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
-        built: Option<&BuiltMachine>,
+        built: Option<&MachineCalibration>,
     ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
@@ -86,7 +86,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
-        built: Option<&BuiltMachine>,
+        built: Option<&MachineCalibration>,
         line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
         let mut row = record.map(|record| RecordRow {

@@ -59,7 +59,6 @@ impl Interpreter {
         let Some(readout) = &mut session.readout else {
             return Ok(false);
         };
-        let built = self.commander.built();
         for _ in 0..LINES_PER_SERVICE {
             if session.room.is_some_and(|room| room < MAX_LINE_BYTES) {
                 return Ok(true);
@@ -69,7 +68,7 @@ impl Interpreter {
             if record.is_none() {
                 session.error = ErrorCode::NotRecorded;
             }
-            let line = readout.line(record, &queues.recorder, built.as_ref());
+            let line = readout.line(record, &queues.recorder, self.commander.built());
             out.write_all(line.as_bytes())?;
             session.room = session.room.map(|room| room - line.len());
             if readout.left == 0 {

@@ -1,7 +1,7 @@
 //! From the words of a row to mm, deg and s.
 
 use super::channel::{Channel, PIVOTS, Signal, setpoint};
-use crate::calibration::BuiltMachine;
+use crate::calibration::MachineCalibration;
 use crate::commander::coordinates::measured;
 use crate::commander::frames::ActiveFrames;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
@@ -77,7 +77,7 @@ pub(super) struct RecordRow<'a> {
     /// Ticks from row to row.
     pub every: u32,
     /// What the machine is off the drawing, if that is known: what its encoders read is a pose by it.
-    pub built: Option<&'a BuiltMachine>,
+    pub built: Option<&'a MachineCalibration>,
     /// Measured pose, once somebody has asked.
     pub pose: Option<[f64; 3]>,
 }
