@@ -91,9 +91,9 @@ proptest! {
             // The encoder's slope is under 1e-3: each step leaves so much of the last.
             let reading = solved.encoders[i] - built.encoder_zero_rad;
             let psi = (0..6).fold(reading, |psi, _| {
-                reading - machine.curves[i].ring_errors(psi).encoder.value
+                reading - Curves::<f64>::ring_errors(&machine.curves[i], psi).encoder.value
             });
-            let errors = machine.curves[i].ring_errors(psi);
+            let errors = Curves::<f64>::ring_errors(&machine.curves[i], psi);
             let radius = 1.0 + built.radius_error + errors.runout.value;
             let [x, y] = [
                 built.ring_centre[0] + radius * psi.cos() - pose.x,
