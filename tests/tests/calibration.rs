@@ -109,7 +109,7 @@ fn all_of_it_is_taken_or_nothing() {
     let all = lines(&calibration);
     assert_eq!(bench.error_after(&all[0]), "60");
     assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");
-    assert_eq!(bench.error_after("CAL BEG SIM2 2026-11-23"), "4009");
+    assert_eq!(bench.error_after("CAL BEG SIM2 2026-11-23"), "4010");
     // Nothing was begun.
     assert_eq!(bench.error_after(&all[1]), "89");
     assert_eq!(bench.error_after(all.last().unwrap()), "89");
@@ -126,7 +126,7 @@ fn all_of_it_is_taken_or_nothing() {
         };
         bench.error_after(end)
     };
-    assert_eq!(end_after(7), "4007");
+    assert_eq!(end_after(7), "4008");
     assert_eq!(end_after(usize::MAX), "0");
     assert!(
         bench
@@ -138,7 +138,7 @@ fn all_of_it_is_taken_or_nothing() {
     absurd.numbers[1][0] = 0.5;
     for line in lines(&absurd) {
         let wanted = if line.starts_with("CAL END") {
-            "4008"
+            "4009"
         } else {
             "0"
         };

@@ -118,11 +118,11 @@ pub enum ErrorCode {
     /// A debugger is attached, which can halt the loop while the motors drive: nothing drives unless a parameter allows it.
     Debugged = 4006,
     /// A calibration has not come whole: numbers are missing, or its checksum is another.
-    CalibrationDamaged = 4007,
+    CalibrationDamaged = 4008,
     /// A calibration has numbers that no machine has, or that the corrections do not hold for.
-    CalibrationBeyondLimits = 4008,
+    CalibrationBeyondLimits = 4009,
     /// A calibration is that of another machine.
-    CalibrationOfAnother = 4009,
+    CalibrationOfAnother = 4010,
 }
 
 impl ErrorCode {
