@@ -169,7 +169,7 @@ fn the_format_is_the_one_described() {
 
 #[test]
 fn settings_of_a_newer_firmware_are_refused() {
-    let flash = flash_with(&record(7, &image(4, &[(SPEED, 123.5)])));
+    let flash = flash_with(&record(7, &image(5, &[(SPEED, 123.5)])));
     assert_eq!(
         restored(&flash),
         (Some(FaultKind::SettingsNewer), nothing_kept())

@@ -3,7 +3,9 @@
 use super::follow::Step;
 use super::{Bench, ChipError, Period, bench, elf_file};
 use crate::cycles::{Bus, Program};
+use firmware::calibration::{CalibrationText, MachineCalibration};
 use hal_sim::machine::devices::{Stage, StageParameters};
+use kinematics::COEFFICIENTS;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::ControlFlow::{Break, Continue};
@@ -29,11 +31,17 @@ pub enum Use {
     Recording,
     /// It takes a plan then.
     PlanTakenRecording,
+    /// The stage is held where it is, with a calibration of which every number is something.
+    HoldingCalibrated,
+    /// It moves with it.
+    MovingCalibrated,
+    /// It takes a plan then.
+    PlanTakenCalibrated,
 }
 
 impl Use {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::Off,
         Self::Holding,
         Self::Moving,
@@ -42,6 +50,9 @@ impl Use {
         Self::RecordOrder,
         Self::Recording,
         Self::PlanTakenRecording,
+        Self::HoldingCalibrated,
+        Self::MovingCalibrated,
+        Self::PlanTakenCalibrated,
     ];
 
     /// In words.
@@ -56,6 +67,9 @@ impl Use {
             Self::RecordOrder => "order to record",
             Self::Recording => "moving, eight signals recorded",
             Self::PlanTakenRecording => "the same, takes a plan",
+            Self::HoldingCalibrated => "holding, calibrated",
+            Self::MovingCalibrated => "moving, calibrated",
+            Self::PlanTakenCalibrated => "calibrated, takes a plan",
         }
     }
 }
@@ -108,7 +122,7 @@ struct Stretch {
 const ORDER_TICKS: u64 = 40;
 
 /// Lines, and the tick before which they are sent.
-const LINES: [(u64, &[u8]); 10] = [
+const LINES: [(u64, &[u8]); 13] = [
     (150, b"FRF X\n"),
     (1_000, b"MOV X 40 Y 20 W 90\n"),
     (4_000, b"MOV X -30 Y 35 W -90\n"),
@@ -123,13 +137,25 @@ const LINES: [(u64, &[u8]); 10] = [
     (20_500, b"DRT 0 2 0\nMOV X 40 Y 20 W 90\n"),
     // In the middle of the recorded move.
     (21_200, b"MOV X 10 Y 40 W 0\n"),
+    // A calibration is for a serial number, and is taken with the servo off.
+    (SERIAL_ASKED, b"SVO X 0\nCCL 1 ADVANCED\nSSN?\n"),
+    (32_000, b"FRF X\n"),
+    (34_000, b"MOV X 40 Y 20 W 90\n"),
 ];
+const SERIAL_ASKED: u64 = 25_000;
+/// The calibration's lines, and how far they are apart. Its last one keeps the command side busy for some thousand ticks.
+const CALIBRATION_SENT: u64 = 26_000;
+const CALIBRATION_EVERY: u64 = 60;
+/// Each of its numbers: track radii and rad. What they are is nothing to a tick.
+const OFF_BY: f32 = 1e-5;
+/// Numbers in a line.
+const LINE_NUMBERS: usize = 8;
 /// Streamed targets: one every 20 ticks on a circle that begins and ends where the stage is.
 const STREAM: Range<u64> = 15_200..17_200;
 const STREAM_EVERY: u64 = 20;
 const STREAM_START: [f64; 2] = [-30.0, 35.0];
 const STREAM_RADIUS_MM: f64 = 1.0;
-const END: u64 = 21_600;
+const END: u64 = 35_000;
 
 /// So many ticks of each use, at least; of those that take a command, as many as there are.
 fn stretches(ticks: u64) -> Vec<Stretch> {
@@ -157,6 +183,13 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             Some(Use::PlanTakenRecording),
         ),
         stretch(21_200, 400, Use::Recording, Some(Use::PlanTakenRecording)),
+        stretch(33_000, ticks.min(900), Use::HoldingCalibrated, None),
+        stretch(
+            34_000,
+            ticks.clamp(300, 900),
+            Use::MovingCalibrated,
+            Some(Use::PlanTakenCalibrated),
+        ),
     ]
 }
 
@@ -175,6 +208,8 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
         stretches: stretches(ticks),
         following: false,
         commands: 0,
+        answers: Vec::new(),
+        calibration: Vec::new(),
         ticks: Vec::new(),
     };
     let (tell, told) = mpsc::channel();
@@ -216,6 +251,10 @@ struct Run {
     stretches: Vec<Stretch>,
     following: bool,
     commands: u32,
+    /// To what was asked last.
+    answers: Vec<u8>,
+    /// Lines, the next one last.
+    calibration: Vec<String>,
     ticks: Vec<UsedTick>,
 }
 
@@ -236,6 +275,7 @@ impl Run {
             }
         }
         send(period);
+        self.calibrate(period);
         let follow = self
             .stretches
             .iter()
@@ -248,6 +288,43 @@ impl Run {
         }
         Some(())
     }
+
+    fn calibrate(&mut self, period: &mut Period<'_>) {
+        if period.tick == SERIAL_ASKED {
+            self.answers.clear();
+        }
+        self.answers.extend(period.received());
+        if period.tick == CALIBRATION_SENT {
+            self.calibration = calibration(String::from_utf8_lossy(&self.answers).trim());
+        }
+        if period.tick.is_multiple_of(CALIBRATION_EVERY)
+            && let Some(line) = self.calibration.pop()
+        {
+            period.send(line.as_bytes());
+        }
+    }
+}
+
+/// The lines of a calibration of the machine of this serial number, the first one last.
+fn calibration(serial: &str) -> Vec<String> {
+    const DATE: &str = "2026-01-01";
+    // As long as a text can be.
+    let text = |text: &str| CalibrationText::try_from(text).unwrap_or_default();
+    let machine = MachineCalibration {
+        serial: text(serial),
+        date: text(DATE),
+        temperature_c: None,
+        numbers: [[OFF_BY; COEFFICIENTS]; 3],
+        is_on: true,
+    };
+    let mut lines = vec![format!("CAL END {}\n", machine.checksum())];
+    let numbers = format!(" {OFF_BY:e}").repeat(LINE_NUMBERS);
+    for pivot in 1..=3 {
+        let places = (1..=COEFFICIENTS).step_by(LINE_NUMBERS);
+        lines.extend(places.map(|place| format!("CAL SET {pivot} {place}{numbers}\n")));
+    }
+    lines.push(format!("CAL BEG {serial} {DATE}\n"));
+    lines
 }
 
 fn send(period: &mut Period<'_>) {
