@@ -17,6 +17,8 @@ pub(super) struct PivotWatch {
     pub mean_square_current: f32,
     /// Ticks at its largest duty.
     pub saturated_ticks: u32,
+    /// Ticks in which the motor's current was not what its voltage drives.
+    pub unexplained_ticks: u32,
     /// The feedback's voltage.
     pub oscillation: OscillationWatch,
     /// Duty when the encoder last showed something new.
@@ -36,4 +38,6 @@ pub(super) struct Inspection {
     pub angle: Angle,
     pub next: Angle,
     pub duty: Duty,
+    /// The motor's current, ADC counts.
+    pub current_counts: i16,
 }

@@ -246,12 +246,20 @@ impl State {
         let i = self.inspection_slot;
         let after = if i < 2 { i + 1 } else { 0 };
         // Each pivot in its slot; in the snapshot's slot none.
-        if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
+        if let (
+            Some(&length),
+            Some(&setpoint),
+            Some(&angle),
+            Some(&next),
+            Some(&duty),
+            Some(&current_counts),
+        ) = (
             wanted.lengths.get(i),
             target.get(i),
             pivots.get(i),
             pivots.get(after),
             duty.get(i),
+            currents.get(i),
         ) {
             let slowly = wanted.motion.rates[i].abs() < config.limits.slow_rate
                 && wanted.motion.accelerations[i].abs() < config.limits.slow_acceleration;
@@ -262,6 +270,7 @@ impl State {
                 angle,
                 next,
                 duty,
+                current_counts,
             };
             if !(self.is_in_guide_range(config, i, length)
                 && self.inspect_pivot(config, &inspection))

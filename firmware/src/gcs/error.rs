@@ -117,6 +117,8 @@ pub enum ErrorCode {
     NotCommissioned = 4005,
     /// A debugger is attached, which can halt the loop while the motors drive: nothing drives unless a parameter allows it.
     Debugged = 4006,
+    /// The emergency stop has not been pressed since the start: nothing drives where a parameter wants that.
+    StopUntested = 4007,
 }
 
 impl ErrorCode {
@@ -149,6 +151,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::NotReady => Self::NotReady,
             CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Debugged => Self::Debugged,
+            CommandError::StopUntested => Self::StopUntested,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest | CommandError::ServoOn => {
