@@ -130,8 +130,8 @@ fn write_stop(
         match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Violation::Workspace) if !apart => apart = true,
-            Err(Violation::Workspace) => {
+            Err(Violation::Disk(_) | Violation::Bounds(_)) if !apart => apart = true,
+            Err(Violation::Disk(_) | Violation::Bounds(_)) => {
                 hardness.acceleration *= 1.3;
                 hardness.jerk = urgent_jerk();
             }
@@ -146,9 +146,7 @@ fn write_stop(
                     (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
             }
             // A stop has no limits of its own, and needs no room for another.
-            Err(Violation::Speed(_) | Violation::Acceleration(_) | Violation::NoRoomToStop) => {
-                break;
-            }
+            Err(_) => break,
         }
     }
     // A stop has to be found: what is still broken after the last attempt can not be helped.

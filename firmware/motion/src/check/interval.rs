@@ -10,17 +10,21 @@ use number::float::{FloatMinMax, hypot};
 /// What a plan breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Violation {
-    /// Disk or bounds, on the way or in a stop.
-    Workspace,
+    /// The disk, with the platform's centre so far from the track's.
+    Disk(f32),
+    /// The bounds of an axis.
+    Bounds(usize),
     /// Speed, by this factor.
     Speed(f32),
-    /// Acceleration or jerk, by this factor.
+    /// Acceleration, by this factor.
     Acceleration(f32),
+    /// Jerk, by this factor.
+    Jerk(f32),
     /// The pivots' rate, by this factor.
     PivotRate(f32),
     /// The pivots' acceleration, by this factor.
     PivotAcceleration(f32),
-    /// Disk or bounds, in a stop from an instant on the way.
+    /// Disk or bounds, in a stop from an instant on the way; or too long a way to be looked at.
     NoRoomToStop,
 }
 

@@ -7,9 +7,9 @@
 //! platform's motion can make of their third and fourth derivatives in between. An interval that fails is taken in shorter
 //! ones, unless a limit is broken at one of its ends.
 //!
-//! A plan of retarget, a jog in motion and a stop are held against all of it. A line from rest is planned inside the limits
-//! at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation (`pivot_bounds`),
-//! streamed targets instant by instant (`instant`). This check would cost more than their planning: of a line 16,400
+//! A plan of retarget, of a stream, a jog in motion and a stop are held against all of it. A line from rest is planned inside
+//! the limits at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation
+//! (`pivot_bounds`). This check would cost more than their planning: of a line 16,400
 //! instructions in the mean and 76,800 at most, of a jog from rest 12,100 and 45,100 (300 random states on the chip). And
 //! it knows no places: it refuses 36 of 300 lines and 160 of 300 jogs in which every tick keeps every law.
 //!
@@ -18,9 +18,9 @@
 //!
 //! | checked | for |
 //! |---|---|
-//! | speed, acceleration, jerk | translation along the path and rotation; not of a stop, which has its own |
+//! | speed, acceleration, jerk | translation along the path and rotation; not of a stop, which has its own; a stream may have more jerk |
 //! | rate and acceleration of each pivot | the platform's motion about the centre of rotation |
-//! | disk | the platform's centre, and where a stop from here would end |
+//! | disk | the platform's centre, and where a stop from here would end; a stream's plans have their stop in them |
 //! | bounds | x, y and theta of the moved point, and where a stop from here would end |
 //!
 //! | file | idea |
@@ -31,9 +31,7 @@
 //! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
 //! | `workspace` | disk and bounds, on the way and for a stop |
 //! | `target` | which way round to an orientation, and whether a target can be moved to |
-//! | `instant` | one instant against every limit: for streams |
 
-pub mod instant;
 mod interval;
 pub mod pivot_bounds;
 mod plan_check;

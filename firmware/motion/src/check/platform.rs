@@ -57,11 +57,6 @@ impl Platform {
         hypot(self.x, self.y)
     }
 
-    /// Size of the centre's acceleration.
-    pub fn centre_acceleration(&self) -> f32 {
-        hypot(self.acceleration.x, self.acceleration.y)
-    }
-
     /// Rates (rad/s) and accelerations (rad/s^2) of the pivots; with a centre outside the track they are not numbers.
     pub fn pivots(&self) -> [[f32; 3]; 2] {
         let Some(guides) = guides_along_axes(self.x, self.y, sqrt_f32) else {

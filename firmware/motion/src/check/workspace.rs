@@ -84,7 +84,7 @@ impl Workspace {
             if !(bound_distances[i][0] - WORKSPACE_RADII <= low
                 && high <= bound_distances[i][1] + WORKSPACE_RADII)
             {
-                return Err(Violation::Workspace);
+                return Err(Violation::Bounds(i));
             }
         }
         Ok(())
@@ -95,7 +95,7 @@ impl Workspace {
         if distance <= self.radius + WORKSPACE_RADII {
             Ok(distance)
         } else {
-            Err(Violation::Workspace)
+            Err(Violation::Disk(distance))
         }
     }
 

@@ -1,97 +1,57 @@
 //! The stop that a motion carries with it: from any state, whatever the velocity and the acceleration point to.
 //!
 //! The velocity is given up in three segments (see `profile/velocity`), the first with as much jerk as a stream may have:
-//! an acceleration under way that is released slowly would end over the limit of speed. Every instant that may be the
-//! worst is held against the limits; where a pivot is asked for too much, the stop is softer.
+//! an acceleration under way that is released slowly would end over the limit of speed. Where a pivot is asked for too
+//! much, the stop is softer.
 
-use motion::check::instant::{InstantCheck, InstantState};
+use motion::check::{Budget, PlanCheck, Violation};
+use motion::constraints::Constraints;
 use motion::plan::Piece;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::MotionState;
 use motion::plan::quantise::velocity_pieces;
-use motion::profile::velocity::{VelocityProfile, stop_speeds};
+use motion::profile::velocity::VelocityProfile;
 use motion::refusal::Refusal;
 use motion::tolerances::JERK_TOLERANCE;
-use number::float::{FloatMinMax, ticks_to_f32};
-
-/// Three, and the closing tick; some have no ticks.
-pub(super) type StopPieces = [Piece; 4];
+use number::float::FloatMinMax;
 
 /// How often a softer stop is tried.
 const ATTEMPTS: usize = 3;
-/// A piece longer than so many ticks is looked at in the middle too: there the way may bulge, and velocity has changed.
-const LONG: u64 = 256;
 
-/// The pieces, and the state after them: at rest, but for what rounding leaves.
+/// The pieces, of which some have no ticks; after them it is at rest, but for what rounding leaves.
 pub(super) fn final_stop(
     state: &[AxisState; 3],
-    now: &InstantState,
-    instant_check: &InstantCheck<'_>,
-) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
-    let motion = MotionState::new(state, instant_check.hz);
+    constraints: &Constraints,
+    plan_check: &PlanCheck,
+) -> Result<[Piece; 4], Refusal> {
+    let hz = constraints.limits.rate_hz as f32;
+    let motion = MotionState::new(state, hz);
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
-        let limits = instant_check.limits.scaled(part, 1.0);
+        let limits = constraints.motion_limits().scaled(part, 1.0);
         let ticks = VelocityProfile::new(&motion, &[0.0; 3], &limits)
             .with_first_jerk(JERK_TOLERANCE)
-            .ticks(instant_check.hz);
-        let times_s = each!(k => ticks_to_f32(ticks[k]) / instant_check.hz);
-        if instant_check.is_too_fast(stop_speeds(&motion, times_s)) {
-            return Err(Refusal::Velocity);
-        }
+            .ticks(hz);
         let pieces = velocity_pieces(state, &[0; 3], ticks);
-        let (worst, end) = walk(state, now, &pieces, instant_check).ok_or(Refusal::NoRoomToStop)?;
-        if worst <= 1.0 {
-            return Ok((pieces, end));
+        match plan_check.check(&pieces, state, &mut { Budget::FOR_STOP }) {
+            Ok(()) => return Ok(pieces),
+            Err(Violation::Speed(_)) => return Err(Refusal::Velocity),
+            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+                part *= (0.9 / over).fmin(0.7);
+            }
+            Err(_) => break,
         }
-        part *= (0.9 / worst).fmin(0.7);
     }
     Err(Refusal::NoRoomToStop)
-}
-
-/// The largest part of its limit that a pivot reaches, and the end; `None` where the workspace is left.
-fn walk(
-    state: &[AxisState; 3],
-    now: &InstantState,
-    pieces: &[Piece],
-    instant_check: &InstantCheck<'_>,
-) -> Option<(f32, [AxisState; 3])> {
-    let mut axes = *state;
-    let mut before = *now;
-    let mut worst = 0.0_f32;
-    for piece in pieces {
-        let first = if piece.ticks > LONG {
-            piece.ticks / 2
-        } else {
-            0
-        };
-        for ticks in [first, piece.ticks - first] {
-            if ticks == 0 {
-                continue;
-            }
-            piece.advance(&mut axes, ticks, &[0; 3]);
-            // What a tick changes does not show.
-            if ticks == 1 {
-                continue;
-            }
-            let now = instant_check.evaluate(&axes).ok()?;
-            if !instant_check.is_inside(&before, &now, ticks_to_f32(ticks) / instant_check.hz) {
-                return None;
-            }
-            worst = worst.fmax(now.pivots[0]).fmax(now.pivots[1]);
-            before = now;
-        }
-    }
-    Some((worst, axes))
 }
 
 #[cfg(test)]
 mod tests {
     use crate::stream::final_stop::*;
     use kinematics::Geometry;
-    use motion::Constraints;
     use motion::Limits;
     use motion::plan::axis_state::AXIS_UNITS;
+    use motion::plan::state_after_pieces;
 
     const CONSTRAINTS: Constraints = Constraints::new(Limits::REFERENCE, Geometry::REFERENCE);
 
@@ -113,9 +73,9 @@ mod tests {
     fn stopped(
         axes: &[AxisState; 3],
         constraints: &Constraints,
-    ) -> Result<(StopPieces, [AxisState; 3]), Refusal> {
-        let instant_check = InstantCheck::new(constraints);
-        final_stop(axes, &instant_check.evaluate(axes)?, &instant_check)
+    ) -> Result<([Piece; 4], [AxisState; 3]), Refusal> {
+        let pieces = final_stop(axes, constraints, &PlanCheck::for_stream(constraints))?;
+        Ok((pieces, state_after_pieces(axes, &pieces, &[0; 3])))
     }
 
     #[test]

@@ -3,15 +3,11 @@
 use super::final_stop::final_stop;
 use super::spline::curve_point;
 use super::state::{PART_BITS, SentPlan, Stream};
-use motion::check::instant::{InstantCheck, InstantState};
+use motion::check::{Budget, PlanCheck, Violation};
 use motion::constraints::Constraints;
-use motion::constraints::Speeds;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
-use motion::plan::cubic_segment::per_second;
-use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
+use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to, state_after_pieces};
 use motion::refusal::Refusal;
-use motion::tolerances::JERK_TOLERANCE;
-use number::float::ticks_to_f32;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
 pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
@@ -24,7 +20,6 @@ impl Stream {
         sent: Option<SentPlan>,
         constraints: &Constraints,
     ) -> Result<Planned, Refusal> {
-        let instant_check = InstantCheck::new(constraints);
         let rest = self.target(2);
         let (start, from) = match sent {
             Some(SentPlan { id, splice, state }) => {
@@ -34,13 +29,17 @@ impl Stream {
             None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
         let mut plan = Plan::new(id, start, rest);
-        let (state, now) = self.knots(&mut plan, from, &instant_check)?;
+        let state = self.knots(&mut plan, from);
+        let plan_check = PlanCheck::for_stream(constraints);
+        (plan_check.check(&plan.pieces, &from, &mut { Budget::FOR_ANSWER }))
+            .map_err(|violation| refusal(violation, constraints))?;
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
             plan.nudge = nudge_to(&state, &plan.end, splice).ok_or(Refusal::InvalidLimits)?;
         } else {
-            let (stop, end) = final_stop(&state, &now, &instant_check)?;
+            let stop = final_stop(&state, constraints, &plan_check)?;
+            let end = state_after_pieces(&state, &stop, &[0; 3]);
             plan.pieces
                 .extend(stop.into_iter().filter(|piece| piece.ticks > 0));
             plan.end = end.map(|axis| axis.rounded());
@@ -56,27 +55,12 @@ impl Stream {
     }
 
     /// Adds the pieces along the curve; where they lead.
-    fn knots(
-        &mut self,
-        plan: &mut Plan,
-        from: [AxisState; 3],
-        instant_check: &InstantCheck<'_>,
-    ) -> Result<([AxisState; 3], InstantState), Refusal> {
+    fn knots(&mut self, plan: &mut Plan, from: [AxisState; 3]) -> [AxisState; 3] {
         let mut state = from;
-        let mut before = instant_check.evaluate(&state)?;
         for _ in 0..self.knots {
             self.pass();
             for piece in self.pieces(&state) {
-                let jerk = per_second(&piece.jerk, instant_check.hz);
-                let jerk = Speeds::of(&each!(i => jerk[i] * instant_check.hz * instant_check.hz));
-                let most = instant_check.limits.jerk.scaled(JERK_TOLERANCE);
-                if jerk.linear > most.linear || jerk.angular > most.angular {
-                    return Err(Refusal::Jerk);
-                }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
-                let now = instant_check.evaluate(&state)?;
-                instant_check.check(&before, &now, ticks_to_f32(piece.ticks) / instant_check.hz)?;
-                before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
             }
@@ -85,7 +69,7 @@ impl Stream {
                 break;
             }
         }
-        Ok((state, before))
+        state
     }
 
     /// Passes the curve by a knot.
@@ -147,3 +131,20 @@ impl Stream {
 /// Bits of a place on the curve below a position's unit.
 const FINE_BITS: u32 = 20;
 const FINE: f32 = (1_u32 << FINE_BITS) as f32;
+
+/// Why targets are refused that break this.
+fn refusal(violation: Violation, constraints: &Constraints) -> Refusal {
+    let mm = constraints.geometry.radius_mm;
+    match violation {
+        Violation::Disk(radius) => Refusal::OutsideDisk {
+            radius_mm: f64::from(radius) * mm,
+            usable_mm: constraints.usable_radius * mm,
+        },
+        Violation::Bounds(axis) => Refusal::OutOfBounds { axis },
+        Violation::Speed(_) => Refusal::Velocity,
+        Violation::Acceleration(_) => Refusal::Acceleration,
+        Violation::Jerk(_) => Refusal::Jerk,
+        Violation::PivotRate(_) | Violation::PivotAcceleration(_) => Refusal::Pivots,
+        Violation::NoRoomToStop => Refusal::NoRoomToStop,
+    }
+}
