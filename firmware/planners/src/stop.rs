@@ -5,8 +5,7 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use motion::check::Violation;
-use motion::check::{Budget, PlanCheck, is_over};
+use motion::check::{Budget, PlanCheck, Violation, is_over};
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};

@@ -1,8 +1,7 @@
 //! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the
 //! pivots can make of them at most, and what may be broken in it.
 
-use super::pivot_bounds::PivotGain;
-use super::platform::greatest;
+use super::pivots::{PivotGain, greatest};
 use crate::constraints::Speeds;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
 use number::float::{FloatMinMax, hypot};

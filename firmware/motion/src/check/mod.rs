@@ -9,7 +9,7 @@
 //!
 //! A plan of retarget, of a stream, a jog in motion and a stop are held against all of it. A line from rest is planned inside
 //! the limits at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation
-//! (`pivot_bounds`). This check would cost more than their planning: of a line 16,400
+//! (`pivots`). This check would cost more than their planning: of a line 16,400
 //! instructions in the mean and 76,800 at most, of a jog from rest 12,100 and 45,100 (300 random states on the chip). And
 //! it knows no places: it refuses 36 of 300 lines and 160 of 300 jogs in which every tick keeps every law.
 //!
@@ -27,17 +27,13 @@
 //! |---|---|
 //! | `plan_check` | the pieces of a plan against every limit, interval by interval |
 //! | `interval` | an interval: its ends, how large everything is in between, which limit is broken and by how much |
-//! | `platform` | the platform at an instant: its centre's motion and the pivots' |
-//! | `pivot_bounds` | bounds of the pivots' rates and accelerations that hold at any orientation |
-//! | `workspace` | disk and bounds, on the way and for a stop |
-//! | `target` | which way round to an orientation, and whether a target can be moved to |
+//! | `pivots` | what the platform asks of the pivots: at an instant, and at worst at any orientation |
+//! | `workspace` | disk and bounds, on the way and for a stop; which way round to an orientation, and whether a target can be moved to |
 
 mod interval;
-pub mod pivot_bounds;
+pub mod pivots;
 mod plan_check;
-pub mod platform;
-pub mod target;
-mod workspace;
+pub mod workspace;
 
 pub use interval::Violation;
 pub use plan_check::{Budget, PlanCheck, is_over};

@@ -1,9 +1,7 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
-use super::interval::Violation;
-use super::interval::{IntervalBounds, IntervalEnd};
-use super::pivot_bounds::PivotGain;
-use super::platform::greatest;
+use super::interval::{IntervalBounds, IntervalEnd, Violation};
+use super::pivots::{PivotGain, greatest};
 use super::workspace::{StopLimits, Workspace};
 use crate::constraints::{Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;

@@ -1,12 +1,11 @@
 //! A jog: the way to a velocity, the velocity held, and the way to rest; how long it can be held before its axes have to
 //! brake, and how much slower it has to be where that is too short.
 
-use super::request::{InitialState, JogRequest};
+use super::{InitialState, JogRequest};
 use heapless::Vec;
 use motion::constraints::MotionLimits;
 use motion::plan::axis_state::AxisState;
-use motion::plan::cubic_segment::MotionState;
-use motion::plan::cubic_segment::per_second;
+use motion::plan::cubic_segment::{MotionState, per_second};
 use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
 use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::VelocityProfile;

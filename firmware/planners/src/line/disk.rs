@@ -10,7 +10,7 @@
 use super::path::Path;
 use crate::steady_motion::{SteadyMotion, crossing};
 use core::f32::consts::TAU;
-use motion::check::target::check_target;
+use motion::check::workspace::check_target;
 use motion::constraints::Constraints;
 use motion::plan::Position;
 use motion::refusal::Refusal;

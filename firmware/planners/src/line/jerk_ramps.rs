@@ -16,7 +16,7 @@
 //! it.
 
 use super::rounded_ramps::{JerkRamp, JerkRamps, RoundedRamps};
-use super::segments::Corners;
+use super::topp::Corners;
 use motion::constraints::PathLimits;
 use motion::plan::quantise::PathProfile;
 use motion::tolerances::WHOLE_DURATION;
@@ -89,7 +89,7 @@ fn widen(ramps: &mut JerkRamps, most: f32) {
 #[cfg(test)]
 mod tests {
     use crate::line::jerk_ramps::*;
-    use crate::line::segments::Corner;
+    use crate::line::topp::Corner;
 
     const HZ: f32 = 20_000.0;
     const LIMITS: PathLimits = PathLimits {

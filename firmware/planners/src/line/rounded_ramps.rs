@@ -3,7 +3,7 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end,
 //! up to a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::segments::MAX_SEGMENTS;
+use super::topp::MAX_SEGMENTS;
 use heapless::Vec;
 use motion::plan::MAX_PIECES;
 use motion::plan::quantise::{JERK_BITS, JerkSegment, PathProfile};
