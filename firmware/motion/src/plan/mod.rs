@@ -45,11 +45,9 @@ pub struct Piece {
 
 impl Piece {
     /// Takes the axes on by `ticks` of this piece, with a plan's nudge.
-    // Inlined wherever plans are walked through, products of 128 bits were a tenth of the generator's code.
-    #[inline(never)]
     pub fn advance(&self, axes: &mut [AxisState; 3], ticks: u64, nudge: &[i64; 3]) {
         for (axis, (jerk, nudge)) in axes.iter_mut().zip(self.jerk.iter().zip(nudge)) {
-            *axis = axis.after(ticks, *jerk, *nudge);
+            axis.pass(ticks, *jerk, *nudge);
         }
     }
 }
