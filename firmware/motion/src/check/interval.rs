@@ -34,16 +34,15 @@ impl Violation {
 
     /// This, or what was seen of the same before, when that was worse.
     pub(super) fn or_worse(self, before: Option<Self>) -> Self {
-        match (self, before) {
-            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.fmax(over)),
-            (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
-                Self::Acceleration(now.fmax(over))
-            }
-            (Self::PivotRate(now), Some(Self::PivotRate(over))) => Self::PivotRate(now.fmax(over)),
-            (Self::PivotAcceleration(now), Some(Self::PivotAcceleration(over))) => {
-                Self::PivotAcceleration(now.fmax(over))
-            }
-            _ => self,
+        let is_same = |seen: &Self| core::mem::discriminant(seen) == core::mem::discriminant(&self);
+        (before.filter(|seen| is_same(seen) && seen.over() > self.over())).unwrap_or(self)
+    }
+
+    fn over(&self) -> f32 {
+        match *self {
+            Self::Speed(over) | Self::Acceleration(over) | Self::Jerk(over) => over,
+            Self::PivotRate(over) | Self::PivotAcceleration(over) => over,
+            Self::Disk(_) | Self::Bounds(_) | Self::NoRoomToStop => 0.0,
         }
     }
 }
