@@ -53,7 +53,7 @@ pub fn plan_jog(
     let mut plan = Plan::new(id, start, [0; 3]);
     let request = JogRequest::new(velocity, constraints).map_err(RetargetError::Refused)?;
     let now = InitialState::new(state, &request);
-    let from_rest = matches!(plan.start, PlanStart::Rest(_));
+    let from_rest = now.motion.is_at_rest();
     // Out of an urgent stop only once it is over: its acceleration is more than a jog may have.
     let acceleration = Speeds::of(&now.motion.a);
     if is_over(acceleration, request.limits.acceleration) {
@@ -65,7 +65,7 @@ pub fn plan_jog(
             return Err(RetargetError::Refused(Refusal::NoRoom));
         }
         let jog = Jog::new(state, &now, wanted, &request, &mut plan.pieces)?;
-        match jog.hold(state, &request, from_rest) {
+        match jog.hold(state, &request) {
             Ok(hold) => {
                 // From rest the way there is the first part of the way on, which was looked at for the time that it is
                 // held.

@@ -18,15 +18,6 @@ use motion::tolerances::LINE_SQUARED_RADII;
 use number::float::{FloatMinMax, hypot};
 use number::sqrt_f32;
 
-/// Where a line is furthest out of the disk.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Exit {
-    /// Distance from the track's centre, track radii.
-    pub radius: f32,
-    /// Share of the way.
-    pub fraction: f32,
-}
-
 /// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
 const MOST_STEPS: usize = 150;
 /// Places looked at for how far a line gets that leaves the disk.
@@ -44,29 +35,26 @@ pub fn check_line(
     if !constraints.limits.all_positive() {
         return Err(Refusal::InvalidLimits);
     }
-    match exit(from, to, constraints) {
-        Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
-            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
-            fraction: f64::from(exit.fraction),
-        }),
-        None => Ok(()),
-    }
-}
-
-/// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
     let usable = constraints.usable_radius as f32;
     // A line of no length has no bend to walk along.
     if constraints.rotation_centre == [0.0; 2] || from == to {
-        return None;
+        return Ok(());
     }
     let path = Path::new(from, to, constraints);
     let there = Walk::new(&path, from[2], constraints, false);
     let back = Walk::new(&path, to[2], constraints, true);
+    // Or no further out than it starts, when it starts outside.
     let start = there.motion.square(0.0).0;
     let limit = start.fmax(usable * usable) + LINE_SQUARED_RADII;
-    there.exit(limit).or_else(|| back.exit(limit))
+    let Some((radius, fraction)) = there.exit(limit).or_else(|| back.exit(limit)) else {
+        return Ok(());
+    };
+    let mm = constraints.geometry.radius_mm;
+    Err(Refusal::LeavesDisk {
+        radius_mm: f64::from(radius) * mm,
+        usable_mm: constraints.usable_radius * mm,
+        fraction: f64::from(fraction),
+    })
 }
 
 /// A walk from one end of a line, with the path parameter for seconds.
@@ -100,24 +88,21 @@ impl Walk {
         }
     }
 
-    /// The exit before the point is so far in that every orientation is inside.
+    /// Where the centre is furthest out, and after which part of the way, if it leaves the disk before the point is so far
+    /// in that every orientation is inside.
     #[inline(never)]
-    fn exit(&self, limit: f32) -> Option<Exit> {
+    fn exit(&self, limit: f32) -> Option<(f32, f32)> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
         let turn = (1.01 * TAU / self.motion.turning.abs()).fmin(1.0);
         if !self.leaves(turn, limit) {
             return None;
         }
-        let mut worst = Exit {
-            radius: 0.0,
-            fraction: 0.0,
-        };
+        let mut worst = (0.0, 0.0);
         for k in 0..=SAMPLES {
             let s = turn * k as f32 / SAMPLES as f32;
             let radius = sqrt_f32(self.motion.square(s).0);
-            if radius > worst.radius {
-                let fraction = if self.backwards { 1.0 - s } else { s };
-                worst = Exit { radius, fraction };
+            if radius > worst.0 {
+                worst = (radius, if self.backwards { 1.0 - s } else { s });
             }
         }
         Some(worst)
