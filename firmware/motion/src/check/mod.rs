@@ -7,14 +7,14 @@
 //! platform's motion can make of their third and fourth derivatives in between. An interval that fails is taken in shorter
 //! ones, unless a limit is broken at one of its ends.
 //!
-//! A plan of retarget, of a stream, a jog in motion and a stop are held against all of it. A line from rest is planned inside
+//! A plan of retarget or of a stream, a jog in motion and a stop are held against all of it. A line from rest is planned inside
 //! the limits at the places of its own grid (`line/pivot_demand`), a jog from rest by bounds for any orientation
-//! (`pivots`). This check would cost more than their planning: of a line 16,400
-//! instructions in the mean and 76,800 at most, of a jog from rest 12,100 and 45,100 (300 random states on the chip). And
-//! it knows no places: it refuses 36 of 300 lines and 160 of 300 jogs in which every tick keeps every law.
+//! (`pivots`). This check would cost more than their planning: of a line 16,400 instructions in the mean and 76,800 at most,
+//! of a jog from rest 12,100 and 45,100 (300 random states on the chip). And it knows no places: it refuses 36 of 300 lines
+//! and 160 of 300 jogs in which every tick keeps every law.
 //!
-//! The check is compiled for speed, as all of this package. Compiled for size, motion and planners together took 52,402
-//! bytes of the image in place of 61,892, with stops, jogs and streams 15 to 33 % dearer.
+//! The check is compiled for speed, as all of this package. Compiled for size, motion and planners together took 52,622
+//! bytes of the image in place of 57,462, with stops, jogs and streams 15 to 33 % dearer.
 //!
 //! | checked | for |
 //! |---|---|

@@ -72,7 +72,7 @@ pub(super) fn curve_point(window: &[Position; WINDOW], axis: usize, f: f32) -> C
     }
 }
 
-/// The three pieces' lengths, and the inverse of the above with times in units of T.
+/// The three pieces' lengths, and the inverse of the equations in the module's head, with times in units of T.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knot {
     pub ticks: [u64; 3],

@@ -15,7 +15,8 @@
 //! limits and the workspace; so does one whose next target asks for too much, which is refused.
 //!
 //! Position, velocity and acceleration of the setpoint have no steps, as in any plan. What the targets ask for is held
-//! against the limits of speed, acceleration and the pivots at every piece's end, with a tolerance of a thousandth.
+//! against the limits of speed, acceleration, the pivots and the workspace all along ([`motion::check`]), with a tolerance of
+//! a thousandth.
 //! Jerk is the sender's own business within [`JERK_TOLERANCE`](motion::tolerances::JERK_TOLERANCE) times its limit: samples that are rounded, or a path
 //! with corners in its acceleration, have no better.
 //!

@@ -1,9 +1,8 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
 //!
-//! The stop leads on from any state, wherever the velocity and the acceleration point to.
-//! The velocity is given up in three segments (see `profile/velocity`), the first with as much jerk as a stream may have:
-//! an acceleration under way that is released slowly would end over the limit of speed. Where a pivot is asked for too
-//! much, the stop is softer.
+//! The stop leads on from any state, wherever the velocity and the acceleration point to. The velocity is given up in three
+//! segments (see `profile/velocity`), the first with as much jerk as a stream may have: an acceleration under way that is
+//! released slowly would end over the limit of speed. Where a pivot is asked for too much, the stop is softer.
 
 use super::curve::curve_point;
 use super::{PART_BITS, SentPlan, Stream};
