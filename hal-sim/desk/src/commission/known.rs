@@ -20,6 +20,8 @@ pub(super) struct Known {
     pub bridges: [usize; AXES],
     /// Windings of the pivots' motors: ohm, H.
     pub windings: [[f64; 2]; AXES],
+    /// Back-EMF of the pivots' motors for each rad/s of their rings, V s/rad.
+    pub motor_constants: [f64; AXES],
 }
 
 impl Known {

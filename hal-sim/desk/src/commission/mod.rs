@@ -18,7 +18,7 @@ mod known;
 mod report;
 mod steps;
 
-pub use found::{CommissionError, Failure, Finding};
+pub use found::{CommissionError, Failure, Finding, Found, Plot};
 pub use report::page;
 pub use steps::STEPS;
 
@@ -77,7 +77,7 @@ pub struct Step {
     pub name: &'static str,
     /// What it does.
     pub about: &'static str,
-    run: fn(&mut Bench<'_>, &mut Known, &mut Vec<Finding>) -> Result<(), CommissionError>,
+    run: fn(&mut Bench<'_>, &mut Known, &mut Found) -> Result<(), CommissionError>,
 }
 
 /// What a step came to.
@@ -85,7 +85,7 @@ pub struct Done {
     /// Which.
     pub step: &'static Step,
     /// What it measured.
-    pub findings: Vec<Finding>,
+    pub found: Found,
     /// Why it has failed.
     pub failure: Option<Failure>,
     /// How long it took, by the controller's clock, s.
@@ -106,9 +106,9 @@ pub fn run(
     let (mut known, mut all) = (Known::default(), Vec::new());
     for step in STEPS {
         let start_s = bench.clock_s()?;
-        let mut findings = Vec::new();
-        let failure = match (step.run)(&mut bench, &mut known, &mut findings) {
-            Ok(()) => (findings.iter().find(|finding| !finding.passed))
+        let mut found = Found::default();
+        let failure = match (step.run)(&mut bench, &mut known, &mut found) {
+            Ok(()) => (found.findings.iter().find(|finding| !finding.passed))
                 .map(|finding| Failure::new(finding.name.clone(), finding.advice)),
             Err(CommissionError::Failed(failure)) => Some(failure),
             Err(CommissionError::Controller(error @ RecordError::Refused { .. })) => {
@@ -125,7 +125,7 @@ pub fn run(
         };
         let done = Done {
             step,
-            findings,
+            found,
             failure,
             seconds,
         };

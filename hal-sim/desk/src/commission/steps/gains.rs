@@ -3,7 +3,7 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 use crate::record::RecordError;
 
@@ -62,7 +62,7 @@ fn at_rest(share: f64) -> f64 {
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     // At rest the loop would answer with an eighth of its gains.
     bench.set(&[(id::REST_STIFFNESS, 1.0)])?;

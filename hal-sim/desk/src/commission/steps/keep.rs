@@ -2,13 +2,13 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.ask("SVO X 0")?;
     bench.delay(0.2)?;

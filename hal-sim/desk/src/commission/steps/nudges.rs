@@ -2,7 +2,7 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding, fail};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
 
 /// Where the voltage ends, V: break-away of a weak machine and the dead time; and in which time, s.
@@ -19,7 +19,7 @@ const REST_S: f64 = 0.1;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.set(&[(id::EXCITATION_V, 2.0)])?;
     for (pivot, reversed) in (0..).zip(known.reversed_at_port) {
@@ -84,6 +84,11 @@ pub(super) fn run(
     ));
     if ports == [0, 1, 2] {
         set_order(bench, known)?;
+        let [ports, bridges] = [known.ports, known.bridges].map(|all| all.map(|at| at + 1));
+        found.push(Finding::told(
+            "pivots 1, 2, 3, to the left of each other",
+            format!("ports {ports:?}, bridges {bridges:?}"),
+        ));
     }
     Ok(())
 }

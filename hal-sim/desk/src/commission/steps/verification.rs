@@ -1,7 +1,7 @@
 //! Moves as the machine will make them, there and back.
 
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
 
 const MOVES: [&str; 8] = [
@@ -21,7 +21,7 @@ const MOST_ERROR_RAD: f64 = 1e-3;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     let first_rad = bench.follow(&MOVES, LONGEST_S)?;
     found.push(Finding::told(

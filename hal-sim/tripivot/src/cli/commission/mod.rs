@@ -86,7 +86,7 @@ fn told(done: &Done) -> String {
         "{}: {} ({:.1} s)\n",
         done.step.name, done.step.about, done.seconds
     );
-    for finding in &done.findings {
+    for finding in &done.found.findings {
         let verdict = match (finding.passed, finding.limit.is_empty()) {
             (true, true) => "",
             (true, false) => "ok",
