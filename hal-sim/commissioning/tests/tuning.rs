@@ -344,6 +344,7 @@ fn stability_is_that_of_the_characteristic_polynomial() {
             hz,
             response,
             inertia: [1.0; 3],
+            is_complete: true,
         };
         let pivot = PivotGains {
             gains: parameters::Gains {

@@ -152,6 +152,25 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// Whether a fault is latched.
+    pub fn is_faulted(&mut self) -> Answered<bool> {
+        Ok(!self.fault()?.is_empty())
+    }
+
+    /// After a fault: it is forgotten, and parameters may be set.
+    pub fn clear_fault(&mut self) -> Answered<()> {
+        self.delay(0.3)?;
+        self.ask("FLC")?;
+        self.delay(0.1)
+    }
+
+    /// The stage is held where it is.
+    pub fn hold(&mut self) -> Result<()> {
+        self.ask("FRF")?;
+        self.settle()?;
+        Ok(())
+    }
+
     /// Motors off, and what is kept in force again.
     ///
     /// # Errors

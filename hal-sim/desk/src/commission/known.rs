@@ -1,5 +1,9 @@
 //! What is known of the machine so far.
 
+use super::measured_loop::MeasuredLoop;
+use super::sines::Excited;
+use commissioning::drive_model::DriveModel;
+
 /// Pivots, encoder ports, bridges.
 pub(super) const AXES: usize = 3;
 
@@ -22,6 +26,12 @@ pub(super) struct Known {
     pub windings: [[f64; 2]; AXES],
     /// Back-EMF of the pivots' motors for each rad/s of their rings, V s/rad.
     pub motor_constants: [f64; AXES],
+    /// Drives, rings and platform.
+    pub model: Option<DriveModel>,
+    /// What was recorded in the middle for it.
+    pub centre: Option<Excited>,
+    /// Loops as measured, with the gains in force.
+    pub loops: Vec<MeasuredLoop>,
 }
 
 impl Known {

@@ -9,13 +9,19 @@
 //! | `bench` | questions, excitations and records, as the steps need them |
 //! | `found` | what a step has found, and why one fails |
 //! | `known` | what is known of the machine so far |
+//! | `servo_gains` | gains and filters, to and from the controller's parameters |
+//! | `measured_loop` | a loop as measured, its margins and its plots |
+//! | `sines` | multisines on one motor after the other |
 //! | `steps/` | a file each |
 //! | `report` | all of it, as one page |
 
 mod bench;
 mod found;
 mod known;
+mod measured_loop;
 mod report;
+mod servo_gains;
+mod sines;
 mod steps;
 
 pub use found::{CommissionError, Failure, Finding, Found, Plot};

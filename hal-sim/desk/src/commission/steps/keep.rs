@@ -1,6 +1,7 @@
 //! What was found is kept, and is in force after it as before.
 
 use super::id;
+use super::nudges::USUAL_EXCITATION_V;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
@@ -12,6 +13,8 @@ pub(super) fn run(
 ) -> Result<(), CommissionError> {
     bench.ask("SVO X 0")?;
     bench.delay(0.2)?;
+    // As much as a machine that nobody knows is given: whoever commissions it again finds it so.
+    bench.set(&[(id::EXCITATION_V, USUAL_EXCITATION_V)])?;
     bench.ask("WPA 100")?;
     bench.ask("RPA")?;
     bench.delay(0.1)?;

@@ -5,6 +5,8 @@ use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
 
+/// Largest voltage of an excitation while nothing is known, V.
+pub(super) const USUAL_EXCITATION_V: f64 = 2.0;
 /// Where the voltage ends, V: break-away of a weak machine and the dead time; and in which time, s.
 const MOST_V: f64 = 1.6;
 const SECONDS: f64 = 0.3;
@@ -21,7 +23,7 @@ pub(super) fn run(
     known: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
-    bench.set(&[(id::EXCITATION_V, 2.0)])?;
+    bench.set(&[(id::EXCITATION_V, USUAL_EXCITATION_V)])?;
     for (pivot, reversed) in (0..).zip(known.reversed_at_port) {
         bench.set(&[(id::ENCODER_REVERSED + pivot, f64::from(u8::from(reversed)))])?;
     }

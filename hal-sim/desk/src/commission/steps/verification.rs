@@ -1,5 +1,6 @@
 //! Moves as the machine will make them, there and back.
 
+use super::gains::settle_as_usual;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
@@ -23,6 +24,7 @@ pub(super) fn run(
     _: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
+    settle_as_usual(bench)?;
     let first_rad = bench.follow(&MOVES, LONGEST_S)?;
     found.push(Finding::told(
         "largest following error in the first round",

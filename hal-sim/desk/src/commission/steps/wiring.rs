@@ -1,6 +1,6 @@
 //! Encoders, supply and current sensors at rest, with the bridges asleep.
 
-use super::id;
+use super::{gains, id};
 use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
@@ -32,6 +32,7 @@ pub(super) fn run(
     }
     bench.set(&[(id::ENCODER_ORDER, 123.0), (id::BRIDGE_ORDER, 123.0)])?;
     bench.delay(0.05)?;
+    gains::forget(bench)?;
     for port in 1..=AXES {
         let answers = bench.number("TST?", &format!("ENCODER{port}"))? == 1.0;
         found.push(Finding::new(
