@@ -124,7 +124,7 @@ pub fn plot(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> Plot {
     };
     draw_sensitivity(&mut svg, &frame(60.0, 50.0, 420.0, 285.0), now, before);
     draw_gain(&mut svg, &frame(60.0, 440.0, 420.0, 300.0), now, before);
-    draw_phase(&mut svg, &frame(545.0, 555.0, 420.0, 185.0), now, before);
+    draw_phase(&mut svg, &frame(545.0, 580.0, 420.0, 160.0), now, before);
     draw_nyquist(&mut svg, &frame(545.0, 50.0, 420.0, 420.0), now, before);
     let also = if before.is_some() {
         "; dashed: before the gains were found"

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | here | what is asked of a machine and of the person beside it; the sequence |
 //! | `bench` | questions, excitations and records, as the steps need them |
+//! | `chosen` | which steps are run |
 //! | `found` | what a step has found, and why one fails |
 //! | `known` | what is known of the machine so far |
 //! | `servo_gains` | gains and filters, to and from the controller's parameters |
@@ -16,6 +17,7 @@
 //! | `report` | all of it, as one page |
 
 mod bench;
+mod chosen;
 mod found;
 mod known;
 mod measured_loop;
@@ -24,6 +26,7 @@ mod servo_gains;
 mod sines;
 mod steps;
 
+pub use chosen::{ChoiceError, Chosen};
 pub use found::{CommissionError, Failure, Finding, Found, Plot};
 pub use report::page;
 pub use steps::STEPS;
@@ -98,7 +101,7 @@ pub struct Done {
     pub seconds: f64,
 }
 
-/// Runs the steps until one fails, tells of each as it ends; what all of them came to.
+/// Runs the steps that are chosen until one fails, tells of each as it ends; what all of them came to.
 ///
 /// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so.
 ///
@@ -106,14 +109,21 @@ pub struct Done {
 /// [`RecordError`] when nobody answers, or no longer.
 pub fn run(
     machine: &mut dyn Machine,
+    chosen: &Chosen,
     tell: &mut dyn FnMut(&Done),
 ) -> Result<Vec<Done>, RecordError> {
     let mut bench = Bench::new(machine)?;
     let (mut known, mut all) = (Known::default(), Vec::new());
-    for step in STEPS {
+    for &step in &chosen.steps {
         let start_s = bench.clock_s()?;
         let mut found = Found::default();
-        let failure = match (step.run)(&mut bench, &mut known, &mut found) {
+        let begun = if all.is_empty() {
+            chosen.begin(&mut bench).map(|begun| known = begun)
+        } else {
+            Ok(())
+        };
+        let ran = begun.and_then(|()| (step.run)(&mut bench, &mut known, &mut found));
+        let failure = match ran {
             Ok(()) => (found.findings.iter().find(|finding| !finding.passed))
                 .map(|finding| Failure::new(finding.name.clone(), finding.advice)),
             Err(CommissionError::Failed(failure)) => Some(failure),

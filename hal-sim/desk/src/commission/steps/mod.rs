@@ -92,7 +92,7 @@ pub static STEPS: &[Step] = &[
 ];
 
 /// Numbers of parameters that the steps set.
-mod id {
+pub(super) mod id {
     pub const ENCODER_ZERO: u32 = 0x5450_0600;
     pub const ENCODER_REVERSED: u32 = 0x5450_0610;
     pub const ENCODER_ORDER: u32 = 0x5450_0620;
