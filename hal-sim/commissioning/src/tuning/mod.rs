@@ -71,8 +71,9 @@ pub enum TuningError {
 
 /// Ranges that are searched, inside those of the parameters.
 const VELOCITY: [f64; 2] = [3.0, 500.0];
-const POSITION: [f64; 2] = [1.0, 2_000.0];
-/// Of the integral: a lower one hardly costs rejection at 30 Hz, and leaves a tail of tens of milliseconds after every move.
+/// Position gain and corner of the integral, 1/s, which do the same: a lower one of either hardly costs rejection at 30 Hz, and leaves a tail of
+/// tens of milliseconds after every move.
+const POSITION: [f64; 2] = [60.0, 2_000.0];
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const LEAD_TO_HZ: f64 = 3_000.0;
 /// Halvings of the range of the velocity gain; starts that are followed, generations of each, and how far the first goes, as a logarithm.

@@ -69,6 +69,11 @@ pub(super) fn settle_as_usual(bench: &mut Bench<'_>) -> Result<(), CommissionErr
     Ok(bench.set(&[(id::SETTLING_COUNTS, USUAL_COUNTS)])?)
 }
 
+/// What counts as settled for loops that are not tuned yet.
+pub(super) fn settle_widely(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    Ok(bench.set(&[(id::SETTLING_COUNTS, WIDE_COUNTS)])?)
+}
+
 fn at_rest(share: f64) -> f64 {
     (REST / share).clamp(REST, 1.0)
 }

@@ -1,6 +1,7 @@
 //! Gains and notches by optimisation: the least sensitivity at 30 Hz whose Ms stays small everywhere, on the model of this machine and on its
 //! loops as they were measured. They are kept if the loops that they give, measured again, are better than those that were.
 
+use super::gains::{settle_as_usual, settle_widely};
 use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
@@ -24,6 +25,14 @@ const LIMITS: Limits = Limits {
 /// What gains are lowered by where they ask too much of a measured loop, and how often at most.
 const LESS: f64 = 0.92;
 const MOST_LESS: usize = 12;
+/// Moves that have to come to their end, and how long each may take, s.
+const MOVES: [&str; 4] = [
+    "MOV X 30 Y 30 W 90",
+    "MOV X -30 Y -30 W -90",
+    "MOV X 1 Y 0 W 0",
+    "MOV X 0 Y 0 W 0",
+];
+const LONGEST_S: f64 = 5.0;
 /// How often loops are measured again with less.
 const MOST_TRIES: usize = 3;
 
@@ -146,7 +155,20 @@ fn with(
             Err(error) => return Err(error),
         }
     }
-    Ok(Ok(after))
+    match settles(bench) {
+        Err(CommissionError::Failed(failure)) => back(bench, former, failure.what).map(Err),
+        done => done.map(|()| Ok(after)),
+    }
+}
+
+/// Short moves, to the window that the machine will have: a loop that only turns tells nothing of rest.
+fn settles(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    settle_as_usual(bench)?;
+    for line in MOVES {
+        bench.ask(line)?;
+        bench.wait_for_target(LONGEST_S)?;
+    }
+    settle_widely(bench)
 }
 
 /// Holds the stage with the gains that it had; why it has to.
@@ -158,6 +180,7 @@ fn back(bench: &mut Bench<'_>, former: &Gains, why: String) -> Result<String, Co
         bench.delay(0.3)?;
     }
     servo_gains::write(bench, former)?;
+    settle_widely(bench)?;
     bench.hold()?;
     Ok(why)
 }
