@@ -3,10 +3,13 @@
 mod friction;
 mod gains;
 mod hand;
+mod identification;
 mod keep;
 mod nudges;
 mod reference;
+mod response;
 mod ring_servo;
+mod tuning;
 mod verification;
 mod windings;
 mod wiring;
@@ -62,6 +65,21 @@ pub static STEPS: &[Step] = &[
         run: friction::run,
     },
     Step {
+        name: "identification",
+        about: "sines on one motor after the other while the platform turns in the middle: windings, inertias, mass, resonances",
+        run: identification::run,
+    },
+    Step {
+        name: "response",
+        about: "the loop with these gains, in the middle and far out: sensitivity and margins of all three pivots together",
+        run: response::run,
+    },
+    Step {
+        name: "tuning",
+        about: "gains and notches for the least sensitivity at 30 Hz with Ms of 2 at most, measured again and kept if they are better",
+        run: tuning::run,
+    },
+    Step {
         name: "verification",
         about: "moves at full speed: following error and settling",
         run: verification::run,
@@ -74,7 +92,7 @@ pub static STEPS: &[Step] = &[
 ];
 
 /// Numbers of parameters that the steps set.
-mod id {
+pub(super) mod id {
     pub const ENCODER_ZERO: u32 = 0x5450_0600;
     pub const ENCODER_REVERSED: u32 = 0x5450_0610;
     pub const ENCODER_ORDER: u32 = 0x5450_0620;
@@ -94,6 +112,15 @@ mod id {
     pub const DEAD_TIME_KNEE: u32 = 0x5450_0815;
     pub const VISCOUS: u32 = 0x5450_0818;
     pub const COULOMB: u32 = 0x5450_0819;
+    pub const TRACK_RADIUS: u32 = 0x5450_0200;
+    pub const PLATFORM_MASS: u32 = 0x5450_0700;
+    pub const PLATFORM_INERTIA: u32 = 0x5450_0701;
+    pub const PAYLOAD_MASS: u32 = 0x5450_0702;
+    pub const PAYLOAD_INERTIA: u32 = 0x5450_0703;
+    pub const PAYLOAD_X: u32 = 0x5450_0704;
+    pub const PAYLOAD_Y: u32 = 0x5450_0705;
+    /// Of all pivots.
+    pub const RING_INERTIA: u32 = 0x5450_0807;
     pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
     pub const PWM_HZ: u32 = 0x5450_080B;
 
