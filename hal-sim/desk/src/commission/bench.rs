@@ -6,6 +6,8 @@ use super::{Machine, Task};
 use crate::record::desk::strange;
 use crate::record::{Record, RecordError, TABLES, answer};
 use commissioning::record::Signals;
+use firmware::gcs::PARAMETERS;
+use firmware::parameters::Parameters;
 
 type Answered<T> = Result<T, RecordError>;
 type Result<T, E = CommissionError> = std::result::Result<T, E>;
@@ -104,6 +106,22 @@ impl<'a> Bench<'a> {
     pub fn parameter(&mut self, id: u32) -> Answered<f64> {
         let id = format!("1 0x{id:X}");
         self.number(&format!("SPA? {id}"), &id)
+    }
+
+    /// All parameters as the controller has them.
+    pub fn parameters(&mut self) -> Answered<Parameters> {
+        let mut parameters = Parameters::REFERENCE;
+        let mut settable: Vec<_> = (PARAMETERS.iter())
+            .filter(|one| !one.is_read_only() && one.number(&parameters).is_some())
+            .collect();
+        // A number for all three pivots, which reads as the first one's, comes before those of each.
+        settable.sort_by_key(|one| one.id);
+        for one in settable {
+            let value = self.parameter(one.id)?;
+            one.set(value, &mut parameters)
+                .map_err(|_| strange(&format!("SPA? 1 0x{:X}", one.id), &value.to_string()))?;
+        }
+        Ok(parameters)
     }
 
     /// Sets parameters, four in a line.

@@ -5,6 +5,7 @@ mod gains;
 mod hand;
 mod identification;
 mod keep;
+mod limits;
 mod nudges;
 mod reference;
 mod response;
@@ -80,6 +81,11 @@ pub static STEPS: &[Step] = &[
         run: tuning::run,
     },
     Step {
+        name: "limits",
+        about: "limits of motion are lowered to what motors and supply bear with this load",
+        run: limits::run,
+    },
+    Step {
         name: "verification",
         about: "moves at full speed: following error and settling",
         run: verification::run,
@@ -104,6 +110,8 @@ pub(super) mod id {
     pub const REST_STIFFNESS: u32 = 0x5450_0308;
     pub const SETTLING_COUNTS: u32 = 0x5450_0400;
     pub const EXCITATION_V: u32 = 0x5450_0D00;
+    pub const PIVOT_RATE: u32 = 0x5450_0106;
+    pub const PIVOT_ACCELERATION: u32 = 0x5450_0107;
     pub const TORQUE_CONSTANT: u32 = 0x5450_0810;
     pub const GEAR_RATIO: u32 = 0x5450_0811;
     pub const RESISTANCE: u32 = 0x5450_0812;
