@@ -6,7 +6,7 @@ use kinematics::Angle;
 
 /// Ticks from one inspection of a pivot to the next.
 pub(super) const INSPECTION_PERIOD_TICKS: u32 = 4;
-/// The slot in which no pivot is inspected and a snapshot is due.
+/// The slot in which no pivot is inspected: the currents are, and a snapshot is due.
 pub(super) const SNAPSHOT_SLOT: usize = 3;
 const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);
 
@@ -38,6 +38,4 @@ pub(super) struct Inspection {
     pub angle: Angle,
     pub next: Angle,
     pub duty: Duty,
-    /// The motor's current, ADC counts.
-    pub current_counts: i16,
 }

@@ -91,7 +91,10 @@ pub fn tick_and_drive<'a>(
     if let Some([taken_j, most_j]) = overload {
         state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
     }
-    state.check_motor_heat(config, currents);
+    // Not in a tick that has taken a command, which is the longest as it is.
+    if !commanded {
+        state.check_currents(config, currents);
+    }
 
     let point = advance(config, state);
     state.advance_trial(config, queues.trial);
@@ -246,20 +249,12 @@ impl State {
         let i = self.inspection_slot;
         let after = if i < 2 { i + 1 } else { 0 };
         // Each pivot in its slot; in the snapshot's slot none.
-        if let (
-            Some(&length),
-            Some(&setpoint),
-            Some(&angle),
-            Some(&next),
-            Some(&duty),
-            Some(&current_counts),
-        ) = (
+        if let (Some(&length), Some(&setpoint), Some(&angle), Some(&next), Some(&duty)) = (
             wanted.lengths.get(i),
             target.get(i),
             pivots.get(i),
             pivots.get(after),
             duty.get(i),
-            currents.get(i),
         ) {
             let slowly = wanted.motion.rates[i].abs() < config.limits.slow_rate
                 && wanted.motion.accelerations[i].abs() < config.limits.slow_acceleration;
@@ -270,7 +265,6 @@ impl State {
                 angle,
                 next,
                 duty,
-                current_counts,
             };
             if !(self.is_in_guide_range(config, i, length)
                 && self.inspect_pivot(config, &inspection))

@@ -113,7 +113,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::MotorHot,
-        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 8.2 A the current is measured as 8.2 A",
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, unless that takes a command, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 8.2 A the current is measured as 8.2 A",
         thresholds: &[0x5450_0509, 0x5450_050A],
         reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
     },
@@ -173,7 +173,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::CurrentUnexplained,
-        detection: "a motor's measured current apart from what its voltage should drive, by the servo's model (voltage less back-EMF over the winding's resistance), by more than a threshold and 60 % of that, for 3 ms while driven, its voltage and current not at their limits; and by more than the threshold from none for 0.1 s with the servo off, on a commissioned machine. Each motor every fourth tick",
+        detection: "a motor's measured current apart from what its voltage should drive, by the servo's model (voltage less back-EMF over the winding's resistance), by more than a threshold and 60 % of that, for 3 ms while driven, its voltage and current not at their limits; and by more than the threshold from none for 0.1 s with the servo off, on a commissioned machine. Each motor every fourth tick, unless that takes a command",
         thresholds: &[0x5450_0513],
         reason: "a lead, a bridge, a winding or the sensor is not as it should be: what is asked of that motor it does not do, and braking asks nothing",
     },

@@ -1,7 +1,7 @@
-//! Faults that a motor's current shows: one motor is looked at in a tick, one after the other.
+//! Faults that a motor's current shows: all three are looked at every fourth tick, in which no pivot is inspected.
 
 use crate::control::config::Config;
-use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
+use crate::control::inspection::{INSPECTION_PERIOD_TICKS, SNAPSHOT_SLOT};
 use crate::control::state::State;
 use crate::control::units::CURRENT_A_PER_COUNT;
 use crate::fault::FaultKind;
@@ -17,28 +17,38 @@ const DRIVEN_TICKS: u32 = 60;
 const OFF_TICKS: u32 = 2_000;
 
 impl State {
-    /// The motor's temperature, in every state: it cools while nothing drives it.
-    pub(in crate::control) fn check_motor_heat(
+    /// Looks at all three currents, in the slot in which no pivot is inspected.
+    #[inline]
+    pub(in crate::control) fn check_currents(
         &mut self,
         config: &Config,
         current_counts: &[i16; 3],
     ) {
-        let i = self.inspection_slot;
-        let (Some(watch), Some(counts)) = (self.pivot_watches.get_mut(i), current_counts.get(i))
-        else {
+        if self.inspection_slot != SNAPSHOT_SLOT {
+            return;
+        }
+        for (i, counts) in current_counts.iter().enumerate() {
+            self.check_current(config, i, *counts);
+        }
+    }
+
+    // One copy of the code: it lies in memory that is short.
+    #[inline(never)]
+    fn check_current(&mut self, config: &Config, pivot: usize, counts: i16) {
+        self.check_motor_heat(config, pivot, counts);
+        if self.servo_on() {
+            self.check_driven_current(config, pivot, counts);
+        } else if self.mode == Mode::Off && config.commissioned {
+            self.check_idle_current(config, pivot, counts);
+        }
+    }
+
+    /// The motor's temperature, in every state: it cools while nothing drives it.
+    fn check_motor_heat(&mut self, config: &Config, pivot: usize, counts: i16) {
+        let Some(watch) = self.pivot_watches.get_mut(pivot) else {
             return;
         };
-        if self.mode == Mode::Off && config.commissioned {
-            let most = config.limits.unexplained_current_counts;
-            let is_explained = counts.unsigned_abs() < most;
-            watch.unexplained_ticks = longer(watch.unexplained_ticks, is_explained);
-            if watch.unexplained_ticks > OFF_TICKS {
-                let values = [f32::from(*counts), f32::from(most)].map(|counts| counts * AMPERE);
-                self.raise_fault(FaultKind::CurrentUnexplained, Some(i), values[0], values[1]);
-                return;
-            }
-        }
-        let counts = f32::from(*counts);
+        let counts = f32::from(counts);
         watch.mean_square_current +=
             (counts * counts - watch.mean_square_current) * config.limits.winding_smoothing;
         let (heat, most) = (
@@ -47,36 +57,51 @@ impl State {
         );
         if heat > most && self.is_driven() {
             let (value, limit) = (sqrt_f32(heat) * AMPERE, sqrt_f32(most) * AMPERE);
-            self.raise_fault(FaultKind::MotorHot, Some(i), value, limit);
+            self.raise_fault(FaultKind::MotorHot, Some(pivot), value, limit);
+        }
+    }
+
+    /// A motor that nothing drives carries nothing, unless its bridge conducts or its sensor is off.
+    fn check_idle_current(&mut self, config: &Config, pivot: usize, counts: i16) {
+        let Some(watch) = self.pivot_watches.get_mut(pivot) else {
+            return;
+        };
+        let most = config.limits.unexplained_current_counts;
+        watch.unexplained_ticks = longer(watch.unexplained_ticks, counts.unsigned_abs() < most);
+        if watch.unexplained_ticks > OFF_TICKS {
+            self.fault_unexplained_current(pivot, f32::from(counts), f32::from(most));
         }
     }
 
     /// Whether a motor carries what its voltage should drive, by the servo's model of it: a lead that is lost, a bridge that does not do
     /// what it is told, a winding that has shorted and a sensor that is off all show here, before the pivot does.
-    pub(super) fn is_current_explained(
-        &mut self,
-        config: &Config,
-        inspection: &Inspection,
-    ) -> bool {
-        let i = inspection.pivot;
-        let (Some(watch), Some(servo)) = (self.pivot_watches.get_mut(i), self.servo.get(i)) else {
-            return true;
+    fn check_driven_current(&mut self, config: &Config, pivot: usize, counts: i16) {
+        let (Some(watch), Some(servo), Some(servo_config)) = (
+            self.pivot_watches.get_mut(pivot),
+            self.servo.get(pivot),
+            config.servo.pivots.get(pivot),
+        ) else {
+            return;
         };
-        let servo_config = &config.servo.pivots[i];
         let knees_per_count = servo_config.knee_currents_per_count;
         let model = servo.current_knees();
-        let apart = f32::from(inspection.current_counts) * knees_per_count - model;
+        let apart = f32::from(counts) * knees_per_count - model;
         let unexplained = f32::from(config.limits.unexplained_current_counts);
         let most = unexplained * knees_per_count + EXPLAINED_SHARE * model.abs();
         // What is taken away at its limits the model does not know.
         let is_explained = apart.abs() < most || servo.is_saturated(servo_config);
         watch.unexplained_ticks = longer(watch.unexplained_ticks, is_explained);
         if watch.unexplained_ticks > DRIVEN_TICKS {
-            let values = [apart, most].map(|knees| knees / knees_per_count * AMPERE);
-            self.raise_fault(FaultKind::CurrentUnexplained, Some(i), values[0], values[1]);
-            return false;
+            let values = [apart, most].map(|knees| knees / knees_per_count);
+            self.fault_unexplained_current(pivot, values[0], values[1]);
         }
-        true
+    }
+
+    /// Both in ADC counts.
+    #[cold]
+    fn fault_unexplained_current(&mut self, pivot: usize, value: f32, limit: f32) {
+        let kind = FaultKind::CurrentUnexplained;
+        self.raise_fault(kind, Some(pivot), value * AMPERE, limit * AMPERE);
     }
 }
 

@@ -9,7 +9,7 @@
 //! | `setpoint_faults` | faults that the setpoint shows |
 //! | `following_error` | measured minus setpoint of each pivot |
 //! | `pivot_faults` | faults of a single pivot, one pivot a tick |
-//! | `current_faults` | faults that a motor's current shows, one motor a tick |
+//! | `current_faults` | faults that a motor's current shows, all three every fourth tick |
 //!
 //! Off coasts, so that a stage can be moved by hand; holding, moving and stopping drive; a fault brakes, or coasts
 //! where its [`Reaction`](crate::fault::Reaction) is that. All faults with their detection, reaction and reason stand

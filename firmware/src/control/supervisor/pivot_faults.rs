@@ -31,7 +31,11 @@ impl State {
             );
             return false;
         }
-        let (Some(watch), Some(servo)) = (self.pivot_watches.get_mut(i), self.servo.get(i)) else {
+        let (Some(watch), Some(encoder), Some(servo)) = (
+            self.pivot_watches.get_mut(i),
+            self.encoders.get(i),
+            self.servo.get(i),
+        ) else {
             return true;
         };
         watch.saturated_ticks = if servo.is_saturated(&config.servo.pivots[i]) {
@@ -55,13 +59,6 @@ impl State {
             self.raise_fault(FaultKind::Oscillation, Some(i), swing, most);
             return false;
         }
-        if !self.is_current_explained(config, inspection) {
-            return false;
-        }
-        let (Some(watch), Some(encoder)) = (self.pivot_watches.get_mut(i), self.encoders.get(i))
-        else {
-            return true;
-        };
         if self.lost_pivot == Some(i) {
             return true;
         }
