@@ -283,6 +283,8 @@ pub struct Supervision {
     pub oscillation_v: f64,
     /// Longest time of a bridge at its largest duty (saturated).
     pub max_saturation_s: f64,
+    /// How far a motor's current may be from what its voltage should drive, besides a share of that.
+    pub unexplained_current_a: f64,
     /// Current that a motor bears for ever.
     pub motor_current_a: f64,
     /// Time in which a motor's winding goes most of the way (all but 1/e) to its final temperature.
@@ -299,6 +301,8 @@ pub struct Supervision {
     pub stop_s: f64,
     /// Whether the stage may be driven with a debugger attached.
     pub debugger_allowed: bool,
+    /// Whether the emergency stop has to be pressed once after each start before anything drives.
+    pub stop_test_needed: bool,
     /// Longest silence of the host; 0 when any is allowed.
     pub host_silence_ms: f64,
 }
@@ -457,7 +461,9 @@ impl Parameters {
             // An unstable loop swings by more than half of the supply; a stable one that rings on a machine it was not told of by a third
             // at most.
             oscillation_v: 20.0,
+            unexplained_current_a: 1.0,
             debugger_allowed: false,
+            stop_test_needed: false,
             max_saturation_s: 0.1,
             motor_current_a: 4.0,
             motor_heating_s: 20.0,

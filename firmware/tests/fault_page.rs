@@ -172,7 +172,10 @@ fn words_have_the_figures_of_the_power_stage() {
     assert!(reason.contains(&format!("{most_v} V, {} V", BRIDGE.absolute_supply_v)));
     let (detection, reason) = words(FaultKind::BrakeResistorHot).unwrap();
     let watts = (BUS.resistor_on_v.powi(2) / BUS.resistor_ohm).round();
-    let figures = format!("{watts} W while it is on less the {} W", BUS.resistor_w);
+    let figures = format!(
+        "({} ohm: {watts} W at {} V) less the {} W",
+        BUS.resistor_ohm, BUS.resistor_on_v, BUS.resistor_w
+    );
     assert!(detection.contains(&figures) && detection.contains(&format!("{} J", BUS.resistor_j)));
     assert!(reason.contains(&format!("{} V", BUS.resistor_on_v)));
 }

@@ -280,6 +280,89 @@ fn a_warning_is_told_as_an_event() {
     assert_eq!(bench.fault(), None);
 }
 
+/// Bad frames that are bridged over and over are told from 12 on, and then every 10 s; a single disturbance is not.
+#[test]
+fn bursts_of_bad_frames_are_told_as_an_event() {
+    let burst = |bench: &mut Bench| {
+        bench.rig.front.stage.encoders[2].set_fault(EncoderFault::StuckHigh);
+        bench.run(4);
+        bench.rig.front.stage.encoders[2].set_fault(None);
+        bench.run(40);
+    };
+    let told = |bench: &mut Bench| {
+        let events = bench.say("EVT?\n");
+        let lines = events.lines().filter(|line| line.contains("bridged"));
+        lines.map(|line| line.trim().to_owned()).collect::<Vec<_>>()
+    };
+    let mut bench = Bench::ready();
+    burst(&mut bench);
+    burst(&mut bench);
+    assert!(told(&mut bench).is_empty());
+    (0..5).for_each(|_| burst(&mut bench));
+    let lines = told(&mut bench);
+    assert!(
+        lines.len() == 1 && lines[0].ends_with("12 bad encoder frames bridged, pivot 3"),
+        "{lines:?}"
+    );
+    bench.run(200_000);
+    burst(&mut bench);
+    let lines = told(&mut bench);
+    assert!(
+        lines.len() == 2 && lines[1].ends_with("bad encoder frames bridged, pivot 3"),
+        "{lines:?}"
+    );
+    assert_eq!(bench.fault(), None);
+}
+
+/// Where a parameter wants it, the emergency stop is tried after each start before anything drives.
+#[test]
+fn nothing_drives_before_the_emergency_stop_was_pressed_where_that_is_asked_for() {
+    const STOP_TEST: u32 = 0x5450_0514;
+    let mut bench = Bench::default();
+    bench.run(10);
+    bench.set(&[(STOP_TEST, 1.0)]);
+    for line in ["FRF", "SVO X 1", "EXC STEP 1 1 10"] {
+        assert_eq!(bench.error_after(line), "4007", "{line}");
+    }
+    bench.rig.front.emergency_stop = true;
+    bench.run(20);
+    bench.rig.front.emergency_stop = false;
+    bench.run(20);
+    assert_eq!(bench.error_after(""), "1024");
+    assert_eq!(bench.error_after("FLC"), "0");
+    assert_eq!(bench.error_after("FRF"), "0");
+    bench.settle();
+    // Once for each start.
+    bench
+        .rig
+        .reset("the watchdog: the control loop stood still");
+    bench.reconnect();
+    bench.run(20);
+    bench.set(&[(STOP_TEST, 1.0)]);
+    assert_eq!(bench.error_after("FRF"), "4007");
+}
+
+/// At the largest rate of a pivot each tick that does not come puts the setpoint 0.5 mrad behind the pivots: that is the loop's lateness,
+/// and told as that.
+#[test]
+fn late_ticks_at_full_speed_are_no_following_error() {
+    let mut bench = Bench::turning(
+        &[(FOLLOWING_ERROR, 1e-3), (FOLLOWING_ERROR_BY_RATE, 0.0)],
+        350.0,
+    );
+    let mut ticks = 0;
+    while bench.fault().is_none() && ticks < 200 {
+        if ticks % 2 == 0 {
+            bench.rig.front.miss_tick();
+        }
+        bench.run(1);
+        ticks += 1;
+    }
+    let fault = bench.fault().expect("a fault");
+    println!("{fault} after {ticks} ticks");
+    assert_eq!(fault.kind, FaultKind::LoopLate);
+}
+
 /// The stop stays on the line, and its setpoint is continuous up to the acceleration.
 #[test]
 fn a_controlled_stop_stays_on_its_path() {

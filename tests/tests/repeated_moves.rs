@@ -42,10 +42,11 @@ fn after_five_trials_little_is_left() {
 /// then, and in the end it stays.
 #[test]
 fn it_stops_where_it_grows() {
-    // A model of the drive with a sixth of its inertia and resistance, and one with five times its inertia: the inverse is far from one.
+    // A model of the drive with a sixth of its inertia and resistance, which does not explain its currents either, and one with five times
+    // its inertia: the inverse is far from one.
     for (told, state, largest, last) in [
         (
-            "SPA 1 0x54500807 0.001 1 0x54500802 0.3\n",
+            "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
             "learning",
             1.35,
             0.92,

@@ -123,27 +123,19 @@ impl Limits {
     /// Whether every limit is a positive number: along a line the smallest counts, which would hide one that is not.
     #[inline(never)]
     pub fn all_positive(&self) -> bool {
-        let Self {
-            rate_hz,
-            speed_mm_s,
-            acceleration_mm_s2,
-            jerk_mm_s3,
-            turn_speed_deg_s,
-            turn_acceleration_deg_s2,
-            turn_jerk_deg_s3,
-            pivot_rate_rad_s,
-            pivot_acceleration_rad_s2,
-            stop_factor,
-        } = *self;
-        let translation = [speed_mm_s, acceleration_mm_s2, jerk_mm_s3];
-        let rotation = [turn_speed_deg_s, turn_acceleration_deg_s2, turn_jerk_deg_s3];
-        let pivots = [pivot_rate_rad_s, pivot_acceleration_rad_s2];
-        [translation, rotation]
-            .as_flattened()
-            .iter()
-            .chain(&pivots)
-            .chain(&[rate_hz, stop_factor])
-            .all(|limit| ABOVE_ZERO.contains(&limit.to_bits()))
+        let limits = [
+            self.rate_hz,
+            self.speed_mm_s,
+            self.acceleration_mm_s2,
+            self.jerk_mm_s3,
+            self.turn_speed_deg_s,
+            self.turn_acceleration_deg_s2,
+            self.turn_jerk_deg_s3,
+            self.pivot_rate_rad_s,
+            self.pivot_acceleration_rad_s2,
+            self.stop_factor,
+        ];
+        (limits.iter()).all(|limit| ABOVE_ZERO.contains(&limit.to_bits()))
     }
 
     /// Jerk of an urgent stop over that of ordinary motion.

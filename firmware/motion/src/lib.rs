@@ -58,7 +58,7 @@ pub mod profile {
     pub mod velocity;
 }
 
-pub use check::target::{TurnDirection, check_target};
+pub use check::workspace::{TurnDirection, check_target};
 pub use constraints::{Bounds, Constraints, Limits, PathLimits};
 pub use plan::axis_state::{AxisState, JERK_STEP, SUB_BITS};
 pub use plan::fault_stop::FaultStop;

@@ -32,9 +32,9 @@
 //! A target in motion is planned in three steps, so that the stage reacts soon: first the stop, then a first way that takes its
 //! place, then, some milliseconds into that, the soonest of all ([`Effort`]).
 //!
-//! Retargets, stops and jogs in motion are held against every limit by one check ([`motion::check`]), with the tolerances of one
-//! table ([`motion::tolerances`]). A line from rest, a jog from rest and a streamed target are planned inside them by means of their own; the
-//! head of the check says which.
+//! Retargets, stops, streams and jogs in motion are held against every limit by one check ([`motion::check`]), with the
+//! tolerances of one table ([`motion::tolerances`]). A line and a jog from rest are planned inside them by means of their own;
+//! the head of the check says which.
 //!
 //! # Where what is
 //!

@@ -5,8 +5,7 @@
 //! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
 //! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
 
-use motion::check::Violation;
-use motion::check::{Budget, PlanCheck, is_over};
+use motion::check::{Budget, PlanCheck, Violation, is_over};
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
@@ -130,8 +129,8 @@ fn write_stop(
         match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
             Ok(()) => break,
             // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Violation::Workspace) if !apart => apart = true,
-            Err(Violation::Workspace) => {
+            Err(Violation::Disk(_) | Violation::Bounds(_)) if !apart => apart = true,
+            Err(Violation::Disk(_) | Violation::Bounds(_)) => {
                 hardness.acceleration *= 1.3;
                 hardness.jerk = urgent_jerk();
             }
@@ -146,9 +145,7 @@ fn write_stop(
                     (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
             }
             // A stop has no limits of its own, and needs no room for another.
-            Err(Violation::Speed(_) | Violation::Acceleration(_) | Violation::NoRoomToStop) => {
-                break;
-            }
+            Err(_) => break,
         }
     }
     // A stop has to be found: what is still broken after the last attempt can not be helped.

@@ -48,6 +48,7 @@ impl Commander {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
         self.targets = parameters.targets;
         self.commissioned = parameters.commissioned;
+        self.stop_test_needed = parameters.supervision.stop_test_needed;
         self.reach_margins = ReachMargins::new(parameters);
         self.set_limits(parameters.limits);
     }
@@ -63,12 +64,22 @@ impl Commander {
     }
 
     /// # Errors
-    /// [`CommandError::NotCommissioned`], [`CommandError::Debugged`]: nothing may drive.
+    /// [`CommandError::NotCommissioned`], and those of [`Commander::check_may_excite`]: no servo may drive.
     pub(super) const fn check_may_drive(&self) -> Result<(), CommandError> {
-        if !self.commissioned {
+        if self.commissioned {
+            self.check_may_excite()
+        } else {
             Err(CommandError::NotCommissioned)
-        } else if self.is_debugged {
+        }
+    }
+
+    /// # Errors
+    /// [`CommandError::Debugged`], [`CommandError::StopUntested`]: nothing at all may drive.
+    pub(super) const fn check_may_excite(&self) -> Result<(), CommandError> {
+        if self.is_debugged {
             Err(CommandError::Debugged)
+        } else if self.stop_test_needed && !self.stop_seen {
+            Err(CommandError::StopUntested)
         } else {
             Ok(())
         }

@@ -21,6 +21,8 @@ pub enum CommandError {
     NotCommissioned,
     /// A debugger is attached, which can halt the loop while the motors drive.
     Debugged,
+    /// The emergency stop has not been pressed since the start, and a parameter wants that.
+    StopUntested,
     /// A fault is latched, which has to be acknowledged first.
     Faulted,
     /// The stage moves, or is about to.
@@ -107,6 +109,7 @@ impl fmt::Display for CommandError {
             Self::ExcitationRefused => f.write_str("the control loop refuses the excitation"),
             Self::NotCommissioned => f.write_str("not commissioned"),
             Self::Debugged => f.write_str("a debugger is attached"),
+            Self::StopUntested => f.write_str("the emergency stop has not been tested"),
             Self::Faulted => f.write_str("a fault is latched"),
             Self::InMotion => f.write_str("in motion"),
             Self::Streaming => f.write_str("targets are being streamed"),

@@ -11,7 +11,7 @@ impl Commander {
     /// Begins an excitation. With the servo off it needs no commissioned machine: it is how one becomes that.
     ///
     /// # Errors
-    /// [`CommandError::Busy`], [`CommandError::Faulted`], [`CommandError::Debugged`]; [`CommandError::InMotion`] while one is under way, a
+    /// [`CommandError::Busy`], [`CommandError::Faulted`], [`CommandError::Debugged`], [`CommandError::StopUntested`]; [`CommandError::InMotion`] while one is under way, a
     /// recovery is, or a stage that was let go has not come to rest; [`CommandError::ServoOn`] for one that
     /// [needs the servo off](Excitation::needs_servo_off).
     pub fn begin_excitation(
@@ -26,9 +26,7 @@ impl Commander {
         if self.is_faulted() {
             return Err(CommandError::Faulted);
         }
-        if self.is_debugged {
-            return Err(CommandError::Debugged);
-        }
+        self.check_may_excite()?;
         if runs || self.is_recovering() || self.is_referencing() {
             return Err(CommandError::InMotion);
         }

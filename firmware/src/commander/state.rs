@@ -13,6 +13,7 @@ use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
 use super::wave::Waveforms;
+use crate::fault::{Fault, FaultKind};
 use crate::iterative_learning::Tables;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits, Position};
@@ -44,6 +45,10 @@ pub struct Commander {
     pub(super) commissioned: bool,
     /// Whether a debugger is attached that is not allowed to be: then nothing drives either.
     pub(super) is_debugged: bool,
+    /// Whether the emergency stop has to be pressed once after a start before anything drives, and whether it has been.
+    pub(super) stop_test_needed: bool,
+    /// See above.
+    pub(super) stop_seen: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) calibrating: Calibrating,
@@ -102,6 +107,8 @@ impl Commander {
             targets: parameters.targets,
             commissioned: parameters.commissioned,
             is_debugged: false,
+            stop_test_needed: parameters.supervision.stop_test_needed,
+            stop_seen: false,
             cycle_ms: DEFAULT_CYCLE_MS,
             calibrating: Calibrating::default(),
             frames: FrameTree::new(),
@@ -180,6 +187,8 @@ impl Commander {
         if acknowledged {
             self.update_from_mode(&snapshot);
         }
+        let is_stop = |fault: Fault| fault.kind == FaultKind::EmergencyStop;
+        self.stop_seen |= snapshot.fault.is_some_and(is_stop);
         self.watch_rest(&snapshot);
         self.snapshot = Some(snapshot);
         if !self.is_moving() {

@@ -6,9 +6,11 @@ use crate::drivers::power_stage::BUS;
 /// Supply at which it is switched on, and under which it is switched off again, ADC counts.
 const ON_COUNTS: u16 = (BUS.resistor_on_v / SUPPLY_V_PER_COUNT) as u16;
 const OFF_COUNTS: u16 = (BUS.resistor_off_v / SUPPLY_V_PER_COUNT) as u16;
-/// What it takes in a tick over what it can give away in one, which is the unit of its heat.
-const HEATING: u32 =
-    (BUS.resistor_on_v * BUS.resistor_on_v / BUS.resistor_ohm / BUS.resistor_w) as u32 - 1;
+/// Power that it takes at a supply of one ADC count, W; it grows with the supply's square.
+const W_AT_ONE_COUNT: f32 = (SUPPLY_V_PER_COUNT * SUPPLY_V_PER_COUNT / BUS.resistor_ohm) as f32;
+/// Power that it can give away, W, and energy that it bears beyond that, J.
+const GIVEN_AWAY_W: f32 = BUS.resistor_w as f32;
+const MOST_J: f32 = BUS.resistor_j as f32;
 
 /// Whether it is on, and how hot it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,7 +18,8 @@ pub struct BrakeResistor {
     is_on: bool,
     /// It has taken all that it bears, and stays off until half of that is gone.
     is_hot: bool,
-    heat: u32,
+    /// What it has taken and not yet given away, J.
+    heat_j: f32,
 }
 
 impl BrakeResistor {
@@ -30,7 +33,7 @@ impl BrakeResistor {
     /// and what it bears, J.
     #[inline]
     pub fn update(&mut self, supply_counts: u16, rate_hz: f32) -> Option<[f32; 2]> {
-        if supply_counts < OFF_COUNTS && self.heat == 0 {
+        if supply_counts < OFF_COUNTS && self.heat_j == 0.0 {
             self.is_on = false;
             return None;
         }
@@ -39,21 +42,22 @@ impl BrakeResistor {
 
     #[cold]
     fn switch(&mut self, supply_counts: u16, rate_hz: f32) -> Option<[f32; 2]> {
-        let unit_j = BUS.resistor_w as f32 / rate_hz;
-        let max_heat = (BUS.resistor_j as f32 / unit_j) as u32;
         let threshold = if self.is_on { OFF_COUNTS } else { ON_COUNTS };
         self.is_on = supply_counts >= threshold && !self.is_hot;
-        if self.is_on {
-            self.heat += HEATING;
+        let supply = f32::from(supply_counts);
+        let taken_w = if self.is_on {
+            supply * supply * W_AT_ONE_COUNT
         } else {
-            self.heat = self.heat.saturating_sub(1);
-        }
-        if self.heat < max_heat / 2 {
+            0.0
+        };
+        let heat_j = self.heat_j + (taken_w - GIVEN_AWAY_W) / rate_hz;
+        self.heat_j = if heat_j > 0.0 { heat_j } else { 0.0 };
+        if self.heat_j < MOST_J / 2.0 {
             self.is_hot = false;
-        } else if self.heat > max_heat && !self.is_hot {
+        } else if self.heat_j > MOST_J && !self.is_hot {
             self.is_hot = true;
             self.is_on = false;
-            return Some([self.heat, max_heat].map(|heat| heat as f32 * unit_j));
+            return Some([self.heat_j, MOST_J]);
         }
         None
     }
@@ -80,24 +84,28 @@ mod tests {
         assert_eq!(seen, [false, false, true, true, true, false, false, true]);
     }
 
-    /// 356 W less 50 W fill 500 J in 1.63 s; it is off then, and on again when 250 J have gone at 50 W.
+    /// `(V^2 / 8.2 ohm - 50 W) t = 500 J`, at any voltage; it is off then, and on again when 250 J have gone at 50 W.
     #[test]
     fn it_is_on_no_longer_than_it_bears() {
-        let mut resistor = BrakeResistor::default();
-        let (mut on_ticks, mut off_ticks) = (1.0, 0.0);
-        let [taken_j, most_j] = loop {
-            if let Some(joules) = resistor.update(counts(54.1), RATE_HZ) {
-                break joules;
+        for supply_v in [54.1, 57.5] {
+            let mut resistor = BrakeResistor::default();
+            let (mut on_ticks, mut off_ticks) = (1.0, 0.0);
+            let [taken_j, most_j] = loop {
+                if let Some(joules) = resistor.update(counts(supply_v), RATE_HZ) {
+                    break joules;
+                }
+                on_ticks += 1.0;
+            };
+            assert!(most_j == 500.0 && taken_j > most_j && taken_j < 500.1);
+            let seconds = 500.0 / (supply_v * supply_v / 8.2 - 50.0);
+            let share = on_ticks / f64::from(RATE_HZ) / seconds;
+            assert!((share - 1.0).abs() < 2e-3, "{supply_v} V: {share}");
+            while !resistor.is_on() {
+                assert_eq!(resistor.update(counts(supply_v), RATE_HZ), None);
+                off_ticks += 1.0;
             }
-            on_ticks += 1.0;
-        };
-        assert!((most_j - 500.0).abs() < 0.1 && taken_j > most_j && taken_j < 501.0);
-        assert!((1.5..1.7).contains(&(on_ticks / RATE_HZ)), "{on_ticks}");
-        while !resistor.is_on() {
-            assert_eq!(resistor.update(counts(54.1), RATE_HZ), None);
-            off_ticks += 1.0;
+            assert!((4.98..5.02).contains(&(off_ticks / RATE_HZ)), "{off_ticks}");
         }
-        assert!((4.9..5.1).contains(&(off_ticks / RATE_HZ)), "{off_ticks}");
     }
 
     #[test]
@@ -108,6 +116,6 @@ mod tests {
             let supply_v = if tick % 8 == 0 { 54.1 } else { 48.0 };
             assert_eq!(resistor.update(counts(supply_v), RATE_HZ), None);
         }
-        assert!(resistor.heat < 1_000);
+        assert!(resistor.heat_j < 1.0, "{}", resistor.heat_j);
     }
 }

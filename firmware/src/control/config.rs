@@ -71,6 +71,8 @@ pub struct SupervisionConfig {
     pub max_saturated_ticks: u32,
     /// Square of the current that a motor bears, ADC counts.
     pub max_mean_square_current: f32,
+    /// How far a current may be from what its voltage drives, ADC counts; a share of that besides.
+    pub unexplained_current_counts: u16,
     /// Share of the way to a new temperature that a winding goes from one inspection to the next.
     pub winding_smoothing: f32,
     /// Distance of a setpoint in which a reading must change, 2^-32 turns.
@@ -136,6 +138,8 @@ impl Config {
                 max_radius_squared: (reach * reach) as f32,
                 max_saturated_ticks: libm::ceil(supervision.max_saturation_s * rate_hz) as u32,
                 max_mean_square_current: (bearable * bearable) as f32,
+                unexplained_current_counts: (supervision.unexplained_current_a
+                    / CURRENT_A_PER_COUNT) as u16,
                 winding_smoothing: (1.0
                     - libm::exp(
                         -f64::from(INSPECTION_PERIOD_TICKS) * period_s

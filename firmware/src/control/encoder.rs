@@ -77,6 +77,8 @@ pub struct Encoder {
     reading: u32,
     /// Frames since then that have repeated it, and were believed.
     repeats: u16,
+    /// Frames that have been bridged so far.
+    bridged: u16,
 }
 
 impl Default for Encoder {
@@ -92,6 +94,7 @@ impl Default for Encoder {
             unusable: Some(FaultKind::EncoderSilent),
             reading: 0,
             repeats: 0,
+            bridged: 0,
         }
     }
 }
@@ -235,6 +238,7 @@ impl Encoder {
             self.good_frames = 0;
             self.unusable = Some(reason);
         } else {
+            self.bridged = self.bridged.wrapping_add(1);
             self.advance_by(self.step);
         }
     }
@@ -269,6 +273,11 @@ impl Encoder {
     #[inline]
     pub fn angle(&self) -> Angle {
         self.angle
+    }
+
+    /// Frames that have been bridged so far, wrapping.
+    pub fn bridged_frames(&self) -> u16 {
+        self.bridged
     }
 
     /// Whether the encoder warns.

@@ -6,7 +6,7 @@ use kinematics::Angle;
 
 /// Ticks from one inspection of a pivot to the next.
 pub(super) const INSPECTION_PERIOD_TICKS: u32 = 4;
-/// The slot in which no pivot is inspected and a snapshot is due.
+/// The slot in which no pivot is inspected: the currents are, and a snapshot is due.
 pub(super) const SNAPSHOT_SLOT: usize = 3;
 const _: () = assert!(INSPECTION_PERIOD_TICKS as usize == SNAPSHOT_SLOT + 1);
 
@@ -17,6 +17,8 @@ pub(super) struct PivotWatch {
     pub mean_square_current: f32,
     /// Ticks at its largest duty.
     pub saturated_ticks: u32,
+    /// Ticks in which the motor's current was not what its voltage drives.
+    pub unexplained_ticks: u32,
     /// The feedback's voltage.
     pub oscillation: OscillationWatch,
     /// Duty when the encoder last showed something new.

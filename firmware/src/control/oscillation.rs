@@ -1,7 +1,9 @@
-//! Whether a servo oscillates: a voltage that goes to and fro by a large swing, over and over, while the setpoint hardly moves.
+//! Whether a servo oscillates: a voltage that goes to and fro by a large swing, over and over.
 
 /// Reversals, those long ago for less, that are an oscillation: with the time constant below, from 31 Hz on.
 const REVERSALS: f32 = 6.0;
+/// What a reversal counts while the setpoint moves, where feedback goes to and fro with the motion: so it is one from 100 Hz on.
+const IN_MOTION: f32 = 0.3;
 /// Time constant with which reversals are forgotten.
 pub(super) const MEMORY_S: f64 = 0.1;
 
@@ -18,9 +20,10 @@ pub struct OscillationWatch {
 }
 
 impl OscillationWatch {
-    /// Takes the voltage; whether it oscillates. `forgetting` is what is left of the reversals since the last look.
+    /// Takes the voltage; whether it oscillates. `forgetting` is what is left of the reversals since the last look; `slowly`: the
+    /// setpoint hardly moves.
     #[inline]
-    pub fn update(&mut self, volts: f32, swing: f32, forgetting: f32) -> bool {
+    pub fn update(&mut self, volts: f32, swing: f32, forgetting: f32, slowly: bool) -> bool {
         self.reversals *= forgetting;
         let beyond = if self.rising {
             volts - self.extreme
@@ -33,7 +36,7 @@ impl OscillationWatch {
             self.rising = !self.rising;
             self.swing = (self.extreme - self.before).abs();
             (self.before, self.extreme) = (self.extreme, volts);
-            self.reversals += 1.0;
+            self.reversals += if slowly { 1.0 } else { IN_MOTION };
         }
         self.reversals > REVERSALS
     }

@@ -42,6 +42,8 @@ pub struct Snapshot {
     pub encoder_faults: [Option<FaultKind>; 3],
     /// Whether an encoder warns.
     pub encoder_warnings: [bool; 3],
+    /// Bad frames of each encoder that have been bridged so far, wrapping.
+    pub bridged_frames: [u16; 3],
     /// Measured pivot angles; valid once referenced.
     pub pivots: [Angle; 3],
     /// Measured minus setpoint of each pivot, 2^-32 turns; 0 while the servo is off.

@@ -91,7 +91,10 @@ pub fn tick_and_drive<'a>(
     if let Some([taken_j, most_j]) = overload {
         state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
     }
-    state.check_motor_heat(config, currents);
+    // Not in a tick that has taken a command, which is the longest as it is.
+    if !commanded {
+        state.check_currents(config, currents);
+    }
 
     let point = advance(config, state);
     state.advance_trial(config, queues.trial);

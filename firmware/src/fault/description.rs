@@ -113,13 +113,13 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::MotorHot,
-        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 8.2 A the current is measured as 8.2 A",
+        detection: "the square of the measured current, smoothed over the winding's time, over that of the current it bears; each motor every fourth tick, unless that takes a command, in every state; cools while latched, and an acknowledgement leaves the heat as it is. Over 8.2 A the current is measured as 8.2 A",
         thresholds: &[0x5450_0509, 0x5450_050A],
         reason: "encoders and drives still work, and a tenth of a second more does not hurt a winding",
     },
     FaultDescription {
         kind: FaultKind::LoopLate,
-        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state. At full speed pivots that lead by what a few missed ticks were worth may be too far off before",
+        detection: "ticks that ended after their deadline or did not come at all, one in 100 ticks forgiven; in every state. What late ticks are worth at the setpoint's rate is allowed to the following error until they are forgiven",
         thresholds: &[0x5450_050B],
         reason: "encoders and drives still work, a late duty is an old one for 25 us",
     },
@@ -143,7 +143,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::Oscillation,
-        detection: "the voltage that the feedback asks for goes to and fro by more than a swing, or by what 25 encoder counts of change in a tick make of the velocity gain, over and over at 31 Hz or more, while the setpoint is slower than a tenth of a pivot's limits of rate and acceleration; each pivot every fourth tick while driven",
+        detection: "the voltage that the feedback asks for goes to and fro by more than a swing, or by what 25 encoder counts of change in a tick make of the velocity gain, over and over: at 31 Hz or more while the setpoint is slower than a tenth of a pivot's limits of rate and acceleration, at 100 Hz or more while it moves; each pivot every fourth tick while driven",
         thresholds: &[0x5450_0511],
         reason: "the loop that would lead a stop along the path is the one that oscillates",
     },
@@ -167,9 +167,15 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::BrakeResistorHot,
-        detection: "356 W while it is on less the 50 W that it can give away, summed up to 500 J; every tick, in every state. It is then switched off until half of that is gone, some 5 s",
+        detection: "what it takes at the measured supply while it is on (8.2 ohm: 356 W at 54 V) less the 50 W that it can give away, summed up to 500 J; every tick, in every state. It is then switched off until half of that is gone, some 5 s",
         thresholds: &[],
         reason: "a supply of more than 54 V, or a motion that brakes without end: shorted windings give nothing back",
+    },
+    FaultDescription {
+        kind: FaultKind::CurrentUnexplained,
+        detection: "a motor's measured current apart from what its voltage should drive, by the servo's model (voltage less back-EMF over the winding's resistance), by more than a threshold and 60 % of that, for 3 ms while driven, its voltage and current not at their limits; and by more than the threshold from none for 0.1 s with the servo off, on a commissioned machine. Each motor every fourth tick, unless that takes a command",
+        thresholds: &[0x5450_0513],
+        reason: "a lead, a bridge, a winding or the sensor is not as it should be: what is asked of that motor it does not do, and braking asks nothing",
     },
     FaultDescription {
         kind: FaultKind::ExcitationWay,

@@ -53,6 +53,8 @@ pub enum FaultKind {
     SupplyHigh,
     /// The brake resistor has taken more than it bears; value and limit in J.
     BrakeResistorHot,
+    /// A motor's current is not what its voltage should drive; value (measured less expected) and limit in A.
+    CurrentUnexplained,
     /// An excitation has taken a pivot further than it may; value and limit in rad.
     ExcitationWay,
 }
@@ -91,6 +93,7 @@ impl FaultKind {
             | Self::WorkspaceLeft
             | Self::Stalled
             | Self::Oscillation
+            | Self::CurrentUnexplained
             | Self::ExcitationWay
             | Self::NotFinite => Reaction::Brake,
             // Nothing has moved yet at the start.
@@ -132,6 +135,7 @@ impl FaultKind {
             Self::SupplyLow => "supply voltage too low",
             Self::SupplyHigh => "supply voltage too high",
             Self::BrakeResistorHot => "brake resistor too hot",
+            Self::CurrentUnexplained => "motor current is not what its voltage drives",
             Self::ExcitationWay => "excitation has moved a pivot too far",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
             Self::EncoderFrozen => "encoder repeats one reading",
@@ -164,7 +168,7 @@ impl FaultKind {
             Self::Overspeed => "rad/s",
             Self::GuideRange | Self::WorkspaceLeft => "track radii",
             Self::Stalled => "s",
-            Self::MotorHot => "A",
+            Self::MotorHot | Self::CurrentUnexplained => "A",
             Self::LoopLate => "ticks",
             _ => "",
         }

@@ -117,6 +117,8 @@ pub enum ErrorCode {
     NotCommissioned = 4005,
     /// A debugger is attached, which can halt the loop while the motors drive: nothing drives unless a parameter allows it.
     Debugged = 4006,
+    /// The emergency stop has not been pressed since the start: nothing drives where a parameter wants that.
+    StopUntested = 4007,
     /// A calibration has not come whole: numbers are missing, or its checksum is another.
     CalibrationDamaged = 4008,
     /// A calibration has numbers that no machine has, or that the corrections do not hold for.
@@ -155,6 +157,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::NotReady => Self::NotReady,
             CommandError::NotCommissioned => Self::NotCommissioned,
             CommandError::Debugged => Self::Debugged,
+            CommandError::StopUntested => Self::StopUntested,
             CommandError::CalibrationBeyondLimits => Self::CalibrationBeyondLimits,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,

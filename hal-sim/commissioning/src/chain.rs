@@ -18,6 +18,9 @@ use kinematics::{Guide, guides_along_axes, jacobian};
 use nalgebra::{Complex, Matrix3, SMatrix, SVector, Vector3};
 use std::f64::consts::TAU;
 
+/// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
+const LEAST_APART: f64 = 0.25;
+
 /// What is carried, about the platform's centre; lengths in track radii, masses times the track radius squared: kg m^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
@@ -107,6 +110,22 @@ impl Chain {
             .try_inverse()
             .unwrap_or_else(|| Matrix3::repeat(f64::NAN));
         drives + inverse.transpose() * self.load.mass_matrix() * inverse
+    }
+
+    /// Rate of a motor that gives a torque while its ring turns at a rate: the transmission winds up between them. `None` beside the
+    /// frequency at which the motor swings on the transmission by itself, where it does not follow.
+    #[must_use]
+    pub fn motor_rate(
+        &self,
+        hz: f64,
+        ring_rate: Complex<f64>,
+        torque: Complex<f64>,
+    ) -> Option<Complex<f64>> {
+        let s = Complex::new(0.0, TAU * hz);
+        let spring = self.stiffness + self.damping * s;
+        let motor = spring + self.motor_inertia * s * s;
+        (motor.norm() > LEAST_APART * spring.norm())
+            .then(|| (spring * ring_rate + torque * s) / motor)
     }
 
     /// Angles for torques at the motors.

@@ -22,10 +22,20 @@ const LEAST_SPACING: usize = 2;
 pub struct Run {
     /// Ticks of a period of the excitation, a power of two.
     pub period_ticks: usize,
+    /// Ticks from row to row of the records, a power of two. Lines lie under half of the rows' rate; what lies above it folds back.
+    pub ticks_per_row: usize,
     /// Periods of each line in it.
     pub bins: Vec<usize>,
     /// Records of the experiments in which drive 1, 2, 3 was excited; each a period or longer, taken after what a start excites has died.
     pub experiments: [Vec<Record>; 3],
+}
+
+impl Run {
+    /// Rows of a period.
+    #[must_use]
+    pub fn period_rows(&self) -> usize {
+        self.period_ticks / self.ticks_per_row.max(1)
+    }
 }
 
 /// What was found at one frequency; columns are experiments, rows pivots.
@@ -51,13 +61,16 @@ pub enum ResponseError {
     /// A period that is no power of two.
     #[error("a period of {0} ticks: it has to be a power of two, 4096 for instance")]
     Period(usize),
+    /// Rows that do not divide it.
+    #[error("a row every {0} ticks: it has to be a power of two, and less than the period")]
+    Rows(usize),
     /// Lines of a run that a window does not keep apart.
     #[error(
         "lines {0} and {1} of a run are too close: leave {LEAST_SPACING} bins between, and put what lies between into another run"
     )]
     Spacing(usize, usize),
     /// A line that no tick can show.
-    #[error("line {0} is none: lines are from 1 to under half of the period's ticks")]
+    #[error("line {0} is none: lines are from 1 to under half of the period's rows")]
     Bin(usize),
     /// A pivot with signals of different lengths.
     #[error("pivot {pivot}: volts, current and angle of a record are not as long as each other")]
@@ -121,9 +134,12 @@ fn check(run: &Run) -> Result<(), ResponseError> {
     if !run.period_ticks.is_power_of_two() {
         return Err(ResponseError::Period(run.period_ticks));
     }
+    if !run.ticks_per_row.is_power_of_two() || run.period_rows() == 0 {
+        return Err(ResponseError::Rows(run.ticks_per_row));
+    }
     let mut bins = run.bins.clone();
     bins.sort_unstable();
-    if let Some(&bin) = (bins.iter()).find(|&&bin| bin == 0 || 2 * bin >= run.period_ticks) {
+    if let Some(&bin) = (bins.iter()).find(|&&bin| bin == 0 || 2 * bin >= run.period_rows()) {
         return Err(ResponseError::Bin(bin));
     }
     match bins
@@ -171,7 +187,7 @@ fn blocks(
     experiment: usize,
 ) -> Result<Vec<Block>, ResponseError> {
     let mut blocks = Vec::new();
-    let period = run.period_ticks;
+    let period = run.period_rows();
     for record in records {
         let signals = &record.pivots[pivot];
         let ticks = signals
@@ -181,8 +197,8 @@ fn blocks(
         while from + period <= ticks {
             let part = from..from + period;
             blocks.push(Block {
-                first_tick: (record.first_tick + from) % period,
-                period_ticks: period,
+                first_tick: (record.first_tick + from * run.ticks_per_row) % run.period_ticks,
+                period_ticks: run.period_ticks,
                 signals: [&signals.volts, &signals.current_a, &signals.angle_rad]
                     .map(|all| spectrum(&all[part.clone()])),
             });

@@ -9,6 +9,7 @@
 //! | [`mod@frequency_response`] | responses of all pivots to all drives, in open or closed loop, with their deviations |
 //! | [`mod@friction`] | friction and motor constants from steady rates both ways |
 //! | [`mod@drive_model`] | windings, inertias, springs and dampers from the responses |
+//! | [`mod@closed_loop`] | plant and sensitivity as they were measured with the servo on |
 //! | [`chain`] | the machine as it answers to small motions: motors, rings, platform, springs between |
 //! | [`mod@platform`] | mass, inertia and centre of what is carried, from a tour |
 //! | [`tuning`] | margins of the three loops together; gains and notches for them |
@@ -28,6 +29,7 @@
 //! carriages that do not slide hold a torque between the rings.
 
 pub mod chain;
+pub mod closed_loop;
 pub mod drive_model;
 pub mod frequency_response;
 pub mod friction;

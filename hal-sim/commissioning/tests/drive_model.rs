@@ -4,8 +4,9 @@ mod machine;
 
 use commissioning::chain::Place;
 use commissioning::chain::{Chain, Load};
+use commissioning::drive_model::Guess;
 use hal_sim::machine::plant::Plant;
-use machine::truth::{GUESS, NAMES, errors, identify, resonances_hz, ring_inertia};
+use machine::truth::{NAMES, errors, identify, resonances_hz, ring_inertia};
 use machine::{PLAN, unknown};
 
 /// Of some of the machines of `cargo bench -p commissioning`: its worst figure over 20 and a tenth more, in the order of [`NAMES`].
@@ -45,16 +46,21 @@ fn unknown_machines_are_identified() {
 fn resonances_of_the_chain_are_those_of_the_simulators_matrices() {
     let mut parameters = unknown(5);
     let plant = &mut parameters.plant;
-    plant.motor_inertia_kg_m2 = GUESS.0.motor_inertia;
-    plant.ring_inertia_kg_m2 = GUESS.0.ring_inertia;
-    plant.transmission_stiffness_n_m_rad = GUESS.0.stiffness;
-    plant.guide_stiffness_n_m = GUESS.0.guide_stiffness / 0.01;
-    plant.platform_mass_kg = GUESS.0.load.mass / 0.01;
-    plant.platform_inertia_kg_m2 = GUESS.0.load.inertia;
+    plant.motor_inertia_kg_m2 = Guess::STAGE.0.motor_inertia;
+    plant.ring_inertia_kg_m2 = Guess::STAGE.0.ring_inertia;
+    plant.transmission_stiffness_n_m_rad = Guess::STAGE.0.stiffness;
+    plant.guide_stiffness_n_m = Guess::STAGE.0.guide_stiffness / 0.01;
+    plant.platform_mass_kg = Guess::STAGE.0.load.mass / 0.01;
+    plant.platform_inertia_kg_m2 = Guess::STAGE.0.load.inertia;
     plant.payload = hal_sim::machine::plant::Payload::NONE;
     plant.imperfections.geometry = false;
     let expected = resonances_hz(&parameters);
-    for (found, expected) in GUESS.0.resonances_hz(&Place::centre()).iter().zip(expected) {
+    for (found, expected) in Guess::STAGE
+        .0
+        .resonances_hz(&Place::centre())
+        .iter()
+        .zip(expected)
+    {
         assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
     }
 }
@@ -77,7 +83,7 @@ fn inertia_of_the_chain_is_that_of_the_simulators_matrices() {
                 + payload.mass_kg * payload.eccentricity_m.powi(2),
             moment: [moment * cos, moment * sin],
         },
-        ..GUESS.0
+        ..Guess::STAGE.0
     };
     for (x, y) in [(0.0, 0.0), (0.05, 0.03), (-0.02, 0.06)] {
         let mut plant = Plant::new(parameters);

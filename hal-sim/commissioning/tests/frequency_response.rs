@@ -2,7 +2,10 @@
 
 mod machine;
 
-use commissioning::frequency_response::{Line, ResponseError, Run, frequency_response};
+use commissioning::chain::Chain;
+use commissioning::closed_loop::closed_loop;
+use commissioning::drive_model::{Electrical, Guess};
+use commissioning::frequency_response::{Line, ResponseError, Run, frequency_response, hold};
 use commissioning::record::{Record, Signals, Timing};
 use machine::{PERIOD, harmonics, period_v};
 use nalgebra::{Complex, Matrix3, Vector3};
@@ -94,6 +97,7 @@ fn run(bins: &[usize], feedback: f64, first_tick: usize) -> Run {
     });
     Run {
         period_ticks: PERIOD,
+        ticks_per_row: 1,
         bins: bins.to_vec(),
         experiments,
     }
@@ -173,6 +177,71 @@ fn what_cannot_be_evaluated_is_said() {
     // A drive that does not drive: the second experiment is like the first.
     let same = with(&|run| run.experiments[1] = run.experiments[0].clone());
     assert!(matches!(same, ResponseError::NotExcited { .. }), "{same:?}");
+}
+
+/// A row every four ticks: the lines under an eighth of the ticks' rate come out as from all of them.
+#[test]
+fn every_fourth_tick_is_enough_for_lines_below_an_eighth_of_the_rate() {
+    let bins = harmonics(2, 2.3e3);
+    let mut sparse = run(&bins, 150.0, 3 * PERIOD + 776);
+    sparse.ticks_per_row = 4;
+    for record in sparse.experiments.iter_mut().flatten() {
+        for signals in &mut record.pivots {
+            for values in [
+                &mut signals.volts,
+                &mut signals.current_a,
+                &mut signals.angle_rad,
+            ] {
+                *values = values.iter().copied().step_by(4).collect();
+            }
+        }
+    }
+    let lines = frequency_response(std::slice::from_ref(&sparse), &TIMING).expect("responses");
+    let [angle, current] = worst(&lines);
+    println!("every fourth tick: angles off by {angle:.1e}, currents by {current:.1e}");
+    assert!(angle < 3.3e-4 && current < 4.8e-4);
+    sparse.ticks_per_row = 3;
+    assert_eq!(
+        frequency_response(&[sparse], &TIMING).expect_err("it is refused"),
+        ResponseError::Rows(3)
+    );
+}
+
+/// The loop that a feedback makes, from what is added to it and what currents and angles then are, against `1 / (1 + L)`.
+#[test]
+fn closed_loops_are_those_of_the_feedback() {
+    let (bins, feedback) = (harmonics(2, 2.3e3), 150.0);
+    let runs = [run(&bins, feedback, 3 * PERIOD + 777)];
+    let lines = frequency_response(&runs, &TIMING).expect("responses");
+    let drive = Electrical {
+        resistance_ohm: OHM,
+        inductance_h: HENRY,
+        motor_constant: CONSTANT,
+        dead_time_v: 0.0,
+        deviations: [0.0; 4],
+    };
+    // Motors that turn as their rings do.
+    let rigid = Chain {
+        stiffness: 1e12,
+        damping: 0.0,
+        ..Guess::STAGE.0
+    };
+    let peak_v = period_v(&bins, 1.5)
+        .iter()
+        .fold(0.0_f64, |peak, volts| peak.max(volts.abs()));
+    let found = closed_loop(&runs, &lines, peak_v, (&[drive; 3], &rigid), &TIMING);
+    let (mut worst_plant, mut worst_loop) = (0.0_f64, 0.0_f64);
+    for line in &found {
+        let [_, plant] = response(line.hz);
+        let read = hold(line.hz, &TIMING) * Complex::cis(TAU * line.hz * TIMING.angle_s);
+        let difference = Matrix3::identity() + plant * (read * feedback);
+        let expected = difference.try_inverse().expect("a loop");
+        worst_plant = worst_plant.max((line.plant - plant).norm() / plant.norm());
+        worst_loop = worst_loop.max((line.sensitivity - expected).norm() / expected.norm());
+    }
+    println!("plants off by {worst_plant:.1e}, sensitivities by {worst_loop:.1e}");
+    // What images add to the current's samples; the figures and a tenth more.
+    assert!(worst_plant < 9e-3 && worst_loop < 9.4e-3);
 }
 
 /// Scatter from period to period is what the deviation says.

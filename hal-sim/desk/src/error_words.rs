@@ -70,6 +70,7 @@ error_words! {
     NothingToRecover: "nothing to recover: the measured pose is in reach, or the servo is on",
     NotCommissioned: "the machine is not commissioned, so nothing drives: CMS? says what is missing",
     Debugged: "a debugger is attached, which can halt the loop under load: nothing drives unless parameter 0x54500512 is 1",
+    StopUntested: "the emergency stop has to be pressed once, released and acknowledged (FLC) after each start before anything drives: parameter 0x54500514",
     CalibrationDamaged: "the calibration has not come whole: numbers are missing, or its checksum is another",
     CalibrationBeyondLimits: "the calibration has numbers that cannot be corrected: is an encoder’s zero not the parameter’s?",
     CalibrationOfAnother: "the calibration is another machine’s: its serial number is not that of SSN?",

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`svg`], [`png`] | pictures |
 //! | [`chart`], [`scale`], [`envelope`] | quantities over time |
+//! | [`plane`] | curves over frequency, and loci |
 //! | [`colour`] | one set of colours |
 //! | [`mechanism`] | sizes of the drawn mechanism |
 //! | [`assets`] | scripts and styles that the live page and a run's document share |
@@ -18,6 +19,7 @@ pub mod envelope;
 pub mod files;
 pub mod mechanism;
 mod outlines;
+pub mod plane;
 pub mod png;
 pub mod progress;
 pub mod scale;

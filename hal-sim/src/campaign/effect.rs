@@ -1,6 +1,7 @@
 //! When what is broken passes the controller's thresholds: judged from the machine and its encoders, in other numbers than the
 //! controller's.
 
+use super::current::{Current, Motor};
 use super::injection::{HEARTBEAT_TICKS, Injection, MISSED_EVERY, second};
 use super::inputs::is_bad;
 use super::scenario::Scenario;
@@ -9,11 +10,14 @@ use crate::machine::devices::Encoder;
 use crate::machine::devices::biss::COUNTS_PER_TURN;
 use crate::machine::plant::AXES;
 use core::f64::consts::TAU;
+use core::ops::Range;
 use firmware::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT};
 use firmware::motion::Position;
 use firmware::parameters::Parameters;
 use std::collections::VecDeque;
 
+/// Bridged frames that are told.
+const OFTEN: u64 = 12;
 /// Ticks in a row in which a low supply is one.
 const LOW_SUPPLY_TICKS: u64 = 4;
 /// Ticks of one reading, after which it is asked whether there should have been others.
@@ -28,20 +32,26 @@ const LIMITED: f64 = 0.995;
 const NEARLY_LIMITED: f64 = 0.9;
 /// What the heat may be under its threshold for one who sees every fourth sample of the current.
 const NEARLY: f64 = 0.99;
+/// A following error that is the same as its limit in the judge's numbers.
+const SAME: f64 = 0.9999;
 /// Largest duty, as a share of the PWM's counts.
 const FULL: f64 = 0.98;
 
 /// Supply that is a fault, V, and how near to a threshold noise decides, V.
 const TOO_HIGH_V: f64 = 58.0;
 const NEAR_V: f64 = 0.15;
-/// Supply over which the brake resistor is on for certain, V, and ticks until it is full: 500 J at 356 - 50 W.
+/// Supply over which the brake resistor is on for certain, V; what it has, bears for long and bears besides.
 const RESISTOR_ON_V: f64 = 54.05;
-const RESISTOR_FULL_TICKS: u64 = 32_680;
+const RESISTOR_OHM: f64 = 8.2;
+const RESISTOR_W: f64 = 50.0;
+const RESISTOR_J: f64 = 500.0;
 /// A swing of a bridge's voltage that is one for certain, and that may be one, V; reversals and the ticks in which they come.
 const SWING_V: [f64; 2] = [26.0, 15.0];
 /// The same of what the velocity gain asks for, which may be three times as high where a pivot carries more.
 const ASKED_V: f64 = 6.0;
 const REVERSALS: [usize; 2] = [14, 4];
+/// And where the setpoint moves.
+const REVERSALS_IN_MOTION: usize = 28;
 const SWINGING_TICKS: u64 = 2_000;
 /// A setpoint that hardly moves, rad/s.
 const SLOW_RAD_S: f64 = 1.05;
@@ -65,11 +75,17 @@ pub enum Effect {
     NearlyHighSupply,
     /// The brake resistor has taken what it bears.
     ResistorHot,
+    /// So many frames that its CRC refuses that it is told, whatever is bridged of them.
+    OftenBad,
     /// One frame more in a row that its CRC refuses than are bridged, and some.
     BadInARow,
     /// See above.
     SomeBad,
-    /// A bridge's voltage goes to and fro, over and over, while the setpoint hardly moves; and something like it.
+    /// A motor's current is not what its voltage drives, and it may not be.
+    CurrentUnexplained,
+    /// See above.
+    CurrentMaybeUnexplained,
+    /// A bridge's voltage goes to and fro, over and over; and something like it.
     Oscillates,
     /// See above.
     NearlyOscillates,
@@ -137,8 +153,10 @@ pub struct Effects<'a> {
     low: [u64; 2],
     high: [u64; 2],
     bad: [u64; AXES],
-    resistor_on: u64,
-    swings: [[Swings; 3]; AXES],
+    all_bad: [u64; AXES],
+    resistor_j: f64,
+    currents: [Current; AXES],
+    swings: [[Swings; 4]; AXES],
 }
 
 impl<'a> Effects<'a> {
@@ -160,8 +178,10 @@ impl<'a> Effects<'a> {
             low: [0; 2],
             high: [0; 2],
             bad: [0; AXES],
-            resistor_on: 0,
-            swings: [const { [const { Swings::NONE }; 3] }; AXES],
+            all_bad: [0; AXES],
+            resistor_j: 0.0,
+            currents: [Current::NONE; AXES],
+            swings: [const { [const { Swings::NONE }; 4] }; AXES],
         }
     }
 
@@ -183,10 +203,13 @@ impl<'a> Effects<'a> {
             let is_high = now.is_driven && supply_v > TOO_HIGH_V - near_v;
             self.high[i] = goes_on(self.high[i], is_high);
         }
-        self.resistor_on += u64::from(supply_v > RESISTOR_ON_V);
+        if supply_v > RESISTOR_ON_V {
+            self.resistor_j += (supply_v * supply_v / RESISTOR_OHM - RESISTOR_W) / rate_hz;
+        }
         for i in 0..AXES {
             let is_bad = is_bad(&now.shown[i]);
             self.bad[i] = goes_on(self.bad[i], is_bad);
+            self.all_bad[i] += u64::from(is_bad);
             let is_slow = now
                 .rates_rad_s
                 .iter()
@@ -205,14 +228,13 @@ impl<'a> Effects<'a> {
             } else {
                 f64::from(moved) - f64::from(COUNTS_PER_TURN)
             };
-            let asked_v = signed / f64::from(COUNTS_PER_TURN)
-                * TAU
-                * rate_hz
-                * self.parameters.servo.gains[i].velocity_v_s_rad;
+            let rate_rad_s = signed / f64::from(COUNTS_PER_TURN) * TAU * rate_hz;
+            let asked_v = rate_rad_s * self.parameters.servo.gains[i].velocity_v_s_rad;
             // What may be one counts at any rate, what has to be found only where the setpoint hardly moves.
             let may = now.is_driven;
             let seen = [
                 (volts, SWING_V[0], may && is_slow),
+                (volts, SWING_V[0], may),
                 (volts, SWING_V[1], may),
                 (asked_v, ASKED_V, may),
             ];
@@ -230,6 +252,18 @@ impl<'a> Effects<'a> {
             self.pause[i] = goes_on(self.pause[i], pauses);
             self.nearly[i] = goes_on(self.nearly[i], self.pause[i] < LOOK_TICKS);
             self.heat[i] += (current_a * current_a - self.heat[i]) * part;
+            let motor = Motor {
+                volts,
+                rate_rad_s: if self.parameters.encoders[i].reversed {
+                    -rate_rad_s
+                } else {
+                    rate_rad_s
+                },
+                current_a,
+                is_driven: now.is_driven,
+                is_limited: [self.at_end[i] > 0, !pauses],
+            };
+            self.currents[i].look(motor, &self.parameters.drives[i], self.parameters);
         }
     }
 
@@ -251,19 +285,26 @@ impl<'a> Effects<'a> {
             Effect::NearlyLowSupply => self.low[1] > 0,
             Effect::HighSupply => self.high[0] >= LOW_SUPPLY_TICKS,
             Effect::NearlyHighSupply => self.high[1] > 0,
-            Effect::ResistorHot => self.resistor_on >= RESISTOR_FULL_TICKS,
+            Effect::ResistorHot => self.resistor_j >= RESISTOR_J,
+            Effect::CurrentUnexplained => self.currents.iter().any(Current::is_unexplained),
+            Effect::CurrentMaybeUnexplained => {
+                self.currents.iter().any(Current::may_be_unexplained)
+            }
+            Effect::OftenBad => self.all_bad[scenario.axis] >= OFTEN,
             Effect::BadInARow => self.bad[scenario.axis] > bridged,
             // Frames that the CRC does not find belong to the row too.
             Effect::SomeBad => self.bad[scenario.axis] >= 2,
-            Effect::Oscillates => self.has_swung(0),
-            Effect::NearlyOscillates => self.has_swung(1),
+            Effect::Oscillates => {
+                self.has_swung(0..1, REVERSALS[0]) || self.has_swung(1..2, REVERSALS_IN_MOTION)
+            }
+            Effect::NearlyOscillates => self.has_swung(2..4, REVERSALS[1]),
             Effect::LateTicks => tick >= first + MISSED_EVERY * u64::from(supervision.late_ticks),
             Effect::FollowingError if self.driven == 0 => false,
             Effect::FollowingError => {
                 let errors = shown_errors_rad(now.shown, self.parameters, now.position);
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
                     let lag_rad = supervision.following_error_s * f64::from(rate_rad_s.abs());
-                    *error > supervision.following_error_rad + lag_rad
+                    *error > SAME * (supervision.following_error_rad + lag_rad)
                 })
             }
             Effect::FrozenWay => {
@@ -286,10 +327,9 @@ impl<'a> Effects<'a> {
         }
     }
 
-    fn has_swung(&self, which: usize) -> bool {
-        let of = if which == 0 { 0..1 } else { 1..3 };
-        (self.swings.iter().flat_map(|pivot| &pivot[of.clone()]))
-            .any(|swings| swings.reversals.len() >= REVERSALS[which])
+    fn has_swung(&self, which: Range<usize>, reversals: usize) -> bool {
+        (self.swings.iter().flat_map(|pivot| &pivot[which.clone()]))
+            .any(|swings| swings.reversals.len() >= reversals)
     }
 
     /// The platform's setpoint in the last tick, track radii.

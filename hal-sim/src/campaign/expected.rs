@@ -73,7 +73,7 @@ const BRIEFLY_OVERSPEED: Cause = Cause {
 
 /// Pivots are looked at in turn, every fourth tick.
 /// A tenth of the shortest time that a run has: noise of the current makes pauses that the controller sees and the judge does not.
-const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 40);
+const STALLED: Cause = cause(Effect::AtEnd, Kind::Stalled, 44);
 const NEARLY_STALLED: Cause = Cause {
     effect: Effect::NearlyAtEnd,
     within_ticks: None,
@@ -101,6 +101,15 @@ const NEARLY_OSCILLATES: Cause = Cause {
     within_ticks: None,
     ..OSCILLATES
 };
+const CURRENT: Cause = Cause {
+    early_ticks: 16,
+    ..cause(Effect::CurrentUnexplained, Kind::CurrentUnexplained, 40)
+};
+const MAYBE_CURRENT: Cause = Cause {
+    effect: Effect::CurrentMaybeUnexplained,
+    within_ticks: None,
+    ..CURRENT
+};
 /// What a motion that goes wrong may be found by.
 const MOTION: &[Cause] = &[
     FOLLOWING,
@@ -113,6 +122,8 @@ const MOTION: &[Cause] = &[
     BRIEFLY_OVERSPEED,
     OSCILLATES,
     NEARLY_OSCILLATES,
+    // What the servo has learnt of the motor constant explains some of it.
+    MAYBE_CURRENT,
 ];
 const SUPPLY_LOW: Cause = cause(Effect::LowSupply, Kind::SupplyLow, 1);
 /// Near the threshold noise decides.
@@ -127,10 +138,10 @@ const NEARLY_SUPPLY_HIGH: Cause = Cause {
     within_ticks: None,
     ..SUPPLY_HIGH
 };
-/// Two hundredths of the time that heats it, for the voltages of the thresholds.
+/// A five-hundredth of the time that heats it, for the voltages at which it is switched and the sums of 32 bits.
 const RESISTOR_HOT: Cause = Cause {
-    early_ticks: 700,
-    ..cause(Effect::ResistorHot, Kind::BrakeResistorHot, 700)
+    early_ticks: 70,
+    ..cause(Effect::ResistorHot, Kind::BrakeResistorHot, 70)
 };
 const EMERGENCY_STOP: Cause = cause(Effect::AtOnce, Kind::EmergencyStop, 0);
 const SILENT: Cause = cause(Effect::BadFrames, Kind::EncoderSilent, 0);
@@ -182,8 +193,17 @@ impl Injection {
             Self::EmergencyStop => &[EMERGENCY_STOP],
             // At full speed the pivots lead by what was missed, which may be too far.
             Self::LateLoop => &const { [cause(Effect::LateTicks, Kind::LoopLate, 0), FOLLOWING] },
-            Self::FewMissedTicks(_) | Self::DirectionStuck => &[FOLLOWING],
-            Self::DriveLost | Self::Jam => &[FOLLOWING, STILL, STALLED, NEARLY_STALLED],
+            Self::FewMissedTicks(_) => &[FOLLOWING],
+            Self::DirectionStuck => &[FOLLOWING, CURRENT, MAYBE_CURRENT],
+            Self::DriveLost => &[
+                FOLLOWING,
+                STILL,
+                STALLED,
+                NEARLY_STALLED,
+                CURRENT,
+                MAYBE_CURRENT,
+            ],
+            Self::Jam => &[FOLLOWING, STILL, STALLED, NEARLY_STALLED],
             // A machine that is hit rings.
             Self::Knock(_) | Self::Runaway(_) => MOTION,
             Self::Wedged => &[STALLED, NEARLY_STALLED, FOLLOWING, STILL],
@@ -199,7 +219,8 @@ impl Injection {
                 }
             }
             Self::HostSilent => &const { [event(Effect::Silence)] },
-            Self::FewBadFrames(_) | Self::SupplyRipple(..) | Self::Bursts(..) => &[],
+            Self::FewBadFrames(_) | Self::SupplyRipple(..) => &[],
+            Self::Bursts(..) => &const { [event(Effect::OftenBad)] },
             Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
             Self::ResistorHot(_) => &[RESISTOR_HOT],
             Self::BitErrors(_) => {
@@ -219,7 +240,8 @@ impl Injection {
             Self::Both(other) => match other {
                 Other::EmergencyStop => &[SILENT, EMERGENCY_STOP],
                 Other::Supply => &[SILENT, SUPPLY_LOW, NEARLY_SUPPLY_LOW],
-                Other::Jam | Other::DriveLost => &[SILENT, FOLLOWING, STILL, STALLED],
+                Other::Jam => &[SILENT, FOLLOWING, STILL, STALLED],
+                Other::DriveLost => &[SILENT, FOLLOWING, STILL, STALLED, CURRENT, MAYBE_CURRENT],
             },
             Self::Drift(_)
             | Self::Scale(_)
@@ -235,6 +257,7 @@ impl Injection {
         };
         let told = match self {
             Self::Warning => Some("encoder warns"),
+            Self::Bursts(..) => Some("bad encoder frames bridged"),
             Self::HostSilent => Some("no host heard"),
             Self::LoopStands => Some("start by the watchdog"),
             Self::Crash => Some("start by a panic"),

@@ -16,7 +16,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `injection`, `draw`, `apply`, `settings` | what breaks; how much; how the hardware does it |
-//! | `expected`, `effect` | what the controller has to say about it, and when that has passed its threshold |
+//! | `expected`, `effect`, `current` | what the controller has to say about it, and when that has passed its threshold |
 //! | `scenario`, `motion` | from a seed to a run; what the stage is told |
 //! | `run`, `watch` | one run, and who looks on |
 //! | `outcome` | what came of a run |
@@ -29,6 +29,7 @@
 
 mod apply;
 mod bound;
+mod current;
 mod draw;
 mod effect;
 mod expected;

@@ -40,7 +40,7 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     "nothing: it is in what the supply may be",
     SECOND_HEAD,
     SECOND_HEAD,
-    "a count of bad frames that somebody looks at",
+    "nothing: seldom enough not to be told",
     "a count of bad frames that somebody looks at",
     NOTHING,
     "a second current sensor, or a sum of currents and the supply's",

@@ -10,7 +10,7 @@ use crate::machine::devices::{StageParameters, WiringParameters};
 use crate::machine::plant::AXES;
 use crate::machine::unknown;
 use crate::random::Random;
-use crate::rig::{Told, with_gains_fitted};
+use crate::rig::{Told, with_gains_fitted, with_motion_fitted};
 
 /// The tick from which on the stage is held, after `FRF`.
 const HELD: u64 = 16;
@@ -121,7 +121,7 @@ fn machine(drawn: u64, seed: u64) -> StageParameters {
 /// gains that its resonances bear.
 fn told(stage: &StageParameters) -> Parameters {
     let machine = Told::Machine.parameters(&Parameters::REFERENCE, stage);
-    let mut parameters = with_gains_fitted(&machine, stage);
+    let mut parameters = with_motion_fitted(&with_gains_fitted(&machine, stage));
     for (mounting, encoder) in parameters.encoders.iter_mut().zip(&stage.encoders) {
         *mounting = EncoderMounting {
             zero_counts: encoder.zero_counts,

@@ -1,8 +1,9 @@
 //! A controller that is told of the machine before it: the true numbers in place of the model's, each of them something that `SPA` sets.
 
 use crate::machine::devices::StageParameters;
-use firmware::control::servo::{ServoConfig, carried_inertia};
-use firmware::parameters::{Harmonic, Parameters};
+use crate::machine::plant::PlantParameters;
+use firmware::control::servo::{ServoConfig, carried_inertia, pivot_limits};
+use firmware::parameters::{Harmonic, Notch, Parameters};
 use std::fmt;
 
 /// What a controller is told of the machine before it.
@@ -47,13 +48,20 @@ pub fn with_drives_told(parameters: &Parameters, stage: &StageParameters) -> Par
     let mut told = parameters.clone();
     let plant = &stage.plant;
     for (drive, gains) in told.drives.iter_mut().zip(&mut told.servo.gains) {
-        let weaker = drive.torque_constant_n_m_a / plant.torque_constant_n_m_a;
+        // Volts for the same torque.
+        let weaker = drive.torque_constant_n_m_a / plant.torque_constant_n_m_a
+            * (plant.resistance_ohm / drive.resistance_ohm);
         gains.velocity_v_s_rad *= weaker;
         gains.integral_v_rad *= weaker;
         drive.torque_constant_n_m_a = plant.torque_constant_n_m_a;
+        drive.resistance_ohm = plant.resistance_ohm;
+        drive.inductance_h = plant.inductance_h;
         drive.inertia_kg_m2 = plant.ring_inertia_kg_m2 + plant.motor_inertia_kg_m2;
         drive.viscous_n_m_s = plant.ring_friction.viscous;
         drive.coulomb_n_m = plant.ring_friction.coulomb;
+        if plant.imperfections.motor_friction {
+            drive.coulomb_n_m += plant.motor_friction.coulomb;
+        }
     }
     told.platform.mass_kg = plant.platform_mass_kg;
     told.platform.inertia_kg_m2 = plant.platform_inertia_kg_m2;
@@ -117,11 +125,11 @@ const TRANSMISSION_HZ: f64 = 1500.0;
 const GUIDES_HZ: f64 = 796.0;
 
 /// What of it is left for what is not known of a machine: places where its pivots carry more or less, a gap, a load off its centre.
-const SAFETY: f64 = 0.65;
+const SAFETY: f64 = 0.6;
 
 /// The same with gains that its resonances bear, as who puts it into service turns them down: as crossovers fall on machines that were
 /// tried (272 Hz rigid; 240, 204 and 120 with guides that resonate at 796, 503 and 218 Hz; three quarters of that with a transmission of
-/// 600 Hz), and then by a third.
+/// 600 Hz), and then by two fifths.
 #[must_use]
 pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let mut told = parameters.clone();
@@ -130,13 +138,67 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
     let transmission_hz = TRANSMISSION_HZ * softer.sqrt();
     let carried_kg = plant.platform_mass_kg + plant.payload.mass_kg;
     let guides_hz = (1.5 * plant.guide_stiffness_n_m / carried_kg).sqrt() / core::f64::consts::TAU;
+    // The winding's lag is the largest that the loop has.
+    let lag_s = |plant: &PlantParameters| plant.inductance_h / plant.resistance_ohm;
     let share = (transmission_hz / TRANSMISSION_HZ).powf(0.3).min(1.0)
         * SAFETY
+        * (lag_s(reference) / lag_s(plant)).min(1.0)
         * (guides_hz / GUIDES_HZ).sqrt().min(1.0);
+    for filters in &mut told.servo.filters {
+        filters.notches = notches(parameters, plant);
+    }
     for gains in &mut told.servo.gains {
         gains.velocity_v_s_rad *= share;
         gains.position_1_s *= share;
         gains.integral_v_rad *= share * share;
     }
     told
+}
+
+/// The same with a motion that its motors bear.
+#[must_use]
+pub fn with_motion_fitted(parameters: &Parameters) -> Parameters {
+    let mut told = parameters.clone();
+    let [rate, acceleration] = pivot_limits(parameters);
+    let limits = &mut told.limits;
+    limits.pivot_rate_rad_s = limits.pivot_rate_rad_s.min(rate);
+    limits.pivot_acceleration_rad_s2 = limits.pivot_acceleration_rad_s2.min(acceleration);
+    told
+}
+
+/// Resonances under which a loop has to be kept from a drive's, Hz: what lies higher it does not reach.
+const REACHED_HZ: f64 = 1_500.0;
+
+/// Notches at the resonances of a drive in the middle of the disk. The first: its motor against its ring with what that carries, where the
+/// guides are stiff. The second: the upper one of motor, ring and carried body in a row, where they are not, `l^2 - A l + B = 0` in the square
+/// of the angular frequency. Their widths are for what a pivot carries elsewhere.
+fn notches(parameters: &Parameters, plant: &PlantParameters) -> [Notch; 2] {
+    let body = ServoConfig::new(parameters).body;
+    let carried_kg_m2 = f64::from(carried_inertia(&body, &[1.0; 3], &[1.0; 3], 0));
+    let radius_m = parameters.geometry.radius_mm * 1e-3;
+    let transmission = plant.transmission_stiffness_n_m_rad;
+    let guide = plant.guide_stiffness_n_m * radius_m * radius_m;
+    let [motor, ring, carried] = [
+        plant.motor_inertia_kg_m2,
+        plant.ring_inertia_kg_m2,
+        carried_kg_m2,
+    ]
+    .map(f64::recip);
+    let load = 1.0 / (1.0 / ring + carried_kg_m2);
+    let stiff = transmission * (motor + load);
+    let a = transmission * (motor + ring) + guide * (ring + carried);
+    let b = transmission * guide * (motor * ring + motor * carried + ring * carried);
+    let upper = 0.5 * (a + (a * a - 4.0 * b).sqrt());
+    [(stiff, 0.25), (upper, 0.3)].map(|(square, width)| {
+        let frequency_hz = square.sqrt() / core::f64::consts::TAU;
+        Notch {
+            frequency_hz: if frequency_hz < REACHED_HZ {
+                frequency_hz
+            } else {
+                0.0
+            },
+            width_hz: width * frequency_hz,
+            gain: 0.15,
+        }
+    })
 }

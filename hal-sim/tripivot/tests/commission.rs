@@ -5,6 +5,9 @@ use hal_sim::machine::unknown;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
+/// The worst of the machines tried here, and a tenth more. Currents are as their meters have them.
+const MOST_FRICTION_ERROR: f64 = 0.006;
+
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));
     // A folder that is not there need not go.
@@ -36,6 +39,14 @@ fn numbers<'a>(text: &'a str, name: &str) -> impl Iterator<Item = f64> + 'a {
     (behind.split([' ', ',', ':'])).filter_map(|word| word.parse().ok())
 }
 
+/// Ports and bridges of pivots 1, 2 and 3: pivot 1 is bridge 1's ring, the others follow it to the left.
+fn pivots(machine: &StageParameters) -> [[u8; 3]; 2] {
+    let wiring = machine.wiring;
+    let first = (0..3).find(|ring| wiring.bridge_of_ring[*ring] == 0);
+    let rings = [0, 1, 2].map(|pivot| (first.expect("one") + pivot) % 3);
+    [wiring.port_of_ring, wiring.bridge_of_ring].map(|all| rings.map(|ring| all[ring] + 1))
+}
+
 /// The rings to the left of each other, as their ports follow, and the port of the ring that a bridge drives.
 fn wiring(machine: &StageParameters) -> ([u8; 3], [u8; 3]) {
     let wiring = machine.wiring;
@@ -47,82 +58,174 @@ fn wiring(machine: &StageParameters) -> ([u8; 3], [u8; 3]) {
 }
 
 #[test]
-fn sound_machines_are_brought_up() {
-    for seed in [1, 8] {
-        let machine = unknown(seed);
-        let (output, folder) =
-            commission(&format!("sound-{seed}"), &["--unknown", &seed.to_string()]);
-        let told = text(&output);
-        assert_eq!(output.status.code(), Some(0), "{told}");
-        let (left, of_bridge) = wiring(&machine);
-        let follows = [[1, 2, 3], [2, 3, 1], [3, 1, 2]].contains(&left);
-        assert_eq!(
-            told.contains("follow each other as 1, 2, 3"),
-            follows,
-            "{seed}\n{told}"
+fn a_sound_machine_is_brought_up() {
+    brings_up(1);
+}
+
+#[test]
+fn a_sound_machine_whose_friction_varies_over_a_turn_is_brought_up() {
+    brings_up(19);
+}
+
+fn brings_up(seed: u64) {
+    let machine = unknown(seed);
+    let (output, folder) = commission(&format!("sound-{seed}"), &["--unknown", &seed.to_string()]);
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    finds_the_wires(&machine, &told);
+    finds_the_motors(&machine, &told);
+    finds_what_is_moved(&machine, &told);
+    finds_gains(&told);
+    assert!(folder.join("settings.flash").exists());
+    let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
+    assert!(report.contains(">commissioned<") && report.contains("</html>"));
+    // Bode and Nyquist plots, in the middle and far out, before and after.
+    assert_eq!(report.matches("<figure><svg").count(), 4);
+    its_settings_run_the_machine(seed, &folder);
+    one_step_is_run_again(&machine, seed, &folder);
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+fn finds_the_wires(machine: &StageParameters, told: &str) {
+    let (left, of_bridge) = wiring(machine);
+    let follows = [[1, 2, 3], [2, 3, 1], [3, 1, 2]].contains(&left);
+    assert_eq!(
+        told.contains("follow each other as 1, 2, 3"),
+        follows,
+        "{told}"
+    );
+    assert!(
+        told.contains(&format!("each bridge its own ring: ports {of_bridge:?}")),
+        "{told}"
+    );
+    let [ports, bridges] = pivots(machine);
+    let said =
+        format!("pivots 1, 2, 3, to the left of each other: ports {ports:?}, bridges {bridges:?}");
+    assert!(told.contains(&said), "{said}\n{told}");
+    for bridge in 1..=3_u8 {
+        let mut rings = machine.wiring.bridge_of_ring.iter();
+        let ring = rings.position(|at| at + 1 == bridge);
+        let turned = machine.wiring.leads_exchanged[ring.expect("one")];
+        let way = if turned { "right" } else { "left" };
+        let said = format!(
+            "bridge {bridge}: moves the ring of port {}, {way} for",
+            of_bridge[usize::from(bridge) - 1]
         );
-        assert!(
-            told.contains(&format!("each bridge its own ring: ports {of_bridge:?}")),
-            "{told}"
-        );
-        for bridge in 1..=3_u8 {
-            let ring = machine
-                .wiring
-                .bridge_of_ring
-                .iter()
-                .position(|at| at + 1 == bridge);
-            let turned = machine.wiring.leads_exchanged[ring.expect("one")];
-            let way = if turned { "right" } else { "left" };
-            let said = format!(
-                "bridge {bridge}: moves the ring of port {}, {way} for",
-                of_bridge[usize::from(bridge) - 1]
-            );
-            assert!(told.contains(&said), "{said}\n{told}");
-        }
-        let plant = &machine.plant;
-        let constant = plant.torque_constant_n_m_a * plant.gear_ratio * machine.analog.supply_gain;
-        let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
-        for pivot in 1..=3 {
-            let found = numbers(&told, &format!("motor of pivot {pivot}"))
-                .next()
-                .expect("a number");
-            println!(
-                "{seed}: motor constant {:+.2} %",
-                100.0 * (found / constant - 1.0)
-            );
-            assert!((found / constant - 1.0).abs() < 0.02);
-        }
-        let found = numbers(&told, "mean of three").next().expect("a number");
-        println!(
-            "{seed}: friction {:+.1} %",
-            100.0 * (found / friction - 1.0)
-        );
-        assert!((found / friction - 1.0).abs() < 0.2);
-        assert!(folder.join("settings.flash").exists());
-        let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
-        assert!(report.contains(">commissioned<") && report.contains("</html>"));
-        // Its settings run the machine.
-        let script = folder.join("turn.gcs");
-        std::fs::write(
-            &script,
-            "FRF\nWAC ONT? W = 1\nMOV X 20 W 90\nWAC ONT? W = 1\n",
-        )
-        .expect("written");
-        let ran = Command::new(env!("CARGO_BIN_EXE_tripivot"))
-            .arg("run")
-            .arg(&script)
-            .args(["--quiet", "--unknown", &seed.to_string(), "--settings"])
-            .arg(folder.join("settings.flash"))
-            .arg("--out")
-            .arg(folder.join("run"))
-            .output()
-            .expect("it runs");
-        // Encoders of 200 nrad never stay within two counts, which is what a run calls settled.
-        let told = String::from_utf8_lossy(&ran.stderr);
-        let noisy = told.contains("never settled");
-        assert!(ran.status.code() == Some(0) || noisy, "{told}");
-        let _ = std::fs::remove_dir_all(&folder);
+        assert!(told.contains(&said), "{said}\n{told}");
     }
+}
+
+/// The first number behind a name, over what it is, less 1.
+fn error(told: &str, name: &str, truth: f64) -> f64 {
+    let found = numbers(told, name).next().expect("a number");
+    let error = found / truth - 1.0;
+    println!("{name}: {:+.2} %", 100.0 * error);
+    error
+}
+
+fn finds_the_motors(machine: &StageParameters, told: &str) {
+    let plant = &machine.plant;
+    let constant = plant.torque_constant_n_m_a * plant.gear_ratio * machine.analog.supply_gain;
+    for pivot in 1..=3 {
+        let off = error(told, &format!("motor of pivot {pivot}"), constant);
+        assert!(off.abs() < 0.0027);
+    }
+    let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
+    assert!(error(told, "mean of three", friction).abs() < MOST_FRICTION_ERROR);
+}
+
+/// Torques are as volts and amperes have them: what their meters are off is no error of the method.
+fn finds_what_is_moved(machine: &StageParameters, told: &str) {
+    let (plant, analog) = (&machine.plant, &machine.analog);
+    let torque = analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0;
+    let payload = &plant.payload;
+    let drive = plant.motor_inertia_kg_m2 + plant.ring_inertia_kg_m2;
+    let mass = plant.platform_mass_kg + payload.mass_kg;
+    let inertia = plant.platform_inertia_kg_m2
+        + payload.inertia_kg_m2
+        + payload.mass_kg * payload.eccentricity_m.powi(2);
+    for (name, truth, most) in [
+        ("inertia of a motor with its ring", drive, 0.004),
+        ("mass of platform and load", mass, 0.04),
+        ("inertia about the platform's centre", inertia, 0.027),
+    ] {
+        assert!(error(told, name, truth * torque).abs() < most, "{name}");
+    }
+}
+
+/// Margins as they were measured with the gains that were found.
+fn finds_gains(told: &str) {
+    for place in ["in the middle", "at X 70 Y 0"] {
+        let found: Vec<f64> = numbers(told, &format!("Ms {place}")).collect();
+        println!("Ms {place}: {found:?}");
+        assert!(found[0] <= 2.0 && found[0] < found[1]);
+    }
+}
+
+/// As after a repair: what the other steps found is in the controller's parameters.
+fn one_step_is_run_again(machine: &StageParameters, seed: u64, folder: &std::path::Path) {
+    let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args([
+            "commission",
+            "--only",
+            "friction",
+            "--unknown",
+            &seed.to_string(),
+        ])
+        .arg("--out")
+        .arg(folder)
+        .output()
+        .expect("the program runs");
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let steps: Vec<_> = (told.lines().filter(|line| line.ends_with(" s)")))
+        .map(|line| line.split(':').next().unwrap_or_default())
+        .collect();
+    assert_eq!(steps, ["friction", "keep"]);
+    finds_the_motors(machine, &told);
+}
+
+#[test]
+fn steps_that_cannot_be_first_are_refused() {
+    for (option, name, says) in [
+        ("--from", "tuning", "begin with `identification`"),
+        ("--only", "hand", "begin with `wiring`"),
+        ("--only", "frictions", "there is no step `frictions`"),
+    ] {
+        let (output, folder) = commission("first", &[option, name, "--unknown", "1"]);
+        assert_eq!(output.status.code(), Some(2));
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains(says), "{told}");
+        assert!(!folder.exists());
+    }
+    // A controller that knows nothing yet.
+    let (output, folder) = commission("nothing", &["--only", "friction", "--unknown", "1"]);
+    let told = text(&output);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told.contains("has not been commissioned"), "{told}");
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+fn its_settings_run_the_machine(seed: u64, folder: &std::path::Path) {
+    let script = folder.join("turn.gcs");
+    std::fs::write(
+        &script,
+        "FRF\nWAC ONT? W = 1\nMOV X 20 W 90\nWAC ONT? W = 1\n",
+    )
+    .expect("written");
+    let ran = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .arg("run")
+        .arg(&script)
+        .args(["--quiet", "--unknown", &seed.to_string(), "--settings"])
+        .arg(folder.join("settings.flash"))
+        .arg("--out")
+        .arg(folder.join("run"))
+        .output()
+        .expect("it runs");
+    // Encoders of 200 nrad never stay within two counts, which is what a run calls settled.
+    let told = String::from_utf8_lossy(&ran.stderr);
+    let noisy = told.contains("never settled");
+    assert!(ran.status.code() == Some(0) || noisy, "{told}");
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the
 //! pivots can make of them at most, and what may be broken in it.
 
-use super::pivot_bounds::PivotGain;
-use super::platform::greatest;
+use super::pivots::{PivotGain, greatest};
 use crate::constraints::Speeds;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
 use number::float::{FloatMinMax, hypot};
@@ -10,17 +9,21 @@ use number::float::{FloatMinMax, hypot};
 /// What a plan breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Violation {
-    /// Disk or bounds, on the way or in a stop.
-    Workspace,
+    /// The disk, with the platform's centre so far from the track's.
+    Disk(f32),
+    /// The bounds of an axis.
+    Bounds(usize),
     /// Speed, by this factor.
     Speed(f32),
-    /// Acceleration or jerk, by this factor.
+    /// Acceleration, by this factor.
     Acceleration(f32),
+    /// Jerk, by this factor.
+    Jerk(f32),
     /// The pivots' rate, by this factor.
     PivotRate(f32),
     /// The pivots' acceleration, by this factor.
     PivotAcceleration(f32),
-    /// Disk or bounds, in a stop from an instant on the way.
+    /// Disk or bounds, in a stop from an instant on the way; or too long a way to be looked at.
     NoRoomToStop,
 }
 
@@ -31,16 +34,15 @@ impl Violation {
 
     /// This, or what was seen of the same before, when that was worse.
     pub(super) fn or_worse(self, before: Option<Self>) -> Self {
-        match (self, before) {
-            (Self::Speed(now), Some(Self::Speed(over))) => Self::Speed(now.fmax(over)),
-            (Self::Acceleration(now), Some(Self::Acceleration(over))) => {
-                Self::Acceleration(now.fmax(over))
-            }
-            (Self::PivotRate(now), Some(Self::PivotRate(over))) => Self::PivotRate(now.fmax(over)),
-            (Self::PivotAcceleration(now), Some(Self::PivotAcceleration(over))) => {
-                Self::PivotAcceleration(now.fmax(over))
-            }
-            _ => self,
+        let is_same = |seen: &Self| core::mem::discriminant(seen) == core::mem::discriminant(&self);
+        (before.filter(|seen| is_same(seen) && seen.over() > self.over())).unwrap_or(self)
+    }
+
+    fn over(&self) -> f32 {
+        match *self {
+            Self::Speed(over) | Self::Acceleration(over) | Self::Jerk(over) => over,
+            Self::PivotRate(over) | Self::PivotAcceleration(over) => over,
+            Self::Disk(_) | Self::Bounds(_) | Self::NoRoomToStop => 0.0,
         }
     }
 }

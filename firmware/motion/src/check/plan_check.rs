@@ -1,32 +1,28 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
-use super::interval::Violation;
-use super::interval::{IntervalBounds, IntervalEnd};
-use super::pivot_bounds::PivotGain;
-use super::platform::greatest;
+use super::interval::{IntervalBounds, IntervalEnd, Violation};
+use super::pivots::{PivotGain, greatest};
 use super::workspace::{StopLimits, Workspace};
 use crate::constraints::{Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::tolerances::PLAN_SLACK;
+use crate::tolerances::{JERK_TOLERANCE, PLAN_SLACK, STREAM_SLACK};
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;
 
 /// What a plan is held against.
 pub struct PlanCheck {
     /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
-    motion_limits: Option<Limits>,
+    motion_limits: Option<MotionLimits>,
+    /// What a stop from anywhere brakes with, where there has to be room for one.
+    stop: Option<StopLimits>,
+    /// What is granted over a limit.
+    slack: f32,
     /// Rate and acceleration, rad/s and rad/s^2.
     pivots: [f32; 2],
     workspace: Workspace,
     hz: f32,
-}
-
-/// Limits of translation and rotation, and those with which a stop brakes.
-struct Limits {
-    motion: MotionLimits,
-    stop: StopLimits,
 }
 
 /// An interval of a piece.
@@ -77,16 +73,23 @@ impl PlanCheck {
         let now = MotionState::new(start, constraints.limits.rate_hz as f32);
         // What is granted over a limit is not granted over a state again: it would add up from plan to plan.
         let kept = |state: &[f32; 3]| Speeds::of(state).scaled(1.0 / PLAN_SLACK);
-        let motion_limits = Limits {
-            motion: MotionLimits {
-                speed: stop.speed.max(kept(&now.v)),
-                acceleration: stop.acceleration.max(kept(&now.a)),
-                jerk: stop.jerk,
-            },
-            stop: StopLimits::new(stop),
+        let motion_limits = MotionLimits {
+            speed: stop.speed.max(kept(&now.v)),
+            acceleration: stop.acceleration.max(kept(&now.a)),
+            jerk: stop.jerk,
         };
         Self {
             motion_limits: Some(motion_limits),
+            stop: Some(StopLimits::new(stop)),
+            ..Self::for_stop(constraints)
+        }
+    }
+
+    /// The check of a motion that others shape, and of the stop that ends it.
+    pub fn for_stream(constraints: &Constraints) -> Self {
+        Self {
+            motion_limits: Some(constraints.motion_limits().scaled(1.0, JERK_TOLERANCE)),
+            slack: STREAM_SLACK,
             ..Self::for_stop(constraints)
         }
     }
@@ -96,6 +99,8 @@ impl PlanCheck {
         let limits = &constraints.limits;
         Self {
             motion_limits: None,
+            stop: None,
+            slack: PLAN_SLACK,
             pivots: [
                 limits.pivot_rate_rad_s as f32,
                 limits.pivot_acceleration_rad_s2 as f32,
@@ -127,7 +132,7 @@ impl PlanCheck {
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
             if let Some(limits) = &self.motion_limits {
-                within_limit(jerk, &limits.motion.jerk, Violation::Acceleration)?;
+                self.within_limit(jerk, &limits.jerk, Violation::Jerk)?;
             }
             if piece.ticks == 1 {
                 // What a tick changes does not show, nor what some of them do, one after the other.
@@ -141,7 +146,7 @@ impl PlanCheck {
                 budget.intervals = budget.intervals.saturating_sub(1);
                 looked_at += 1;
                 if looked_at > MOST_INTERVALS {
-                    return Err(worst.unwrap_or(Violation::Workspace));
+                    return Err(worst.unwrap_or(Violation::NoRoomToStop));
                 }
                 self.evaluate(&segment, done + ticks, to);
                 let interval = Interval {
@@ -227,11 +232,11 @@ impl PlanCheck {
             segment.start = segment.at(seconds);
         }
         let [rate_limit, acceleration_limit] = self.pivots;
-        within(
+        self.within(
             acceleration / acceleration_limit,
             Violation::PivotAcceleration,
         )?;
-        within(rate / rate_limit, Violation::PivotRate)
+        self.within(rate / rate_limit, Violation::PivotRate)
     }
 
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
@@ -247,7 +252,7 @@ impl PlanCheck {
         let radius = self
             .path(interval, [from, to], [&sizes, &moving])
             .map_err(|broken| match broken {
-                Violation::NoRoomToStop => (Violation::Workspace, 0.0),
+                Violation::NoRoomToStop => (broken, 0.0),
                 broken => (broken, HALF),
             })?;
         self.check_pivots(interval, [from, to], &moving, radius)
@@ -260,16 +265,16 @@ impl PlanCheck {
         [from, to]: [&IntervalEnd; 2],
         [sizes, moving]: [&IntervalBounds; 2],
     ) -> Result<f32, Violation> {
-        if let Some(Limits { motion, .. }) = &self.motion_limits {
-            within_limit(sizes.v, &motion.speed, Violation::Speed)?;
-            within_limit(sizes.a, &motion.acceleration, Violation::Acceleration)?;
+        if let Some(limits) = &self.motion_limits {
+            self.within_limit(sizes.v, &limits.speed, Violation::Speed)?;
+            self.within_limit(sizes.a, &limits.acceleration, Violation::Acceleration)?;
         }
         let eighth = interval.seconds * interval.seconds / 8.0;
         let rise = both!(k => sizes.a[k] * eighth);
         (self.workspace).check_bounds(interval.bound_distances, &from.sample, &to.sample, rise)?;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
         let radius = self.workspace.check_disk(furthest)?;
-        if let Some(Limits { stop, .. }) = &self.motion_limits {
+        if let Some(stop) = &self.stop {
             (self.workspace)
                 .check_stop(interval.segment, interval.bound_distances, to, stop)
                 .map_err(|_| Violation::NoRoomToStop)?;
@@ -302,8 +307,8 @@ impl PlanCheck {
             rate.fmin(rates + rises[0]),
             acceleration.fmin(accelerations + rises[1]),
         ];
-        let once = rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
-        let twice = rise_within(
+        let once = self.rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
+        let twice = self.rise_within(
             accelerations,
             most[1],
             acceleration_limit,
@@ -311,30 +316,48 @@ impl PlanCheck {
         )?;
         Ok(once.fmin(twice).fmin(ALL))
     }
-}
-
-/// The same for a value at the ends of an interval that may rise in between; what is told is what is sure. A rise goes
-/// with the square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
-fn rise_within(
-    value: f32,
-    most: f32,
-    limit: f32,
-    broken: fn(f32) -> Violation,
-) -> Result<f32, (Violation, f32)> {
-    /// What is used of that, because the value changes too.
-    const PART: f32 = 0.75;
-    let room = limit * PLAN_SLACK - value;
-    let rise = most - value;
-    if rise <= room {
-        return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
+    /// Whether a value keeps to its limit that is so large at the ends of an interval and may rise in between; what is told is what is sure. A rise goes
+    /// with the square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
+    fn rise_within(
+        &self,
+        value: f32,
+        most: f32,
+        limit: f32,
+        broken: fn(f32) -> Violation,
+    ) -> Result<f32, (Violation, f32)> {
+        /// What is used of that, because the value changes too.
+        const PART: f32 = 0.75;
+        let room = limit * self.slack - value;
+        let rise = most - value;
+        if rise <= room {
+            return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
+        }
+        // What is not a number is no room.
+        let shorter = if room > 0.0 {
+            (PART * sqrt_f32(room / rise)).clamp(1.0 / 16.0, 0.7)
+        } else {
+            0.0
+        };
+        Err((broken((value / limit).fmax(1.0)), shorter))
     }
-    // What is not a number is no room.
-    let shorter = if room > 0.0 {
-        (PART * sqrt_f32(room / rise)).clamp(1.0 / 16.0, 0.7)
-    } else {
-        0.0
-    };
-    Err((broken((value / limit).fmax(1.0)), shorter))
+    /// Whether translation and rotation keep to a limit.
+    fn within_limit(
+        &self,
+        [linear, angular]: [f32; 2],
+        limit: &Speeds,
+        broken: fn(f32) -> Violation,
+    ) -> Result<(), Violation> {
+        self.within(part(linear, angular, limit), broken)
+    }
+
+    /// The part of a limit that is used is not over one.
+    fn within(&self, part: f32, broken: fn(f32) -> Violation) -> Result<(), Violation> {
+        if part <= self.slack {
+            Ok(())
+        } else {
+            Err(broken(part))
+        }
+    }
 }
 
 /// The part of its limit that translation or rotation reaches, the greater.
@@ -346,22 +369,4 @@ fn part(linear: f32, angular: f32, limit: &Speeds) -> f32 {
 pub fn is_over(value: Speeds, limit: Speeds) -> bool {
     const MORE: f32 = 1.0 + 2.0 * (PLAN_SLACK - 1.0);
     part(value.linear, value.angular, &limit) > MORE
-}
-
-/// The same of translation and rotation.
-fn within_limit(
-    [linear, angular]: [f32; 2],
-    limit: &Speeds,
-    broken: fn(f32) -> Violation,
-) -> Result<(), Violation> {
-    within(part(linear, angular, limit), broken)
-}
-
-/// The part of a limit that is used is not over one.
-fn within(part: f32, broken: fn(f32) -> Violation) -> Result<(), Violation> {
-    if part <= PLAN_SLACK {
-        Ok(())
-    } else {
-        Err(broken(part))
-    }
 }

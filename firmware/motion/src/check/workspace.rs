@@ -1,27 +1,123 @@
-//! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too.
+//! Where a motion may go: the disk for the platform's centre, the bounds for the moved point, for stops too; and targets: which
+//! way round to an orientation, since theta counts turns and a target may mean its turn or only its direction, and whether one can
+//! be moved to, from anywhere.
 
-use super::interval::IntervalEnd;
-use super::interval::Violation;
+use super::interval::{IntervalEnd, Violation};
 use crate::constraints::{Bounds, Constraints, MotionLimits};
-use crate::plan::axis_state::AxisState;
-use crate::plan::axis_state::PER_POSITION_UNIT;
+use crate::plan::Position;
+use crate::plan::axis_state::{AxisState, PER_POSITION_UNIT};
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
 use crate::profile::velocity::{VelocityProfile, stop_displacements};
-use crate::tolerances::WORKSPACE_RADII;
+use crate::refusal::Refusal;
+use crate::tolerances::{TARGET_RADII, TARGET_RADII_OFF_CENTRE, WORKSPACE_RADII};
 use core::f32::consts::TAU;
+use kinematics::{Angle, Scalar};
+use number::Fixed;
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast};
 
-/// See the module.
-pub struct Workspace {
+/// How a target of theta is meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TurnDirection {
+    /// With its turns: from 0 to 720 deg are two turns.
+    #[default]
+    AsGiven,
+    /// The orientation only, the shortest way. Of half a turn either way the negative one.
+    Shortest,
+    /// The orientation only, turning to positive angles: less than a turn, or not at all.
+    Positive,
+    /// The orientation only, turning to negative angles: less than a turn, or not at all.
+    Negative,
+}
+
+impl TurnDirection {
+    /// Where theta (2^-32 turns) has to go from `now` for what is meant by `target`. Exact at any number of turns.
+    pub const fn resolve(self, now: i64, target: i64) -> i64 {
+        match self {
+            Self::AsGiven => target,
+            Self::Shortest => Angle::from_units(target)
+                .near(Angle::from_units(now))
+                .units(),
+            Self::Positive => now.wrapping_add(ahead(now, target)),
+            Self::Negative => now.wrapping_sub(ahead(target, now)),
+        }
+    }
+}
+
+/// From the orientation of `from` on to that of `to`, turning to positive angles: from 0 to less than a turn.
+const fn ahead(from: i64, to: i64) -> i64 {
+    to.wrapping_sub(from) as u32 as i64
+}
+
+/// Most turns that a target may have, a thousand million, in units of a position.
+pub const MAX_TURNS: i64 = 1_000_000_000 << 32;
+
+/// Whether `target` lies inside the workspace.
+pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
+    if target[2].unsigned_abs() > MAX_TURNS.unsigned_abs() {
+        return Err(Refusal::TooManyTurns);
+    }
+    if !is_well_inside(target, constraints) {
+        check_disk(target, constraints)?;
+    }
+    let inside =
+        |i: usize| (constraints.bounds[i][0]..=constraints.bounds[i][1]).contains(&target[i]);
+    if let Some(axis) = (0..3).find(|&i| !inside(i)) {
+        return Err(Refusal::OutOfBounds { axis });
+    }
+    Ok(())
+}
+
+/// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
+fn is_well_inside(target: &Position, constraints: &Constraints) -> bool {
+    let [x, y] = both!(i => i64_to_f32_fast(target[i]) * PER_POSITION_UNIT);
+    let usable = constraints.usable_radius as f32;
+    constraints.rotation_centre.map(f64::to_bits) == [0; 2]
+        && x * x + y * y < usable * usable * NEARLY
+}
+
+/// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
+const NEARLY: f32 = 0.999_99;
+
+#[inline(never)]
+fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
+    let [mut x, mut y] = xy_radii(target);
+    let mut rim = TARGET_RADII;
+    if constraints.rotation_centre != [0.0; 2] {
+        let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
+        let (sin, cos) = (sin.to_f64(), cos.to_f64());
+        let [p, q] = constraints.rotation_centre;
+        x -= cos * p - sin * q;
+        y -= sin * p + cos * q;
+        rim = TARGET_RADII_OFF_CENTRE;
+    }
+    let most = constraints.usable_radius + rim;
+    let square = x * x + y * y;
+    if square > most * most {
+        return Err(Refusal::OutsideDisk {
+            radius_mm: libm::sqrt(square) * constraints.geometry.radius_mm,
+            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
+        });
+    }
+    Ok(())
+}
+
+/// x and y of a position in track radii.
+fn xy_radii(position: &Position) -> [f64; 2] {
+    const UNIT: f64 = 1.0 / 4_294_967_296.0;
+    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
+}
+
+/// What bounds a motion.
+pub(super) struct Workspace {
     radius: f32,
     bounds: Bounds,
     /// The moved point in the platform's axes, and its distance from the platform's centre.
-    pub centre: [f32; 2],
-    pub arm: f32,
+    pub(super) centre: [f32; 2],
+    pub(super) arm: f32,
 }
 
 /// What translation and rotation brake with, per second.
-pub struct StopLimits {
+pub(super) struct StopLimits {
     limits: MotionLimits,
     /// Acceleration, and its inverse.
     most: [f32; 2],
@@ -31,7 +127,7 @@ pub struct StopLimits {
 }
 
 impl StopLimits {
-    pub fn new(limits: MotionLimits) -> Self {
+    pub(super) fn new(limits: MotionLimits) -> Self {
         let most = [limits.acceleration.linear, limits.acceleration.angular];
         let jerk = [limits.jerk.linear, limits.jerk.angular];
         Self {
@@ -44,7 +140,7 @@ impl StopLimits {
 }
 
 impl Workspace {
-    pub fn new(constraints: &Constraints) -> Self {
+    pub(super) fn new(constraints: &Constraints) -> Self {
         let centre = constraints.centre();
         Self {
             radius: constraints.usable_radius as f32,
@@ -55,7 +151,7 @@ impl Workspace {
     }
 
     /// How far each axis may go down and up from here, track radii and rad.
-    pub fn bound_distances(&self, axes: &[AxisState; 3]) -> [[f32; 2]; 3] {
+    pub(super) fn bound_distances(&self, axes: &[AxisState; 3]) -> [[f32; 2]; 3] {
         let unit = [
             PER_POSITION_UNIT,
             PER_POSITION_UNIT,
@@ -68,7 +164,7 @@ impl Workspace {
     }
 
     /// Holds an interval against the bounds; `rise` is how far translation and rotation can rise between its ends.
-    pub fn check_bounds(
+    pub(super) fn check_bounds(
         &self,
         bound_distances: &[[f32; 2]; 3],
         from: &MotionState,
@@ -84,24 +180,24 @@ impl Workspace {
             if !(bound_distances[i][0] - WORKSPACE_RADII <= low
                 && high <= bound_distances[i][1] + WORKSPACE_RADII)
             {
-                return Err(Violation::Workspace);
+                return Err(Violation::Bounds(i));
             }
         }
         Ok(())
     }
 
     /// A distance of the platform's centre from the track's, if that is inside the disk.
-    pub fn check_disk(&self, distance: f32) -> Result<f32, Violation> {
+    pub(super) fn check_disk(&self, distance: f32) -> Result<f32, Violation> {
         if distance <= self.radius + WORKSPACE_RADII {
             Ok(distance)
         } else {
-            Err(Violation::Workspace)
+            Err(Violation::Disk(distance))
         }
     }
 
     /// Of the platform's centre from the track's.
     #[inline(never)]
-    pub fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
+    pub(super) fn centre_distance(&self, segment: &CubicSegment, sample: &MotionState) -> f32 {
         if self.arm > 0.0 {
             segment.platform(sample, self.centre).radius()
         } else {
@@ -131,7 +227,7 @@ impl Workspace {
     }
 
     /// Holds a stop from here against disk and bounds: at the ends of its three segments.
-    pub fn check_stop(
+    pub(super) fn check_stop(
         &self,
         segment: &CubicSegment,
         bound_distances: &[[f32; 2]; 3],
@@ -152,5 +248,80 @@ impl Workspace {
             self.check_disk(self.centre_distance(segment, &spot))?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TURN: i64 = 1 << 32;
+    const MOST: i64 = 1_000_000_000 * TURN;
+
+    /// Angles from all over the range, and the ones at which a choice turns over.
+    fn angles() -> Vec<i64> {
+        let mut angles = Vec::new();
+        for turns in [-MOST, -3 * TURN, -TURN, 0, TURN, 20_000 * TURN, MOST] {
+            for part in [
+                0,
+                1,
+                TURN / 3,
+                TURN / 2 - 1,
+                TURN / 2,
+                TURN / 2 + 1,
+                TURN - 1,
+            ] {
+                angles.push(turns + part);
+            }
+        }
+        angles
+    }
+
+    #[test]
+    fn every_direction_but_as_given_keeps_the_orientation_and_its_own_range() {
+        for now in angles() {
+            for target in angles() {
+                assert_eq!(TurnDirection::AsGiven.resolve(now, target), target);
+                for (turn_direction, range) in [
+                    (TurnDirection::Shortest, -TURN / 2..TURN / 2),
+                    (TurnDirection::Positive, 0..TURN),
+                    (TurnDirection::Negative, 1 - TURN..1),
+                ] {
+                    let to = turn_direction.resolve(now, target);
+                    assert_eq!((to - target) % TURN, 0, "{turn_direction:?} {now} {target}");
+                    assert!(
+                        range.contains(&(to - now)),
+                        "{turn_direction:?} {now} {target}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn examples_in_degrees() {
+        let degrees = |units: i64| units as f64 / TURN as f64 * 360.0;
+        let units = |degrees: f64| (degrees / 360.0 * TURN as f64) as i64;
+        for (now, target, expected) in [
+            (10.0, 350.0, [350.0, -10.0, 350.0, -10.0]),
+            (730.0, 45.0, [45.0, 765.0, 765.0, 405.0]),
+            (0.0, 180.0, [180.0, -180.0, 180.0, -180.0]),
+            (90.0, 90.0, [90.0; 4]),
+            (90.0, 450.0, [450.0, 90.0, 90.0, 90.0]),
+        ] {
+            let ways = [
+                TurnDirection::AsGiven,
+                TurnDirection::Shortest,
+                TurnDirection::Positive,
+                TurnDirection::Negative,
+            ];
+            for (turn_direction, expected) in ways.into_iter().zip(expected) {
+                let to = degrees(turn_direction.resolve(units(now), units(target)));
+                assert!(
+                    (to - expected).abs() < 1e-6,
+                    "{turn_direction:?} {now} {target}: {to}"
+                );
+            }
+        }
     }
 }

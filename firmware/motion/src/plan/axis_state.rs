@@ -83,21 +83,21 @@ impl AxisState {
 
     /// The state `ticks` later, the same to the bit as that many calls of [`advance`](Self::advance).
     pub fn after(&self, ticks: u64, jerk: i64, nudge: i64) -> Self {
-        let half_jerk = jerk >> 1;
-        let change = self
-            .acceleration
-            .wrapping_add((ticks as i64).wrapping_mul(half_jerk));
-        Self {
-            position: self
-                .position
-                .wrapping_add(self.displacement(ticks, jerk, nudge)),
-            velocity: self
-                .velocity
-                .wrapping_add((ticks as i64).wrapping_mul(change)),
-            acceleration: self
-                .acceleration
-                .wrapping_add((ticks as i64).wrapping_mul(jerk)),
-        }
+        let mut axis = *self;
+        axis.pass(ticks, jerk, nudge);
+        axis
+    }
+
+    /// The same in place.
+    // Inlined wherever plans are walked through, products of 128 bits were a tenth of the generator's code.
+    #[inline(never)]
+    pub fn pass(&mut self, ticks: u64, jerk: i64, nudge: i64) {
+        let displacement = self.displacement(ticks, jerk, nudge);
+        self.position = self.position.wrapping_add(displacement);
+        let t = ticks as i64;
+        let change = self.acceleration.wrapping_add(t.wrapping_mul(jerk >> 1));
+        self.velocity = self.velocity.wrapping_add(t.wrapping_mul(change));
+        self.acceleration = self.acceleration.wrapping_add(t.wrapping_mul(jerk));
     }
 
     /// The way of `ticks`: `t (v + t (a / 2 + t j / 6))`.

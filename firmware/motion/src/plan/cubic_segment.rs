@@ -1,7 +1,6 @@
 //! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
 
-use super::axis_state::AxisState;
-use super::axis_state::{PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
+use super::axis_state::{AxisState, PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
 use super::{Piece, Position};
 use core::f32::consts::TAU;
 use kinematics::Angle;

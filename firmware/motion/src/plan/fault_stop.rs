@@ -6,8 +6,8 @@
 //! and the plan's velocity times the rate's change, all continuous. It adds at most `1.5 / duration` times the velocity
 //! to the acceleration.
 
+use super::Position;
 use super::axis_state::AxisState;
-use super::motion_plan::Position;
 use super::setpoint::{ACCELERATION_CUT, Setpoint, VELOCITY_CUT};
 use kinematics::{Acceleration, Twist};
 

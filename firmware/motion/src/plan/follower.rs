@@ -2,9 +2,8 @@
 
 use super::axis_state::{AxisState, TickIncrement};
 use super::fault_stop::{FaultStop, TimeScaling};
-use super::motion_plan::same;
 use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
-use super::{Plan, PlanStart, Position};
+use super::{Plan, PlanStart, Position, same};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
 

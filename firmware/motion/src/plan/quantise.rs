@@ -8,7 +8,7 @@
 //! as the plan's nudge.
 
 use super::axis_state::{AxisState, JERK_STEP, SUB_BITS};
-use super::motion_plan::{MAX_PIECES, Piece, Pieces, Plan, Position, push_piece, same};
+use super::{MAX_PIECES, Piece, Pieces, Plan, Position, push_piece, same};
 use heapless::Vec;
 use number::float::{i64_to_f32_fast, i128_to_f32_fast, ticks_to_f32};
 use number::round_ties_even;

@@ -12,7 +12,7 @@
 //! The pivots need C: the tick derives it, in whole units of a position, so that the way there and back is exact:
 //! another point may be chosen at rest and the platform does not move by a single unit.
 
-use super::motion_plan::Position;
+use super::Position;
 use kinematics::{Acceleration, Scalar, Twist};
 use number::Fixed;
 

@@ -1,12 +1,11 @@
 //! A jog: the way to a velocity, the velocity held, and the way to rest; how long it can be held before its axes have to
 //! brake, and how much slower it has to be where that is too short.
 
-use super::request::{InitialState, JogRequest};
+use super::{InitialState, JogRequest};
 use heapless::Vec;
 use motion::constraints::MotionLimits;
 use motion::plan::axis_state::AxisState;
-use motion::plan::cubic_segment::MotionState;
-use motion::plan::cubic_segment::per_second;
+use motion::plan::cubic_segment::{MotionState, per_second};
 use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
 use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::VelocityProfile;
@@ -16,16 +15,16 @@ use number::float::{FloatMinMax, ticks_to_f32, truncate};
 /// A jog from the state on in which its velocity is reached.
 pub(super) struct Jog {
     /// 2^-72 units a tick.
-    pub(super) wanted: [i64; 3],
+    wanted: [i64; 3],
     /// Where the velocity is reached.
-    pub(super) steady: [AxisState; 3],
+    steady: [AxisState; 3],
     /// Ticks of the change of velocity.
-    pub(super) ramp: u64,
+    ramp: u64,
     /// Ticks that bring the velocity back to zero.
-    pub(super) brake: [u64; 3],
+    brake: [u64; 3],
     from_rest: bool,
-    pub(super) limits: MotionLimits,
-    pub(super) radius: f32,
+    limits: MotionLimits,
+    radius: f32,
 }
 
 /// The four pieces of the way to a velocity, and the five in which it is held and given up.
@@ -62,7 +61,7 @@ impl Jog {
     }
 
     /// Adds pieces for the velocities held for `hold` ticks and given up, the point's and theta's for themselves.
-    pub(super) fn finish(&self, plan: &mut Plan, [point, _, turn]: [u64; 3]) {
+    pub(super) fn finish(&self, plan: &mut Plan, [point, turn]: [u64; 2]) {
         // What rounding leaves of a velocity is not given up: the nudge takes it.
         let moves = self.wanted.map(|velocity| velocity != 0);
         let (mut way, mut turning) = (JogPieces::new(), JogPieces::new());
@@ -125,7 +124,7 @@ impl Jog {
 }
 
 /// The change of velocity by `velocity`, to it or back.
-pub(super) fn change(velocity: &[f32; 3], limits: &MotionLimits) -> VelocityProfile {
+fn change(velocity: &[f32; 3], limits: &MotionLimits) -> VelocityProfile {
     VelocityProfile::new(&MotionState::default(), velocity, limits)
 }
 
@@ -148,13 +147,12 @@ impl Jog {
         &self,
         state: &[AxisState; 3],
         request: &JogRequest,
-        from_rest: bool,
-    ) -> Result<[u64; 3], TooShort> {
+    ) -> Result<[u64; 2], TooShort> {
         let hz = request.hz;
         let target = per_second(&self.wanted, request.hz);
         // From rest the ramp goes the same way, at half the speed.
         let ramp = ticks_to_f32(self.ramp) / (2.0 * hz);
-        let (from, done) = if from_rest {
+        let (from, done) = if self.from_rest {
             (state, ramp)
         } else {
             (&self.steady, 0.0)
@@ -182,7 +180,7 @@ impl Jog {
             });
         }
         let ticks = |seconds: f32| truncate(((seconds - brake) * hz).fmin(LONGEST)) as u64;
-        Ok([ticks(point), ticks(point), ticks(turn)])
+        Ok([ticks(point), ticks(turn)])
     }
 
     /// A velocity that can be reached and given up again in what way there is; zero where there is none.

@@ -2,30 +2,21 @@
 //!
 //! The platform centre goes `C = P - R(theta) p`. With p = 0 it goes straight, and nowhere is it further out than at an
 //! end. In general `f = |C|^2 = |P|^2 + |p|^2 - 2 P.R p` is at most `(|P| + |p|)^2`: only the parts of the line with P
-//! further out than the disk's radius less |p| need a look, one at each end. A part with a whole turn leaves the disk,
-//! because at some orientation the two lengths add up. Any other is walked: f'' has a bound B, so from a place where f
-//! is below the limit by `g` the centre stays inside for a way of `(sqrt(f'^2 + 2 B g) - f') / B`
-//! (see `steady_motion`).
+//! further out than the disk's radius less |p| need a look, one at each end. Each is walked from its end on: f'' has a
+//! bound B, so from a place where f is below the limit by `g` the centre stays inside for a way of
+//! `(sqrt(f'^2 + 2 B g) - f') / B` (see `steady_motion`). A whole turn leaves the disk there, because at some
+//! orientation the two lengths add up.
 
 use super::path::Path;
 use crate::steady_motion::{SteadyMotion, crossing};
 use core::f32::consts::TAU;
-use motion::check::target::check_target;
+use motion::check::workspace::check_target;
 use motion::constraints::Constraints;
 use motion::plan::Position;
 use motion::refusal::Refusal;
 use motion::tolerances::LINE_SQUARED_RADII;
 use number::float::{FloatMinMax, hypot};
 use number::sqrt_f32;
-
-/// Where a line is furthest out of the disk.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Exit {
-    /// Distance from the track's centre, track radii.
-    pub radius: f32,
-    /// Share of the way.
-    pub fraction: f32,
-}
 
 /// Most steps of a walk: a line that goes along the rim any longer counts as leaving it.
 const MOST_STEPS: usize = 150;
@@ -44,52 +35,26 @@ pub fn check_line(
     if !constraints.limits.all_positive() {
         return Err(Refusal::InvalidLimits);
     }
-    match exit(from, to, constraints) {
-        Some(exit) => Err(Refusal::LeavesDisk {
-            radius_mm: f64::from(exit.radius) * constraints.geometry.radius_mm,
-            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
-            fraction: f64::from(exit.fraction),
-        }),
-        None => Ok(()),
-    }
-}
-
-/// Where the line leaves the usable disk; or gets further out than it starts, when it starts outside.
-pub(super) fn exit(from: &Position, to: &Position, constraints: &Constraints) -> Option<Exit> {
     let usable = constraints.usable_radius as f32;
     // A line of no length has no bend to walk along.
     if constraints.rotation_centre == [0.0; 2] || from == to {
-        return None;
+        return Ok(());
     }
     let path = Path::new(from, to, constraints);
     let there = Walk::new(&path, from[2], constraints, false);
     let back = Walk::new(&path, to[2], constraints, true);
+    // Or no further out than it starts, when it starts outside.
     let start = there.motion.square(0.0).0;
     let limit = start.fmax(usable * usable) + LINE_SQUARED_RADII;
-    let [first, second] = near_ends(
-        &path,
-        usable - there.motion.arm() + LINE_SQUARED_RADII / 2.0,
-    )?;
-    let ends = [(there, first), (back, second)];
-    ends.into_iter()
-        .find_map(|(walk, way)| walk.exit(way, limit))
-}
-
-/// The parts of the way, from the start and from the end, on which P is further out than `radius`; `None` without any.
-fn near_ends(path: &Path, radius: f32) -> Option<[f32; 2]> {
-    let [x, y] = path.from;
-    let [way_x, way_y] = path.displacement;
-    let a = way_x * way_x + way_y * way_y;
-    let b = x * way_x + y * way_y;
-    let c = x * x + y * y - radius * radius.fmax(0.0);
-    let root = b * b - a * c;
-    // Never inside: one part, the whole.
-    if radius <= 0.0 || root <= 0.0 || a == 0.0 {
-        return (c > 0.0 || radius <= 0.0).then_some([1.0, 0.0]);
-    }
-    let root = sqrt_f32(root);
-    let parts = [(-b - root) / a, 1.0 - (root - b) / a].map(|part| part.clamp(0.0, 1.0));
-    parts.iter().any(|&part| part > 0.0).then_some(parts)
+    let Some((radius, fraction)) = there.exit(limit).or_else(|| back.exit(limit)) else {
+        return Ok(());
+    };
+    let mm = constraints.geometry.radius_mm;
+    Err(Refusal::LeavesDisk {
+        radius_mm: f64::from(radius) * mm,
+        usable_mm: constraints.usable_radius * mm,
+        fraction: f64::from(fraction),
+    })
 }
 
 /// A walk from one end of a line, with the path parameter for seconds.
@@ -123,42 +88,40 @@ impl Walk {
         }
     }
 
-    /// The exit within a part of the way.
+    /// Where the centre is furthest out, and after which part of the way, if it leaves the disk before the point is so far
+    /// in that every orientation is inside.
     #[inline(never)]
-    fn exit(&self, part: f32, limit: f32) -> Option<Exit> {
+    fn exit(&self, limit: f32) -> Option<(f32, f32)> {
         // A little more than a turn, so that every orientation is met in spite of roundings.
-        let turn = 1.01 * TAU / self.motion.turning.abs();
-        let part = part.fmin(turn);
-        if part <= 0.0 || (part < turn && !self.leaves(part, limit)) {
+        let turn = (1.01 * TAU / self.motion.turning.abs()).fmin(1.0);
+        if !self.leaves(turn, limit) {
             return None;
         }
-        let mut worst = Exit {
-            radius: 0.0,
-            fraction: 0.0,
-        };
+        let mut worst = (0.0, 0.0);
         for k in 0..=SAMPLES {
-            let s = part * k as f32 / SAMPLES as f32;
+            let s = turn * k as f32 / SAMPLES as f32;
             let radius = sqrt_f32(self.motion.square(s).0);
-            if radius > worst.radius {
-                let fraction = if self.backwards { 1.0 - s } else { s };
-                worst = Exit { radius, fraction };
+            if radius > worst.0 {
+                worst = (radius, if self.backwards { 1.0 - s } else { s });
             }
         }
         Some(worst)
     }
 
-    fn leaves(&self, part: f32, limit: f32) -> bool {
+    fn leaves(&self, turn: f32, limit: f32) -> bool {
+        let every_orientation = sqrt_f32(limit) - self.motion.arm();
         let mut s = 0.0;
         for _ in 0..MOST_STEPS {
-            let (square, half_rate) = self.motion.square(s);
-            if square > limit {
-                return true;
-            }
-            if s >= part {
+            let [x, y] = self.motion.point_after(s);
+            if hypot(x, y) <= every_orientation || s >= 1.0 {
                 return false;
             }
+            let (square, half_rate) = self.motion.square(s);
+            if square > limit || s >= turn {
+                return true;
+            }
             let step = crossing(square - limit, half_rate, self.second_derivative);
-            s = (s + step.fmax(LEAST_STEP)).fmin(part);
+            s = (s + step.fmax(LEAST_STEP)).fmin(turn);
         }
         true
     }

@@ -15,8 +15,8 @@
 //! All times are whole ticks, lengths of segments rounded up, those of ramps to even numbers: nothing gets faster by
 //! it.
 
-use super::rounded_ramps::{JerkRamp, JerkRamps, RoundedRamps};
-use super::segments::Corners;
+use super::rounded_ramps::{JerkRamp, JerkRamps, write_ramps};
+use super::topp::Corners;
 use motion::constraints::PathLimits;
 use motion::plan::quantise::PathProfile;
 use motion::tolerances::WHOLE_DURATION;
@@ -38,15 +38,15 @@ pub(super) fn write_path_profile(
     let mut ramps = corner_ramps(corners, slower, hz)?;
     let most = limits.jerk / (hz * hz * hz);
     widen(&mut ramps, most);
-    RoundedRamps::new(&ramps)?.write(profile)
+    write_ramps(&mut ramps, profile)
 }
 
 /// The corners, with ramps of no length yet.
 fn corner_ramps(corners: &Corners, slower: f32, hz: f32) -> Option<JerkRamps> {
     let ramp = |middle, change| JerkRamp {
         middle,
-        ticks: 0,
         change,
+        ..JerkRamp::default()
     };
     let mut ramps = JerkRamps::new();
     let (mut middle, mut before) = (0, 0.0);
@@ -89,7 +89,7 @@ fn widen(ramps: &mut JerkRamps, most: f32) {
 #[cfg(test)]
 mod tests {
     use crate::line::jerk_ramps::*;
-    use crate::line::segments::Corner;
+    use crate::line::topp::Corner;
 
     const HZ: f32 = 20_000.0;
     const LIMITS: PathLimits = PathLimits {

@@ -12,8 +12,7 @@
 //! | `path` | the line as the pivots see it: derivatives of their angles by the path parameter |
 //! | `disk` | whether the line stays inside the usable disk |
 //! | `pivot_demand` | the pivots' demands on a grid of places along the line |
-//! | `topp` | the largest squared speed at every place: time-optimal path parametrisation |
-//! | `segments` | that curve as a few segments of constant acceleration |
+//! | `topp` | the largest squared speed at every place: time-optimal path parametrisation; and that curve as a few segments of constant acceleration |
 //! | `jerk_ramps` | the steps of acceleration between them as ramps of limited jerk |
 //! | `rounded_ramps` | the ramps in whole numbers, at rest to the bit at the end |
 
@@ -22,13 +21,11 @@ pub(super) mod jerk_ramps;
 pub(crate) mod path;
 pub(super) mod pivot_demand;
 pub(super) mod rounded_ramps;
-pub(crate) mod segments;
 pub(super) mod topp;
 
 use disk::check_line;
 use jerk_ramps::write_path_profile;
-use motion::constraints::Constraints;
-use motion::constraints::PathLimits;
+use motion::constraints::{Constraints, PathLimits};
 use motion::plan::quantise::PathProfile;
 use motion::plan::{Plan, PlanStart, Position};
 use motion::profile::rest_to_rest::RestToRestProfile;
@@ -38,8 +35,9 @@ use number::float::{FloatMinMax, i64_to_f32_fast, ticks_to_f32};
 use number::{cbrt_f32, sqrt_f32};
 use path::Path;
 use pivot_demand::{DemandGrid, PathState};
-use segments::{Corners, fit_segments_below, remove_close_corners};
-use topp::{GRID_POINTS, velocity_limit_squared};
+use topp::{
+    Corners, GRID_POINTS, fit_segments_below, remove_close_corners, velocity_limit_squared,
+};
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
 #[inline(never)]

@@ -3,14 +3,14 @@
 //! The jerks become integers. The last two ramps take up what the rounding leaves of acceleration and speed at the end,
 //! up to a few units, and two ticks more take those: the motion ends at rest to the bit.
 
-use super::segments::MAX_SEGMENTS;
+use super::topp::MAX_SEGMENTS;
 use heapless::Vec;
 use motion::plan::MAX_PIECES;
 use motion::plan::quantise::{JERK_BITS, JerkSegment, PathProfile};
 use number::float::{FloatMinMax, i64_to_f32_fast, i128_to_f32_fast, round_i32};
 use number::wide_integer::{mul_i64_u32, mul_i128_u32};
 
-/// A ramp of the acceleration, before it is rounded.
+/// A ramp of the acceleration.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct JerkRamp {
     /// Where its middle is, ticks.
@@ -19,111 +19,79 @@ pub(super) struct JerkRamp {
     pub ticks: i32,
     /// How much the acceleration changes, s per tick squared.
     pub change: f32,
+    /// The jerk that makes it, in whole numbers: found last of all.
+    pub jerk: i32,
 }
 
 /// Ramps that make a motion.
 pub(super) type JerkRamps = Vec<JerkRamp, { MAX_SEGMENTS + 1 }>;
 
-/// The ramps in integers.
-pub(super) struct RoundedRamps {
-    ramps: Vec<RoundedRamp, { MAX_SEGMENTS + 1 }>,
-    end: i32,
-}
+impl JerkRamp {
+    fn start(&self) -> i32 {
+        self.middle - self.ticks / 2
+    }
 
-/// A ramp: start, end and jerk.
-#[derive(Clone, Copy)]
-struct RoundedRamp {
-    start: i32,
-    end: i32,
-    jerk: i32,
-}
-
-impl RoundedRamp {
-    fn ticks(&self) -> i32 {
-        self.end - self.start
+    fn end(&self) -> i32 {
+        self.middle + self.ticks / 2
     }
 
     /// Twice the distance of its middle from the end of all.
     fn moment(&self, end: i32) -> i32 {
-        2 * end - self.start - self.end
+        2 * (end - self.middle)
     }
 }
 
-impl RoundedRamps {
-    pub fn new(ramps: &JerkRamps) -> Option<Self> {
-        let jerk = |ramp: &JerkRamp| ramp.change / ramp.ticks as f32;
-        let largest = ramps
-            .iter()
-            .fold(0.0_f32, |most, r| most.fmax(jerk(r).abs()));
-        let mut rounded = Self {
-            ramps: Vec::new(),
-            end: i32::MIN,
-        };
-        let scale = (1_u32 << JERK_BITS) as f32 / largest;
-        for ramp in ramps {
-            let half = ramp.ticks / 2;
-            let ramp = RoundedRamp {
-                start: ramp.middle - half,
-                end: ramp.middle + half,
-                jerk: round_i32(jerk(ramp) * scale),
-            };
-            rounded.end = rounded.end.max(ramp.end);
-            rounded.ramps.push(ramp).ok()?;
+/// Gives the ramps their jerks and writes the pieces between all starts and ends.
+pub(super) fn write_ramps(ramps: &mut JerkRamps, profile: &mut PathProfile) -> Option<()> {
+    let jerk = |ramp: &JerkRamp| ramp.change / ramp.ticks as f32;
+    let largest = (ramps.iter()).fold(0.0_f32, |most, ramp| most.fmax(jerk(ramp).abs()));
+    let scale = (1_u32 << JERK_BITS) as f32 / largest;
+    for ramp in ramps.iter_mut() {
+        ramp.jerk = round_i32(jerk(ramp) * scale);
+    }
+    close(ramps)?;
+    let mut times: Vec<(i32, i32), { 2 * (MAX_SEGMENTS + 1) }> = Vec::new();
+    for ramp in ramps {
+        insert(&mut times, (ramp.start(), ramp.jerk))?;
+        insert(&mut times, (ramp.end(), -ramp.jerk))?;
+    }
+    profile.segments.clear();
+    profile.bits = JERK_BITS;
+    let mut sum = Sum::default();
+    let mut jerk = 0_i32;
+    for pair in times.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        jerk = jerk.wrapping_add(from.1);
+        if to.0 > from.0 {
+            sum.push(&mut profile.segments, (to.0 - from.0) as u32, jerk)?;
         }
-        rounded.close()?;
-        Some(rounded)
     }
+    sum.close(&mut profile.segments)?;
+    profile.six_times_distance = sum.six_times_distance;
+    (sum.six_times_distance > 0).then_some(())
+}
 
-    /// Acceleration and speed at the end: twice the sum of jerk times length, and of that times the distance from the
-    /// end.
-    fn left(&self) -> (i64, i128) {
-        self.ramps
-            .iter()
-            .fold((0, 0), |(acceleration, speed), ramp| {
-                let step = i64::from(ramp.jerk) * i64::from(ramp.ticks());
-                let moment = ramp.moment(self.end) as u32;
-                (acceleration + step, speed + mul_i64_u32(step, moment))
-            })
+/// Lets the last two ramps take up what all leave of acceleration and speed at the end: twice the sum of jerk times length,
+/// and of that times the distance from the end.
+fn close(ramps: &mut JerkRamps) -> Option<()> {
+    let end = ramps.iter().map(JerkRamp::end).max()?;
+    let (mut acceleration, mut speed) = (0, 0);
+    for ramp in &*ramps {
+        let step = i64::from(ramp.jerk) * i64::from(ramp.ticks);
+        acceleration += step;
+        speed += mul_i64_u32(step, ramp.moment(end) as u32);
     }
-
-    /// Lets the last two ramps take up what is left.
-    fn close(&mut self) -> Option<()> {
-        let (acceleration, speed) = self.left();
-        let [.., a, b] = &mut self.ramps[..] else {
-            return None;
-        };
-        let (far, near) = (a.moment(self.end), b.moment(self.end));
-        let a_step =
-            -i128_to_f32_fast(speed - mul_i64_u32(acceleration, near as u32)) / (far - near) as f32;
-        let a_jerk = round_i32(a_step / a.ticks() as f32);
-        a.jerk = a.jerk.wrapping_add(a_jerk);
-        let acceleration = acceleration + i64::from(a_jerk) * i64::from(a.ticks());
-        b.jerk = (b.jerk).wrapping_sub(round_i32(i64_to_f32_fast(acceleration) / b.ticks() as f32));
-        Some(())
-    }
-
-    /// Writes the pieces between all starts and ends.
-    pub fn write(&self, profile: &mut PathProfile) -> Option<()> {
-        let mut times: Vec<(i32, i32), { 2 * (MAX_SEGMENTS + 1) }> = Vec::new();
-        for ramp in &self.ramps {
-            insert(&mut times, (ramp.start, ramp.jerk))?;
-            insert(&mut times, (ramp.end, -ramp.jerk))?;
-        }
-        profile.segments.clear();
-        profile.bits = JERK_BITS;
-        let mut sum = Sum::default();
-        let mut jerk = 0_i32;
-        for pair in times.windows(2) {
-            let (from, to) = (pair[0], pair[1]);
-            jerk = jerk.wrapping_add(from.1);
-            if to.0 > from.0 {
-                sum.push(&mut profile.segments, (to.0 - from.0) as u32, jerk)?;
-            }
-        }
-        sum.close(&mut profile.segments)?;
-        profile.six_times_distance = sum.six_times_distance;
-        (sum.six_times_distance > 0).then_some(())
-    }
+    let [.., a, b] = &mut ramps[..] else {
+        return None;
+    };
+    let (far, near) = (a.moment(end), b.moment(end));
+    let a_step =
+        -i128_to_f32_fast(speed - mul_i64_u32(acceleration, near as u32)) / (far - near) as f32;
+    let a_jerk = round_i32(a_step / a.ticks as f32);
+    a.jerk = a.jerk.wrapping_add(a_jerk);
+    let acceleration = acceleration + i64::from(a_jerk) * i64::from(a.ticks);
+    b.jerk = (b.jerk).wrapping_sub(round_i32(i64_to_f32_fast(acceleration) / b.ticks as f32));
+    Some(())
 }
 
 /// The state that segments lead to.
@@ -196,15 +164,14 @@ mod tests {
             middle,
             ticks,
             change: change * 1e-6,
+            jerk: 0,
         })
         .collect()
     }
 
     fn profiled(ramps: &JerkRamps) -> Option<PathProfile> {
         let mut profile = PathProfile::default();
-        RoundedRamps::new(ramps)?
-            .write(&mut profile)
-            .map(|()| profile)
+        write_ramps(&mut ramps.clone(), &mut profile).map(|()| profile)
     }
 
     /// Every tick of it, in the integers of the segments.

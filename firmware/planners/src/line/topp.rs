@@ -5,10 +5,21 @@
 //! every place gets the largest z from which the rest of the line can still be kept; forwards from rest at the start z
 //! then grows as fast as it may (time-optimal path parametrisation; Pham and Pham 2018, "A new approach to time-optimal
 //! path parameterization based on reachability analysis").
+//!
+//! # As segments
+//!
+//! The fastest speed along a line becomes a few segments of constant acceleration.
+//!
+//! In z = s'^2 over s a constant acceleration is a straight line. Where the fastest motion accelerates as it may, z is
+//! one already; where it follows the pivots, z is a curve. One pass lays straight lines under it, each as long as it
+//! stays between z and a share of z: from where the line before ended, the range of slopes that do narrows from place
+//! to place, and the line ends where none is left. A share that leaves too many lines is lowered.
 
 use super::pivot_demand::{DemandGrid, GridPoint};
 use heapless::Vec;
+use motion::constraints::PathLimits;
 use number::float::FloatMinMax;
+use number::sqrt_f32;
 
 /// Most intervals and one.
 pub(super) const GRID_POINTS: usize = 65;
@@ -143,4 +154,136 @@ impl Node {
         }
         z
     }
+}
+
+/// Most segments: each corner takes two pieces of a plan.
+pub(super) const MAX_SEGMENTS: usize = 12;
+
+/// A corner: where, and the speed there (per second).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub s: f32,
+    pub rate: f32,
+}
+
+/// Corners of a motion from rest to rest.
+pub(super) type Corners = Vec<Corner, { MAX_SEGMENTS + 1 }>;
+
+/// The share of z that is given away, the least and the most.
+const LEAST: f32 = 0.01;
+const MOST: f32 = 0.3;
+/// What was too little grows by this factor and this much more at least.
+const STEP: f32 = 1.35;
+const STEP_MORE: f32 = 0.015;
+/// Shares that differ by less are as good as each other.
+const FINE: f32 = 0.04;
+
+/// Slopes that differ by less than this part of the steepest are the same but for roundings.
+const ALIKE: f32 = 1e-5;
+
+/// Writes the corners of segments under `z`, of which there are `intervals` and one, whose slopes stand for
+/// accelerations up to `acceleration`. `None` where it takes too many segments.
+pub(super) fn fit_segments_below(
+    z: &SquaredSpeeds,
+    intervals: usize,
+    acceleration: f32,
+    corners: &mut Corners,
+) -> Option<()> {
+    let z = z.get(..=intervals)?;
+    let laid =
+        |loss: f32, corners: &mut Corners| lay_segments(z, acceleration, 1.0 - loss, corners);
+    let (mut before, mut loss) = (0.0, LEAST);
+    while let Err(place) = laid(loss, corners) {
+        if loss >= MOST {
+            return None;
+        }
+        // What makes the segments of a curve as much longer as they would have to be, and a step at least.
+        let longer = intervals as f32 / place as f32;
+        before = loss;
+        loss = (loss * (longer * longer))
+            .fmax(STEP * loss + STEP_MORE)
+            .fmin(MOST);
+    }
+    if loss - before >= FINE {
+        // Once more, with half of what was added.
+        let mut finer = Corners::new();
+        if laid(0.5 * (before + loss), &mut finer).is_ok() {
+            *corners = finer;
+        }
+    }
+    Some(())
+}
+
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
+/// corners at which the acceleration falls: without them the speed is lower.
+pub(super) fn remove_close_corners(corners: &mut Corners, limits: &PathLimits) {
+    let mut k = 1;
+    while k + 2 < corners.len() {
+        // How long a segment lasts, and its acceleration.
+        let segment = |k: usize| {
+            let (from, to) = (&corners[k], &corners[k + 1]);
+            let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
+            (seconds, (to.rate - from.rate) / seconds)
+        };
+        let ((_, before), (seconds, here), (_, after)) =
+            (segment(k - 1), segment(k), segment(k + 1));
+        let (first, second) = (before - here, here - after);
+        let ramps = (first + second) / (2.0 * limits.jerk);
+        if first > 0.0 && second > 0.0 && seconds < ramps {
+            // The one that stands out less.
+            corners.remove(if first < second { k } else { k + 1 });
+            k = k.saturating_sub(1).max(1);
+        } else {
+            k += 1;
+        }
+    }
+}
+
+/// One pass, written; an error is the place up to which the segments suffice.
+#[inline(never)]
+fn lay_segments(
+    z: &[f32],
+    acceleration: f32,
+    share: f32,
+    corners: &mut Corners,
+) -> Result<(), usize> {
+    let last = z.len() - 1;
+    let spacing = 1.0 / last as f32;
+    let steepest = 2.0 * acceleration * spacing;
+    corners.clear();
+    let (mut from, mut start) = (0, 0.0);
+    // There is room for one more than there are segments.
+    let _ = corners.push(Corner { s: 0.0, rate: 0.0 });
+    while from < last {
+        let (mut low, mut high) = (-steepest, steepest);
+        let mut to = from + 1;
+        // The first segment is taken in any case: at its end a line can be as low as it likes.
+        high = high.fmin(z[to] - start);
+        low = low.fmax(z[to] * share - start).fmin(high);
+        while to < last {
+            let steps = (to + 1 - from) as f32;
+            let over = 1.0 / steps;
+            let highest = high.fmin((z[to + 1] - start) * over);
+            let lowest = low.fmax((z[to + 1] * share - start) * over);
+            if lowest > highest + steepest * ALIKE {
+                break;
+            }
+            (low, high) = (lowest.fmin(highest), highest);
+            to += 1;
+        }
+        start = (start + high * (to - from) as f32).fmax(0.0);
+        from = to;
+        let corner = Corner {
+            s: from as f32 * spacing,
+            rate: sqrt_f32(start),
+        };
+        if corners.push(corner).is_err() {
+            return Err(from);
+        }
+    }
+    // At the end z is 0, and so is the speed but for roundings.
+    if let Some(corner) = corners.last_mut() {
+        corner.rate = 0.0;
+    }
+    Ok(())
 }

@@ -2,8 +2,7 @@
 //! line from there, and the delay between them.
 
 use super::ending::{Ended, Ending, Leaving};
-use super::overlap::Line;
-use super::overlap::{Overlap, Part};
+use super::overlap::{Line, Overlap, Part};
 use heapless::Vec;
 use motion::plan::{Piece, Pieces, Plan, Position, write_sum};
 use number::float::{FloatMinMax, ticks_to_f32};

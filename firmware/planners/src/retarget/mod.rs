@@ -32,9 +32,8 @@ mod overlap;
 
 use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
-use motion::check::Violation;
-use motion::check::target::check_target;
-use motion::check::{Budget, PlanCheck};
+use motion::check::workspace::check_target;
+use motion::check::{Budget, PlanCheck, Violation};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
 use motion::plan::{Plan, Position, nudge_to, state_after_pieces};

@@ -175,28 +175,16 @@ impl Overlap {
     ) -> bool {
         let delay_s = ticks_to_f32(delay) / self.hz;
         let (mut endings, mut lines) = (ending.windows(2), line.windows(2));
-        let next_ending = |endings: &mut core::slice::Windows<'_, Corner>| {
-            endings.next().map(|pair| (pair[0], pair[1].at_s))
-        };
-        let next_line = |lines: &mut core::slice::Windows<'_, LineCorner>| {
-            (lines.next()).map(|pair| (pair[0], pair[1].at_s + delay_s))
-        };
-        let Some(mut ended) = next_ending(&mut endings) else {
-            return true;
-        };
-        let Some(mut lined) = next_line(&mut lines) else {
-            return true;
-        };
         let mut now_s = delay_s;
-        while ended.1 <= now_s {
-            match next_ending(&mut endings) {
-                Some(next) => ended = next,
-                None => return true,
-            }
-        }
+        let (Some(mut ended), Some(mut lined)) =
+            (endings.find(|pair| pair[1].at_s > now_s), lines.next())
+        else {
+            return true;
+        };
         loop {
-            let (a, b) = (&ended.0, &lined.0);
-            let until_s = ended.1.fmin(lined.1);
+            let (a, b) = (&ended[0], &lined[0]);
+            let ends_s = [ended[1].at_s, lined[1].at_s + delay_s];
+            let until_s = ends_s[0].fmin(ends_s[1]);
             let (t, u) = (now_s - a.at_s, now_s - delay_s - b.at_s);
             let middle = (until_s - now_s) / 2.0;
             let state = |t: f32, u: f32| {
@@ -221,17 +209,17 @@ impl Overlap {
                 return false;
             }
             now_s = until_s;
-            if ended.1 <= now_s {
-                match next_ending(&mut endings) {
-                    Some(next) => ended = next,
-                    None => return true,
-                }
+            if ends_s[0] <= now_s {
+                let Some(next) = endings.next() else {
+                    return true;
+                };
+                ended = next;
             }
-            if lined.1 <= now_s {
-                match next_line(&mut lines) {
-                    Some(next) => lined = next,
-                    None => return true,
-                }
+            if ends_s[1] <= now_s {
+                let Some(next) = lines.next() else {
+                    return true;
+                };
+                lined = next;
             }
         }
     }

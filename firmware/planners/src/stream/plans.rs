@@ -1,17 +1,21 @@
 //! The plans of a stream: knots along the curve, held against every limit, and the stop after them.
+//!
+//! The stop leads on from any state, wherever the velocity and the acceleration point to. The velocity is given up in three
+//! segments (see `profile/velocity`), the first with as much jerk as a stream may have: an acceleration under way that is
+//! released slowly would end over the limit of speed. Where a pivot is asked for too much, the stop is softer.
 
-use super::final_stop::final_stop;
-use super::spline::curve_point;
-use super::state::{PART_BITS, SentPlan, Stream};
-use motion::check::instant::{InstantCheck, InstantState};
+use super::curve::curve_point;
+use super::{PART_BITS, SentPlan, Stream};
+use motion::check::{Budget, PlanCheck, Violation};
 use motion::constraints::Constraints;
-use motion::constraints::Speeds;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
-use motion::plan::cubic_segment::per_second;
-use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to};
+use motion::plan::cubic_segment::MotionState;
+use motion::plan::quantise::velocity_pieces;
+use motion::plan::{Piece, Plan, PlanStart, Position, nudge_to, state_after_pieces};
+use motion::profile::velocity::VelocityProfile;
 use motion::refusal::Refusal;
 use motion::tolerances::JERK_TOLERANCE;
-use number::float::ticks_to_f32;
+use number::float::FloatMinMax;
 
 /// A plan, the axes that it starts from, and what is left when it is sent.
 pub(super) type Planned = (Plan, [AxisState; 3], SentPlan);
@@ -24,7 +28,6 @@ impl Stream {
         sent: Option<SentPlan>,
         constraints: &Constraints,
     ) -> Result<Planned, Refusal> {
-        let instant_check = InstantCheck::new(constraints);
         let rest = self.target(2);
         let (start, from) = match sent {
             Some(SentPlan { id, splice, state }) => {
@@ -34,13 +37,17 @@ impl Stream {
             None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
         let mut plan = Plan::new(id, start, rest);
-        let (state, now) = self.knots(&mut plan, from, &instant_check)?;
+        let state = self.knots(&mut plan, from);
+        let plan_check = PlanCheck::for_stream(constraints);
+        (plan_check.check(&plan.pieces, &from, &mut { Budget::FOR_ANSWER }))
+            .map_err(|violation| refusal(violation, constraints))?;
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
             plan.nudge = nudge_to(&state, &plan.end, splice).ok_or(Refusal::InvalidLimits)?;
         } else {
-            let (stop, end) = final_stop(&state, &now, &instant_check)?;
+            let stop = final_stop(&state, constraints, &plan_check)?;
+            let end = state_after_pieces(&state, &stop, &[0; 3]);
             plan.pieces
                 .extend(stop.into_iter().filter(|piece| piece.ticks > 0));
             plan.end = end.map(|axis| axis.rounded());
@@ -56,27 +63,12 @@ impl Stream {
     }
 
     /// Adds the pieces along the curve; where they lead.
-    fn knots(
-        &mut self,
-        plan: &mut Plan,
-        from: [AxisState; 3],
-        instant_check: &InstantCheck<'_>,
-    ) -> Result<([AxisState; 3], InstantState), Refusal> {
+    fn knots(&mut self, plan: &mut Plan, from: [AxisState; 3]) -> [AxisState; 3] {
         let mut state = from;
-        let mut before = instant_check.evaluate(&state)?;
         for _ in 0..self.knots {
             self.pass();
             for piece in self.pieces(&state) {
-                let jerk = per_second(&piece.jerk, instant_check.hz);
-                let jerk = Speeds::of(&each!(i => jerk[i] * instant_check.hz * instant_check.hz));
-                let most = instant_check.limits.jerk.scaled(JERK_TOLERANCE);
-                if jerk.linear > most.linear || jerk.angular > most.angular {
-                    return Err(Refusal::Jerk);
-                }
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
-                let now = instant_check.evaluate(&state)?;
-                instant_check.check(&before, &now, ticks_to_f32(piece.ticks) / instant_check.hz)?;
-                before = now;
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
             }
@@ -85,7 +77,7 @@ impl Stream {
                 break;
             }
         }
-        Ok((state, before))
+        state
     }
 
     /// Passes the curve by a knot.
@@ -147,3 +139,136 @@ impl Stream {
 /// Bits of a place on the curve below a position's unit.
 const FINE_BITS: u32 = 20;
 const FINE: f32 = (1_u32 << FINE_BITS) as f32;
+
+/// Why targets are refused that break this.
+fn refusal(violation: Violation, constraints: &Constraints) -> Refusal {
+    let mm = constraints.geometry.radius_mm;
+    match violation {
+        Violation::Disk(radius) => Refusal::OutsideDisk {
+            radius_mm: f64::from(radius) * mm,
+            usable_mm: constraints.usable_radius * mm,
+        },
+        Violation::Bounds(axis) => Refusal::OutOfBounds { axis },
+        Violation::Speed(_) => Refusal::Velocity,
+        Violation::Acceleration(_) => Refusal::Acceleration,
+        Violation::Jerk(_) => Refusal::Jerk,
+        Violation::PivotRate(_) | Violation::PivotAcceleration(_) => Refusal::Pivots,
+        Violation::NoRoomToStop => Refusal::NoRoomToStop,
+    }
+}
+
+/// How often a softer stop is tried.
+const ATTEMPTS: usize = 3;
+
+/// The pieces, of which some have no ticks; after them it is at rest, but for what rounding leaves.
+fn final_stop(
+    state: &[AxisState; 3],
+    constraints: &Constraints,
+    plan_check: &PlanCheck,
+) -> Result<[Piece; 4], Refusal> {
+    let hz = constraints.limits.rate_hz as f32;
+    let motion = MotionState::new(state, hz);
+    let mut part = 1.0;
+    for _ in 0..ATTEMPTS {
+        let limits = constraints.motion_limits().scaled(part, 1.0);
+        let ticks = VelocityProfile::new(&motion, &[0.0; 3], &limits)
+            .with_first_jerk(JERK_TOLERANCE)
+            .ticks(hz);
+        let pieces = velocity_pieces(state, &[0; 3], ticks);
+        match plan_check.check(&pieces, state, &mut { Budget::FOR_STOP }) {
+            Ok(()) => return Ok(pieces),
+            Err(Violation::Speed(_)) => return Err(Refusal::Velocity),
+            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+                part *= (0.9 / over).fmin(0.7);
+            }
+            Err(_) => break,
+        }
+    }
+    Err(Refusal::NoRoomToStop)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::stream::plans::*;
+    use kinematics::Geometry;
+    use motion::Limits;
+    use motion::plan::axis_state::AXIS_UNITS;
+    use motion::plan::state_after_pieces;
+
+    const CONSTRAINTS: Constraints = Constraints::new(Limits::REFERENCE, Geometry::REFERENCE);
+
+    /// At `x` track radii, with these mm/s, mm/s and deg/s, and mm/s^2 along x.
+    fn state(x: f64, velocity: [f64; 3], along: f64) -> [AxisState; 3] {
+        let hz = CONSTRAINTS.limits.rate_hz;
+        let units = f64::from(AXIS_UNITS);
+        let per = [100.0, 100.0, 360.0];
+        let mut axes = [0, 1, 2].map(|i| AxisState {
+            position: 0,
+            velocity: (velocity[i] / per[i] / hz * units) as i64,
+            acceleration: 0,
+        });
+        axes[0].position = (x * units) as i128;
+        axes[0].acceleration = (along / 100.0 / hz / hz * units) as i64 / 6 * 6;
+        axes
+    }
+
+    fn stopped(
+        axes: &[AxisState; 3],
+        constraints: &Constraints,
+    ) -> Result<([Piece; 4], [AxisState; 3]), Refusal> {
+        let pieces = final_stop(axes, constraints, &PlanCheck::for_stream(constraints))?;
+        Ok((pieces, state_after_pieces(axes, &pieces, &[0; 3])))
+    }
+
+    #[test]
+    fn it_comes_to_rest_along_its_way_in_the_time_that_the_limits_ask_for() {
+        // 200 mm/s at 4 m/s^2 and 400 m/s^3: 50 ms and 10 ms, 6 mm.
+        let axes = state(0.0, [200.0, 0.0, 0.0], 0.0);
+        let (pieces, end) = stopped(&axes, &CONSTRAINTS).unwrap();
+        let ticks: u64 = pieces.iter().map(|piece| piece.ticks).sum();
+        assert!(ticks.abs_diff(1_200) <= 2, "{ticks}");
+        let mm = (end[0].position - axes[0].position) as f64 / f64::from(AXIS_UNITS) * 100.0;
+        assert!((mm - 6.0).abs() < 0.01, "{mm}");
+        assert!(end.iter().all(|axis| axis.acceleration == 0));
+        // What is left is no speed that anything could follow.
+        assert!(end.iter().all(|axis| axis.velocity.abs() < 1 << 32));
+        assert_eq!((end[1], end[2]), (axes[1], axes[2]));
+    }
+
+    #[test]
+    fn an_acceleration_under_way_is_given_up_too() {
+        let axes = state(0.0, [100.0, 30.0, 90.0], 3_000.0);
+        let (_, end) = stopped(&axes, &CONSTRAINTS).unwrap();
+        assert!(end.iter().all(|axis| axis.acceleration == 0));
+        assert!(
+            end.iter().all(|axis| axis.velocity.abs() < 1 << 32),
+            "{end:?}"
+        );
+    }
+
+    #[test]
+    fn at_rest_there_is_nothing_to_do() {
+        let (pieces, _) = stopped(&state(0.0, [0.0; 3], 0.0), &CONSTRAINTS).unwrap();
+        assert!(pieces.iter().all(|piece| piece.jerk == [0; 3]));
+    }
+
+    #[test]
+    fn near_the_edge_there_is_none() {
+        assert!(stopped(&state(0.73, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
+        let late = stopped(&state(0.75, [200.0, 0.0, 0.0], 0.0), &CONSTRAINTS);
+        assert_eq!(late.err(), Some(Refusal::NoRoomToStop));
+        assert!(stopped(&state(0.75, [-200.0, 0.0, 0.0], 0.0), &CONSTRAINTS).is_ok());
+    }
+
+    #[test]
+    fn with_weak_drives_it_is_softer() {
+        let axes = state(0.0, [0.0, 0.0, 300.0], 0.0);
+        let ticks = |constraints: &Constraints| -> u64 {
+            let (pieces, _) = stopped(&axes, constraints).unwrap();
+            pieces.iter().map(|piece| piece.ticks).sum()
+        };
+        let mut weak = CONSTRAINTS;
+        weak.limits.pivot_acceleration_rad_s2 = 100.0;
+        assert!(ticks(&weak) > ticks(&CONSTRAINTS) * 11 / 10);
+    }
+}

@@ -11,7 +11,7 @@ use crate::iterative_learning::InversePlant;
 use crate::parameters::Parameters;
 
 /// Largest share of full duty: the bridge needs its charge pump refreshed and the current sense its window.
-const MAX_DUTY: f64 = 0.98;
+pub(super) const MAX_DUTY: f64 = 0.98;
 /// Encoder's resolution, 2^-26 turns.
 const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
 /// Counts of change in a tick whose voltage a frozen encoder's drive must exceed, and of which an oscillation's swing must be worth
@@ -65,7 +65,7 @@ pub struct PivotServoConfig {
     /// Current over the dead time's knee, for a volt at rest.
     pub(super) knee_currents_per_volt: f32,
     /// Current over the knee of an ADC count; share of what the current is off by that the motor constant is corrected by, in volts.
-    pub(super) knee_currents_per_count: f32,
+    pub(in crate::control) knee_currents_per_count: f32,
     pub(super) motor_constant_step: f32,
     pub(super) motor_constant_limit: f32,
     /// Share of the way to its final value that the current goes in a tick.

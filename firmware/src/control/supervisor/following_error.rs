@@ -1,5 +1,6 @@
 //! The following error of the pivots: measured minus setpoint.
 
+use super::input_faults::LATE_RECOVERY_TICKS;
 use crate::control::config::Config;
 use crate::control::pivot_setpoints::PivotSetpoints;
 use crate::control::state::State;
@@ -40,10 +41,14 @@ impl State {
         pivots: &[Angle; 3],
         wanted: &PivotSetpoints,
     ) -> bool {
+        // A tick that does not come leaves the setpoint behind the pivots, by what they go in it.
+        let late_ticks = self.lateness.div_ceil(LATE_RECOVERY_TICKS) as f32;
+        let late_lag = late_ticks / config.limits.rate_hz * UNITS_PER_RAD as f32;
         let pivots = pivots.iter().zip(&wanted.angles);
         for (i, ((&pivot, &target), rate)) in pivots.zip(&wanted.motion.rates).enumerate() {
             let error = (pivot - target).units();
-            let more = (rate.abs() * config.limits.following_error_per_rate) as i32;
+            let lag = config.limits.following_error_per_rate + late_lag;
+            let more = (rate.abs() * lag) as i32;
             let most = config.limits.following_error.saturating_add(more);
             if error.unsigned_abs() > u64::from(most.unsigned_abs()) {
                 const RAD: f32 = (1.0 / UNITS_PER_RAD) as f32;

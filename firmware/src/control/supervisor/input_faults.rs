@@ -9,7 +9,7 @@ use crate::mode::Mode;
 /// Ticks in a row that a bad supply is one: 0.2 ms, over which a converter's noise is none.
 const BAD_SUPPLY_TICKS: u8 = 4;
 /// Ticks over which one late tick is forgiven.
-const LATE_RECOVERY_TICKS: u32 = 100;
+pub(super) const LATE_RECOVERY_TICKS: u32 = 100;
 
 impl State {
     /// Checks the inputs. In a tick with nothing unusual that is one comparison for all of them.

@@ -9,6 +9,7 @@
 //! | `setpoint_faults` | faults that the setpoint shows |
 //! | `following_error` | measured minus setpoint of each pivot |
 //! | `pivot_faults` | faults of a single pivot, one pivot a tick |
+//! | `current_faults` | faults that a motor's current shows, all three every fourth tick |
 //!
 //! Off coasts, so that a stage can be moved by hand; holding, moving and stopping drive; a fault brakes, or coasts
 //! where its [`Reaction`](crate::fault::Reaction) is that. All faults with their detection, reaction and reason stand
@@ -20,6 +21,7 @@
 //! pivots by the following error. Only the angle between two pivots, which is a difference, is measured.
 
 mod commands;
+mod current_faults;
 mod following_error;
 mod input_faults;
 mod pivot_faults;

@@ -5,40 +5,14 @@ use crate::control::config::Config;
 use crate::control::inspection::{INSPECTION_PERIOD_TICKS, Inspection};
 use crate::control::oscillation::OscillationWatch;
 use crate::control::state::State;
-use crate::control::units::{CURRENT_A_PER_COUNT, UNITS_PER_RAD};
+use crate::control::units::UNITS_PER_RAD;
 use crate::fault::FaultKind;
-use crate::number::sqrt_f32;
 
 /// Frames with one reading after which it is asked whether there should have been others: 1 ms, three times the
 /// windings' own time. Noise makes a pivot that stands under full drive show two readings in less, as a rule.
 const REPEATED_READINGS: u16 = 20;
 
 impl State {
-    /// The motor's temperature, in every state: it cools while nothing drives it.
-    pub(in crate::control) fn check_motor_heat(
-        &mut self,
-        config: &Config,
-        current_counts: &[i16; 3],
-    ) {
-        let i = self.inspection_slot;
-        let (Some(watch), Some(counts)) = (self.pivot_watches.get_mut(i), current_counts.get(i))
-        else {
-            return;
-        };
-        let counts = f32::from(*counts);
-        watch.mean_square_current +=
-            (counts * counts - watch.mean_square_current) * config.limits.winding_smoothing;
-        let (heat, most) = (
-            watch.mean_square_current,
-            config.limits.max_mean_square_current,
-        );
-        if heat > most && self.is_driven() {
-            const A: f32 = CURRENT_A_PER_COUNT as f32;
-            let (value, limit) = (sqrt_f32(heat) * A, sqrt_f32(most) * A);
-            self.raise_fault(FaultKind::MotorHot, Some(i), value, limit);
-        }
-    }
-
     /// Inspects a pivot while it is driven; whether all is well with it.
     pub(in crate::control) fn inspect_pivot(
         &mut self,
@@ -80,9 +54,8 @@ impl State {
         }
         let most = config.servo.pivots[i].oscillation_swing;
         let watched = &mut watch.oscillation;
-        if inspection.slowly
-            && watched.update(servo.feedback_volts(), most, limits.oscillation_memory)
-        {
+        let forgetting = limits.oscillation_memory;
+        if watched.update(servo.feedback_volts(), most, forgetting, inspection.slowly) {
             let swing = watched.swing();
             self.raise_fault(FaultKind::Oscillation, Some(i), swing, most);
             return false;
@@ -131,6 +104,7 @@ impl State {
     pub(in crate::control) fn reset_watches(&mut self) {
         for watch in &mut self.pivot_watches {
             watch.saturated_ticks = 0;
+            watch.unexplained_ticks = 0;
             watch.oscillation = OscillationWatch::default();
             watch.duty = 0;
             watch.setpoint = None;

@@ -69,6 +69,7 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         }
         Event::Recovered => bare(21),
         Event::RecoveryGivenUp => bare(22),
+        Event::FramesBridged(pivot, count) => (28, [*pivot, 0], [u32::from(*count), 0, 0]),
     }
 }
 
@@ -121,6 +122,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         23 => Event::UnusableParameter(a, number),
         21 => Event::Recovered,
         22 => Event::RecoveryGivenUp,
+        28 => Event::FramesBridged(first, a as u16),
         _ => return None,
     };
     Some((tick, event))

@@ -40,6 +40,8 @@ pub(in crate::gcs) enum Event {
     HostSilent(f64),
     /// The encoder of a pivot, counted from 0, has begun to warn, or has stopped.
     Warning(u8, bool),
+    /// So many bad frames of an encoder have been bridged since it was told last; pivot from 0.
+    FramesBridged(u8, u16),
     /// Settings were written to flash.
     Stored,
     /// They could not be: the error's number.
@@ -83,6 +85,9 @@ impl fmt::Display for Event {
             Self::Refused(count) => write!(f, "{count} commands refused by the loop"),
             Self::Warning(pivot, true) => write!(f, "encoder warns, pivot {}", pivot + 1),
             Self::Warning(pivot, false) => write!(f, "encoder warns no more, pivot {}", pivot + 1),
+            Self::FramesBridged(pivot, count) => {
+                write!(f, "{count} bad encoder frames bridged, pivot {}", pivot + 1)
+            }
             Self::HostSilent(ms) => write!(f, "stopped: no host heard for {ms} ms"),
             Self::Stored => f.write_str("settings kept"),
             Self::StoreFailed(number) => {

@@ -20,7 +20,19 @@ pub(in crate::gcs) struct EventLog {
     /// How many of them the retained memory has; `None` before it was looked at.
     retained: Option<u32>,
     last: Observed,
+    bridged: [BridgedFrames; 3],
 }
+
+/// Bridged frames of an encoder as they were told last, and the tick of that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct BridgedFrames {
+    count: u16,
+    tick: u64,
+}
+
+/// Bridged frames that are worth an event: more than a single disturbance makes. And ticks from one event to the next, 10 s.
+const BRIDGED_FRAMES: u16 = 12;
+const BRIDGED_TICKS: u64 = 200_000;
 
 /// What of the latest snapshot can be an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +55,7 @@ impl EventLog {
             count: 0,
             retained: None,
             last: Observed::default(),
+            bridged: [BridgedFrames::default(); 3],
         };
         events.add(0, Event::Start(None));
         events
@@ -199,6 +212,15 @@ impl EventLog {
         for (pivot, (warns, warned)) in (0..).zip(now.warnings.iter().zip(last.warnings)) {
             if *warns != warned {
                 self.add(tick, Event::Warning(pivot, *warns));
+            }
+        }
+        for pivot in 0..3 {
+            let told = &mut self.bridged[pivot];
+            let count = snapshot.bridged_frames[pivot].wrapping_sub(told.count);
+            if count >= BRIDGED_FRAMES && (told.tick == 0 || tick >= told.tick + BRIDGED_TICKS) {
+                told.count = snapshot.bridged_frames[pivot];
+                told.tick = tick;
+                self.add(tick, Event::FramesBridged(pivot as u8, count));
             }
         }
         for (now, last) in [(now.fault, last.fault), (now.worse, last.worse)] {

@@ -6,7 +6,7 @@ use super::table::PARAMETERS;
 use crate::parameters::Parameters;
 
 /// The thresholds of supervision, and whether a debugger may be attached.
-const THRESHOLDS: core::ops::RangeInclusive<u32> = 0x5450_0500..=0x5450_0512;
+const THRESHOLDS: core::ops::RangeInclusive<u32> = 0x5450_0500..=0x5450_0513;
 /// Between them, what is no threshold: the longest silence, which 0 switches off and a client asks for.
 const SILENCE: u32 = 0x5450_0510;
 /// Of them, the one that a lower value makes looser: the lowest supply.

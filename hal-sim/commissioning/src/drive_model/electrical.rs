@@ -43,8 +43,6 @@ const BANDS: usize = 24;
 const ROUNDS: usize = 5;
 /// What a number that is known weighs more than all that is measured of it.
 const SURE: f64 = 1e6;
-/// Dynamic stiffness of the motor on its spring, over the spring's, under which the motor's angle does not follow from the ring's.
-const LEAST_APART: f64 = 0.25;
 /// Multiples of its own size, over a normal one's median, at which a residual counts half.
 const HALF_AT: f64 = 2.0;
 
@@ -89,13 +87,7 @@ impl Equations {
         let mut rows = Vec::new();
         for run in runs {
             for record in run.experiments.iter().flatten() {
-                add_rows(
-                    &record.pivots[pivot],
-                    run.period_ticks,
-                    timing,
-                    knee_a,
-                    &mut rows,
-                );
+                add_rows(&record.pivots[pivot], run, timing, knee_a, &mut rows);
             }
         }
         if rows.is_empty() {
@@ -140,9 +132,10 @@ pub fn electrical(
     })
 }
 
-fn add_rows(signals: &Signals, period: usize, timing: &Timing, knee_a: f64, rows: &mut Vec<Row>) {
+fn add_rows(signals: &Signals, run: &Run, timing: &Timing, knee_a: f64, rows: &mut Vec<Row>) {
+    let period = run.period_rows();
     let Some(ticks) = signals.ticks() else { return };
-    let bin_hz = 1.0 / (period as f64 * timing.tick_s);
+    let bin_hz = 1.0 / (run.period_ticks as f64 * timing.tick_s);
     let bins = BAND_HZ.map(|hz| (hz / bin_hz).ceil() as usize);
     let lost: Vec<f64> = signals
         .current_a
@@ -181,11 +174,9 @@ type Found = Option<(Vector4<f64>, Vector4<f64>)>;
 impl Row {
     /// Puts the motor's rate in the ring's place; false where that cannot be told.
     fn take_motor(&mut self, chain: &Chain, motor_constant: f64) -> bool {
-        let s = Complex::new(0.0, TAU * self.hz);
-        let spring = chain.stiffness + chain.damping * s;
-        let motor = spring + chain.motor_inertia * s * s;
-        self.rate = (spring * self.rate + motor_constant * self.current * s) / motor;
-        motor.norm() > LEAST_APART * spring.norm()
+        let motor = chain.motor_rate(self.hz, self.rate, motor_constant * self.current);
+        self.rate = motor.unwrap_or(self.rate);
+        motor.is_some()
     }
 
     /// Coefficients of the four numbers, with a current that has so much less for each volt told.

@@ -19,6 +19,23 @@ use nalgebra::{Complex, DVector, Matrix3};
 pub struct Guess(pub Chain);
 
 impl Guess {
+    /// The reference stage with half of the heaviest load: what is thought of every machine.
+    pub const STAGE: Self = Self(Chain {
+        motor_inertia: 0.012,
+        ring_inertia: 0.008,
+        stiffness: 7.46e5,
+        damping: 3.2,
+        viscous: 0.05,
+        guide_stiffness: 3e5,
+        guide_damping: 1.7,
+        along_stiffness: 1000.0,
+        along_damping: 0.8,
+        load: Load {
+            mass: 0.05,
+            inertia: 0.025,
+            moment: [0.0; 2],
+        },
+    });
     /// How far it may be off, as a logarithm: a factor of two either way is likely.
     pub const SPREAD: f64 = 0.7;
 }

@@ -18,16 +18,32 @@ pub struct Gains {
     pub scheduled_inertia_kg_m2: f64,
 }
 
+impl Gains {
+    /// A servo that is slower, the same with time stretched: velocity and position gain by the factor, the integral gain by its square.
+    #[must_use]
+    pub fn slowed(&self, by: f64) -> Self {
+        Self {
+            pivots: self.pivots.map(|mut pivot| {
+                pivot.gains.velocity_v_s_rad *= by;
+                pivot.gains.position_1_s *= by;
+                pivot.gains.integral_v_rad *= by * by;
+                pivot
+            }),
+            ..*self
+        }
+    }
+}
+
 /// What a loop is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Whether it is stable: known only where the plant's frequencies reach from half a hertz to nearly half the ticks' rate.
+    /// Whether it is stable; true where that is not known ([`Plant::is_complete`]).
     pub is_stable: bool,
     /// Largest singular value of S over all frequencies.
     pub ms: f64,
     /// Where.
     pub ms_hz: f64,
-    /// Largest singular value of S at [`REJECTION_HZ`].
+    /// Largest singular value of S at [`REJECTION_HZ`]; NaN where that is not known.
     pub rejection: f64,
     /// Highest frequency at which the loop of a pivot, with the others closed, has a gain of 1 (`|1/S_ii - 1|`); of the slowest pivot.
     pub crossover_hz: f64,
@@ -95,7 +111,7 @@ pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
         if !(size <= found.ms) {
             (found.ms, found.ms_hz) = (size, hz);
         }
-        if found.rejection.is_nan() && hz >= REJECTION_HZ {
+        if plant.is_complete && found.rejection.is_nan() && hz >= REJECTION_HZ {
             found.rejection = size;
         }
         for (i, crossover) in crossovers.iter_mut().enumerate() {
@@ -105,7 +121,7 @@ pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
         }
     }
     found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
-    found.is_stable = turned.abs() < PI;
+    found.is_stable = !plant.is_complete || turned.abs() < PI;
     let sizes: Vec<f64> = loops.iter().map(largest_singular).collect();
     for (beside, hz) in sizes.windows(3).zip(plant.hz.iter().skip(1)) {
         let is_peak = beside[1] > beside[0] && beside[1] > beside[2];
@@ -134,6 +150,12 @@ impl Margins {
             resonance_peak: self.resonance_peak.max(other.resonance_peak),
         }
     }
+}
+
+/// The largest singular value: what becomes of the worst direction.
+#[must_use]
+pub fn worst_direction(m: &Matrix3<Complex<f64>>) -> f64 {
+    largest_singular(m)
 }
 
 /// Determinant, and the diagonal of the adjugate: their quotients are the diagonal of the inverse.

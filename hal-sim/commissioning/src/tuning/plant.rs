@@ -1,8 +1,9 @@
 //! What the servos see: from the volts of a tick to the angles that are read later, at frequencies up to half the ticks' rate.
 
 use crate::chain::{Chain, Place};
+use crate::closed_loop::LoopLine;
 use crate::drive_model::Electrical;
-use crate::frequency_response::{Line, hold};
+use crate::frequency_response::hold;
 use crate::record::Timing;
 use nalgebra::{Complex, Matrix3, Vector3};
 use std::f64::consts::TAU;
@@ -16,6 +17,8 @@ pub struct Plant {
     pub response: Vec<Matrix3<Complex<f64>>>,
     /// What each pivot moves, kg m^2: by it the gains may be scheduled.
     pub inertia: [f64; 3],
+    /// Whether the frequencies reach from half a hertz to nearly half the ticks' rate: else neither stability nor rejection is known.
+    pub is_complete: bool,
 }
 
 /// Lowest frequency of a grid, points of it, and its end over half the ticks' rate.
@@ -33,7 +36,7 @@ pub fn grid(timing: &Timing) -> Vec<f64> {
         .collect()
 }
 
-/// From volts at the terminals to the rings' angles, rad/V, as continuous signals: what [`Line::angle_by_volts`] measures.
+/// From volts at the terminals to the rings' angles, rad/V, as continuous signals: what [`crate::closed_loop`] measures.
 #[must_use]
 pub fn angle_by_volts(
     electrical: &[Electrical; 3],
@@ -77,19 +80,21 @@ impl Plant {
             hz,
             response,
             inertia: diagonal_of(&chain.inertia(place)),
+            is_complete: true,
         }
     }
 
     /// As it was measured, at the lines alone: to see what margins a measurement gives at gains that the model was tuned for.
     #[must_use]
-    pub fn from_lines(lines: &[Line], inertia: [f64; 3], timing: &Timing) -> Self {
+    pub fn from_lines(lines: &[LoopLine], inertia: [f64; 3], timing: &Timing) -> Self {
         Self {
             hz: lines.iter().map(|line| line.hz).collect(),
             response: lines
                 .iter()
-                .map(|line| line.angle_by_volts() * seen(line.hz, timing))
+                .map(|line| line.plant * seen(line.hz, timing))
                 .collect(),
             inertia,
+            is_complete: false,
         }
     }
 }

@@ -223,6 +223,7 @@ pub fn excite(parameters: &StageParameters, plan: &Plan) -> Excited {
             });
             Run {
                 period_ticks: PERIOD,
+                ticks_per_row: 1,
                 bins,
                 experiments,
             }

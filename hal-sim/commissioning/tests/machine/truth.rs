@@ -2,7 +2,7 @@
 
 use super::steady::all_rates;
 use super::{Excited, Machine, PLAN, Plan, TIMING, excite};
-use commissioning::chain::{Chain, Load, Place};
+use commissioning::chain::Place;
 use commissioning::drive_model::{DriveModel, Guess, Known, drive_model};
 use commissioning::frequency_response::{Line, frequency_response};
 use commissioning::friction::friction;
@@ -10,24 +10,6 @@ use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::Plant;
 use nalgebra::{DMatrix, Matrix3};
 use std::f64::consts::TAU;
-
-/// The reference stage with half of the heaviest load: what is thought of every machine.
-pub const GUESS: Guess = Guess(Chain {
-    motor_inertia: 0.012,
-    ring_inertia: 0.008,
-    stiffness: 7.46e5,
-    damping: 3.2,
-    viscous: 0.05,
-    guide_stiffness: 3e5,
-    guide_damping: 1.7,
-    along_stiffness: 1000.0,
-    along_damping: 0.8,
-    load: Load {
-        mass: 0.05,
-        inertia: 0.025,
-        moment: [0.0; 2],
-    },
-});
 
 /// Resistances of the windings as their pulses had them, roughly: what the motor constants are found with.
 const ROUGH_OHM: f64 = 1.02;
@@ -55,7 +37,7 @@ pub fn identify(parameters: &StageParameters, plan: &Plan) -> Identified {
     let known = Known {
         knee_a: 0.043,
         motor_constants: Some(motor_constants),
-        guess: GUESS,
+        guess: Guess::STAGE,
         to_hz: 2_500.0,
     };
     let excited = excite(parameters, plan);

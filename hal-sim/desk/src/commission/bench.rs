@@ -6,6 +6,8 @@ use super::{Machine, Task};
 use crate::record::desk::strange;
 use crate::record::{Record, RecordError, TABLES, answer};
 use commissioning::record::Signals;
+use firmware::gcs::PARAMETERS;
+use firmware::parameters::Parameters;
 
 type Answered<T> = Result<T, RecordError>;
 type Result<T, E = CommissionError> = std::result::Result<T, E>;
@@ -15,8 +17,11 @@ const ROWS: usize = 256;
 /// Longest time that a stage is given to settle, s.
 const SETTLING_S: f64 = 5.0;
 /// Duty, current and angle of a pivot, as `DRC` takes them.
-const OF_PIVOT: [&str; 3] = ["73", "200", "2"];
-const SUPPLY: &str = "0 201";
+pub(super) const DUTY: &str = "73";
+pub(super) const CURRENT: &str = "200";
+pub(super) const ANGLE: &str = "2";
+const OF_PIVOT: [&str; 3] = [DUTY, CURRENT, ANGLE];
+pub(super) const SUPPLY: &str = "0 201";
 /// Parameters: a record's points, those before its trigger, and the control period.
 const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
@@ -103,6 +108,22 @@ impl<'a> Bench<'a> {
         self.number(&format!("SPA? {id}"), &id)
     }
 
+    /// All parameters as the controller has them.
+    pub fn parameters(&mut self) -> Answered<Parameters> {
+        let mut parameters = Parameters::REFERENCE;
+        let mut settable: Vec<_> = (PARAMETERS.iter())
+            .filter(|one| !one.is_read_only() && one.number(&parameters).is_some())
+            .collect();
+        // A number for all three pivots, which reads as the first one's, comes before those of each.
+        settable.sort_by_key(|one| one.id);
+        for one in settable {
+            let value = self.parameter(one.id)?;
+            one.set(value, &mut parameters)
+                .map_err(|_| strange(&format!("SPA? 1 0x{:X}", one.id), &value.to_string()))?;
+        }
+        Ok(parameters)
+    }
+
     /// Sets parameters, four in a line.
     pub fn set(&mut self, values: &[(u32, f64)]) -> Answered<()> {
         for some in values.chunks(4) {
@@ -147,6 +168,25 @@ impl<'a> Bench<'a> {
         } else {
             format!(": {fault}")
         })
+    }
+
+    /// Whether a fault is latched.
+    pub fn is_faulted(&mut self) -> Answered<bool> {
+        Ok(!self.fault()?.is_empty())
+    }
+
+    /// After a fault: it is forgotten, and parameters may be set.
+    pub fn clear_fault(&mut self) -> Answered<()> {
+        self.delay(0.3)?;
+        self.ask("FLC")?;
+        self.delay(0.1)
+    }
+
+    /// The stage is held where it is.
+    pub fn hold(&mut self) -> Result<()> {
+        self.ask("FRF")?;
+        self.settle()?;
+        Ok(())
     }
 
     /// Motors off, and what is kept in force again.
@@ -226,6 +266,10 @@ impl<'a> Bench<'a> {
 
     /// Gives records so many rows: not in motion. Records that are shorter may then be made in motion.
     pub fn reserve(&mut self, rows: usize) -> Answered<()> {
+        // Fewer tables leave room for more rows.
+        for table in 1..=TABLES {
+            self.ask(&format!("DRC {table} 0 0"))?;
+        }
         self.ask(&format!("SPA 1 {POINTS} {rows} 1 {BEFORE} 0"))?;
         self.points = rows;
         Ok(())
@@ -241,14 +285,36 @@ impl<'a> Bench<'a> {
     ) -> Answered<Recorded> {
         let mut tables = vec![SUPPLY.to_owned()];
         tables.extend(OF_PIVOT.map(|option| format!("{} {option}", pivot + 1)));
-        tables.resize(TABLES, "0 0".to_owned());
-        for (number, table) in (1..).zip(&tables) {
-            self.ask(&format!("DRC {number} {table}"))?;
-        }
-        self.ask(&format!("RTR {every}"))?;
+        let record = self.record_tables(&tables, rows, every, line)?;
+        let column = |at: usize| record.rows.iter().map(move |row| row[at]);
+        let volts = column(1).zip(column(0));
+        Ok(Recorded {
+            signals: Signals {
+                volts: volts.map(|(duty, supply_v)| duty * supply_v).collect(),
+                current_a: column(2).collect(),
+                angle_rad: column(3).map(f64::to_radians).collect(),
+            },
+            supply_v: column(0).sum::<f64>() / rows as f64,
+        })
+    }
+
+    /// A record of tables, as `DRC` takes them, while a line is carried out.
+    pub fn record_tables(
+        &mut self,
+        tables: &[String],
+        rows: usize,
+        every: usize,
+        line: Option<&str>,
+    ) -> Answered<Record> {
         if self.points < rows {
             self.reserve(rows)?;
         }
+        let nothing = "0 0".to_owned();
+        let tables = tables.iter().chain(std::iter::repeat(&nothing));
+        for (number, table) in (1..=TABLES).zip(tables) {
+            self.ask(&format!("DRC {number} {table}"))?;
+        }
+        self.ask(&format!("RTR {every}"))?;
         self.ask("DRT 0 0 0")?;
         match line {
             Some(line) => {
@@ -266,17 +332,7 @@ impl<'a> Bench<'a> {
             }
             self.delay(LOOK_S)?;
         }
-        let record = self.fetch(rows)?;
-        let column = |at: usize| record.rows.iter().map(move |row| row[at]);
-        let volts = column(1).zip(column(0));
-        Ok(Recorded {
-            signals: Signals {
-                volts: volts.map(|(duty, supply_v)| duty * supply_v).collect(),
-                current_a: column(2).collect(),
-                angle_rad: column(3).map(f64::to_radians).collect(),
-            },
-            supply_v: column(0).sum::<f64>() / rows as f64,
-        })
+        self.fetch(rows)
     }
 
     /// The rows of the record.

@@ -41,6 +41,31 @@ impl Finding {
     }
 }
 
+/// A picture, and what it shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plot {
+    /// What it shows.
+    pub caption: String,
+    /// As SVG.
+    pub svg: String,
+}
+
+/// All that a step has found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Found {
+    /// Numbers.
+    pub findings: Vec<Finding>,
+    /// Pictures.
+    pub plots: Vec<Plot>,
+}
+
+impl Found {
+    /// A number more.
+    pub fn push(&mut self, finding: Finding) {
+        self.findings.push(finding);
+    }
+}
+
 /// Why a step has failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {

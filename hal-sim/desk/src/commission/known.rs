@@ -1,5 +1,12 @@
 //! What is known of the machine so far.
 
+use super::bench::Bench;
+use super::measured_loop::MeasuredLoop;
+use super::sines::Excited;
+use super::steps::id;
+use crate::record::RecordError;
+use commissioning::drive_model::DriveModel;
+
 /// Pivots, encoder ports, bridges.
 pub(super) const AXES: usize = 3;
 
@@ -20,13 +27,64 @@ pub(super) struct Known {
     pub bridges: [usize; AXES],
     /// Windings of the pivots' motors: ohm, H.
     pub windings: [[f64; 2]; AXES],
+    /// Back-EMF of the pivots' motors for each rad/s of their rings, V s/rad.
+    pub motor_constants: [f64; AXES],
+    /// Drives, rings and platform.
+    pub model: Option<DriveModel>,
+    /// What was recorded in the middle for it.
+    pub centre: Option<Excited>,
+    /// Loops as measured, with the gains in force.
+    pub loops: Vec<MeasuredLoop>,
 }
 
 impl Known {
+    /// What a controller has been told by an earlier commissioning.
+    pub(super) fn of_controller(bench: &mut Bench<'_>) -> Result<Self, RecordError> {
+        let mut known = Self {
+            ports: Self::order(bench.parameter(id::ENCODER_ORDER)?),
+            bridges: Self::order(bench.parameter(id::BRIDGE_ORDER)?),
+            ..Self::default()
+        };
+        known.ports_follow_left = known.ports[1] == (known.ports[0] + 1) % AXES;
+        for pivot in 0..AXES {
+            let (port, bridge) = (known.ports[pivot], known.bridges[pivot]);
+            let number = pivot as u32;
+            known.port_of_bridge[bridge] = port;
+            known.reversed_at_port[port] = bench.parameter(id::ENCODER_REVERSED + number)? != 0.0;
+            known.reversed_at_bridge[bridge] = bench.parameter(id::MOTOR_REVERSED + number)? != 0.0;
+            known.windings[pivot] = [
+                bench.parameter(id::of(id::RESISTANCE, pivot))?,
+                bench.parameter(id::of(id::INDUCTANCE, pivot))?,
+            ];
+            known.motor_constants[pivot] = bench.parameter(id::of(id::TORQUE_CONSTANT, pivot))?
+                * bench.parameter(id::of(id::GEAR_RATIO, pivot))?;
+        }
+        Ok(known)
+    }
+
+    /// An order of connectors from its digits: 231 is the second, the third, the first.
+    fn order(digits: f64) -> [usize; AXES] {
+        [100.0, 10.0, 1.0].map(|place| ((digits / place) as usize % 10).clamp(1, AXES) - 1)
+    }
+
     /// Digits of an order, as the parameters have them.
     pub(super) fn digits(order: &[usize; AXES]) -> f64 {
         order.iter().fold(0.0, |digits, connector| {
             10.0 * digits + *connector as f64 + 1.0
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_order_is_that_of_its_digits() {
+        for order in [[0, 1, 2], [1, 2, 0], [2, 1, 0]] {
+            assert_eq!(Known::order(Known::digits(&order)), order);
+        }
+        // Nothing that a parameter could not be makes an index that is none.
+        assert_eq!(Known::order(907.0), [2, 0, 2]);
     }
 }

@@ -7,18 +7,27 @@
 //! |---|---|
 //! | here | what is asked of a machine and of the person beside it; the sequence |
 //! | `bench` | questions, excitations and records, as the steps need them |
+//! | `chosen` | which steps are run |
 //! | `found` | what a step has found, and why one fails |
 //! | `known` | what is known of the machine so far |
+//! | `servo_gains` | gains and filters, to and from the controller's parameters |
+//! | `measured_loop` | a loop as measured, its margins and its plots |
+//! | `sines` | multisines on one motor after the other |
 //! | `steps/` | a file each |
 //! | `report` | all of it, as one page |
 
 mod bench;
+mod chosen;
 mod found;
 mod known;
+mod measured_loop;
 mod report;
+mod servo_gains;
+mod sines;
 mod steps;
 
-pub use found::{CommissionError, Failure, Finding};
+pub use chosen::{ChoiceError, Chosen};
+pub use found::{CommissionError, Failure, Finding, Found, Plot};
 pub use report::page;
 pub use steps::STEPS;
 
@@ -77,7 +86,7 @@ pub struct Step {
     pub name: &'static str,
     /// What it does.
     pub about: &'static str,
-    run: fn(&mut Bench<'_>, &mut Known, &mut Vec<Finding>) -> Result<(), CommissionError>,
+    run: fn(&mut Bench<'_>, &mut Known, &mut Found) -> Result<(), CommissionError>,
 }
 
 /// What a step came to.
@@ -85,14 +94,14 @@ pub struct Done {
     /// Which.
     pub step: &'static Step,
     /// What it measured.
-    pub findings: Vec<Finding>,
+    pub found: Found,
     /// Why it has failed.
     pub failure: Option<Failure>,
     /// How long it took, by the controller's clock, s.
     pub seconds: f64,
 }
 
-/// Runs the steps until one fails, tells of each as it ends; what all of them came to.
+/// Runs the steps that are chosen until one fails, tells of each as it ends; what all of them came to.
 ///
 /// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so.
 ///
@@ -100,15 +109,22 @@ pub struct Done {
 /// [`RecordError`] when nobody answers, or no longer.
 pub fn run(
     machine: &mut dyn Machine,
+    chosen: &Chosen,
     tell: &mut dyn FnMut(&Done),
 ) -> Result<Vec<Done>, RecordError> {
     let mut bench = Bench::new(machine)?;
     let (mut known, mut all) = (Known::default(), Vec::new());
-    for step in STEPS {
+    for &step in &chosen.steps {
         let start_s = bench.clock_s()?;
-        let mut findings = Vec::new();
-        let failure = match (step.run)(&mut bench, &mut known, &mut findings) {
-            Ok(()) => (findings.iter().find(|finding| !finding.passed))
+        let mut found = Found::default();
+        let begun = if all.is_empty() {
+            chosen.begin(&mut bench).map(|begun| known = begun)
+        } else {
+            Ok(())
+        };
+        let ran = begun.and_then(|()| (step.run)(&mut bench, &mut known, &mut found));
+        let failure = match ran {
+            Ok(()) => (found.findings.iter().find(|finding| !finding.passed))
                 .map(|finding| Failure::new(finding.name.clone(), finding.advice)),
             Err(CommissionError::Failed(failure)) => Some(failure),
             Err(CommissionError::Controller(error @ RecordError::Refused { .. })) => {
@@ -125,7 +141,7 @@ pub fn run(
         };
         let done = Done {
             step,
-            findings,
+            found,
             failure,
             seconds,
         };

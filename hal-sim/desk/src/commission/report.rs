@@ -7,6 +7,7 @@ const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf
     body{font:15px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n\
     h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .3em}p{margin:.2em 0 .6em;color:#555}\n\
     table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.25em .6em;border-bottom:1px solid #ddd;vertical-align:top}\n\
+    figure{margin:1em 0}figure svg{width:100%;height:auto}figcaption{color:#555}\n\
     .ok{color:#176b2c}.failed{color:#a61b1b;font-weight:600}.none{color:#888}\n\
     </style></head><body>\n";
 
@@ -17,7 +18,7 @@ pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
     let failed = all.iter().any(|done| done.failure.is_some());
     let verdict = if failed {
         "<span class=\"failed\">not commissioned</span>"
-    } else if all.len() == STEPS.len() {
+    } else if all.last().map(|done| done.step.name) == STEPS.last().map(|step| step.name) {
         "<span class=\"ok\">commissioned</span>"
     } else {
         "<span class=\"none\">not finished</span>"
@@ -36,9 +37,9 @@ pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
             escaped(done.step.about),
             done.seconds
         );
-        if !done.findings.is_empty() {
+        if !done.found.findings.is_empty() {
             page += "<table><tr><th>measured</th><th>value</th><th>limit</th><th></th></tr>\n";
-            for finding in &done.findings {
+            for finding in &done.found.findings {
                 let (class, verdict) = match (finding.passed, finding.limit.is_empty()) {
                     (true, true) => ("none", ""),
                     (true, false) => ("ok", "ok"),
@@ -53,6 +54,14 @@ pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
                 );
             }
             page += "</table>\n";
+        }
+        for plot in &done.found.plots {
+            let _ = writeln!(
+                page,
+                "<figure>{}<figcaption>{}</figcaption></figure>",
+                plot.svg,
+                escaped(&plot.caption)
+            );
         }
         if let Some(failure) = &done.failure {
             let _ = writeln!(

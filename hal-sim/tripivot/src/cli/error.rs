@@ -34,6 +34,8 @@ pub(super) enum CliError {
     #[error("{}: not a .svg or .png file", .0.display())]
     Ending(PathBuf),
     #[error(transparent)]
+    Choice(#[from] desk::commission::ChoiceError),
+    #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),

@@ -224,7 +224,9 @@ const AFTER_GAINS: &[Parameter] = &[
         ValueSource::Settable(|p| p.supervision.separation_margin_rad.to_degrees(), |p, deg| p.supervision.separation_margin_rad = deg.to_radians())),
     SUPERVISION.float(0x5450_050F, "duration of a fault's controlled stop", "s", [0.01, 1.0], at!(supervision.stop_s)),
     SUPERVISION.float(0x5450_0511, "swing of a servo's voltage that is an oscillation", "V", [0.5, 60.0], at!(supervision.oscillation_v)),
+    SUPERVISION.float(0x5450_0513, "how far a motor's current may be from what its voltage should drive, besides 60 % of that", "A", [0.2, 20.0], at!(supervision.unexplained_current_a)),
     SUPERVISION.int(0x5450_0512, "whether the stage may be driven with a debugger attached, which can halt the loop under load", [0.0, 1.0], flag!(supervision.debugger_allowed)),
+    SUPERVISION.int(0x5450_0514, "whether the emergency stop has to be pressed once after each start before anything drives", [0.0, 1.0], flag!(supervision.stop_test_needed)),
     Parameter { level: 0, ..SUPERVISION.float(0x5450_0510, "longest silence of all connections together, 0 for any; HBT asks for the like of one connection", "ms", [0.0, MAX_DELAY_MS], at!(supervision.host_silence_ms)) },
 
     ENCODER.int(0x5450_0600, "reading of encoder 1 at pivot angle 0", [0.0, COUNTS], whole!(u32: encoders[0].zero_counts)),

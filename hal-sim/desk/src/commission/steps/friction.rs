@@ -1,30 +1,31 @@
 //! Turning without end at steady rates, both ways: motor constants from the volts, friction from the currents.
 
 use super::id;
-use crate::commission::bench::{Bench, average};
-use crate::commission::found::{CommissionError, Finding, fail};
+use crate::commission::bench::{ANGLE, Bench, CURRENT, DUTY, SUPPLY};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
-use commissioning::friction::{SteadyRate, friction, mean};
+use commissioning::friction::{MOST_RESIDUAL, SteadyRate, friction, mean};
+use std::f64::consts::TAU;
 
 /// Rates, rad/s, and how long each is kept before it is measured, s.
-const RATES_RAD_S: [f64; 6] = [0.3, 1.0, 3.0, -0.3, -1.0, -3.0];
+const RATES_RAD_S: [f64; 6] = [0.5, 1.0, 3.0, -0.5, -1.0, -3.0];
 const REACHED_S: f64 = 1.5;
-/// Rows of a record, about: it is of whole turns of the motor.
-const ROWS: usize = 1_000;
-const MOST_ROWS: usize = 1_100;
+/// Rows of a record, about, which is of a whole turn of the platform, and how many of them there is room for.
+const ROWS: f64 = 2_000.0;
+const MOST_ROWS: usize = 2_200;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     let mut steady: [Vec<SteadyRate>; AXES] = Default::default();
     bench.reserve(MOST_ROWS)?;
     for rate in RATES_RAD_S {
         bench.ask(&format!("JOG W {}", rate.to_degrees()))?;
         bench.delay(REACHED_S)?;
-        for (pivot, steady) in steady.iter_mut().enumerate() {
-            steady.push(measure(bench, pivot, rate)?);
+        for (steady, one) in steady.iter_mut().zip(measure(bench, rate)?) {
+            steady.push(one);
         }
     }
     bench.ask("HLT")?;
@@ -55,11 +56,20 @@ pub(super) fn run(
             (id::of(id::COULOMB, pivot), coulomb),
             (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
         ])?;
+        known.motor_constants[pivot] = one.motor_constant;
         found.push(Finding::told(
             format!("motor of pivot {}", pivot + 1),
             format!("{:.3} V s/rad at the ring", one.motor_constant),
         ));
     }
+    let left = all.iter().map(|one| one.residual).fold(0.0, f64::max);
+    found.push(Finding::new(
+        "what Coulomb's and viscous friction leave of the currents",
+        format!("{:.1} % of Coulomb's at most", 100.0 * left),
+        format!("under {:.0} %", 100.0 * MOST_RESIDUAL),
+        left <= MOST_RESIDUAL,
+        "what rubs unevenly is a bearing, a gear or a cable",
+    ));
     found.push(Finding::told(
         "friction of a ring with its share of the platform, mean of three",
         format!("{coulomb:.3} N m, and {viscous:.3} N m s/rad"),
@@ -82,20 +92,25 @@ fn shared(steady: &[Vec<SteadyRate>; AXES], pivot: usize, resistance_ohm: f64) -
         .collect()
 }
 
-fn measure(bench: &mut Bench<'_>, pivot: usize, rate: f64) -> Result<SteadyRate, CommissionError> {
-    let motor_turn_s =
-        std::f64::consts::TAU / (rate.abs() * bench.parameter(id::of(id::GEAR_RATIO, pivot))?);
-    // Ten turns of the motor at least, and a second.
-    let turns = (1.0 / motor_turn_s).ceil().max(10.0);
-    let every = (turns * motor_turn_s / bench.period_s / ROWS as f64)
-        .round()
-        .max(1.0) as usize;
-    let rows = (turns * motor_turn_s / bench.period_s / every as f64).round() as usize;
-    let signals = bench.record(pivot, rows, every, None)?.signals;
-    let seconds = (rows - 1) as f64 * every as f64 * bench.period_s;
-    Ok(SteadyRate {
-        rate_rad_s: (signals.angle_rad[rows - 1] - signals.angle_rad[0]) / seconds,
-        current_a: average(&signals.current_a),
-        volts: average(&signals.volts),
-    })
+/// Means over a turn of the platform, of all pivots at the same time: rings that do not run true move the carriages by some tens of micrometres
+/// as they turn, further than these preslide, so that the torque that they hold between the rings changes with the angle.
+fn measure(bench: &mut Bench<'_>, rate: f64) -> Result<[SteadyRate; AXES], CommissionError> {
+    let turn_ticks = TAU / rate.abs() / bench.period_s;
+    let every = (turn_ticks / ROWS).round().max(1.0);
+    let rows = (turn_ticks / every).round() as usize;
+    let mut tables = vec![SUPPLY.to_owned(), format!("1 {ANGLE}")];
+    for option in [DUTY, CURRENT] {
+        tables.extend((1..=AXES).map(|pivot| format!("{pivot} {option}")));
+    }
+    let record = bench.record_tables(&tables, rows, every as usize, None)?;
+    let column = |at: usize| record.rows.iter().map(move |row| row[at]);
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / rows as f64;
+    let angles: Vec<f64> = column(1).collect();
+    let seconds = (rows - 1) as f64 * every * bench.period_s;
+    let rate_rad_s = (angles[rows - 1] - angles[0]).to_radians() / seconds;
+    Ok([0, 1, 2].map(|pivot| SteadyRate {
+        rate_rad_s,
+        current_a: mean(&mut column(2 + AXES + pivot)),
+        volts: mean(&mut column(0).zip(column(2 + pivot)).map(|(v, duty)| v * duty)),
+    }))
 }

@@ -3,7 +3,7 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 use crate::record::RecordError;
 
@@ -46,6 +46,15 @@ const USUAL_COUNTS: f64 = 2.0;
 /// What rest leaves of whole gains; of a share of them more, so that the loop at rest is the same.
 const REST: f64 = 0.13;
 
+/// First frequencies of the filters of all pivots: 0 is none; and the inertia that gains are scheduled by, 0: they are not.
+const FILTERS: [u32; 4] = [0x5450_0340, 0x5450_0343, 0x5450_0346, 0x5450_0306];
+
+/// Forgets what an earlier commissioning has found: gains as a controller has them at first, and nothing that shapes them.
+pub(super) fn forget(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    bench.set(&FILTERS.map(|id| (id, 0.0)))?;
+    set(bench, 1.0)
+}
+
 /// A loop as it is before anything is known: a share of the gains, and a settling window for them.
 pub(super) fn begin_softly(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
     bench.set(&[
@@ -55,6 +64,16 @@ pub(super) fn begin_softly(bench: &mut Bench<'_>) -> Result<(), CommissionError>
     set(bench, FIRST_SHARE)
 }
 
+/// What counts as settled is what it will be from now on.
+pub(super) fn settle_as_usual(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    Ok(bench.set(&[(id::SETTLING_COUNTS, USUAL_COUNTS)])?)
+}
+
+/// What counts as settled for loops that are not tuned yet.
+pub(super) fn settle_widely(bench: &mut Bench<'_>) -> Result<(), CommissionError> {
+    Ok(bench.set(&[(id::SETTLING_COUNTS, WIDE_COUNTS)])?)
+}
+
 fn at_rest(share: f64) -> f64 {
     (REST / share).clamp(REST, 1.0)
 }
@@ -62,7 +81,7 @@ fn at_rest(share: f64) -> f64 {
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     // At rest the loop would answer with an eighth of its gains.
     bench.set(&[(id::REST_STIFFNESS, 1.0)])?;
@@ -84,10 +103,7 @@ pub(super) fn run(
     bench.ask("MOV X 0 Y 0")?;
     bench.wait_for_target(20.0)?;
     set(bench, share)?;
-    bench.set(&[
-        (id::REST_STIFFNESS, at_rest(share)),
-        (id::SETTLING_COUNTS, USUAL_COUNTS),
-    ])?;
+    bench.set(&[(id::REST_STIFFNESS, at_rest(share))])?;
     found.push(Finding::new(
         "share that is used",
         format!("{share:.2}: velocity gain {:.1} V s/rad", WHOLE[1] * share),
@@ -136,11 +152,8 @@ fn ringing(bench: &mut Bench<'_>, pivot: usize) -> Result<Option<f64>, Commissio
 
 /// After a fault: held again, with the first gains.
 fn recovered(bench: &mut Bench<'_>) -> Result<Option<f64>, CommissionError> {
-    bench.delay(0.3)?;
-    bench.ask("FLC")?;
-    bench.delay(0.1)?;
+    bench.clear_fault()?;
     set(bench, FIRST_SHARE)?;
-    bench.ask("FRF")?;
-    bench.settle()?;
+    bench.hold()?;
     Ok(None)
 }

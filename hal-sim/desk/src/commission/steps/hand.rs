@@ -7,7 +7,7 @@
 
 use crate::commission::Task;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding, fail};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
 
 type Complex = nalgebra::Complex<f64>;
@@ -30,7 +30,7 @@ const ADVICE: &str = "try it again: out of the middle first, then left by a quar
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.request(Task::Turn)?;
     let path = follow(bench)?;

@@ -1,17 +1,20 @@
 //! What was found is kept, and is in force after it as before.
 
 use super::id;
+use super::nudges::USUAL_EXCITATION_V;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.ask("SVO X 0")?;
     bench.delay(0.2)?;
+    // As much as a machine that nobody knows is given: whoever commissions it again finds it so.
+    bench.set(&[(id::EXCITATION_V, USUAL_EXCITATION_V)])?;
     bench.ask("WPA 100")?;
     bench.ask("RPA")?;
     bench.delay(0.1)?;

@@ -3,10 +3,14 @@
 mod friction;
 mod gains;
 mod hand;
+mod identification;
 mod keep;
+mod limits;
 mod nudges;
 mod reference;
+mod response;
 mod ring_servo;
+mod tuning;
 mod verification;
 mod windings;
 mod wiring;
@@ -62,6 +66,26 @@ pub static STEPS: &[Step] = &[
         run: friction::run,
     },
     Step {
+        name: "identification",
+        about: "sines on one motor after the other while the platform turns in the middle: windings, inertias, mass, resonances",
+        run: identification::run,
+    },
+    Step {
+        name: "response",
+        about: "the loop with these gains, in the middle and far out: sensitivity and margins of all three pivots together",
+        run: response::run,
+    },
+    Step {
+        name: "tuning",
+        about: "gains and notches for the least sensitivity at 30 Hz with Ms of 2 at most, measured again and kept if they are better",
+        run: tuning::run,
+    },
+    Step {
+        name: "limits",
+        about: "limits of motion are lowered to what motors and supply bear with this load",
+        run: limits::run,
+    },
+    Step {
         name: "verification",
         about: "moves at full speed: following error and settling",
         run: verification::run,
@@ -74,7 +98,7 @@ pub static STEPS: &[Step] = &[
 ];
 
 /// Numbers of parameters that the steps set.
-mod id {
+pub(super) mod id {
     pub const ENCODER_ZERO: u32 = 0x5450_0600;
     pub const ENCODER_REVERSED: u32 = 0x5450_0610;
     pub const ENCODER_ORDER: u32 = 0x5450_0620;
@@ -86,6 +110,8 @@ mod id {
     pub const REST_STIFFNESS: u32 = 0x5450_0308;
     pub const SETTLING_COUNTS: u32 = 0x5450_0400;
     pub const EXCITATION_V: u32 = 0x5450_0D00;
+    pub const PIVOT_RATE: u32 = 0x5450_0106;
+    pub const PIVOT_ACCELERATION: u32 = 0x5450_0107;
     pub const TORQUE_CONSTANT: u32 = 0x5450_0810;
     pub const GEAR_RATIO: u32 = 0x5450_0811;
     pub const RESISTANCE: u32 = 0x5450_0812;
@@ -94,6 +120,15 @@ mod id {
     pub const DEAD_TIME_KNEE: u32 = 0x5450_0815;
     pub const VISCOUS: u32 = 0x5450_0818;
     pub const COULOMB: u32 = 0x5450_0819;
+    pub const TRACK_RADIUS: u32 = 0x5450_0200;
+    pub const PLATFORM_MASS: u32 = 0x5450_0700;
+    pub const PLATFORM_INERTIA: u32 = 0x5450_0701;
+    pub const PAYLOAD_MASS: u32 = 0x5450_0702;
+    pub const PAYLOAD_INERTIA: u32 = 0x5450_0703;
+    pub const PAYLOAD_X: u32 = 0x5450_0704;
+    pub const PAYLOAD_Y: u32 = 0x5450_0705;
+    /// Of all pivots.
+    pub const RING_INERTIA: u32 = 0x5450_0807;
     pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
     pub const PWM_HZ: u32 = 0x5450_080B;
 

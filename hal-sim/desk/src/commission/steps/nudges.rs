@@ -2,9 +2,11 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding, fail};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
 
+/// Largest voltage of an excitation while nothing is known, V.
+pub(super) const USUAL_EXCITATION_V: f64 = 2.0;
 /// Where the voltage ends, V: break-away of a weak machine and the dead time; and in which time, s.
 const MOST_V: f64 = 1.6;
 const SECONDS: f64 = 0.3;
@@ -19,9 +21,9 @@ const REST_S: f64 = 0.1;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
-    bench.set(&[(id::EXCITATION_V, 2.0)])?;
+    bench.set(&[(id::EXCITATION_V, USUAL_EXCITATION_V)])?;
     for (pivot, reversed) in (0..).zip(known.reversed_at_port) {
         bench.set(&[(id::ENCODER_REVERSED + pivot, f64::from(u8::from(reversed)))])?;
     }
@@ -84,6 +86,11 @@ pub(super) fn run(
     ));
     if ports == [0, 1, 2] {
         set_order(bench, known)?;
+        let [ports, bridges] = [known.ports, known.bridges].map(|all| all.map(|at| at + 1));
+        found.push(Finding::told(
+            "pivots 1, 2, 3, to the left of each other",
+            format!("ports {ports:?}, bridges {bridges:?}"),
+        ));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::gains;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
 
 /// Share of the speed.
@@ -22,7 +22,7 @@ const MOST_ERROR_RAD: f64 = 1e-3;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     // What its gains may be is not known yet.
     gains::begin_softly(bench)?;

@@ -1,7 +1,7 @@
 //! Each ring under a soft servo of its own, moved by a milliradian there and back.
 
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 
 /// Way, mrad; rate, mrad/s; time, ms.
@@ -17,7 +17,7 @@ const MOST_LEFT: f64 = 0.1;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     for pivot in 0..AXES {
         for sign in [1.0, -1.0] {

@@ -1,7 +1,8 @@
 //! Moves as the machine will make them, there and back.
 
+use super::gains::settle_as_usual;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
 
 const MOVES: [&str; 8] = [
@@ -21,8 +22,9 @@ const MOST_ERROR_RAD: f64 = 1e-3;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
+    settle_as_usual(bench)?;
     let first_rad = bench.follow(&MOVES, LONGEST_S)?;
     found.push(Finding::told(
         "largest following error in the first round",

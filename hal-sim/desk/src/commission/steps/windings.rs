@@ -2,7 +2,7 @@
 
 use super::id;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Finding, fail};
+use crate::commission::found::{CommissionError, Finding, Found, fail};
 use crate::commission::known::{AXES, Known};
 use commissioning::record::Timing;
 use commissioning::winding::{WindingGuess, winding};
@@ -15,7 +15,7 @@ const TICKS: usize = 100;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     for pivot in 0..AXES {
         let mut pulses = Vec::new();

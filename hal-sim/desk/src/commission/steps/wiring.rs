@@ -1,8 +1,8 @@
 //! Encoders, supply and current sensors at rest, with the bridges asleep.
 
-use super::id;
+use super::{gains, id};
 use crate::commission::bench::{Bench, average};
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 
 /// Ticks of the look at the encoders' noise, and most of it: an encoder's own 200 nrad and half as much again.
@@ -16,7 +16,7 @@ const SUPPLY_SHARE: f64 = 0.1;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     _: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.ask("CCL 1 ADVANCED")?;
     bench.ask("SVO X 0")?;
@@ -32,6 +32,7 @@ pub(super) fn run(
     }
     bench.set(&[(id::ENCODER_ORDER, 123.0), (id::BRIDGE_ORDER, 123.0)])?;
     bench.delay(0.05)?;
+    gains::forget(bench)?;
     for port in 1..=AXES {
         let answers = bench.number("TST?", &format!("ENCODER{port}"))? == 1.0;
         found.push(Finding::new(
@@ -46,7 +47,7 @@ pub(super) fn run(
             "its plug, its supply, and its type: see BRINGUP.md, encoders",
         ));
     }
-    if found.iter().any(|finding| !finding.passed) {
+    if found.findings.iter().any(|finding| !finding.passed) {
         return Ok(());
     }
     let (mut supply_v, nominal_v) = (0.0, bench.parameter(id::NOMINAL_SUPPLY)?);

@@ -3,7 +3,7 @@
 use super::id;
 use crate::commission::Task;
 use crate::commission::bench::{Bench, average};
-use crate::commission::found::{CommissionError, Finding};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::{AXES, Known};
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ const MOST_LEFT_RAD: f64 = 3e-7;
 pub(super) fn run(
     bench: &mut Bench<'_>,
     known: &mut Known,
-    found: &mut Vec<Finding>,
+    found: &mut Found,
 ) -> Result<(), CommissionError> {
     bench.request(Task::PutOnJig)?;
     bench.delay(0.2)?;

@@ -20,6 +20,12 @@ pub(in super::super) struct Commission {
     /// Folder for the report; of a simulated machine for its controller's settings, too.
     #[arg(long, value_name = "DIR", default_value = "tripivot-commission")]
     pub(in super::super) out: PathBuf,
+    /// Begin with this step, on a controller that was commissioned before: what the steps before it found is in its parameters.
+    #[arg(long, value_name = "STEP", conflicts_with_all = ["only", "list"])]
+    pub(in super::super) from: Option<String>,
+    /// Run this step alone, as after a repair, and keep what it finds.
+    #[arg(long, value_name = "STEP", conflicts_with = "list")]
+    pub(in super::super) only: Option<String>,
     /// List the steps; no machine is needed.
     #[arg(long)]
     pub(in super::super) list: bool,

@@ -10,7 +10,7 @@ use super::FAILED;
 use super::arguments::Commission;
 use super::error::CliError;
 use super::view::endpoint;
-use desk::commission::{Attended, Done, Machine, STEPS, page, run as run_steps};
+use desk::commission::{Attended, Chosen, Done, Machine, STEPS, page, run as run_steps};
 use drawing::ReportError;
 use hal_sim::date;
 use simulated::SimulatedMachine;
@@ -27,6 +27,11 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         (io::stdout().write_all(text.as_bytes())).map_err(CliError::output)?;
         return Ok(ExitCode::SUCCESS);
     }
+    let chosen = match (&arguments.from, &arguments.only) {
+        (Some(name), _) => Chosen::from(name)?,
+        (_, Some(name)) => Chosen::only(name)?,
+        _ => Chosen::all(),
+    };
     // Before anything moves: a report that cannot be written is of no use.
     let report = arguments.out.join(REPORT);
     let cannot = |source| ReportError::Unwritable {
@@ -55,7 +60,7 @@ pub(super) fn run(arguments: &Commission) -> Result<ExitCode, CliError> {
         "machine".to_owned()
     };
     let mut written = Ok(());
-    let all = run_steps(machine.as_mut(), &mut |done| {
+    let all = run_steps(machine.as_mut(), &chosen, &mut |done| {
         if written.is_ok() {
             written = io::stdout().write_all(told(done).as_bytes());
         }
@@ -86,7 +91,7 @@ fn told(done: &Done) -> String {
         "{}: {} ({:.1} s)\n",
         done.step.name, done.step.about, done.seconds
     );
-    for finding in &done.findings {
+    for finding in &done.found.findings {
         let verdict = match (finding.passed, finding.limit.is_empty()) {
             (true, true) => "",
             (true, false) => "ok",

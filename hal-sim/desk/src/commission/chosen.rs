@@ -1,0 +1,152 @@
+//! Which steps are run: all, those from one on, or one after a repair. What the steps before have found is asked of the controller.
+
+use super::STEPS;
+use super::Step;
+use super::bench::Bench;
+use super::found::{CommissionError, fail};
+use super::known::Known;
+
+/// Steps that need more of those before them than the controller's parameters hold.
+const NOT_FIRST: [&str; 4] = ["hand", "nudges", "response", "tuning"];
+/// Before it the servo is off, and nothing may be commissioned; after it a servo holds the stage.
+const FIRST_SERVO: &str = "gains";
+/// What ends all of them.
+const LAST: &str = "keep";
+
+/// See the module.
+#[derive(Clone)]
+pub struct Chosen {
+    pub(super) steps: Vec<&'static Step>,
+    is_resumed: bool,
+}
+
+/// Why steps cannot be chosen.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChoiceError {
+    /// No such name.
+    #[error("there is no step `{0}`; --list tells their names")]
+    NoStep(String),
+    /// It uses what is in no parameter.
+    #[error("step `{name}` needs what the one before it finds: begin with `{begin}`")]
+    NotFirst {
+        /// Which.
+        name: String,
+        /// With which to begin.
+        begin: &'static str,
+    },
+}
+
+impl Chosen {
+    /// All of them.
+    #[must_use]
+    pub fn all() -> Self {
+        Self {
+            steps: STEPS.iter().collect(),
+            is_resumed: false,
+        }
+    }
+
+    /// A step and those after it.
+    ///
+    /// # Errors
+    /// [`ChoiceError`].
+    pub fn from(name: &str) -> Result<Self, ChoiceError> {
+        let at = index(name)?;
+        Ok(Self {
+            steps: STEPS.iter().skip(at).collect(),
+            is_resumed: at > 0,
+        })
+    }
+
+    /// A step alone, and keeping what it finds.
+    ///
+    /// # Errors
+    /// [`ChoiceError`].
+    pub fn only(name: &str) -> Result<Self, ChoiceError> {
+        let at = index(name)?;
+        let steps = STEPS.iter().enumerate();
+        Ok(Self {
+            steps: steps
+                .filter(|(k, step)| *k == at || step.name == LAST)
+                .map(|(_, step)| step)
+                .collect(),
+            is_resumed: at > 0,
+        })
+    }
+
+    /// Brings the controller to where the first step expects it.
+    pub(super) fn begin(&self, bench: &mut Bench<'_>) -> Result<Known, CommissionError> {
+        if !self.is_resumed {
+            return Ok(Known::default());
+        }
+        bench.ask("CCL 1 ADVANCED")?;
+        bench.ask("SVO X 0")?;
+        bench.ask("FLC")?;
+        bench.delay(0.2)?;
+        if !bench.ask("CMS?")?.starts_with('1') {
+            return fail(
+                "this controller has not been commissioned",
+                "begin with the first step",
+            );
+        }
+        let known = Known::of_controller(bench)?;
+        let place = |name: &str| STEPS.iter().position(|step| step.name == name);
+        let first = self.steps.first().map_or("", |step| step.name);
+        if place(first) < place(FIRST_SERVO) {
+            bench.ask("CMS 0")?;
+        } else {
+            bench.hold()?;
+        }
+        Ok(known)
+    }
+}
+
+fn index(name: &str) -> Result<usize, ChoiceError> {
+    let position = STEPS.iter().position(|step| step.name == name);
+    let at = position.ok_or_else(|| ChoiceError::NoStep(name.to_owned()))?;
+    if !NOT_FIRST.contains(&name) {
+        return Ok(at);
+    }
+    let before = STEPS.iter().take(at).rev();
+    let begin = before
+        .map(|step| step.name)
+        .find(|name| !NOT_FIRST.contains(name));
+    Err(ChoiceError::NotFirst {
+        name: name.to_owned(),
+        begin: begin.unwrap_or_default(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(chosen: Result<Chosen, ChoiceError>) -> Vec<&'static str> {
+        let steps = chosen.map(|chosen| chosen.steps).unwrap_or_default();
+        steps.iter().map(|step| step.name).collect()
+    }
+
+    #[test]
+    fn steps_are_chosen_by_their_names() {
+        assert_eq!(names(Chosen::only("friction")), ["friction", "keep"]);
+        assert_eq!(
+            names(Chosen::from("verification")),
+            ["verification", "keep"]
+        );
+        assert_eq!(names(Chosen::from("wiring")).len(), STEPS.len());
+        assert_eq!(
+            Chosen::from("tuning").err(),
+            Some(ChoiceError::NotFirst {
+                name: "tuning".to_owned(),
+                begin: "identification"
+            })
+        );
+        assert_eq!(
+            Chosen::only("nudges").err().map(|error| error.to_string()),
+            Some(
+                "step `nudges` needs what the one before it finds: begin with `wiring`".to_owned()
+            )
+        );
+        assert!(Chosen::from("nothing").is_err());
+    }
+}

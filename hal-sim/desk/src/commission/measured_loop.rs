@@ -1,0 +1,256 @@
+//! A loop as it was measured at a spot, and what it is worth.
+
+use super::bench::Bench;
+use super::found::{CommissionError, Plot};
+use super::sines::{Excited, PEAK_V, Spot, excite};
+use commissioning::chain::{Chain, Place};
+use commissioning::closed_loop::{LoopLine, closed_loop};
+use commissioning::drive_model::DriveModel;
+use commissioning::record::Timing;
+use commissioning::tuning::{Gains, Plant, REJECTION_HZ, sensitivity, worst_direction};
+use drawing::colour;
+use drawing::plane::{Axis, Curve, Plane};
+use drawing::svg::{Point, Rect, Svg};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+
+/// Sets of lines.
+const SETS: u32 = 2;
+/// Largest Ms of a loop that is called sound.
+pub const MOST_MS: f64 = 2.0;
+
+/// See the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredLoop {
+    pub spot: Spot,
+    pub lines: Vec<LoopLine>,
+}
+
+/// Track radii for a spot.
+pub fn place(spot: &Spot, radius_m: f64) -> Option<Place> {
+    Place::new(spot.x_mm * 1e-3 / radius_m, spot.y_mm * 1e-3 / radius_m)
+}
+
+impl MeasuredLoop {
+    /// Measures it.
+    pub fn measure(
+        bench: &mut Bench<'_>,
+        spot: Spot,
+        model: &DriveModel,
+    ) -> Result<Self, CommissionError> {
+        let excited = excite(bench, &spot, SETS)?;
+        Ok(Self::new(&excited, spot, model))
+    }
+
+    /// From what was recorded.
+    pub fn new(excited: &Excited, spot: Spot, model: &DriveModel) -> Self {
+        let lines = closed_loop(
+            &excited.runs,
+            &excited.lines,
+            PEAK_V,
+            (&model.electrical, &model.mechanical.chain),
+            &Timing::STAGE,
+        );
+        Self { spot, lines }
+    }
+
+    /// Largest singular value of the sensitivity over all lines.
+    pub fn ms(&self) -> f64 {
+        let sizes = self
+            .lines
+            .iter()
+            .map(|line| worst_direction(&line.sensitivity));
+        sizes.fold(0.0, f64::max)
+    }
+
+    /// The same at the line that is nearest to 30 Hz.
+    pub fn rejection(&self) -> f64 {
+        let far = |line: &&LoopLine| (line.hz / REJECTION_HZ).ln().abs();
+        let nearest = self.lines.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        nearest.map_or(f64::NAN, |line| worst_direction(&line.sensitivity))
+    }
+
+    /// Highest line at which the loop of a pivot, with the others closed, has a gain of 1, of the slowest pivot, Hz.
+    pub fn crossover_hz(&self) -> f64 {
+        let of_pivot = |pivot: usize| {
+            (self.lines.iter().rev())
+                .find(|line| of_loop(line, pivot).norm() >= 1.0)
+                .map_or(0.0, |line| line.hz)
+        };
+        [0, 1, 2]
+            .map(of_pivot)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines. Gains are
+    /// those of a servo that is the same for all pivots.
+    pub fn distance(&self, gains: &Gains, chain: &Chain, radius_m: f64) -> Option<f64> {
+        let said = sensitivity(&self.plant(chain, radius_m)?, gains, Timing::STAGE.tick_s);
+        let mut off: Vec<f64> = (self.lines.iter().zip(said))
+            .map(|(line, said)| (line.sensitivity - said).norm() / said.norm())
+            .collect();
+        off.sort_by(f64::total_cmp);
+        off.get(off.len() / 2).copied()
+    }
+
+    /// What the servos drive, as measured.
+    pub fn plant(&self, chain: &Chain, radius_m: f64) -> Option<Plant> {
+        let inertia = chain.inertia(&place(&self.spot, radius_m)?).diagonal();
+        Some(Plant::from_lines(
+            &self.lines,
+            inertia.into(),
+            &Timing::STAGE,
+        ))
+    }
+}
+
+/// Loop of a pivot with the others closed.
+fn of_loop(line: &LoopLine, pivot: usize) -> Complex<f64> {
+    1.0 / line.sensitivity[(pivot, pivot)] - 1.0
+}
+
+const SHEET: [f64; 2] = [1_000.0, 800.0];
+const HZ: Axis = Axis::Logarithmic(25.0, 2_500.0);
+
+/// Bode and Nyquist plots of a loop, with one that it had before.
+pub fn plot(now: &MeasuredLoop, before: Option<&MeasuredLoop>) -> Plot {
+    let mut svg = Svg::new(SHEET[0], SHEET[1]);
+    let frame = |left: f64, top: f64, width: f64, height: f64| Rect {
+        left,
+        top,
+        width,
+        height,
+    };
+    draw_sensitivity(&mut svg, &frame(60.0, 50.0, 420.0, 285.0), now, before);
+    draw_gain(&mut svg, &frame(60.0, 440.0, 420.0, 300.0), now, before);
+    draw_phase(&mut svg, &frame(545.0, 580.0, 420.0, 160.0), now, before);
+    draw_nyquist(&mut svg, &frame(545.0, 50.0, 420.0, 420.0), now, before);
+    let also = if before.is_some() {
+        "; dashed: before the gains were found"
+    } else {
+        ""
+    };
+    Plot {
+        caption: format!(
+            "The loop {}, as measured{also}. L of a pivot is with the others closed, 1/S - 1. The dashed circle: sensitivity {MOST_MS}; a locus that stays out of it keeps that margin.",
+            now.spot.words()
+        ),
+        svg: svg.finish(),
+    }
+}
+
+/// The curves of each pivot, now and before.
+fn curves<'a>(
+    now: &MeasuredLoop,
+    before: Option<&MeasuredLoop>,
+    of: impl Fn(&LoopLine, usize) -> Point,
+) -> Vec<Curve<'a>> {
+    let names = ["pivot 1", "pivot 2", "pivot 3"];
+    let all = before.map(|before| (before, true));
+    (all.into_iter().chain([(now, false)]))
+        .flat_map(|(measured, dashed)| {
+            let of = &of;
+            (0..3).map(move |pivot| Curve {
+                name: if dashed { "" } else { names[pivot] },
+                colour: colour::PIVOTS[pivot],
+                dashed,
+                points: measured.lines.iter().map(|line| of(line, pivot)).collect(),
+            })
+        })
+        .collect()
+}
+
+fn draw_sensitivity(
+    svg: &mut Svg,
+    frame: &Rect,
+    now: &MeasuredLoop,
+    before: Option<&MeasuredLoop>,
+) {
+    let curve = |measured: &MeasuredLoop, dashed: bool| Curve {
+        name: if dashed { "before" } else { "now" },
+        colour: colour::ACT,
+        dashed,
+        points: (measured.lines.iter())
+            .map(|line| [line.hz, worst_direction(&line.sensitivity)])
+            .collect(),
+    };
+    let mut all: Vec<_> = before
+        .map(|before| curve(before, true))
+        .into_iter()
+        .collect();
+    all.push(curve(now, false));
+    let plane = Plane {
+        title: "sensitivity S, largest singular value",
+        x: HZ,
+        y: Axis::Logarithmic(0.02, 5.0),
+        x_name: "frequency, Hz",
+        curves: &all,
+        marks: &[MOST_MS],
+    };
+    plane.draw(svg, frame);
+}
+
+fn draw_gain(svg: &mut Svg, frame: &Rect, now: &MeasuredLoop, before: Option<&MeasuredLoop>) {
+    let all = curves(now, before, |line, pivot| {
+        [line.hz, of_loop(line, pivot).norm()]
+    });
+    let plane = Plane {
+        title: "loop L: gain",
+        x: HZ,
+        y: Axis::Logarithmic(0.02, 50.0),
+        x_name: "frequency, Hz",
+        curves: &all,
+        marks: &[1.0],
+    };
+    plane.draw(svg, frame);
+}
+
+fn draw_phase(svg: &mut Svg, frame: &Rect, now: &MeasuredLoop, before: Option<&MeasuredLoop>) {
+    // From 0 down to -360 deg: a loop that is stable is near -180 where its gain is 1.
+    let all = curves(now, before, |line, pivot| {
+        let degrees = of_loop(line, pivot).arg().to_degrees();
+        [
+            line.hz,
+            if degrees > 0.0 {
+                degrees - 360.0
+            } else {
+                degrees
+            },
+        ]
+    });
+    let plane = Plane {
+        title: "loop L: phase, deg",
+        x: HZ,
+        y: Axis::Linear(-360.0, 0.0),
+        x_name: "frequency, Hz",
+        curves: &all,
+        marks: &[-180.0],
+    };
+    plane.draw(svg, frame);
+}
+
+fn draw_nyquist(svg: &mut Svg, frame: &Rect, now: &MeasuredLoop, before: Option<&MeasuredLoop>) {
+    let mut all = curves(now, before, |line, pivot| {
+        let at = of_loop(line, pivot);
+        [at.re, at.im]
+    });
+    let circle = (0..=90).map(|k| TAU * f64::from(k) / 90.0);
+    all.push(Curve {
+        name: "",
+        colour: colour::INK,
+        dashed: true,
+        points: circle
+            .map(|angle| [angle.cos() / MOST_MS - 1.0, angle.sin() / MOST_MS])
+            .collect(),
+    });
+    let plane = Plane {
+        title: "locus of L (Nyquist)",
+        x: Axis::Linear(-3.0, 1.0),
+        y: Axis::Linear(-3.0, 1.0),
+        x_name: "real part; upwards: imaginary part",
+        curves: &all,
+        marks: &[],
+    };
+    plane.draw(svg, frame);
+}

@@ -1,0 +1,158 @@
+//! Multisines on one motor after the other, with the servo on, while the platform turns: so that friction keeps its sign.
+
+use super::bench::Bench;
+use super::found::{CommissionError, fail};
+use super::known::AXES;
+use commissioning::frequency_response::{Line, Run, frequency_response};
+use commissioning::record::{Record, Timing};
+use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
+
+/// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
+pub const PEAK_V: f64 = 8.0;
+/// Ticks from row to row, and periods of a record, of which the first is left out: what a start excites dies in it.
+const TICKS_PER_ROW: usize = 4;
+const PERIODS: usize = 4;
+const PERIOD_ROWS: usize = PERIOD_TICKS as usize / TICKS_PER_ROW;
+const ROWS: usize = PERIODS * PERIOD_ROWS;
+/// Harmonics of the lowest line and of the highest, 29 Hz and 2.3 kHz, and lines at a time.
+const HARMONICS: [u32; 2] = [6, 470];
+const LINES: usize = 15;
+/// Time that a turn at a steady rate takes to begin, s, and that a move to a place takes at most.
+const BEGIN_S: f64 = 0.3;
+const LONGEST_S: f64 = 20.0;
+
+/// Where, mm, and at what rate the platform turns about its centre, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    pub x_mm: f64,
+    pub y_mm: f64,
+    pub rate_rad_s: f64,
+}
+
+/// In the middle turning changes nothing of what the motors move: it turns as fast as ripple and friction are told apart best.
+pub const CENTRE: Spot = Spot {
+    x_mm: 0.0,
+    y_mm: 0.0,
+    rate_rad_s: 2.0,
+};
+/// Far out it does: as slowly as friction just keeps its sign, and from the same angle each time.
+pub const FAR_OUT: Spot = Spot {
+    x_mm: 70.0,
+    y_mm: 0.0,
+    rate_rad_s: 0.04,
+};
+
+impl Spot {
+    fn is_central(&self) -> bool {
+        self.x_mm == 0.0 && self.y_mm == 0.0
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        if self.is_central() {
+            "in the middle".to_owned()
+        } else {
+            format!("at X {:.0} Y {:.0}", self.x_mm, self.y_mm)
+        }
+    }
+}
+
+/// What was recorded at a spot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excited {
+    pub runs: Vec<Run>,
+    pub lines: Vec<Line>,
+}
+
+/// Excites each motor with so many sets of lines, which lie between each other's, and records all pivots.
+pub fn excite(bench: &mut Bench<'_>, spot: &Spot, sets: u32) -> Result<Excited, CommissionError> {
+    bench.reserve(ROWS)?;
+    go_to(bench, spot)?;
+    if spot.is_central() {
+        turn(bench, spot)?;
+    }
+    let mut runs = Vec::new();
+    for set in 0..sets {
+        let [lowest, highest] = harmonics(set, sets);
+        let mut experiments: [Vec<Record>; AXES] = Default::default();
+        for (drive, records) in experiments.iter_mut().enumerate() {
+            let line = format!(
+                "EXC SINES {} {PEAK_V} {} {lowest} {highest} {LINES}",
+                drive + 1,
+                (1e3 * bench.period_s * (ROWS * TICKS_PER_ROW) as f64).ceil()
+            );
+            let mut record = Record {
+                first_tick: PERIOD_TICKS as usize,
+                ..Record::default()
+            };
+            for (pivot, signals) in record.pivots.iter_mut().enumerate() {
+                *signals = one_record(bench, spot, pivot, &line)?;
+            }
+            records.push(record);
+        }
+        runs.push(Run {
+            period_ticks: PERIOD_TICKS as usize,
+            ticks_per_row: TICKS_PER_ROW,
+            bins: line_harmonics(lowest, highest, LINES)
+                .iter()
+                .map(|harmonic| *harmonic as usize)
+                .collect(),
+            experiments,
+        });
+    }
+    bench.ask("HLT")?;
+    bench.settle()?;
+    bench.ask("MOV X 0 Y 0 W 0")?;
+    bench.wait_for_target(LONGEST_S)?;
+    match frequency_response(&runs, &Timing::STAGE) {
+        Ok(lines) => Ok(Excited { runs, lines }),
+        Err(error) => fail(
+            format!("{}: {error}", spot.words()),
+            "the voltage of the excitation, and what the motors do with it",
+        ),
+    }
+}
+
+/// Lowest and highest harmonic of a set.
+fn harmonics(set: u32, sets: u32) -> [u32; 2] {
+    let [lowest, highest] = HARMONICS.map(f64::from);
+    let gap = (highest / lowest).powf(1.0 / f64::from(sets * LINES as u32 - 1));
+    let last = highest * gap.powi(set as i32 - (sets as i32 - 1));
+    [HARMONICS[0] + set, last.round() as u32]
+}
+
+fn one_record(
+    bench: &mut Bench<'_>,
+    spot: &Spot,
+    pivot: usize,
+    line: &str,
+) -> Result<commissioning::Signals, CommissionError> {
+    if !spot.is_central() {
+        turn(bench, spot)?;
+    }
+    let mut signals = (bench.record(pivot, ROWS, TICKS_PER_ROW, Some(line))?).signals;
+    bench.excitation_end()?;
+    if !spot.is_central() {
+        bench.ask("HLT")?;
+        bench.settle()?;
+        go_to(bench, spot)?;
+    }
+    for values in [
+        &mut signals.volts,
+        &mut signals.current_a,
+        &mut signals.angle_rad,
+    ] {
+        values.drain(..PERIOD_ROWS);
+    }
+    Ok(signals)
+}
+
+fn go_to(bench: &mut Bench<'_>, spot: &Spot) -> Result<(), CommissionError> {
+    bench.ask(&format!("MOV X {} Y {} W 0", spot.x_mm, spot.y_mm))?;
+    bench.wait_for_target(LONGEST_S)
+}
+
+fn turn(bench: &mut Bench<'_>, spot: &Spot) -> Result<(), CommissionError> {
+    bench.ask(&format!("JOG W {}", spot.rate_rad_s.to_degrees()))?;
+    Ok(bench.delay(BEGIN_S)?)
+}

@@ -1,0 +1,190 @@
+//! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle.
+
+use super::id;
+use crate::commission::bench::Bench;
+use crate::commission::found::{CommissionError, Finding, Found, fail};
+use crate::commission::known::{AXES, Known};
+use crate::commission::sines::{CENTRE, PEAK_V, excite};
+use commissioning::chain::{Chain, Place};
+use commissioning::drive_model::{DriveModel, Guess, Known as Before, Mechanical, drive_model};
+use commissioning::frequency_response::Line;
+use commissioning::record::Timing;
+
+/// Sets of lines.
+const SETS: u32 = 3;
+/// Lines that the model follows, Hz.
+const TO_HZ: f64 = 2_300.0;
+/// Least share of what an encoder shows that answers to its own drive, up to a frequency.
+const LEAST_QUALITY: f64 = 0.9;
+const QUALITY_TO_HZ: f64 = 1_000.0;
+/// Most that the model may leave of the responses.
+const MOST_LEFT: f64 = 0.2;
+/// Most that a number may be uncertain by (one standard deviation), over itself: of a winding, of the drives' inertia and mass, of the inertia.
+const WINDING: f64 = 0.05;
+const INERTIA: f64 = 0.1;
+const LOAD_INERTIA: f64 = 0.2;
+const RUBS: &str = "look for what rubs, gives way or is loose, and for noise on encoders and current sensors; then once more";
+/// Share of the load that is told as payload: it is all of one piece to the motors, and only a payload may have its centre elsewhere.
+const PAYLOAD: f64 = 0.5;
+
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    known: &mut Known,
+    found: &mut Found,
+) -> Result<(), CommissionError> {
+    allow(bench, PEAK_V)?;
+    let excited = excite(bench, &CENTRE, SETS)?;
+    let quality = quality(&excited.lines);
+    found.push(Finding::new(
+        format!("share of the angles that answers to the drive, up to {QUALITY_TO_HZ:.0} Hz"),
+        format!("{quality:.3} at least"),
+        format!("over {LEAST_QUALITY}"),
+        quality > LEAST_QUALITY,
+        RUBS,
+    ));
+    let before = Before {
+        knee_a: bench.parameter(id::of(id::DEAD_TIME_KNEE, 0))?,
+        motor_constants: Some(known.motor_constants),
+        guess: Guess::STAGE,
+        to_hz: TO_HZ,
+    };
+    let model = match drive_model(&excited.runs, &excited.lines, &Timing::STAGE, &before) {
+        Ok(model) => model,
+        Err(error) => return fail(error.to_string(), RUBS),
+    };
+    tell_drives(bench, known, found, &model)?;
+    tell_platform(bench, found, &model.mechanical)?;
+    (known.model, known.centre) = (Some(model), Some(excited));
+    Ok(())
+}
+
+/// Sets the largest voltage of an excitation, which takes a servo that is off.
+pub(super) fn allow(bench: &mut Bench<'_>, volts: f64) -> Result<(), CommissionError> {
+    bench.ask("SVO X 0")?;
+    bench.delay(0.3)?;
+    bench.set(&[(id::EXCITATION_V, volts)])?;
+    bench.hold()
+}
+
+fn quality(lines: &[Line]) -> f64 {
+    (lines.iter())
+        .filter(|line| line.hz < QUALITY_TO_HZ)
+        .map(Line::quality)
+        .fold(1.0, f64::min)
+}
+
+fn uncertain(name: impl Into<String>, value: String, deviation: f64, most: f64) -> Finding {
+    Finding::new(
+        name,
+        format!("{value}, +-{:.1} %", 100.0 * deviation),
+        format!("known to {:.0} %", 100.0 * most),
+        deviation < most,
+        RUBS,
+    )
+}
+
+fn tell_drives(
+    bench: &mut Bench<'_>,
+    known: &mut Known,
+    found: &mut Found,
+    model: &DriveModel,
+) -> Result<(), CommissionError> {
+    let inertia = model.mechanical.chain.inertia(&Place::centre());
+    for pivot in 0..AXES {
+        let drive = &model.electrical[pivot];
+        let [ohm, henry] = [drive.resistance_ohm, drive.inductance_h];
+        let deviation = f64::max(
+            drive.deviations[0] / drive.resistance_ohm,
+            drive.deviations[1] / drive.inductance_h,
+        );
+        found.push(uncertain(
+            format!("winding of pivot {} while it turns", pivot + 1),
+            format!("{ohm:.3} ohm, {:.3} mH", henry * 1e3),
+            deviation,
+            WINDING,
+        ));
+        found.push(Finding::told(
+            format!("pivot {}: R J / K", pivot + 1),
+            format!(
+                "{:.5} V s^2/rad, of {:.4} kg m^2 at the ring and {:.3} V s/rad",
+                ohm * inertia[(pivot, pivot)] / drive.motor_constant,
+                inertia[(pivot, pivot)],
+                drive.motor_constant
+            ),
+        ));
+        known.windings[pivot] = [ohm, henry];
+        bench.set(&[
+            (id::of(id::RESISTANCE, pivot), ohm),
+            (id::of(id::INDUCTANCE, pivot), henry),
+        ])?;
+    }
+    Ok(())
+}
+
+fn tell_platform(
+    bench: &mut Bench<'_>,
+    found: &mut Found,
+    mechanical: &Mechanical,
+) -> Result<(), CommissionError> {
+    let chain = &mechanical.chain;
+    let (drive, load) = (chain.motor_inertia + chain.ring_inertia, &chain.load);
+    let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    let mass_kg = load.mass / (radius_m * radius_m);
+    found.push(Finding::new(
+        "what the model of motors, rings and platform leaves of the responses",
+        format!("{:.1} %", 100.0 * mechanical.residual),
+        format!("under {:.0} %", 100.0 * MOST_LEFT),
+        mechanical.residual < MOST_LEFT,
+        RUBS,
+    ));
+    found.push(uncertain(
+        "inertia of a motor with its ring",
+        format!("{drive:.5} kg m^2"),
+        mechanical.drive_inertia_deviation,
+        INERTIA,
+    ));
+    found.push(uncertain(
+        "mass of platform and load",
+        format!("{mass_kg:.2} kg"),
+        mechanical.deviations[9],
+        INERTIA,
+    ));
+    found.push(uncertain(
+        "their inertia about the platform's centre",
+        format!("{:.4} kg m^2", load.inertia),
+        mechanical.deviations[10],
+        LOAD_INERTIA,
+    ));
+    let resonances: Vec<_> = (chain.resonances_hz(&Place::centre()).iter())
+        .map(|hz| format!("{hz:.0}"))
+        .collect();
+    found.push(Finding::told(
+        "resonances in the middle",
+        format!("{} Hz", resonances.join(", ")),
+    ));
+    set_platform(bench, chain, radius_m)
+}
+
+fn set_platform(
+    bench: &mut Bench<'_>,
+    chain: &Chain,
+    radius_m: f64,
+) -> Result<(), CommissionError> {
+    let mass_kg = chain.load.mass / (radius_m * radius_m);
+    let payload_kg = PAYLOAD * mass_kg;
+    let [x_m, y_m] = chain
+        .load
+        .moment
+        .map(|moment| moment / radius_m / payload_kg);
+    let beside = payload_kg * (x_m * x_m + y_m * y_m);
+    bench.set(&[
+        (id::RING_INERTIA, chain.motor_inertia + chain.ring_inertia),
+        (id::PLATFORM_MASS, mass_kg - payload_kg),
+        (id::PLATFORM_INERTIA, chain.load.inertia - beside),
+        (id::PAYLOAD_MASS, payload_kg),
+        (id::PAYLOAD_INERTIA, 0.0),
+        (id::PAYLOAD_X, x_m * 1e3),
+        (id::PAYLOAD_Y, y_m * 1e3),
+    ])?;
+    Ok(())
+}

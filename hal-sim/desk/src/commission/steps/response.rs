@@ -1,0 +1,63 @@
+//! The loop as it is with the gains so far: in the middle, and far out.
+
+use super::id;
+use super::identification::allow;
+use crate::commission::bench::Bench;
+use crate::commission::found::{CommissionError, Finding, Found, fail};
+use crate::commission::known::Known;
+use crate::commission::measured_loop::{MeasuredLoop, plot};
+use crate::commission::servo_gains;
+use crate::commission::sines::{CENTRE, FAR_OUT, PEAK_V};
+
+/// Most that two ways of measuring the same may differ by.
+const MOST_OFF: f64 = 0.2;
+
+pub(super) fn run(
+    bench: &mut Bench<'_>,
+    known: &mut Known,
+    found: &mut Found,
+) -> Result<(), CommissionError> {
+    let Some(model) = known.model.clone() else {
+        return fail(
+            "the windings and springs of this machine are not known",
+            "begin with the step `identification`",
+        );
+    };
+    allow(bench, PEAK_V)?;
+    known.loops.clear();
+    let gains = servo_gains::read(bench)?;
+    let radius_m = 1e-3 * bench.parameter(id::TRACK_RADIUS)?;
+    for spot in [CENTRE, FAR_OUT] {
+        let measured = match known.centre.take() {
+            Some(excited) if spot == CENTRE => MeasuredLoop::new(&excited, spot, &model),
+            _ => MeasuredLoop::measure(bench, spot, &model)?,
+        };
+        found.push(told(&measured));
+        let chain = &model.mechanical.chain;
+        let off = measured
+            .distance(&gains, chain, radius_m)
+            .unwrap_or(f64::INFINITY);
+        found.push(Finding::new(
+            format!("S {} against what the gains make of the plant", spot.words()),
+            format!("{:.1} % off in the median", 100.0 * off),
+            format!("under {:.0} %", 100.0 * MOST_OFF),
+            off < MOST_OFF,
+            "the servo is not what its parameters say, or currents and windings are off: measure the windings again",
+        ));
+        found.plots.push(plot(&measured, None));
+        known.loops.push(measured);
+    }
+    Ok(())
+}
+
+fn told(measured: &MeasuredLoop) -> Finding {
+    Finding::told(
+        format!("loop {}", measured.spot.words()),
+        format!(
+            "Ms {:.2}, S(30 Hz) {:.3}, crossover {:.0} Hz",
+            measured.ms(),
+            measured.rejection(),
+            measured.crossover_hz()
+        ),
+    )
+}
