@@ -73,7 +73,9 @@ impl Ideal {
     /// Just switched on, at the origin, with so many connections.
     #[must_use]
     pub fn new(connections: usize) -> Self {
-        let parameters = Parameters::REFERENCE;
+        let mut parameters = Parameters::REFERENCE;
+        // Its motors carry nothing, whatever drives them.
+        parameters.supervision.unexplained_current_a = 20.0;
         let (queues, flash) = (
             ControllerMemory::endless().split(),
             SettingsFlash::in_memory(),

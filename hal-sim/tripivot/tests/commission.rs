@@ -1,7 +1,10 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
+use firmware::control::servo::pivot_limits;
+use firmware::parameters::Parameters;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::unknown;
+use hal_sim::rig::Told;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
@@ -76,6 +79,7 @@ fn brings_up(seed: u64) {
     finds_the_motors(&machine, &told);
     finds_what_is_moved(&machine, &told);
     finds_gains(&told);
+    finds_limits(&machine, &told);
     assert!(folder.join("settings.flash").exists());
     let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
     assert!(report.contains(">commissioned<") && report.contains("</html>"));
@@ -132,6 +136,20 @@ fn finds_the_motors(machine: &StageParameters, told: &str) {
     }
     let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
     assert!(error(told, "mean of three", friction).abs() < MOST_FRICTION_ERROR);
+}
+
+/// Rate and acceleration of a pivot in force: what the machine's true numbers allow, and no more than before.
+fn finds_limits(machine: &StageParameters, told: &str) {
+    let truth = Told::Machine.parameters(&Parameters::REFERENCE, machine);
+    let limits = &truth.limits;
+    let before = [limits.pivot_rate_rad_s, limits.pivot_acceleration_rad_s2];
+    let names = ["largest rate (rad/s)", "largest acceleration (rad/s^2)"];
+    for (i, borne) in pivot_limits(&truth).into_iter().enumerate() {
+        let line = told.lines().find(|line| line.contains(names[i]));
+        let off = error(line.unwrap_or_default(), "in force: ", borne.min(before[i]));
+        // The worst of the machines tried here, and a tenth more.
+        assert!(off.abs() < 0.032, "{told}");
+    }
 }
 
 /// Torques are as volts and amperes have them: what their meters are off is no error of the method.

@@ -159,7 +159,8 @@ impl Case {
             return;
         }
         self.watch.note(&line);
-        let faults = self.stage.ask(OBSERVER, b"FLT?\n");
+        // With the error that a fault has set, which is told once.
+        let faults = self.stage.ask(OBSERVER, b"FLT?\nERR?\n");
         let before = self.state();
         let mut probe = line;
         probe.extend(b"ERR?\n");
@@ -167,7 +168,7 @@ impl Case {
         self.watch.look(&self.stage);
         let answer = String::from_utf8_lossy(&answer).into_owned();
         let error = answer.lines().last().unwrap_or("none").trim().to_owned();
-        if self.stage.ask(OBSERVER, b"FLT?\n") != faults {
+        if self.stage.ask(OBSERVER, b"FLT?\nERR?\n") != faults {
             // What was asked for has been done, and has met a fault: with some parameters the encoders show impossible pivots.
             return;
         }

@@ -238,7 +238,7 @@ pub const SECTIONS: &[Section] = &[
         group: Group::Faults,
         about: "A fault at a random tick of a random motion (moves, jogs, waves, streams, in frames, with the servo off and on, in a \
                 stop, after a fault that was acknowledged), on machines drawn as a workshop builds them, with every imperfection, whose \
-                controllers were told their numbers and gains that their resonances bear; and as many runs without. Wrong is: a fault \
+                controllers were told their numbers, gains and notches for their resonances and a motion that their motors bear; and as many runs without. Wrong is: a fault \
                 that is not latched in time, before what it names has passed its threshold in the machine itself, or under another name \
                 or pivot; a second one in the stop that is not told; an alarm without a fault; outputs that are cut late; a stage that \
                 goes on further, turns more, leaves its path by more, presses a guide further into its end or hits an end harder than \

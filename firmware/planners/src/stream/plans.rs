@@ -37,9 +37,8 @@ impl Stream {
             None => (PlanStart::Rest(rest), rest.map(AxisState::at_rest)),
         };
         let mut plan = Plan::new(id, start, rest);
-        let state = self.knots(&mut plan, from);
         let plan_check = PlanCheck::for_stream(constraints);
-        (plan_check.check(&plan.pieces, &from, &mut { Budget::FOR_ANSWER }))
+        let state = (self.knots(&mut plan, from, &plan_check))
             .map_err(|violation| refusal(violation, constraints))?;
         let splice = plan.ticks();
         if self.complete {
@@ -62,12 +61,20 @@ impl Stream {
         Ok((plan, from, SentPlan { id, splice, state }))
     }
 
-    /// Adds the pieces along the curve; where they lead.
-    fn knots(&mut self, plan: &mut Plan, from: [AxisState; 3]) -> [AxisState; 3] {
-        let mut state = from;
+    /// Adds the pieces along the curve; where they lead. Each knot is checked before the next: one that no stage can pass leads to states
+    /// that the next one's numbers do not hold.
+    fn knots(
+        &mut self,
+        plan: &mut Plan,
+        from: [AxisState; 3],
+        plan_check: &PlanCheck,
+    ) -> Result<[AxisState; 3], Violation> {
+        let (mut state, mut budget) = (from, Budget::FOR_ANSWER);
         for _ in 0..self.knots {
             self.pass();
-            for piece in self.pieces(&state) {
+            let pieces = self.pieces(&state);
+            plan_check.check(&pieces, &state, &mut budget)?;
+            for piece in pieces {
                 piece.advance(&mut state, piece.ticks, &[0; 3]);
                 // Six times three, and five of the stop: they fit.
                 let _ = plan.pieces.push(piece);
@@ -77,7 +84,7 @@ impl Stream {
                 break;
             }
         }
-        state
+        Ok(state)
     }
 
     /// Passes the curve by a knot.

@@ -1,7 +1,7 @@
 //! Questions, excitations and records, as the steps need them.
 
 use super::found::{CommissionError, fail};
-use super::known::AXES;
+use super::id::AXES;
 use super::{Machine, Task};
 use crate::record::desk::strange;
 use crate::record::{Record, RecordError, TABLES, answer};

@@ -1,14 +1,11 @@
 //! What is known of the machine so far.
 
 use super::bench::Bench;
+use super::id::{self, AXES};
 use super::measured_loop::MeasuredLoop;
 use super::sines::Excited;
-use super::steps::id;
 use crate::record::RecordError;
 use commissioning::drive_model::DriveModel;
-
-/// Pivots, encoder ports, bridges.
-pub(super) const AXES: usize = 3;
 
 /// What the steps have found; each uses what those before it did.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,6 +9,7 @@
 //! | `bench` | questions, excitations and records, as the steps need them |
 //! | `chosen` | which steps are run |
 //! | `found` | what a step has found, and why one fails |
+//! | `id` | numbers of parameters |
 //! | `known` | what is known of the machine so far |
 //! | `servo_gains` | gains and filters, to and from the controller's parameters |
 //! | `measured_loop` | a loop as measured, its margins and its plots |
@@ -19,6 +20,7 @@
 mod bench;
 mod chosen;
 mod found;
+mod id;
 mod known;
 mod measured_loop;
 mod report;

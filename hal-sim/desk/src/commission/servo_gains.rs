@@ -1,7 +1,7 @@
 //! The servos' gains and filters, between the controller's parameters and the mathematics of their loops.
 
 use super::bench::Bench;
-use super::known::AXES;
+use super::id::{self, AXES};
 use crate::record::RecordError;
 use commissioning::tuning::{Gains, PivotGains};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
@@ -9,8 +9,6 @@ use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 /// Parameters of pivot 1: gains, and filters; those of the next pivots follow.
 const GAINS: u32 = 0x5450_0310;
 const FILTERS: u32 = 0x5450_0350;
-const PIVOT: u32 = 0x10;
-const SCHEDULED_INERTIA: u32 = 0x5450_0306;
 
 /// What is in force.
 pub fn read(bench: &mut Bench<'_>) -> Result<Gains, RecordError> {
@@ -22,8 +20,8 @@ pub fn read(bench: &mut Bench<'_>) -> Result<Gains, RecordError> {
         },
         filters: FeedbackFilters::NONE,
     }; AXES];
-    for (pivot, gains) in (0..).zip(&mut pivots) {
-        let mut value = |first: u32, at: u32| bench.parameter(first + PIVOT * pivot + at);
+    for (pivot, gains) in pivots.iter_mut().enumerate() {
+        let mut value = |first: u32, at: u32| bench.parameter(id::of(first, pivot) + at);
         gains.gains = parameters::Gains {
             position_1_s: value(GAINS, 0)?,
             velocity_v_s_rad: value(GAINS, 1)?,
@@ -43,14 +41,14 @@ pub fn read(bench: &mut Bench<'_>) -> Result<Gains, RecordError> {
     }
     Ok(Gains {
         pivots,
-        scheduled_inertia_kg_m2: bench.parameter(SCHEDULED_INERTIA)?,
+        scheduled_inertia_kg_m2: bench.parameter(id::SCHEDULED_INERTIA)?,
     })
 }
 
 /// Puts them in force.
 pub fn write(bench: &mut Bench<'_>, gains: &Gains) -> Result<(), RecordError> {
-    bench.set(&[(SCHEDULED_INERTIA, gains.scheduled_inertia_kg_m2)])?;
-    for (pivot, one) in (0..).zip(&gains.pivots) {
+    bench.set(&[(id::SCHEDULED_INERTIA, gains.scheduled_inertia_kg_m2)])?;
+    for (pivot, one) in gains.pivots.iter().enumerate() {
         let [first, second] = one.filters.notches;
         let values = [
             (GAINS, one.gains.position_1_s),
@@ -65,7 +63,7 @@ pub fn write(bench: &mut Bench<'_>, gains: &Gains) -> Result<(), RecordError> {
             (FILTERS + 6, one.filters.lead.from_hz),
             (FILTERS + 7, one.filters.lead.to_hz),
         ];
-        bench.set(&values.map(|(id, value)| (id + PIVOT * pivot, value)))?;
+        bench.set(&values.map(|(first, value)| (id::of(first, pivot), value)))?;
     }
     Ok(())
 }

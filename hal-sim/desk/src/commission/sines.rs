@@ -2,7 +2,7 @@
 
 use super::bench::Bench;
 use super::found::{CommissionError, fail};
-use super::known::AXES;
+use super::id::AXES;
 use commissioning::frequency_response::{Line, Run, frequency_response};
 use commissioning::record::{Record, Timing};
 use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};

@@ -1,9 +1,10 @@
 //! Turning without end at steady rates, both ways: motor constants from the volts, friction from the currents.
 
-use super::id;
 use crate::commission::bench::{ANGLE, Bench, CURRENT, DUTY, SUPPLY};
 use crate::commission::found::{CommissionError, Finding, Found, fail};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 use commissioning::friction::{MOST_RESIDUAL, SteadyRate, friction, mean};
 use std::f64::consts::TAU;
 

@@ -1,10 +1,11 @@
 //! Gains by the ultimate gain (Ziegler and Nichols, Trans. ASME 64, 1942): they are raised together until noise and a kick ring on, in the
 //! middle and far out; half of that is used.
 
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 use crate::record::RecordError;
 
 /// Gains that a share of 1 stands for: position 1/s, velocity V s/rad, integral V/rad.
@@ -47,7 +48,7 @@ const USUAL_COUNTS: f64 = 2.0;
 const REST: f64 = 0.13;
 
 /// First frequencies of the filters of all pivots: 0 is none; and the inertia that gains are scheduled by, 0: they are not.
-const FILTERS: [u32; 4] = [0x5450_0340, 0x5450_0343, 0x5450_0346, 0x5450_0306];
+const FILTERS: [u32; 4] = [0x5450_0340, 0x5450_0343, 0x5450_0346, id::SCHEDULED_INERTIA];
 
 /// Forgets what an earlier commissioning has found: gains as a controller has them at first, and nothing that shapes them.
 pub(super) fn forget(bench: &mut Bench<'_>) -> Result<(), CommissionError> {

@@ -8,7 +8,8 @@
 use crate::commission::Task;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 
 type Complex = nalgebra::Complex<f64>;
 

@@ -1,9 +1,10 @@
 //! The numbers of drives and platform, from multisines on one motor after the other while the platform turns in the middle.
 
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 use crate::commission::sines::{CENTRE, PEAK_V, excite};
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::{DriveModel, Guess, Known as Before, Mechanical, drive_model};

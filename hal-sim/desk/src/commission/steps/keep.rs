@@ -1,10 +1,11 @@
 //! What was found is kept, and is in force after it as before.
 
-use super::id;
 use super::nudges::USUAL_EXCITATION_V;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 
 pub(super) fn run(
     bench: &mut Bench<'_>,

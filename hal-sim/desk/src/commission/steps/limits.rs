@@ -1,8 +1,8 @@
 //! Limits of motion that the motors bear with what they move.
 
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
+use crate::commission::id;
 use crate::commission::known::Known;
 use firmware::control::servo::pivot_limits;
 

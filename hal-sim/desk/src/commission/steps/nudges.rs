@@ -1,9 +1,10 @@
 //! A rising voltage on one bridge after the other, both ways, until a ring moves: which one, which way, and what it takes.
 
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 
 /// Largest voltage of an excitation while nothing is known, V.
 pub(super) const USUAL_EXCITATION_V: f64 = 2.0;

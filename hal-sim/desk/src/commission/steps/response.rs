@@ -1,9 +1,9 @@
 //! The loop as it is with the gains so far: in the middle, and far out.
 
-use super::id;
 use super::identification::allow;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
+use crate::commission::id;
 use crate::commission::known::Known;
 use crate::commission::measured_loop::{MeasuredLoop, plot};
 use crate::commission::servo_gains;

@@ -2,7 +2,8 @@
 
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 
 /// Way, mrad; rate, mrad/s; time, ms.
 const WAY_MRAD: f64 = 1.0;

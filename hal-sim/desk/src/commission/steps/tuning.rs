@@ -2,9 +2,9 @@
 //! loops as they were measured. They are kept if the loops that they give, measured again, are better than those that were.
 
 use super::gains::{settle_as_usual, settle_widely};
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
+use crate::commission::id;
 use crate::commission::known::Known;
 use crate::commission::measured_loop::{MOST_MS, MeasuredLoop, plot};
 use crate::commission::servo_gains;

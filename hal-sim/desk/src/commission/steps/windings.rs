@@ -1,9 +1,10 @@
 //! Short pulses of two sizes and both signs: resistance and inductance of each winding, and what the dead time takes.
 
-use super::id;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found, fail};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 use commissioning::record::Timing;
 use commissioning::winding::{WindingGuess, winding};
 

@@ -1,9 +1,11 @@
 //! Encoders, supply and current sensors at rest, with the bridges asleep.
 
-use super::{gains, id};
+use super::gains;
 use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 
 /// Ticks of the look at the encoders' noise, and most of it: an encoder's own 200 nrad and half as much again.
 const TICKS: usize = 1_000;

@@ -1,10 +1,11 @@
 //! The platform in its jig, in the middle with guide 1 along x: there pivot 1 is at 0 deg, pivot 2 at 120, pivot 3 at 240.
 
-use super::id;
 use crate::commission::Task;
 use crate::commission::bench::{Bench, average};
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::known::{AXES, Known};
+use crate::commission::id;
+use crate::commission::id::AXES;
+use crate::commission::known::Known;
 use std::f64::consts::TAU;
 
 /// Counts of a turn.

@@ -1,0 +1,44 @@
+//! Numbers of the parameters that commissioning reads and sets.
+
+/// Pivots, encoder ports, bridges.
+pub const AXES: usize = 3;
+
+pub const ENCODER_ZERO: u32 = 0x5450_0600;
+pub const ENCODER_REVERSED: u32 = 0x5450_0610;
+pub const ENCODER_ORDER: u32 = 0x5450_0620;
+pub const BRIDGE_ORDER: u32 = 0x5450_0630;
+pub const MOTOR_REVERSED: u32 = 0x5450_0640;
+pub const POSITION_GAIN: u32 = 0x5450_0300;
+pub const VELOCITY_GAIN: u32 = 0x5450_0301;
+pub const INTEGRAL_GAIN: u32 = 0x5450_0302;
+/// Inertia that gains are scheduled by; 0: they are not.
+pub const SCHEDULED_INERTIA: u32 = 0x5450_0306;
+pub const REST_STIFFNESS: u32 = 0x5450_0308;
+pub const SETTLING_COUNTS: u32 = 0x5450_0400;
+pub const EXCITATION_V: u32 = 0x5450_0D00;
+pub const PIVOT_RATE: u32 = 0x5450_0106;
+pub const PIVOT_ACCELERATION: u32 = 0x5450_0107;
+pub const TORQUE_CONSTANT: u32 = 0x5450_0810;
+pub const GEAR_RATIO: u32 = 0x5450_0811;
+pub const RESISTANCE: u32 = 0x5450_0812;
+pub const INDUCTANCE: u32 = 0x5450_0813;
+pub const DEAD_TIME: u32 = 0x5450_0814;
+pub const DEAD_TIME_KNEE: u32 = 0x5450_0815;
+pub const VISCOUS: u32 = 0x5450_0818;
+pub const COULOMB: u32 = 0x5450_0819;
+pub const TRACK_RADIUS: u32 = 0x5450_0200;
+pub const PLATFORM_MASS: u32 = 0x5450_0700;
+pub const PLATFORM_INERTIA: u32 = 0x5450_0701;
+pub const PAYLOAD_MASS: u32 = 0x5450_0702;
+pub const PAYLOAD_INERTIA: u32 = 0x5450_0703;
+pub const PAYLOAD_X: u32 = 0x5450_0704;
+pub const PAYLOAD_Y: u32 = 0x5450_0705;
+/// Of all pivots.
+pub const RING_INERTIA: u32 = 0x5450_0807;
+pub const NOMINAL_SUPPLY: u32 = 0x5450_0806;
+pub const PWM_HZ: u32 = 0x5450_080B;
+
+/// Of a pivot that has one of its own, counted from 0; `first` is pivot 1's.
+pub const fn of(first: u32, pivot: usize) -> u32 {
+    first + 0x10 * pivot as u32
+}
