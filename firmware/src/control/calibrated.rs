@@ -1,16 +1,15 @@
 //! Kinematics of a calibrated machine in the tick: see [`crate::calibration`].
 
 use super::config::Config;
-use super::pivot_setpoints::{PivotSetpoints, pose};
+use super::pivot_setpoints::PivotSetpoints;
 use super::servo::platform_torques;
 use super::state::State;
 use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
-use crate::motion::Setpoint;
 use crate::number::Fixed;
 use kinematics::{
-    Angle, CorrectedInverse, Corrections, Curves, DirectError, InverseError, Line, Pose, Series,
-    Tangents, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes, missing_rad,
-    newton_step,
+    Acceleration, Angle, CorrectedInverse, Corrections, Curves, DirectError, Line, Pose, Series,
+    Tangents, Twist, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes,
+    missing_rad, newton_step,
 };
 
 /// A calibration that the tick is to compute with.
@@ -86,7 +85,11 @@ impl Calibrated {
     /// From the drawn machine's pose two steps of Newton's method, the straightness being looked up at each. In a function of
     /// the loop's own, which the image's linker finds.
     #[inline(never)]
-    pub fn measured_pose(&mut self, encoders: &[Angle; 3]) -> Result<Pose<Fixed>, DirectError> {
+    pub fn measured_pose(
+        &mut self,
+        config: &Config,
+        encoders: &[Angle; 3],
+    ) -> Result<Pose<Fixed>, DirectError> {
         let Corrections { lines, curves } = &mut self.near;
         let mut rings = *encoders;
         for (ring, line) in rings.iter_mut().zip(&*lines) {
@@ -99,8 +102,11 @@ impl Calibrated {
         for ((tangents, series), ring) in curves.iter_mut().zip(&self.series).zip(rings) {
             *tangents = of_ring(series, ring);
         }
+        let (twist, acceleration) = (Twist::default(), Acceleration::default());
         for _ in 0..NEWTON_STEPS {
-            let at = solve(&pose, &self.near)?;
+            let mut at = None;
+            let _ = self.pivot_setpoints(config, &pose, &twist, &acceleration, Some(&mut at));
+            let at = at.ok_or(DirectError::OutsideTrack)?;
             let mut missing = missing_rad(&at, encoders);
             for (i, tangents) in self.near.curves.iter_mut().enumerate() {
                 let rho = at.guides[i].rho();
@@ -114,33 +120,36 @@ impl Calibrated {
         Ok(pose)
     }
 
-    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism.
+    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism; and, if
+    /// asked, how the pose was solved.
+    // The corrected inverse stands here, once in the loop's memory: a function of its own would hand its results over in memory.
     #[inline(never)]
-    pub fn pivot_setpoints(&self, config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {
-        let at = solve(&pose(&setpoint.position)?, &self.near).ok()?;
+    pub fn pivot_setpoints(
+        &self,
+        config: &Config,
+        pose: &Pose<Fixed>,
+        twist: &Twist<f32>,
+        acceleration: &Acceleration<f32>,
+        solved: Option<&mut Option<CorrectedInverse<Fixed>>>,
+    ) -> Option<PivotSetpoints> {
+        let at = corrected_inverse(pose, &self.near).ok()?;
         let guides = &at.guides;
-        let (twist, acceleration) =
-            in_platform_axes(guides, &setpoint.twist, &setpoint.acceleration);
-        Some(PivotSetpoints {
+        let (twist, acceleration) = in_platform_axes(guides, twist, acceleration);
+        let setpoints = PivotSetpoints {
             angles: at.encoders,
             motion: corrected_pivot_motion(&at, &self.near.lines, &twist, &acceleration),
             torques: platform_torques(&config.servo.body, guides, &twist, &acceleration),
             lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
             cosines: [guides[0].cosine, guides[1].cosine, guides[2].cosine],
-        })
+        };
+        if let Some(solved) = solved {
+            *solved = Some(at);
+        }
+        Some(setpoints)
     }
 }
 
 // Once in the loop's memory: they are long.
-
-/// See [`corrected_inverse`].
-#[inline(never)]
-fn solve(
-    pose: &Pose<Fixed>,
-    near: &Corrections<Fixed, Tangents<Fixed>>,
-) -> Result<CorrectedInverse<Fixed>, InverseError> {
-    corrected_inverse(pose, near)
-}
 
 /// See [`Tangents::of_ring`].
 #[inline(never)]

@@ -4,7 +4,7 @@ use super::command::Command;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
-use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints, pose};
 use super::rest_mode::Stiffness;
 use super::servo::{LoopSetpoint, PivotSetpoint};
 use super::state::{Inputs, Outputs, State};
@@ -218,7 +218,15 @@ impl State {
         }
         // Used where it lies.
         let wanted = if self.calibrated.is_on {
-            self.calibrated.pivot_setpoints(config, setpoint)
+            pose(&setpoint.position).and_then(|pose| {
+                self.calibrated.pivot_setpoints(
+                    config,
+                    &pose,
+                    &setpoint.twist,
+                    &setpoint.acceleration,
+                    None,
+                )
+            })
         } else {
             pivot_setpoints(config, setpoint)
         };
