@@ -3,8 +3,9 @@
 
 use firmware::calibration::MachineCalibration;
 use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::{built_stage, calibration_told};
 use tests::Bench;
-use tests::calibrated::{built_stage, calibration_of, lines, nothing_off};
+use tests::calibrated::{lines, nothing_off};
 
 /// Targets on the rim, in the middle, and many turns away.
 const TARGETS: [[f64; 3]; 7] = [
@@ -65,10 +66,10 @@ fn worst_miss(bench: &mut Bench) -> [f64; 2] {
 
 #[test]
 fn a_calibrated_machine_is_where_it_was_sent() {
-    let stage = built_stage();
+    let stage = built_stage(&StageParameters::REFERENCE);
     let before = worst_miss(&mut referenced(&stage, None));
     assert!(before[0] > 50e-6 && before[1] > 300e-6, "{before:?}");
-    let calibration = calibration_of(&stage);
+    let calibration = calibration_told(&stage);
     let after = worst_miss(&mut referenced(&stage, Some(&calibration)));
     assert!(after[0] < 2.3e-9 && after[1] < 2.5e-8, "{after:?}");
 }
@@ -102,8 +103,8 @@ fn a_calibration_of_nothing_changes_no_bit() {
 
 #[test]
 fn all_of_it_is_taken_or_nothing() {
-    let stage = built_stage();
-    let calibration = calibration_of(&stage);
+    let stage = built_stage(&StageParameters::REFERENCE);
+    let calibration = calibration_told(&stage);
     let mut bench = Bench::new(&stage);
     bench.run(100);
     let all = lines(&calibration);
@@ -156,8 +157,8 @@ fn all_of_it_is_taken_or_nothing() {
 
 #[test]
 fn it_is_kept_over_a_restart_and_counts_from_the_start() {
-    let stage = built_stage();
-    let calibration = calibration_of(&stage);
+    let stage = built_stage(&StageParameters::REFERENCE);
+    let calibration = calibration_told(&stage);
     let mut bench = referenced(&stage, Some(&calibration));
     let told = bench.say("CAL?\n");
     assert_eq!(bench.error_after("SVO X 0"), "0");

@@ -21,8 +21,9 @@ pub struct CalibrationInForce {
     pub margins: CalibrationMargins,
 }
 
-/// Of Newton's method, to a pose: less than 1e-8 rad are left.
-const NEWTON_STEPS: u32 = 2;
+/// Encoders may read so much more than in the pose that was followed: one step of Newton's method leaves the square of it. A tick is
+/// 50 us: by hand nothing turns by that much.
+const MOST_MISSING_RAD: f32 = 2e-3;
 
 /// The calibration as the tick carries it.
 #[derive(Clone, Debug)]
@@ -34,6 +35,8 @@ pub(super) struct Calibrated {
     /// The lines, and the curves as they are near where the pivots are.
     near: Corrections<Fixed, Tangents<Fixed>>,
     series: [Series<f32>; 3],
+    /// The pose of the encoders up to the last tick, while the servo is off.
+    followed: Option<Pose<Fixed>>,
 }
 
 impl CalibrationInForce {
@@ -54,6 +57,7 @@ impl Default for Calibrated {
                 curves: [Tangents::ZERO; 3],
             },
             series: [Series::ZERO; 3],
+            followed: None,
         }
     }
 }
@@ -65,6 +69,7 @@ impl Calibrated {
         self.margins = wanted.margins;
         self.near.lines = wanted.calibration.lines;
         self.series = wanted.calibration.curves;
+        self.followed = None;
     }
 
     /// The curves of a pivot whose encoder is to read `encoder`, at a place on its guide: for the ticks to come.
@@ -80,44 +85,86 @@ impl Calibrated {
         }
     }
 
-    /// The pose of measured pivots; and the curves there, from which the ticks to come go on.
+    /// The pose in which the encoders read this; the servo goes on there. One step of Newton's method from the pose that was
+    /// followed up to the tick before: from nothing it would take longer than a tick may.
     ///
-    /// From the drawn machine's pose two steps of Newton's method, the straightness being looked up at each. In a function of
-    /// the loop's own, which the image's linker finds.
+    /// # Errors
+    /// [`DirectError`]: no platform can stand so, or it is not known yet how.
+    // In a function of the loop's own, which the image's linker finds.
     #[inline(never)]
     pub fn measured_pose(
         &mut self,
         config: &Config,
         encoders: &[Angle; 3],
     ) -> Result<Pose<Fixed>, DirectError> {
-        let Corrections { lines, curves } = &mut self.near;
+        if !self.is_on {
+            return direct(encoders);
+        }
+        let followed = self.followed.take().ok_or(DirectError::OutsideTrack)?;
+        let step = self.newton(config, &followed, encoders);
+        let (pose, _) = step.ok_or(DirectError::OutsideTrack)?;
+        Ok(pose)
+    }
+
+    /// While the servo is off: follows the pose, and looks up the curves of one pivot.
+    #[inline(never)]
+    pub fn follow(&mut self, config: &Config, encoders: &[Angle; 3], slot: usize) {
+        self.followed = match self.followed.take() {
+            None => self.begin(config, encoders),
+            Some(pose) => self.newton(config, &pose, encoders).map(|(pose, lengths)| {
+                if let (Some(&encoder), Some(&rho)) = (encoders.get(slot), lengths.get(slot)) {
+                    self.look_up(slot, encoder, rho);
+                }
+                pose
+            }),
+        };
+    }
+
+    /// From the drawn machine's pose one step on the built one, with all curves looked up there.
+    fn begin(&mut self, config: &Config, encoders: &[Angle; 3]) -> Option<Pose<Fixed>> {
         let mut rings = *encoders;
-        for (ring, line) in rings.iter_mut().zip(&*lines) {
+        for (ring, line) in rings.iter_mut().zip(&self.near.lines) {
             *ring -= line.encoder_zero;
         }
-        let mut pose = direct(&rings)?;
-        if !self.is_on {
-            return Ok(pose);
-        }
-        for ((tangents, series), ring) in curves.iter_mut().zip(&self.series).zip(rings) {
+        let pose = direct(&rings).ok()?;
+        for ((tangents, series), ring) in self.near.curves.iter_mut().zip(&self.series).zip(rings) {
             *tangents = of_ring(series, ring);
         }
-        let (twist, acceleration) = (Twist::default(), Acceleration::default());
-        for _ in 0..NEWTON_STEPS {
-            let mut at = None;
-            let _ = self.pivot_setpoints(config, &pose, &twist, &acceleration, Some(&mut at));
-            let at = at.ok_or(DirectError::OutsideTrack)?;
-            let mut missing = missing_rad(&at, encoders);
-            for (i, tangents) in self.near.curves.iter_mut().enumerate() {
-                let rho = at.guides[i].rho();
-                let before = Curves::<Fixed>::straightness(tangents, rho).value;
-                *tangents = with_guide(tangents, &self.series[i], rho);
-                let now = Curves::<Fixed>::straightness(tangents, rho).value;
-                missing[i] -= (now - before) * at.over_travel[i];
-            }
-            pose = newton_step(&pose, &at, &self.near.lines, &missing);
+        let at = self.solve(config, &pose)?;
+        let mut missing_rad = missing_rad(&at, encoders);
+        for (i, tangents) in self.near.curves.iter_mut().enumerate() {
+            let rho = at.guides[i].rho();
+            *tangents = with_guide(tangents, &self.series[i], rho);
+            let straightness = Curves::<Fixed>::straightness(tangents, rho).value;
+            missing_rad[i] -= straightness * at.over_travel[i];
         }
-        Ok(pose)
+        Some(newton_step(&pose, &at, &self.near.lines, &missing_rad))
+    }
+
+    /// One step of Newton's method, and the places on the guides before it; `None` when the pose is too far from where it was
+    /// followed to.
+    fn newton(
+        &self,
+        config: &Config,
+        pose: &Pose<Fixed>,
+        encoders: &[Angle; 3],
+    ) -> Option<(Pose<Fixed>, [f32; 3])> {
+        let at = self.solve(config, pose)?;
+        let missing_rad = missing_rad(&at, encoders);
+        let is_near = (missing_rad.iter()).all(|missing_rad| missing_rad.abs() < MOST_MISSING_RAD);
+        is_near.then(|| {
+            let lengths = [0, 1, 2].map(|i| at.guides[i].rho());
+            let pose = newton_step(pose, &at, &self.near.lines, &missing_rad);
+            (pose, lengths)
+        })
+    }
+
+    /// See [`corrected_inverse`].
+    fn solve(&self, config: &Config, pose: &Pose<Fixed>) -> Option<CorrectedInverse<Fixed>> {
+        let (twist, acceleration) = (Twist::default(), Acceleration::default());
+        let mut at = None;
+        let _ = self.pivot_setpoints(config, pose, &twist, &acceleration, Some(&mut at));
+        at
     }
 
     /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism; and, if
@@ -164,12 +211,25 @@ fn with_guide(tangents: &Tangents<Fixed>, series: &Series<f32>, rho: f32) -> Tan
 }
 
 impl State {
-    /// Looks up the curves of the pivot that is inspected in this tick, for those to come.
+    /// Of a calibrated machine: looks up the curves of the pivot that is inspected in this tick, for those to come. `lengths` are those
+    /// of the guides where the servo is on; where it is off, the pose is followed.
     #[inline]
-    pub(super) fn look_up_curves(&mut self, slot: usize, target: &[Angle; 3], lengths: &[f32; 3]) {
-        if self.calibrated.is_on
-            && let (Some(&encoder), Some(&rho)) = (target.get(slot), lengths.get(slot))
-        {
+    pub(super) fn prepare_calibrated(
+        &mut self,
+        config: &Config,
+        slot: usize,
+        encoders: &[Angle; 3],
+        lengths: Option<&[f32; 3]>,
+    ) {
+        if !self.calibrated.is_on {
+            return;
+        }
+        if !self.servo_on() {
+            self.calibrated.follow(config, encoders, slot);
+        } else if let (Some(&encoder), Some(&rho)) = (
+            encoders.get(slot),
+            lengths.and_then(|lengths| lengths.get(slot)),
+        ) {
             self.calibrated.look_up(slot, encoder, rho);
         }
     }

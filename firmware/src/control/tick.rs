@@ -129,8 +129,13 @@ pub fn tick_and_drive<'a>(
         .count_tick(inputs.tick_cycles, inputs.late);
     if let Some(guides) = &guides {
         state.learn(config, guides, slot);
-        state.look_up_curves(slot, &target, &guides[0]);
     }
+    state.prepare_calibrated(
+        config,
+        slot,
+        &target,
+        guides.as_ref().map(|guides| &guides[0]),
+    );
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
     }
