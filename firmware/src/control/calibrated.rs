@@ -3,7 +3,6 @@
 use super::config::Config;
 use super::pivot_setpoints::PivotSetpoints;
 use super::servo::platform_torques;
-use super::state::State;
 use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
 use crate::number::Fixed;
 use kinematics::{
@@ -24,6 +23,8 @@ pub struct CalibrationInForce {
 /// Encoders may read so much more than in the pose that was followed: one step of Newton's method leaves the square of it. A tick is
 /// 50 us: by hand nothing turns by that much.
 const MOST_MISSING_RAD: f32 = 2e-3;
+/// No more than that, and the machine stands still, but for noise: 0.02 rad/s.
+const STILL_RAD: f32 = 1e-6;
 
 /// The calibration as the tick carries it.
 #[derive(Clone, Debug)]
@@ -36,7 +37,15 @@ pub(super) struct Calibrated {
     near: Corrections<Fixed, Tangents<Fixed>>,
     series: [Series<f32>; 3],
     /// The pose of the encoders up to the last tick, while the servo is off.
-    followed: Option<Pose<Fixed>>,
+    followed: Option<Followed>,
+}
+
+/// A pose that is followed.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    pose: Pose<Fixed>,
+    /// What the encoders read more than in the pose before, at most, rad.
+    missing_rad: f32,
 }
 
 impl CalibrationInForce {
@@ -74,7 +83,7 @@ impl Calibrated {
 
     /// The curves of a pivot whose encoder is to read `encoder`, at a place on its guide: for the ticks to come.
     #[inline(never)]
-    pub fn look_up(&mut self, pivot: usize, encoder: Angle, rho: f32) {
+    fn look_up(&mut self, pivot: usize, encoder: Angle, rho: f32) {
         if let (Some(tangents), Some(series), Some(line)) = (
             self.near.curves.get_mut(pivot),
             self.series.get(pivot),
@@ -85,8 +94,9 @@ impl Calibrated {
         }
     }
 
-    /// The pose in which the encoders read this; the servo goes on there. One step of Newton's method from the pose that was
-    /// followed up to the tick before: from nothing it would take longer than a tick may.
+    /// The pose in which the encoders read this; the servo goes on there. Of a machine that stands still it is the pose that was
+    /// followed up to the tick before. One that is moved by hand takes one more step of Newton's method, and the tick that takes
+    /// the command, in which nothing is driven yet, may be late by it.
     ///
     /// # Errors
     /// [`DirectError`]: no platform can stand so, or it is not known yet how.
@@ -101,27 +111,38 @@ impl Calibrated {
             return direct(encoders);
         }
         let followed = self.followed.take().ok_or(DirectError::OutsideTrack)?;
-        let step = self.newton(config, &followed, encoders);
-        let (pose, _) = step.ok_or(DirectError::OutsideTrack)?;
-        Ok(pose)
+        if followed.missing_rad < STILL_RAD {
+            return Ok(followed.pose);
+        }
+        let step = self.newton(config, &followed.pose, encoders);
+        let (followed, _) = step.ok_or(DirectError::OutsideTrack)?;
+        Ok(followed.pose)
     }
 
-    /// While the servo is off: follows the pose, and looks up the curves of one pivot.
+    /// The curves of the pivot that is inspected in this tick, at its encoder's setpoint and its place on the guide.
+    #[inline]
+    pub fn look_up_at(&mut self, slot: usize, encoders: &[Angle; 3], lengths: &[f32; 3]) {
+        if let (Some(&encoder), Some(&rho)) = (encoders.get(slot), lengths.get(slot)) {
+            self.look_up(slot, encoder, rho);
+        }
+    }
+
+    /// While the servo is off: follows the pose, and looks up the curves of one pivot. Not in the tick that has switched it off,
+    /// which has driven: both would be longer than a period.
     #[inline(never)]
     pub fn follow(&mut self, config: &Config, encoders: &[Angle; 3], slot: usize) {
-        self.followed = match self.followed.take() {
-            None => self.begin(config, encoders),
-            Some(pose) => self.newton(config, &pose, encoders).map(|(pose, lengths)| {
-                if let (Some(&encoder), Some(&rho)) = (encoders.get(slot), lengths.get(slot)) {
-                    self.look_up(slot, encoder, rho);
-                }
-                pose
-            }),
+        let Some(followed) = self.followed.take() else {
+            self.followed = self.begin(config, encoders);
+            return;
         };
+        if let Some((followed, lengths)) = self.newton(config, &followed.pose, encoders) {
+            self.look_up_at(slot, encoders, &lengths);
+            self.followed = Some(followed);
+        }
     }
 
     /// From the drawn machine's pose one step on the built one, with all curves looked up there.
-    fn begin(&mut self, config: &Config, encoders: &[Angle; 3]) -> Option<Pose<Fixed>> {
+    fn begin(&mut self, config: &Config, encoders: &[Angle; 3]) -> Option<Followed> {
         let mut rings = *encoders;
         for (ring, line) in rings.iter_mut().zip(&self.near.lines) {
             *ring -= line.encoder_zero;
@@ -138,7 +159,10 @@ impl Calibrated {
             let straightness = Curves::<Fixed>::straightness(tangents, rho).value;
             missing_rad[i] -= straightness * at.over_travel[i];
         }
-        Some(newton_step(&pose, &at, &self.near.lines, &missing_rad))
+        Some(Followed {
+            pose: newton_step(&pose, &at, &self.near.lines, &missing_rad),
+            missing_rad: f32::INFINITY,
+        })
     }
 
     /// One step of Newton's method, and the places on the guides before it; `None` when the pose is too far from where it was
@@ -148,15 +172,17 @@ impl Calibrated {
         config: &Config,
         pose: &Pose<Fixed>,
         encoders: &[Angle; 3],
-    ) -> Option<(Pose<Fixed>, [f32; 3])> {
+    ) -> Option<(Followed, [f32; 3])> {
         let at = self.solve(config, pose)?;
-        let missing_rad = missing_rad(&at, encoders);
-        let is_near = (missing_rad.iter()).all(|missing_rad| missing_rad.abs() < MOST_MISSING_RAD);
-        is_near.then(|| {
-            let lengths = [0, 1, 2].map(|i| at.guides[i].rho());
-            let pose = newton_step(pose, &at, &self.near.lines, &missing_rad);
-            (pose, lengths)
-        })
+        let missing = missing_rad(&at, encoders);
+        let [first, second, third] = missing.map(f32::abs);
+        let missing_rad = first.max(second).max(third);
+        if missing_rad.is_nan() || missing_rad > MOST_MISSING_RAD {
+            return None;
+        }
+        let pose = newton_step(pose, &at, &self.near.lines, &missing);
+        let lengths = [0, 1, 2].map(|i| at.guides[i].rho());
+        Some((Followed { pose, missing_rad }, lengths))
     }
 
     /// See [`corrected_inverse`].
@@ -208,29 +234,4 @@ fn of_ring(series: &Series<f32>, ring: Angle) -> Tangents<Fixed> {
 #[inline(never)]
 fn with_guide(tangents: &Tangents<Fixed>, series: &Series<f32>, rho: f32) -> Tangents<Fixed> {
     tangents.with_guide(series, rho)
-}
-
-impl State {
-    /// Of a calibrated machine: looks up the curves of the pivot that is inspected in this tick, for those to come. `lengths` are those
-    /// of the guides where the servo is on; where it is off, the pose is followed.
-    #[inline]
-    pub(super) fn prepare_calibrated(
-        &mut self,
-        config: &Config,
-        slot: usize,
-        encoders: &[Angle; 3],
-        lengths: Option<&[f32; 3]>,
-    ) {
-        if !self.calibrated.is_on {
-            return;
-        }
-        if !self.servo_on() {
-            self.calibrated.follow(config, encoders, slot);
-        } else if let (Some(&encoder), Some(&rho)) = (
-            encoders.get(slot),
-            lengths.and_then(|lengths| lengths.get(slot)),
-        ) {
-            self.calibrated.look_up(slot, encoder, rho);
-        }
-    }
 }

@@ -130,12 +130,13 @@ pub fn tick_and_drive<'a>(
     if let Some(guides) = &guides {
         state.learn(config, guides, slot);
     }
-    state.prepare_calibrated(
-        config,
-        slot,
-        &target,
-        guides.as_ref().map(|guides| &guides[0]),
-    );
+    if state.calibrated.is_on {
+        if let Some(guides) = &guides {
+            state.calibrated.look_up_at(slot, &target, &guides[0]);
+        } else if !drives && !state.servo_on() {
+            state.calibrated.follow(config, &pivots, slot);
+        }
+    }
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
     }
