@@ -1,27 +1,21 @@
 //! Jogging: from any state to a constant velocity, held until somebody changes it, or up to the workspace's edge.
 //!
 //! ```text
-//! speed of    ________________________                 The velocity is changed (see `profile/velocity`), held, and given up in time:
-//! the point  /                        \                a plan that ends at rest like any other, exactly where it can stop.
-//!          _/                          \______         Theta alone never meets an edge: its plan ends at a thousand million
-//! of theta   ______________________________..          turns, 30 years away at a turn a second.
-//!          _/
+//! speed    ________________________          The velocity is changed (see `profile/velocity`), held, and given up in time: a
+//!         /                        \         plan that ends at rest like any other, exactly where it can stop. Theta alone
+//!       _/                          \_       never meets an edge: its plan ends at a thousand million turns, 30 years
+//!                                            away at a turn a second.
 //! ```
+//!
+//! All axes stop together, at the first edge or bound that one of them meets.
 //!
 //! The edge is that of the disk in which the pivots can follow this velocity at any orientation (`check/pivots`):
 //! the faster the jog, the smaller it may be. Who jogs outwards stops there; who stands outside of it is told that it
 //! is too fast. Bounds of the moved point and of theta end a jog in the same way. When the platform turns about a point
-//! beside its centre, its centre goes in circles: the point then stays where every orientation is possible, or, where
-//! it is not, point and theta stop together before the centre meets the edge.
+//! beside its centre, its centre goes in circles.
 //!
-//! Near an edge there may be no room to reach the velocity and to stop again: from rest a lower one is taken.
-//!
-//! | file | idea |
-//! |---|---|
-//! | here | the velocity wanted, the limits, the state that is left; velocities tried until one can be reached and given up again |
-//! | `trajectory` | the way to the velocity, how long it is held, the way to rest; how much slower where that is too short |
-
-mod trajectory;
+//! Near an edge there may be no room to reach the velocity and to stop again: from rest a lower one is taken, and where the
+//! point has no way left at all, theta turns alone.
 
 use crate::steady_motion::SteadyMotion;
 use motion::check::pivots::PivotBound;
@@ -29,12 +23,13 @@ use motion::check::workspace::MAX_TURNS;
 use motion::check::{Budget, PlanCheck, is_over};
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::{AXIS_UNITS, AxisState, PER_POSITION_UNIT, SUB_BITS};
-use motion::plan::cubic_segment::MotionState;
-use motion::plan::{Plan, PlanStart};
+use motion::plan::cubic_segment::{MotionState, per_second};
+use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
+use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces};
+use motion::profile::velocity::VelocityProfile;
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::JOG_RADII;
-use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate_f64};
-use trajectory::Jog;
+use number::float::{FloatMinMax, hypot, i64_to_f32_fast, ticks_to_f32, truncate, truncate_f64};
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where
 /// `start` says. Zero is a velocity as any other: that axis stops smoothly.
@@ -61,9 +56,6 @@ pub fn plan_jog(
     }
     let mut wanted = request.velocity;
     for _ in 0..ATTEMPTS {
-        if from_rest && wanted == [0; 3] && request.velocity != wanted {
-            return Err(RetargetError::Refused(Refusal::NoRoom));
-        }
         let jog = Jog::new(state, &now, wanted, &request, &mut plan.pieces)?;
         match jog.hold(state, &request) {
             Ok(hold) => {
@@ -74,11 +66,17 @@ pub fn plan_jog(
                         .check(&plan.pieces, state, &mut { Budget::FOR_ANSWER })
                         .map_err(|_| RetargetError::NeedsStop)?;
                 }
-                jog.finish(&mut plan, hold);
+                jog.finish(&mut plan, state, hold);
                 return Ok(plan);
             }
             Err(_) if !from_rest => return Err(RetargetError::NeedsStop),
-            Err(short) => wanted = jog.slower(&short, &request),
+            Err(short) => wanted = jog.slower(short, &request),
+        }
+        if wanted == [0; 3] {
+            wanted[2] = request.velocity[2];
+            if wanted[2] == 0 || jog.wanted == wanted {
+                break;
+            }
         }
     }
     Err(RetargetError::Refused(Refusal::NoRoom))
@@ -92,13 +90,13 @@ const LEAST_FORCE: f32 = 0.05;
 
 /// Everything that does not depend on the state.
 struct JogRequest<'a> {
-    pub constraints: &'a Constraints,
-    pub hz: f32,
+    constraints: &'a Constraints,
+    hz: f32,
     pivot_bound: PivotBound,
     usable: f32,
     /// Wanted, 2^-72 units a tick.
-    pub velocity: [i64; 3],
-    pub limits: MotionLimits,
+    velocity: [i64; 3],
+    limits: MotionLimits,
 }
 
 /// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see
@@ -109,12 +107,12 @@ fn is_within(value: f64, most: f64) -> bool {
 
 /// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
 struct InitialState {
-    pub platform: [f32; 2],
-    pub motion: MotionState,
+    platform: [f32; 2],
+    motion: MotionState,
 }
 
 impl<'a> JogRequest<'a> {
-    pub fn new(velocity: &[f64; 3], constraints: &'a Constraints) -> Result<Self, Refusal> {
+    fn new(velocity: &[f64; 3], constraints: &'a Constraints) -> Result<Self, Refusal> {
         let limits = &constraints.limits;
         if !limits.all_positive() {
             return Err(Refusal::InvalidLimits);
@@ -140,7 +138,7 @@ impl<'a> JogRequest<'a> {
     }
 
     /// How far out the jog to `target` may go, and how hard it may be begun and ended there.
-    pub fn limits_towards(
+    fn limits_towards(
         &self,
         now: &InitialState,
         target: &[f32; 3],
@@ -182,7 +180,7 @@ impl<'a> JogRequest<'a> {
     }
 
     /// Seconds of steady motion until theta meets its bounds.
-    pub fn time_to_theta_bound(&self, theta: &AxisState, wanted: i64) -> f32 {
+    fn time_to_theta_bound(&self, theta: &AxisState, wanted: i64) -> f32 {
         let [low, high] = self.constraints.bounds[2];
         let now = theta.rounded();
         let (way, velocity) = match wanted {
@@ -197,7 +195,7 @@ impl<'a> JogRequest<'a> {
 
     /// The steady motion at `velocity` from a position.
     #[inline(never)]
-    pub fn steady(&self, axes: &[AxisState; 3], velocity: &[f32; 3]) -> SteadyMotion {
+    fn steady(&self, axes: &[AxisState; 3], velocity: &[f32; 3]) -> SteadyMotion {
         let [x, y, turning] = *velocity;
         SteadyMotion {
             point: both!(i => i64_to_f32_fast(axes[i].rounded()) * PER_POSITION_UNIT),
@@ -210,10 +208,136 @@ impl<'a> JogRequest<'a> {
 }
 
 impl InitialState {
-    pub fn new(axes: &[AxisState; 3], request: &JogRequest) -> Self {
+    fn new(axes: &[AxisState; 3], request: &JogRequest) -> Self {
         Self {
             platform: request.steady(axes, &[0.0; 3]).platform(0.0),
             motion: MotionState::new(axes, request.hz),
         }
     }
+}
+
+/// A jog from the state on in which its velocity is reached.
+struct Jog {
+    /// 2^-72 units a tick.
+    wanted: [i64; 3],
+    /// Where the velocity is reached.
+    steady: [AxisState; 3],
+    /// Seconds at the velocity wanted in which the way to it is gone from rest, and the way back; ticks of the way back.
+    ramp_s: f32,
+    brake_s: f32,
+    brake: [u64; 3],
+    from_rest: bool,
+    limits: MotionLimits,
+    radius: f32,
+}
+
+/// Longest that a velocity is held, ticks: two million years.
+const LONGEST: f32 = 1_152_921_504_606_846_976.0;
+
+/// A velocity of which less than this share can be reached is none.
+const LEAST_SHARE: f32 = 1e-3;
+
+impl Jog {
+    /// Writes the pieces of the way there, too.
+    fn new(
+        state: &[AxisState; 3],
+        now: &InitialState,
+        wanted: [i64; 3],
+        request: &JogRequest,
+        pieces: &mut Pieces,
+    ) -> Result<Self, RetargetError> {
+        let hz = request.hz;
+        let target = per_second(&wanted, hz);
+        let (radius, limits) = request.limits_towards(now, &target)?;
+        let ramp = VelocityProfile::new(&now.motion, &target, &limits).ticks(hz);
+        let brake = change(&target, &limits).ticks(hz);
+        write_velocity_pieces(pieces, state, &wanted, ramp);
+        let half = |ticks: [u64; 3]| ticks_to_f32(ticks.iter().sum()) / (2.0 * hz);
+        Ok(Self {
+            wanted,
+            steady: state_after_pieces(state, pieces, &[0; 3]),
+            ramp_s: half(ramp),
+            brake_s: half(brake),
+            brake,
+            from_rest: now.motion.is_at_rest(),
+            limits,
+            radius,
+        })
+    }
+
+    /// For how many ticks the velocity is kept before the axes have to brake; an error is in how many seconds at that
+    /// velocity they would be over, too soon to reach it and to stop.
+    fn hold(&self, state: &[AxisState; 3], request: &JogRequest) -> Result<u64, f32> {
+        if self.wanted == [0; 3] {
+            return Ok(0);
+        }
+        let target = per_second(&self.wanted, request.hz);
+        // From rest the ramp goes the same way, at half the speed.
+        let (from, done) = if self.from_rest {
+            (state, self.ramp_s)
+        } else {
+            (&self.steady, 0.0)
+        };
+        let edge = request.steady(from, &target).time_to_edge(self.radius);
+        let steady = request.steady(&self.steady, &target);
+        let seconds = (edge - done)
+            .fmin(steady.time_to_bounds(&request.constraints.bounds))
+            .fmin(request.time_to_theta_bound(&self.steady[2], self.wanted[2]));
+        if seconds < self.brake_s {
+            return Err(seconds + self.ramp_s);
+        }
+        let hold = (seconds - self.brake_s) * request.hz;
+        Ok(truncate(hold.fmin(LONGEST)) as u64)
+    }
+
+    /// Adds pieces for the velocity held for `hold` ticks and given up.
+    fn finish(&self, plan: &mut Plan, state: &[AxisState; 3], hold: u64) {
+        // What rounding leaves of a velocity is not given up: the nudge takes it.
+        let axes = each!(i => match self.wanted[i] {
+            0 => AxisState::default(),
+            _ => self.steady[i],
+        });
+        let hold = Piece {
+            ticks: hold,
+            jerk: [0; 3],
+        };
+        let brake = velocity_pieces(&axes, &[0; 3], self.brake);
+        for piece in [hold].into_iter().chain(brake) {
+            // Nine of many.
+            let _ = push_piece(&mut plan.pieces, piece);
+        }
+        let (rest, ticks) = (
+            state_after_pieces(state, &plan.pieces, &[0; 3]),
+            plan.ticks(),
+        );
+        plan.nudge = each!(i => -rest[i].velocity);
+        plan.end = each!(i => rest[i].rest_position(ticks, plan.nudge[i]));
+    }
+
+    /// A velocity that can be reached and given up again in what way there is; zero where there is none.
+    fn slower(&self, seconds: f32, request: &JogRequest) -> [i64; 3] {
+        let slower = |share: f32| {
+            let share = (share * 65_536.0) as i64;
+            self.wanted.map(|velocity| (velocity >> 16) * share)
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        // To a thousandth.
+        for _ in 0..10 {
+            let share = (low + high) / 2.0;
+            let velocity = per_second(&slower(share), request.hz);
+            let brake = change(&velocity, &self.limits);
+            if share * brake.times_s().iter().sum::<f32>() <= seconds {
+                low = share;
+            } else {
+                high = share;
+            }
+        }
+        // A little less, for what a slower motion has besides: a larger disk, and in it less acceleration.
+        slower(if low < LEAST_SHARE { 0.0 } else { low * 0.95 })
+    }
+}
+
+/// The change of velocity by `velocity`, to it or back.
+fn change(velocity: &[f32; 3], limits: &MotionLimits) -> VelocityProfile {
+    VelocityProfile::new(&MotionState::default(), velocity, limits)
 }
