@@ -1,17 +1,15 @@
 //! Planning a stop from any tick of any plan: all axes brake together (see `profile/velocity`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
-//! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
-//! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
-//! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
+//! point; a curve is only planned where such a stop ends inside the workspace.
 
-use motion::check::{Budget, PlanCheck, Violation, is_over};
-use motion::constraints::{Constraints, MotionLimits, Speeds};
+use motion::check::{Budget, PlanCheck, Violation};
+use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
-use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
-use motion::profile::velocity::{VelocityProfile, stop_speeds};
+use motion::plan::quantise::write_velocity_pieces;
+use motion::plan::{Plan, state_after_pieces};
+use motion::profile::velocity::VelocityProfile;
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
 
@@ -104,7 +102,6 @@ fn write_stop(
             jerk: urgent_jerk(),
         },
     };
-    let mut apart = false;
     for _ in 0..ATTEMPTS {
         let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
@@ -114,13 +111,7 @@ fn write_stop(
             profile.times_s()
         };
         let ticks = profile.whole_ticks(times_s, hz);
-        // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
-        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, ordinary.speed);
-        if apart {
-            write_apart(&mut plan.pieces, state, &now, &limits, hz);
-        } else {
-            write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
-        }
+        write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
         if plan.ticks() >= left {
@@ -128,8 +119,6 @@ fn write_stop(
         }
         match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
             Ok(()) => break,
-            // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Violation::Disk(_) | Violation::Bounds(_)) if !apart => apart = true,
             Err(Violation::Disk(_) | Violation::Bounds(_)) => {
                 hardness.acceleration *= 1.3;
                 hardness.jerk = urgent_jerk();
@@ -153,39 +142,6 @@ fn write_stop(
     let ticks = plan.ticks();
     plan.end = each!(i => end[i].rest_position(ticks, plan.nudge[i]));
     Some(())
-}
-
-/// Whether the speed rises over its limit before the stop brakes.
-fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, limit: Speeds) -> bool {
-    let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
-    is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
-}
-
-/// The same where translation and rotation each brake as soon as they can.
-fn write_apart(
-    pieces: &mut Pieces,
-    state: &[AxisState; 3],
-    now: &MotionState,
-    limits: &MotionLimits,
-    hz: f32,
-) {
-    let part = |axes: [usize; 3]| {
-        let still = AxisState::default();
-        let state = axes.map(|i| state.get(i).copied().unwrap_or(still));
-        let each = |vector: &[f32; 3]| axes.map(|i| vector.get(i).copied().unwrap_or(0.0));
-        let now = MotionState {
-            v: each(&now.v),
-            a: each(&now.a),
-            ..*now
-        };
-        let ticks = VelocityProfile::new(&now, &[0.0; 3], limits).ticks(hz);
-        velocity_pieces(&state, &[0; 3], ticks)
-    };
-    const NONE: usize = 3;
-    let (translation, rotation): ([Piece; 4], [Piece; 4]) =
-        (part([0, 1, NONE]), part([NONE, NONE, 2]));
-    // Eight of many.
-    let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
 /// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that

@@ -19,7 +19,7 @@
 //! ([`quantise`](crate::plan::quantise)). One more tick closes what rounding leaves of the acceleration, so
 //! that a velocity that is kept for years is kept.
 
-use crate::constraints::{MotionLimits, Speeds};
+use crate::constraints::MotionLimits;
 use crate::plan::cubic_segment::MotionState;
 use crate::tolerances::{ROUNDED_TIMES, WHOLE_TICKS};
 use number::float::{FloatMinMax, ceil, ceil_ticks, floor, hypot};
@@ -256,21 +256,6 @@ pub fn stop_displacements(from: &MotionState, times_s: [f32; 3]) -> [[f32; 3]; 3
     displacements
 }
 
-/// The largest speeds in the first segment of a stop from `from`, in which the acceleration turns round: where that of
-/// an axis passes zero, which is where a speed is highest, or close to it.
-pub fn stop_speeds(from: &MotionState, times_s: [f32; 3]) -> Speeds {
-    let peak = stop_peak(from, times_s);
-    (0..3).fold(Speeds::of(&from.v), |most, axis| {
-        let part = from.a[axis] / (from.a[axis] - peak[axis]);
-        if !(0.0 < part && part < 1.0) {
-            return most;
-        }
-        let t = part * times_s[0];
-        let v = each!(i => from.v[i] + t * (from.a[i] + (peak[i] - from.a[i]) * part / 2.0));
-        most.max(Speeds::of(&v))
-    })
-}
-
 /// The greater of translation and rotation.
 fn size(vector: &[f32; 3]) -> f32 {
     hypot(vector[0], vector[1]).fmax(vector[2].abs())
@@ -279,6 +264,7 @@ fn size(vector: &[f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constraints::Speeds;
     use crate::plan::axis_state::AXIS_UNITS;
     use crate::plan::axis_state::AxisState;
     use crate::plan::quantise::velocity_pieces;
