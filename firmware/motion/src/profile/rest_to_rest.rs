@@ -10,7 +10,7 @@
 //!
 //! The time-optimal lengths follow from the limits by cases. Rounding each up to whole ticks lengthens a move by three
 //! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
-//! themselves, a millionth.
+//! themselves, a millionth at most.
 
 use crate::constraints::PathLimits;
 use crate::plan::quantise::{JerkSegment, PathProfile};
