@@ -20,7 +20,7 @@
 use crate::steady_motion::SteadyMotion;
 use motion::check::pivots::PivotBound;
 use motion::check::workspace::MAX_TURNS;
-use motion::check::{Budget, PlanCheck, is_over};
+use motion::check::{BUDGET, PlanCheck, is_over};
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::{AXIS_UNITS, AxisState, PER_POSITION_UNIT, SUB_BITS};
 use motion::plan::cubic_segment::{MotionState, per_second};
@@ -63,7 +63,7 @@ pub fn plan_jog(
                 // held.
                 if !from_rest {
                     PlanCheck::new(constraints, state)
-                        .check(&plan.pieces, state, &mut { Budget::FOR_ANSWER })
+                        .check(&plan.pieces, state, &mut { BUDGET })
                         .map_err(|_| RetargetError::NeedsStop)?;
                 }
                 jog.finish(&mut plan, state, hold);

@@ -3,12 +3,12 @@
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
 //! point; a curve is only planned where such a stop ends inside the workspace.
 
-use motion::check::{Budget, PlanCheck, Violation};
-use motion::constraints::Constraints;
+use motion::check::{BUDGET, PlanCheck, Violation};
+use motion::constraints::{Constraints, MotionLimits};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
-use motion::plan::quantise::write_velocity_pieces;
-use motion::plan::{Plan, state_after_pieces};
+use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
+use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::VelocityProfile;
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
 use number::float::{FloatMinMax, ticks_to_f32};
@@ -79,7 +79,7 @@ fn write_stop(
     constraints: &Constraints,
     stop: Stop,
 ) -> Option<()> {
-    let plan_check = PlanCheck::for_stop(constraints);
+    let plan_check = PlanCheck::for_stop(constraints, state, stop == Stop::Urgent);
     let hz = constraints.limits.rate_hz as f32;
     let ordinary = constraints.motion_limits();
     let segment = CubicSegment::new(state, hz);
@@ -90,7 +90,7 @@ fn write_stop(
     let most = hardest_brake(
         &segment,
         plain.direction(&ordinary, plain_s[0]),
-        &plan_check,
+        constraints,
     );
     let mut hardness = match stop {
         Stop::Smooth => Hardness {
@@ -102,6 +102,7 @@ fn write_stop(
             jerk: urgent_jerk(),
         },
     };
+    let mut apart = false;
     for _ in 0..ATTEMPTS {
         let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
@@ -111,21 +112,32 @@ fn write_stop(
             profile.times_s()
         };
         let ticks = profile.whole_ticks(times_s, hz);
-        write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
+        if apart {
+            write_apart(&mut plan.pieces, state, &limits, hz);
+        } else {
+            write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
+        }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
         if plan.ticks() >= left {
             return None;
         }
-        match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
+        match plan_check.check(&plan.pieces, state, &mut { BUDGET }) {
             Ok(()) => break,
+            // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
+            Err(Violation::Speed) if !apart => apart = true,
             Err(Violation::Disk(_) | Violation::Bounds(_)) => {
                 hardness.acceleration *= 1.3;
                 hardness.jerk = urgent_jerk();
             }
-            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+            Err(Violation::Pivots) => {
+                let most = |pieces: &[Piece]| {
+                    let [rate, acceleration] = plan_check.pivot_parts(pieces, state);
+                    rate.fmax(acceleration)
+                };
+                let over = most(&plan.pieces);
                 // What the motion asks of the pivots already, no brake takes from them.
-                if over <= plan_check.pivot_part(&segment) {
+                if over <= most(&[]) {
                     break;
                 }
                 let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
@@ -144,17 +156,28 @@ fn write_stop(
     Some(())
 }
 
+/// A stop in which translation and rotation each brake as soon as they can.
+fn write_apart(pieces: &mut Pieces, state: &[AxisState; 3], limits: &MotionLimits, hz: f32) {
+    let ([x, y, theta], still) = (*state, AxisState::default());
+    let [translation, rotation] = [[x, y, still], [still, still, theta]].map(|axes| {
+        let now = MotionState::new(&axes, hz);
+        let ticks = VelocityProfile::new(&now, &[0.0; 3], limits).ticks(hz);
+        velocity_pieces(&axes, &[0; 3], ticks)
+    });
+    // Eight of many.
+    let _ = write_sum(&translation, &rotation, 0, pieces);
+}
+
 /// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
 /// comes of the motion itself is taken off.
-fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], plan_check: &PlanCheck) -> f32 {
-    let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
+fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], constraints: &Constraints) -> f32 {
+    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
     let accelerations = |a: [f32; 3]| {
         let motion = MotionState { a, ..segment.start };
-        let [_, accelerations] = plan_check.pivots(segment, &motion);
+        let [_, accelerations] = segment.platform(&motion, constraints.centre()).pivots();
         accelerations
     };
-    let drift = accelerations([0.0; 3]);
-    let braked = accelerations(brake);
+    let (drift, braked) = (accelerations([0.0; 3]), accelerations(brake));
     let mut hardest = HARDEST;
     for i in 0..3 {
         let part = (braked[i] - drift[i]).abs();

@@ -36,4 +36,4 @@ mod plan_check;
 pub mod workspace;
 
 pub use interval::Violation;
-pub use plan_check::{Budget, PlanCheck, is_over};
+pub use plan_check::{BUDGET, PlanCheck, is_over};

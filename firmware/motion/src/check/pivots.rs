@@ -77,6 +77,11 @@ impl Platform {
         let motion = pivot_motion_in_platform_axes(&guides, &self.twist, &self.acceleration);
         [motion.rates, motion.accelerations]
     }
+
+    /// The greatest rate and the greatest acceleration of a pivot.
+    pub fn most(&self) -> [f32; 2] {
+        self.pivots().map(|values| greatest(&values))
+    }
 }
 
 impl CubicSegment {
@@ -89,7 +94,7 @@ impl CubicSegment {
 }
 
 /// The greatest size of three; what is not a number is over every limit.
-pub fn greatest(values: &[f32; 3]) -> f32 {
+fn greatest(values: &[f32; 3]) -> f32 {
     let mut greatest = 0.0_f32;
     for value in values {
         let size = value.abs();

@@ -29,8 +29,6 @@ use number::sqrt_f32;
 const ROUNDS: usize = 24;
 const HALVED: usize = 3;
 const SETTLED_S: f32 = 5e-8;
-/// The same where a stop is only estimated: in whole ticks it takes a tick or two more anyway.
-const NEARLY_SETTLED_S: f32 = 1e-5;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
 
@@ -73,15 +71,6 @@ impl VelocityProfile {
 
     /// The three times, s, before rounding.
     pub fn times_s(&self) -> [f32; 3] {
-        self.settled_to(SETTLED_S)
-    }
-
-    /// The same, within a fraction of a tick.
-    pub fn rough_times_s(&self) -> [f32; 3] {
-        self.settled_to(NEARLY_SETTLED_S)
-    }
-
-    fn settled_to(&self, settled_s: f32) -> [f32; 3] {
         if self.acceleration == [0.0; 3] {
             return self.times_without_acceleration_s();
         }
@@ -90,7 +79,7 @@ impl VelocityProfile {
         for round in 1..=ROUNDS {
             times = self.times_after_s(t1);
             let next = times[0];
-            if (next - t1).abs() < settled_s {
+            if (next - t1).abs() < SETTLED_S {
                 break;
             }
             if next > t1 {
@@ -227,33 +216,6 @@ impl VelocityProfile {
     fn jerk_time_s(&self, change: &[f32; 3]) -> f32 {
         (hypot(change[0], change[1]) / self.jerk[0]).fmax(change[2].abs() / self.jerk[1])
     }
-}
-
-/// P of a stop from `from` that takes so much time, track radii and rad per second squared.
-pub fn stop_peak(from: &MotionState, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
-    let over = -1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
-    each!(i => (from.v[i] + from.a[i] * t1 / 2.0) * over)
-}
-
-/// Where the three segments of a stop from `from` that takes so much time end: displacements, track radii and rad.
-pub fn stop_displacements(from: &MotionState, times_s: [f32; 3]) -> [[f32; 3]; 3] {
-    let mut displacements = [from.displacement; 3];
-    if times_s == [0.0; 3] {
-        return displacements;
-    }
-    let ([t1, t2, t3], peaks) = (times_s, stop_peak(from, times_s));
-    each!(i => {
-        let (v, a, peak) = (from.v[i], from.a[i], peaks[i]);
-        let v1 = v + (a + peak) * t1 / 2.0;
-        let v2 = v1 + peak * t2;
-        let first = from.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
-        let second = first + t2 * (v1 + peak * t2 / 2.0);
-        let third = second + t3 * (v2 + peak * t3 / 3.0);
-        for (displacement, end) in displacements.iter_mut().zip([first, second, third]) {
-            displacement[i] = end;
-        }
-    });
-    displacements
 }
 
 /// The greater of translation and rotation.

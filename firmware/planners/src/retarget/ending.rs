@@ -125,7 +125,7 @@ impl<'a> Leaving<'a> {
             }
         };
         // In whole numbers: of a long way a float does not hold a small correction.
-        ended.left = MotionState::between(&ended.rest.map(AxisState::at_rest), &self.to);
+        ended.left = each!(i => MotionState::way(i, self.to[i].wrapping_sub(ended.rest[i])));
         ended.of = Some(ending);
         Some(())
     }

@@ -31,14 +31,14 @@ mod overlap;
 
 use ending::{Ended, Ending, Leaving};
 use motion::check::workspace::check_target;
-use motion::check::{Budget, PlanCheck, Violation};
+use motion::check::{PlanCheck, Violation};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
 use motion::plan::{Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces, write_sum};
 use motion::profile::rest_to_rest::RestToRestProfile;
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::SLOWER_FOR_PIVOTS;
-use number::float::{hypot, ticks_to_f32};
+use number::float::{FloatMinMax, hypot, ticks_to_f32};
 use number::sqrt_f32;
 use overlap::{Corner, Corners, Overlap};
 
@@ -124,22 +124,20 @@ pub fn plan_retarget(
     (leaving.write(way.ending, &mut ended)).ok_or(RetargetError::NeedsStop)?;
     let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
-    let mut budget = Budget {
-        intervals: search.intervals,
-        samples_pivots: search.checks > 1,
-    };
-    for _ in 0..search.checks {
-        if budget.intervals == 0 {
-            break;
-        }
+    let mut budget = search.intervals;
+    for left in (0..search.checks).rev() {
         (way.write(&ended, &to, &mut plan.pieces)).ok_or(RetargetError::NeedsStop)?;
         match plan_check.check(&plan.pieces, &leaving.state, &mut budget) {
             Ok(()) => {
                 close(&mut plan, &leaving).ok_or(RetargetError::NeedsStop)?;
                 return Ok(plan);
             }
-            Err(Violation::PivotRate(over)) => way.slow(margin(over)),
-            Err(Violation::PivotAcceleration(over)) => way.slow(margin(sqrt_f32(over))),
+            Err(_) if left == 0 || budget == 0 => break,
+            Err(Violation::Pivots) => {
+                let [rate, acceleration] = plan_check.pivot_parts(&plan.pieces, &leaving.state);
+                let over = rate.fmax(sqrt_f32(acceleration)) * SLOWER_FOR_PIVOTS;
+                way.slow(over.clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER));
+            }
             Err(_) if way.delay < ended.ticks => way.delay_more(ended.ticks),
             Err(_) => break,
         }
@@ -189,11 +187,6 @@ impl Way {
 
 /// What a sample of the pivots says is not taken for more than this.
 const MOST_SLOWER: f32 = 1.3;
-
-/// By how much slower a line is made that asks for so much more of the pivots than they can.
-fn margin(over: f32) -> f32 {
-    (over * SLOWER_FOR_PIVOTS).clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER)
-}
 
 /// The soonest of the ways.
 fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Way> {
