@@ -11,7 +11,7 @@ use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
 use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
 use motion::profile::velocity::VelocityProfile;
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
-use number::float::{FloatMinMax, ticks_to_f32};
+use number::float::{FloatMinMax, hypot, ticks_to_f32};
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,20 +55,6 @@ pub fn plan_stop(
     Some(plan)
 }
 
-/// How hard a stop brakes, in limits of acceleration and of jerk.
-#[derive(Clone, Copy, PartialEq)]
-struct Hardness {
-    acceleration: f32,
-    jerk: f32,
-}
-
-impl Hardness {
-    const PLAIN: Self = Self {
-        acceleration: 1.0,
-        jerk: 1.0,
-    };
-}
-
 /// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
 /// plan.
 #[inline(never)]
@@ -79,39 +65,20 @@ fn write_stop(
     constraints: &Constraints,
     stop: Stop,
 ) -> Option<()> {
-    let plan_check = PlanCheck::for_stop(constraints, state, stop == Stop::Urgent);
+    let mut plan_check = PlanCheck::for_stop(constraints, state, stop == Stop::Urgent);
     let hz = constraints.limits.rate_hz as f32;
-    let ordinary = constraints.motion_limits();
-    let segment = CubicSegment::new(state, hz);
-    let now = segment.start;
-    let urgent_jerk = || constraints.limits.urgent_jerk();
-    let plain = VelocityProfile::new(&now, &[0.0; 3], &ordinary);
-    let plain_s = plain.times_s();
-    let most = hardest_brake(
-        &segment,
-        plain.direction(&ordinary, plain_s[0]),
-        constraints,
-    );
-    let mut hardness = match stop {
-        Stop::Smooth => Hardness {
-            acceleration: most.fmin(1.0),
-            ..Hardness::PLAIN
-        },
-        Stop::Urgent => Hardness {
-            acceleration: most,
-            jerk: urgent_jerk(),
-        },
+    let now = MotionState::new(state, hz);
+    let urgent_jerk = constraints.limits.urgent_jerk();
+    // How hard it brakes, in limits of acceleration and of jerk.
+    let (mut acceleration, mut jerk) = match stop {
+        Stop::Smooth => (1.0, 1.0),
+        Stop::Urgent => (hardest_brake(state, constraints), urgent_jerk),
     };
     let mut apart = false;
     for _ in 0..ATTEMPTS {
-        let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
+        let limits = constraints.motion_limits().scaled(acceleration, jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
-        let times_s = if hardness == Hardness::PLAIN {
-            plain_s
-        } else {
-            profile.times_s()
-        };
-        let ticks = profile.whole_ticks(times_s, hz);
+        let ticks = profile.ticks(hz);
         if apart {
             write_apart(&mut plan.pieces, state, &limits, hz);
         } else {
@@ -124,26 +91,28 @@ fn write_stop(
         }
         match plan_check.check(&plan.pieces, state, &mut { BUDGET }) {
             Ok(()) => break,
-            // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
-            Err(Violation::Speed) if !apart => apart = true,
+            // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile. More
+            // can not be done about it.
+            Err(Violation::Speed) => {
+                apart = true;
+                plan_check = PlanCheck::for_stop(constraints, state, apart);
+            }
             Err(Violation::Disk(_) | Violation::Bounds(_)) => {
-                hardness.acceleration *= 1.3;
-                hardness.jerk = urgent_jerk();
+                (acceleration, jerk) = (acceleration * 1.3, urgent_jerk);
             }
             Err(Violation::Pivots) => {
                 let most = |pieces: &[Piece]| {
                     let [rate, acceleration] = plan_check.pivot_parts(pieces, state);
                     rate.fmax(acceleration)
                 };
-                let over = most(&plan.pieces);
+                let over = most(&plan.pieces).fmax(1.0);
                 // What the motion asks of the pivots already, no brake takes from them.
                 if over <= most(&[]) {
                     break;
                 }
                 let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
-                let used = hardness.acceleration * profile.peak_size(times_s);
-                hardness.acceleration =
-                    (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
+                let used = acceleration * profile.peak_size(times_s);
+                acceleration = (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
             }
             // A stop has no limits of its own, and needs no room for another.
             Err(_) => break,
@@ -168,23 +137,21 @@ fn write_apart(pieces: &mut Pieces, state: &[AxisState; 3], limits: &MotionLimit
     let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
-/// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
-/// comes of the motion itself is taken off.
-fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], constraints: &Constraints) -> f32 {
-    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
+/// How hard the pivots can brake here, in limits of acceleration: what their own leaves when the part that comes of the
+/// motion itself is taken off.
+fn hardest_brake(state: &[AxisState; 3], constraints: &Constraints) -> f32 {
+    let segment = CubicSegment::new(state, constraints.limits.rate_hz as f32);
+    let (v, limit) = (segment.start.v, constraints.motion_limits().acceleration);
+    let size = (hypot(v[0], v[1]) / limit.linear).fmax(v[2].abs() / limit.angular);
+    let over = 1.0 / size.fmax(f32::MIN_POSITIVE);
     let accelerations = |a: [f32; 3]| {
         let motion = MotionState { a, ..segment.start };
-        let [_, accelerations] = segment.platform(&motion, constraints.centre()).pivots();
-        accelerations
+        segment.platform(&motion, constraints.centre()).pivots()[1]
     };
-    let (drift, braked) = (accelerations([0.0; 3]), accelerations(brake));
-    let mut hardest = HARDEST;
-    for i in 0..3 {
-        let part = (braked[i] - drift[i]).abs();
+    let (drift, braked) = (accelerations([0.0; 3]), accelerations(v.map(|v| -v * over)));
+    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
+    (0..3).fold(HARDEST, |hardest, i| {
         let left = most - drift[i].abs();
-        if part != 0.0 && left < hardest * part {
-            hardest = left / part;
-        }
-    }
-    hardest.fmax(GENTLEST)
+        hardest.fmin((left / (braked[i] - drift[i]).abs()).fmax(GENTLEST))
+    })
 }

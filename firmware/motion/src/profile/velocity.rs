@@ -144,12 +144,9 @@ impl VelocityProfile {
     }
 
     /// The times in whole ticks, with what is too short by then lengthened; the first and the last are not zero.
+    #[inline(never)]
     pub fn ticks(&self, hz: f32) -> [u64; 3] {
-        self.whole_ticks(self.times_s(), hz)
-    }
-
-    /// The same of the three times, as they are before rounding.
-    pub fn whole_ticks(&self, times_s: [f32; 3], hz: f32) -> [u64; 3] {
+        let times_s = self.times_s();
         let [n1, n2, n3] = each!(k => ceil(times_s[k] * hz - WHOLE_TICKS));
         let mut n = [n1.fmax(1.0), n2, n3.fmax(1.0)];
         let tick_s = 1.0 / hz;
@@ -197,19 +194,6 @@ impl VelocityProfile {
     /// What is left to be gained after so long of half the acceleration's release.
     fn left_after(&self, half_s: f32) -> [f32; 3] {
         each!(i => self.change[i] - self.acceleration[i] * half_s)
-    }
-
-    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
-    /// first segment lasts this long.
-    pub fn direction(&self, limits: &MotionLimits, first_s: f32) -> [f32; 3] {
-        let w = self.left_after(first_s / 2.0);
-        let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
-        let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
-        [
-            w[0] * scale * linear,
-            w[1] * scale * linear,
-            w[2] * scale * angular,
-        ]
     }
 
     /// The time in which jerk makes an acceleration of this.

@@ -70,6 +70,8 @@ struct Search {
     /// How many of the endings, and of the shares of each.
     endings: usize,
     shares: usize,
+    /// How often a delay is halved.
+    halvings: usize,
     /// How often the check may be asked, and how many intervals it may take before the next failure counts.
     checks: usize,
     intervals: usize,
@@ -78,6 +80,7 @@ struct Search {
 const FIRST: Search = Search {
     endings: 2,
     shares: 1,
+    halvings: 2,
     checks: 1,
     intervals: 5,
 };
@@ -85,6 +88,7 @@ const FIRST: Search = Search {
 const ALL: Search = Search {
     endings: ENDINGS.len(),
     shares: 3,
+    halvings: 5,
     checks: 4,
     intervals: 60,
 };
@@ -190,7 +194,7 @@ const MOST_SLOWER: f32 = 1.3;
 
 /// The soonest of the ways.
 fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Way> {
-    let overlap = Overlap::new(&leaving.limits, leaving.hz);
+    let overlap = Overlap::new(&leaving.limits, leaving.hz, search.halvings);
     let mut best: Option<Way> = None;
     for (ending, shares) in ENDINGS.into_iter().take(search.endings) {
         if leaving.write(ending, ended).is_none() || leaving.is_over(ended) {

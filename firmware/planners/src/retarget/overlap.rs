@@ -38,16 +38,19 @@ impl Corner {
 pub(super) struct Overlap {
     limits: MotionLimits,
     hz: f32,
+    /// How often a delay is halved in the search.
+    halvings: usize,
 }
 
-/// How often a delay is halved in the search.
-const HALVINGS: usize = 5;
-
 impl Overlap {
-    pub fn new(limits: &MotionLimits, hz: f32) -> Self {
+    pub fn new(limits: &MotionLimits, hz: f32, halvings: usize) -> Self {
         let mut limits = limits.scaled(OVERLAP, OVERLAP);
         limits.speed = limits.speed.scaled(OVERLAP);
-        Self { limits, hz }
+        Self {
+            limits,
+            hz,
+            halvings,
+        }
     }
 
     /// The least delay up to `most` ticks that is found; `None` where `most` is too short.
@@ -59,7 +62,7 @@ impl Overlap {
             return Some(0);
         }
         let (mut low, mut high) = (0_u64, most);
-        for _ in 0..HALVINGS {
+        for _ in 0..self.halvings {
             let middle = low.midpoint(high);
             if self.is_kept(ending, line, middle) {
                 high = middle;
@@ -78,14 +81,18 @@ impl Overlap {
             let (a_end_s, b_end_s) = (a_end.at_s, b_end.at_s + delay_s);
             let until_s = a_end_s.fmin(b_end_s);
             if until_s > now_s {
-                let middle_s = (now_s + until_s) / 2.0;
                 let limits = &self.limits;
-                let (a_now, b_now) = (a.at(now_s), b.at(now_s - delay_s));
-                let (a_middle, b_middle) = (a.at(middle_s), b.at(middle_s - delay_s));
-                if !(is_within(&a.j, &b.j, &limits.jerk)
-                    && is_within(&a_now.a, &b_now.a, &limits.acceleration)
-                    && is_within(&a_now.v, &b_now.v, &limits.speed)
-                    && is_within(&a_middle.v, &b_middle.v, &limits.speed))
+                let (a, b) = (a.at(now_s), b.at(now_s - delay_s));
+                let sum = Corner {
+                    at_s: now_s,
+                    v: each!(i => a.v[i] + b.v[i]),
+                    a: each!(i => a.a[i] + b.a[i]),
+                    j: each!(i => a.j[i] + b.j[i]),
+                };
+                if !(is_within(&sum.j, &limits.jerk)
+                    && is_within(&sum.a, &limits.acceleration)
+                    && is_within(&sum.v, &limits.speed)
+                    && is_within(&sum.at((now_s + until_s) / 2.0).v, &limits.speed))
                 {
                     return false;
                 }
@@ -102,8 +109,7 @@ impl Overlap {
     }
 }
 
-/// Whether the sum of two vectors is within a limit.
-fn is_within(a: &[f32; 3], b: &[f32; 3], limit: &Speeds) -> bool {
-    let [x, y, theta] = each!(i => a[i] + b[i]);
+/// Whether a vector is within a limit.
+fn is_within([x, y, theta]: &[f32; 3], limit: &Speeds) -> bool {
     x * x + y * y <= limit.linear * limit.linear && theta.abs() <= limit.angular
 }
