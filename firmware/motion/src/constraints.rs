@@ -100,10 +100,6 @@ pub struct PathLimits {
     pub jerk: f32,
 }
 
-/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30
-/// instructions more than.
-const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
-
 impl Limits {
     /// Those of the reference stage.
     pub const REFERENCE: Self = Self {
@@ -135,7 +131,7 @@ impl Limits {
             self.pivot_acceleration_rad_s2,
             self.stop_factor,
         ];
-        (limits.iter()).all(|limit| ABOVE_ZERO.contains(&limit.to_bits()))
+        limits.iter().all(|limit| *limit > 0.0)
     }
 
     /// Jerk of an urgent stop over that of ordinary motion.

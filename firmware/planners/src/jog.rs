@@ -99,12 +99,6 @@ struct JogRequest<'a> {
     limits: MotionLimits,
 }
 
-/// Whether the size of a number is within a positive one; NaN is not. Compared as whole numbers: see
-/// [`Limits`](motion::Limits).
-fn is_within(value: f64, most: f64) -> bool {
-    value.abs().to_bits() <= most.to_bits()
-}
-
 /// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
 struct InitialState {
     platform: [f32; 2],
@@ -119,8 +113,7 @@ impl<'a> JogRequest<'a> {
         }
         let [x, y, turning] = *velocity;
         let speed = limits.speed_mm_s;
-        if !(is_within(x * x + y * y, speed * speed) && is_within(turning, limits.turn_speed_deg_s))
-        {
+        if !(x * x + y * y <= speed * speed && turning.abs() <= limits.turn_speed_deg_s) {
             return Err(Refusal::Velocity);
         }
         let mm = constraints.geometry.radius_mm;
@@ -170,8 +163,7 @@ impl<'a> JogRequest<'a> {
             (acceleration.linear / jerk.linear).fmax(acceleration.angular / jerk.angular);
         let released = each!(i => v[i] + a[i] * release_s / 2.0);
         let gained = speed.max(Speeds::of(&released));
-        let margin = pivot_bound.acceleration_margin(radius, speeds.max(gained));
-        let part = margin / pivot_bound.acceleration_demand(radius, self.limits.acceleration);
+        let part = pivot_bound.part_within(radius, speeds.max(gained), self.limits.acceleration);
         if part < LEAST_FORCE {
             return Err(RetargetError::NeedsStop);
         }

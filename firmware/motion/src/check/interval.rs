@@ -115,7 +115,7 @@ impl IntervalBounds {
     /// Seen from the platform, whose guides stand still, the centre moves with derivatives of at most `d1` to `d4`; a pivot
     /// is at the angle `theta + asin d` with `|d| <= r`, of which these are the third and the fourth derivative at most.
     pub fn pivot_rises(&self, bound: &PivotGain, t: f32) -> [f32; 2] {
-        let PivotGain { radius: r, k } = *bound;
+        let PivotGain { radius: r, k, .. } = *bound;
         let ([v, turn], [a, _], [j, angular_jerk]) = (self.v, self.a, self.j);
         let [second, third, fourth] = self.turned();
         let d1 = v + turn * r;

@@ -216,7 +216,7 @@ impl PlanCheck {
                 within_bounds(room, &from.sample, &to.sample, sizes.a.map(|a| a * eighth))
             })
             .map_err(|broken| (broken, SHORTER))?;
-        let bound = PivotGain::new(furthest);
+        let bound = PivotGain::new(furthest, 0.0);
         let most = moving.pivot_bounds(&bound);
         if most[0] <= self.pivots[0] && most[1] <= self.pivots[1] {
             return Ok(LONGER);

@@ -4,12 +4,10 @@
 
 use crate::constraints::Constraints;
 use crate::plan::Position;
-use crate::plan::axis_state::PER_POSITION_UNIT;
 use crate::refusal::Refusal;
 use crate::tolerances::{TARGET_RADII, TARGET_RADII_OFF_CENTRE};
 use kinematics::{Angle, Scalar};
 use number::Fixed;
-use number::float::i64_to_f32_fast;
 
 /// How a target of theta is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,9 +50,7 @@ pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), 
     if target[2].unsigned_abs() > MAX_TURNS.unsigned_abs() {
         return Err(Refusal::TooManyTurns);
     }
-    if !is_well_inside(target, constraints) {
-        check_disk(target, constraints)?;
-    }
+    check_disk(target, constraints)?;
     let inside =
         |i: usize| (constraints.bounds[i][0]..=constraints.bounds[i][1]).contains(&target[i]);
     if let Some(axis) = (0..3).find(|&i| !inside(i)) {
@@ -62,17 +58,6 @@ pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), 
     }
     Ok(())
 }
-
-/// Whether `target` is so far inside the disk that floats tell: as a rule, and at a tenth of what doubles cost.
-fn is_well_inside(target: &Position, constraints: &Constraints) -> bool {
-    let [x, y] = both!(i => i64_to_f32_fast(target[i]) * PER_POSITION_UNIT);
-    let usable = constraints.usable_radius as f32;
-    constraints.rotation_centre.map(f64::to_bits) == [0; 2]
-        && x * x + y * y < usable * usable * NEARLY
-}
-
-/// The square of a radius that is inside in spite of roundings, as a part of that of the disk's.
-const NEARLY: f32 = 0.999_99;
 
 #[inline(never)]
 fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {

@@ -94,14 +94,12 @@ impl Path {
 
     /// The same with the moved point this far from the track's centre.
     fn at_any_orientation(&self, radius: f32) -> (f32, f32) {
-        let gain = PivotGain::new((radius + self.arm).fmin(self.usable));
-        let turn = self.turn.abs();
+        let gain = PivotGain::new((radius + self.arm).fmin(self.usable), self.arm);
         let speeds = Speeds {
-            linear: self.length + turn * self.arm,
-            angular: turn,
+            linear: self.length,
+            angular: self.turn.abs(),
         };
-        let inward = gain.k * turn * turn * self.arm;
-        (gain.rate(speeds), gain.bias_acceleration(speeds) + inward)
+        (gain.rate(speeds), gain.bias_acceleration(speeds))
     }
 
     /// P(s).

@@ -17,7 +17,6 @@
 
 use super::pivot_demand::{DemandGrid, GridPoint};
 use heapless::Vec;
-use motion::constraints::PathLimits;
 use number::float::FloatMinMax;
 use number::sqrt_f32;
 
@@ -175,8 +174,6 @@ const MOST: f32 = 0.3;
 /// What was too little grows by this factor and this much more at least.
 const STEP: f32 = 1.35;
 const STEP_MORE: f32 = 0.015;
-/// Shares that differ by less are as good as each other.
-const FINE: f32 = 0.04;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
@@ -190,53 +187,18 @@ pub(super) fn fit_segments_below(
     corners: &mut Corners,
 ) -> Option<()> {
     let z = z.get(..=intervals)?;
-    let laid =
-        |loss: f32, corners: &mut Corners| lay_segments(z, acceleration, 1.0 - loss, corners);
-    let (mut before, mut loss) = (0.0, LEAST);
-    while let Err(place) = laid(loss, corners) {
+    let mut loss = LEAST;
+    while let Err(place) = lay_segments(z, acceleration, 1.0 - loss, corners) {
         if loss >= MOST {
             return None;
         }
         // What makes the segments of a curve as much longer as they would have to be, and a step at least.
         let longer = intervals as f32 / place as f32;
-        before = loss;
         loss = (loss * (longer * longer))
             .fmax(STEP * loss + STEP_MORE)
             .fmin(MOST);
     }
-    if loss - before >= FINE {
-        // Once more, with half of what was added.
-        let mut finer = Corners::new();
-        if laid(0.5 * (before + loss), &mut finer).is_ok() {
-            *corners = finer;
-        }
-    }
     Some(())
-}
-
-/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
-/// corners at which the acceleration falls: without them the speed is lower.
-pub(super) fn remove_close_corners(corners: &mut Corners, limits: &PathLimits) {
-    let mut k = 1;
-    while k + 2 < corners.len() {
-        // How long a segment lasts, and its acceleration.
-        let segment = |k: usize| {
-            let (from, to) = (&corners[k], &corners[k + 1]);
-            let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
-            (seconds, (to.rate - from.rate) / seconds)
-        };
-        let ((_, before), (seconds, here), (_, after)) =
-            (segment(k - 1), segment(k), segment(k + 1));
-        let (first, second) = (before - here, here - after);
-        let ramps = (first + second) / (2.0 * limits.jerk);
-        if first > 0.0 && second > 0.0 && seconds < ramps {
-            // The one that stands out less.
-            corners.remove(if first < second { k } else { k + 1 });
-            k = k.saturating_sub(1).max(1);
-        } else {
-            k += 1;
-        }
-    }
 }
 
 /// One pass, written; an error is the place up to which the segments suffice.
