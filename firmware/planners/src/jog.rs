@@ -47,10 +47,10 @@ pub fn plan_jog(
 ) -> Result<Plan, RetargetError> {
     let mut plan = Plan::new(id, start, [0; 3]);
     let request = JogRequest::new(velocity, constraints).map_err(RetargetError::Refused)?;
-    let now = InitialState::new(state, &request);
-    let from_rest = now.motion.is_at_rest();
+    let now = MotionState::new(state, request.hz);
+    let from_rest = now.is_at_rest();
     // Out of an urgent stop only once it is over: its acceleration is more than a jog may have.
-    let acceleration = Speeds::of(&now.motion.a);
+    let acceleration = Speeds::of(&now.a);
     if is_over(acceleration, request.limits.acceleration) {
         return Err(RetargetError::NeedsStop);
     }
@@ -99,12 +99,6 @@ struct JogRequest<'a> {
     limits: MotionLimits,
 }
 
-/// A state in track radii, rad and seconds: of the moved point, and where the platform's centre is.
-struct InitialState {
-    platform: [f32; 2],
-    motion: MotionState,
-}
-
 impl<'a> JogRequest<'a> {
     fn new(velocity: &[f64; 3], constraints: &'a Constraints) -> Result<Self, Refusal> {
         let limits = &constraints.limits;
@@ -133,7 +127,8 @@ impl<'a> JogRequest<'a> {
     /// How far out the jog to `target` may go, and how hard it may be begun and ended there.
     fn limits_towards(
         &self,
-        now: &InitialState,
+        state: &[AxisState; 3],
+        now: &MotionState,
         target: &[f32; 3],
     ) -> Result<(f32, MotionLimits), RetargetError> {
         let pivot_bound = &self.pivot_bound;
@@ -143,14 +138,15 @@ impl<'a> JogRequest<'a> {
             .ok_or(RetargetError::Refused(Refusal::PivotRate {
                 radius_mm: 0.0,
             }))?;
-        let out = hypot(now.platform[0], now.platform[1]);
+        let [x, y] = self.steady(state, &[0.0; 3]).platform(0.0);
+        let out = hypot(x, y);
         if out > most + JOG_RADII {
             let radius_mm = f64::from(most) * self.constraints.geometry.radius_mm;
             return Err(RetargetError::Refused(Refusal::PivotRate { radius_mm }));
         }
         let travels =
             |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm > 0.0;
-        let MotionState { v, a, .. } = &now.motion;
+        let MotionState { v, a, .. } = now;
         let (speed, acceleration) = (Speeds::of(v), Speeds::of(a));
         let radius = if travels(speeds) || travels(speed) || travels(acceleration) {
             most
@@ -199,15 +195,6 @@ impl<'a> JogRequest<'a> {
     }
 }
 
-impl InitialState {
-    fn new(axes: &[AxisState; 3], request: &JogRequest) -> Self {
-        Self {
-            platform: request.steady(axes, &[0.0; 3]).platform(0.0),
-            motion: MotionState::new(axes, request.hz),
-        }
-    }
-}
-
 /// A jog from the state on in which its velocity is reached.
 struct Jog {
     /// 2^-72 units a tick.
@@ -233,15 +220,15 @@ impl Jog {
     /// Writes the pieces of the way there, too.
     fn new(
         state: &[AxisState; 3],
-        now: &InitialState,
+        now: &MotionState,
         wanted: [i64; 3],
         request: &JogRequest,
         pieces: &mut Pieces,
     ) -> Result<Self, RetargetError> {
         let hz = request.hz;
         let target = per_second(&wanted, hz);
-        let (radius, limits) = request.limits_towards(now, &target)?;
-        let ramp = VelocityProfile::new(&now.motion, &target, &limits).ticks(hz);
+        let (radius, limits) = request.limits_towards(state, now, &target)?;
+        let ramp = VelocityProfile::new(now, &target, &limits).ticks(hz);
         let brake = change(&target, &limits).ticks(hz);
         write_velocity_pieces(pieces, state, &wanted, ramp);
         let half = |ticks: [u64; 3]| ticks_to_f32(ticks.iter().sum()) / (2.0 * hz);
@@ -251,7 +238,7 @@ impl Jog {
             ramp_s: half(ramp),
             brake_s: half(brake),
             brake,
-            from_rest: now.motion.is_at_rest(),
+            from_rest: now.is_at_rest(),
             limits,
             radius,
         })

@@ -35,6 +35,7 @@ const GENTLEST: f32 = 0.1;
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
 /// workspace asks for.
+#[inline(never)]
 pub fn plan_stop(
     id: u32,
     of: &Plan,
@@ -48,23 +49,9 @@ pub fn plan_stop(
     if at + last >= whole {
         return None;
     }
-    let state = of.state_after(axes, at);
+    let state = &of.state_after(axes, at);
     let mut plan = Plan::new(id, of.left_at(at), of.end);
     plan.nudge = of.nudge;
-    write_stop(&mut plan, &state, whole - at, constraints, stop)?;
-    Some(plan)
-}
-
-/// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
-/// plan.
-#[inline(never)]
-fn write_stop(
-    plan: &mut Plan,
-    state: &[AxisState; 3],
-    left: u64,
-    constraints: &Constraints,
-    stop: Stop,
-) -> Option<()> {
     let mut plan_check = PlanCheck::for_stop(constraints, state, stop == Stop::Urgent);
     let hz = constraints.limits.rate_hz as f32;
     let now = MotionState::new(state, hz);
@@ -86,7 +73,7 @@ fn write_stop(
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
-        if plan.ticks() >= left {
+        if plan.ticks() >= whole - at {
             return None;
         }
         match plan_check.check(&plan.pieces, state, &mut { BUDGET }) {
@@ -122,7 +109,7 @@ fn write_stop(
     let end = state_after_pieces(state, &plan.pieces, &[0; 3]);
     let ticks = plan.ticks();
     plan.end = each!(i => end[i].rest_position(ticks, plan.nudge[i]));
-    Some(())
+    Some(plan)
 }
 
 /// A stop in which translation and rotation each brake as soon as they can.

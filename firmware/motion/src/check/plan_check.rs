@@ -180,21 +180,23 @@ impl PlanCheck {
     pub fn pivot_parts(&self, pieces: &[Piece], start: &[AxisState; 3]) -> [f32; 2] {
         let mut segment = CubicSegment::new(start, self.hz);
         let mut parts = [0.0; 2];
-        let mut look = |segment: &CubicSegment, t: f32| {
-            let most = segment.platform(&segment.at(t), self.centre).most();
-            parts = both!(k => f32::fmax(parts[k], most[k] / self.pivots[k]));
-        };
-        look(&segment, 0.0);
+        self.look(&segment, 0.0, &mut parts);
         for piece in pieces {
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let seconds = ticks_to_f32(piece.ticks) / self.hz;
             if piece.ticks > SHORT {
-                look(&segment, seconds / 2.0);
+                self.look(&segment, seconds / 2.0, &mut parts);
             }
             segment.start = segment.at(seconds);
-            look(&segment, 0.0);
+            self.look(&segment, 0.0, &mut parts);
         }
         parts
+    }
+
+    #[inline(never)]
+    fn look(&self, segment: &CubicSegment, t: f32, parts: &mut [f32; 2]) {
+        let most = segment.platform(&segment.at(t), self.centre).most();
+        *parts = both!(k => f32::fmax(parts[k], most[k] / self.pivots[k]));
     }
 
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to

@@ -61,7 +61,8 @@ pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), 
 
 #[inline(never)]
 fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusal> {
-    let [mut x, mut y] = xy_radii(target);
+    const UNIT: f64 = 1.0 / 4_294_967_296.0;
+    let [mut x, mut y] = [target[0] as f64 * UNIT, target[1] as f64 * UNIT];
     let mut rim = TARGET_RADII;
     if constraints.rotation_centre != [0.0; 2] {
         let (sin, cos) = Fixed::sin_cos(Angle::from_units(target[2]));
@@ -80,12 +81,6 @@ fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusa
         });
     }
     Ok(())
-}
-
-/// x and y of a position in track radii.
-fn xy_radii(position: &Position) -> [f64; 2] {
-    const UNIT: f64 = 1.0 / 4_294_967_296.0;
-    [position[0] as f64 * UNIT, position[1] as f64 * UNIT]
 }
 
 #[cfg(test)]

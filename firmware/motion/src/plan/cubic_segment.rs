@@ -75,6 +75,7 @@ impl CubicSegment {
     }
 
     /// The state `t` seconds after its start.
+    #[inline(never)]
     pub fn at(&self, t: f32) -> MotionState {
         let MotionState { displacement, v, a } = self.start;
         let j = self.jerk;

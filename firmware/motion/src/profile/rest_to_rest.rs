@@ -86,9 +86,7 @@ impl RestToRestProfile {
     pub fn volume(&self) -> i128 {
         i128::from(self.jerk * self.ramp) * i128::from(self.travel)
     }
-}
 
-impl RestToRestProfile {
     /// Writes pieces and nudge of a plan from `from` to its end.
     pub fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
         let mut path_profile = PathProfile::default();
