@@ -1,7 +1,7 @@
 //! Planning a stop from any tick of any plan: all axes brake together (see `profile/velocity`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
-//! point; a curve is only planned where such a stop ends inside the workspace.
+//! point; where that would leave the workspace it brakes harder.
 
 use motion::check::{BUDGET, PlanCheck, Violation};
 use motion::constraints::{Constraints, MotionLimits};

@@ -1,6 +1,5 @@
-//! Where a motion may go: the disk for the platform's centre, the bounds for the moved point; and targets: which
-//! way round to an orientation, since theta counts turns and a target may mean its turn or only its direction, and whether one can
-//! be moved to, from anywhere.
+//! Targets: which way round to an orientation, since theta counts turns and a target may mean its turn or only its direction,
+//! and whether one lies inside the workspace.
 
 use crate::constraints::Constraints;
 use crate::plan::Position;

@@ -14,17 +14,15 @@
 //! end, in place of a stop: for a target that is corrected, and out of a stop. The soonest wins. PLCopen calls it
 //! superimposed motion.
 //!
-//! A first way has to be there soon: of two endings, with one line for all axes, and the check is asked once. The soonest way
-//! is looked for while that is under way: all endings, and a line and a delay each for translation and rotation; a line
-//! that asks too much of the pivots is slowed down, one that meets an edge delayed. Where there is no first way, the stop
-//! that was sent before goes on, and the soonest way leaves that.
+//! A first way has to be there soon: of two endings, and the check is asked once. The soonest way is looked for while that is
+//! under way: all endings and shares, and finer delays; a line that asks too much of the pivots is slowed down, one that
+//! meets an edge delayed. Where there is no first way, the stop that was sent before goes on, and the soonest way leaves that.
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | candidates, and the soonest that the check is content with |
+//! | here | ways: an ending, a line from there, and the delay between them; the soonest that the check is content with |
 //! | `ending` | how the motion under way comes to rest |
-//! | `overlap` | the plain line from there; translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
-//! | `candidate` | for each part an ending, a line, and the least delay between them |
+//! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats; the least delay |
 
 mod ending;
 mod overlap;
