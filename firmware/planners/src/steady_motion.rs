@@ -34,7 +34,8 @@ impl SteadyMotion {
         let radius = radius - JOG_RADII;
         let arm = self.arm();
         if self.turning == 0.0 || arm == 0.0 {
-            return self.straight(self.platform(0.0), radius);
+            let ([x, y], (square, half_rate)) = (self.velocity, self.square(0.0));
+            return crossing(square - radius * radius, half_rate, x * x + y * y);
         }
         let speed = hypot(self.velocity[0], self.velocity[1]) + self.turning.abs() * arm;
         let second_derivative = speed * speed + radius * self.turning * self.turning * arm;
@@ -43,7 +44,7 @@ impl SteadyMotion {
             let point = self.point_after(seconds);
             // From here on every orientation is inside, as long as the point is in a smaller disk.
             if hypot(point[0], point[1]) + arm <= radius {
-                return seconds + self.straight(point, radius - arm);
+                return seconds + self.straight(&point, radius - arm);
             }
             let (square, half_rate) = self.square(seconds);
             let step = crossing(square - radius * radius, half_rate, second_derivative);
@@ -74,7 +75,7 @@ impl SteadyMotion {
 
     /// Seconds until something at `from` that moves as the point does is `radius` out.
     #[inline(never)]
-    fn straight(&self, from: [f32; 2], radius: f32) -> f32 {
+    fn straight(&self, from: &[f32; 2], radius: f32) -> f32 {
         let [x, y] = self.velocity;
         crossing(
             from[0] * from[0] + from[1] * from[1] - radius * radius,
