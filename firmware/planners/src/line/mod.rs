@@ -35,7 +35,9 @@ use number::float::{FloatMinMax, i64_to_f32_fast, ticks_to_f32};
 use number::{cbrt_f32, sqrt_f32};
 use path::Path;
 use pivot_demand::{DemandGrid, PathState};
-use topp::{Corners, GRID_POINTS, fit_segments_below, velocity_limit_squared};
+use topp::{
+    Corners, GRID_POINTS, fit_segments_below, remove_close_corners, velocity_limit_squared,
+};
 
 /// Plans the straight line `from` -> `to` (both at rest): all three axes start and end together, and the end is exact.
 #[inline(never)]
@@ -121,6 +123,7 @@ impl<'a> LinePlanner<'a> {
         velocity_limit_squared(grid, &mut z);
         let mut corners = Corners::new();
         fit_segments_below(&z, grid.intervals(), self.limits.acceleration, &mut corners)?;
+        remove_close_corners(&mut corners, &self.limits);
         write_path_profile(
             &corners,
             ROUNDING_MARGIN,

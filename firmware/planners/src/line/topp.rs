@@ -17,6 +17,7 @@
 
 use super::pivot_demand::{DemandGrid, GridPoint};
 use heapless::Vec;
+use motion::constraints::PathLimits;
 use number::float::FloatMinMax;
 use number::sqrt_f32;
 
@@ -199,6 +200,31 @@ pub(super) fn fit_segments_below(
             .fmin(MOST);
     }
     Some(())
+}
+
+/// Takes out the corners that stand so close that their ramps would meet and ask for too much jerk together. Only
+/// corners at which the acceleration falls: without them the speed is lower.
+pub(super) fn remove_close_corners(corners: &mut Corners, limits: &PathLimits) {
+    let mut k = 1;
+    while k + 2 < corners.len() {
+        // How long a segment lasts, and its acceleration.
+        let segment = |k: usize| {
+            let (from, to) = (&corners[k], &corners[k + 1]);
+            let seconds = 2.0 * (to.s - from.s) / (from.rate + to.rate);
+            (seconds, (to.rate - from.rate) / seconds)
+        };
+        let ((_, before), (seconds, here), (_, after)) =
+            (segment(k - 1), segment(k), segment(k + 1));
+        let (first, second) = (before - here, here - after);
+        let ramps = (first + second) / (2.0 * limits.jerk);
+        if first > 0.0 && second > 0.0 && seconds < ramps {
+            // The one that stands out less.
+            corners.remove(if first < second { k } else { k + 1 });
+            k = k.saturating_sub(1).max(1);
+        } else {
+            k += 1;
+        }
+    }
 }
 
 /// One pass, written; an error is the place up to which the segments suffice.
