@@ -100,10 +100,6 @@ pub struct PathLimits {
     pub jerk: f32,
 }
 
-/// Bits of the numbers above zero: compared as whole numbers, which on the chip a comparison of an f64 takes 30
-/// instructions more than.
-const ABOVE_ZERO: core::ops::RangeInclusive<u64> = 1..=f64::INFINITY.to_bits();
-
 impl Limits {
     /// Those of the reference stage.
     pub const REFERENCE: Self = Self {
@@ -135,25 +131,13 @@ impl Limits {
             self.pivot_acceleration_rad_s2,
             self.stop_factor,
         ];
-        (limits.iter()).all(|limit| ABOVE_ZERO.contains(&limit.to_bits()))
+        limits.iter().all(|limit| *limit > 0.0)
     }
 
     /// Jerk of an urgent stop over that of ordinary motion.
     pub fn urgent_jerk(&self) -> f32 {
         let factor = self.stop_factor as f32;
         factor * factor
-    }
-
-    /// The limits on the parameter of a line of this length (mm) and turn (deg, either way), those of the pivots aside.
-    pub fn for_line(&self, length_mm: f32, turn_deg: f32) -> PathLimits {
-        let least = |translation: f64, rotation: f64| {
-            (translation as f32 / length_mm).fmin(rotation as f32 / turn_deg.abs())
-        };
-        PathLimits {
-            rate: least(self.speed_mm_s, self.turn_speed_deg_s),
-            acceleration: least(self.acceleration_mm_s2, self.turn_acceleration_deg_s2),
-            jerk: least(self.jerk_mm_s3, self.turn_jerk_deg_s3),
-        }
     }
 }
 
@@ -210,6 +194,16 @@ impl MotionLimits {
             speed: self.speed,
             acceleration: self.acceleration.scaled(acceleration),
             jerk: self.jerk.scaled(jerk),
+        }
+    }
+
+    /// The limits on the parameter of a line of this length and turn (not negative), those of the pivots aside.
+    pub fn for_line(&self, length: f32, turn: f32) -> PathLimits {
+        let least = |limit: &Speeds| (limit.linear / length).fmin(limit.angular / turn);
+        PathLimits {
+            rate: least(&self.speed),
+            acceleration: least(&self.acceleration),
+            jerk: least(&self.jerk),
         }
     }
 }

@@ -35,7 +35,7 @@ pub const ROUNDED_TIMES: f32 = 1.0 + 5e-7;
 pub const WHOLE_TICKS: f32 = 1e-3;
 
 /// The same of a duration of any length, as a part of it.
-pub const WHOLE_DURATION: f32 = 1.0 - 1e-6;
+pub const WHOLE_DURATION: f32 = 1.0 - 8e-7;
 
 /// By how much more a line is slowed down than what was found too fast asks for: its segments are whole ticks again.
 pub const ROUNDING_MARGIN: f32 = 1.001_5;

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 use kinematics::Geometry;
-use motion::check::{Budget, PlanCheck, Violation};
+use motion::check::{BUDGET, PlanCheck, Violation};
 use motion::plan::axis_state::AXIS_UNITS;
 use motion::{AxisState, Constraints, Limits, Piece, Plan, PlanStart};
 
@@ -33,7 +33,7 @@ fn plan(ticks: u64, jerk: [f64; 3]) -> Plan {
 }
 
 fn check(plan: &Plan, start: &[AxisState; 3], constraints: &Constraints) -> Result<(), Violation> {
-    PlanCheck::new(constraints, start).check(&plan.pieces, start, &mut { Budget::FOR_STOP })
+    PlanCheck::new(constraints, start).check(&plan.pieces, start, &mut { BUDGET })
 }
 
 #[test]
@@ -43,10 +43,7 @@ fn speed_is_limited_along_the_path() {
     let start = [axis(-0.2, 1.2, 2.4), axis(0.0, 1.5, 3.2), STILL];
     assert_eq!(check(&plan(350, [0.0; 3]), &start, &CONSTRAINTS), Ok(()));
     let broken = check(&plan(600, [0.0; 3]), &start, &CONSTRAINTS);
-    let Err(Violation::Speed(over)) = broken else {
-        panic!("{broken:?}");
-    };
-    assert!((1.001..1.03).contains(&over), "{over}");
+    assert_eq!(broken, Err(Violation::Speed));
 }
 
 #[test]
@@ -60,7 +57,7 @@ fn acceleration_and_jerk_are_limited() {
     for (ticks, jerk) in [(220, [4e3, 0.0, 0.0]), (100, [0.0, 6e3, 0.0])] {
         let broken = check(&plan(ticks, jerk), &start, &CONSTRAINTS);
         assert!(
-            matches!(broken, Err(Violation::Acceleration(over) | Violation::Jerk(over)) if over > 1.05),
+            matches!(broken, Err(Violation::Acceleration | Violation::Jerk)),
             "{broken:?}"
         );
     }
@@ -74,7 +71,7 @@ fn a_start_over_a_limit_may_go_on_but_not_further() {
     let faster = [axis(0.0, 2.2, 4.0), STILL, STILL];
     assert!(matches!(
         check(&plan(400, [0.0; 3]), &faster, &CONSTRAINTS),
-        Err(Violation::Speed(_))
+        Err(Violation::Speed)
     ));
 }
 
@@ -89,11 +86,14 @@ fn the_pivots_rate_is_met_where_it_is_met() {
         check(&turn, &start, &constraints)
     };
     assert_eq!(with(8.92), Ok(()));
-    assert!(
-        matches!(with(8.7), Err(Violation::PivotRate(over)) if (1.0..1.03).contains(&over)),
-        "{:?}",
-        with(8.7)
-    );
+    assert_eq!(with(8.7), Err(Violation::Pivots));
+    // Sampled as thirty pieces of 14 deg, it is by so much.
+    let pieces = [Piece {
+        ticks: 800,
+        jerk: [0; 3],
+    }; 30];
+    let [rate, _] = PlanCheck::new(&CONSTRAINTS, &start).pivot_parts(&pieces, &start);
+    assert!((0.885..0.8902).contains(&rate), "{rate}");
     // A part of the turn that is far from there.
     let mut constraints = CONSTRAINTS;
     constraints.limits.pivot_rate_rad_s = 8.7;
@@ -118,33 +118,32 @@ fn the_pivots_acceleration_is_met_too() {
     };
     let kept = (5..30).find(|&most| with(f64::from(most)).is_ok()).unwrap();
     let broken = with(f64::from(kept) * 0.9);
-    assert!(
-        matches!(broken, Err(Violation::PivotAcceleration(_))),
-        "{broken:?}"
-    );
+    assert_eq!(broken, Err(Violation::Pivots));
     assert!((5..25).contains(&kept), "{kept}");
 }
 
 #[test]
-fn the_disk_is_kept_by_the_way_and_by_a_stop_from_it() {
+fn the_disk_is_kept_by_the_way() {
     let out = |x: f64| [axis(x, 1.0, 0.0), STILL, STILL];
+    // 10 mm on.
     let way = plan(200, [0.0; 3]);
-    // 10 mm on, and 2 mm or so to brake from 100 mm/s.
-    assert_eq!(check(&way, &out(0.75), &CONSTRAINTS), Ok(()));
-    assert_eq!(
-        check(&way, &out(0.785), &CONSTRAINTS),
-        Err(Violation::NoRoomToStop)
-    );
-    assert_eq!(
-        check(&way, &out(0.795), &CONSTRAINTS),
-        Err(Violation::NoRoomToStop)
-    );
-    // A stop needs no room to stop.
-    let stop = |x: f64| {
-        PlanCheck::for_stop(&CONSTRAINTS).check(&way.pieces, &out(x), &mut { Budget::FOR_STOP })
+    assert_eq!(check(&way, &out(0.785), &CONSTRAINTS), Ok(()));
+    let broken = check(&way, &out(0.795), &CONSTRAINTS);
+    assert!(matches!(broken, Err(Violation::Disk(at)) if at > 0.8));
+}
+
+/// A stop has an acceleration and a jerk of its own, and a smooth one the ordinary limit of speed.
+#[test]
+fn a_stop_keeps_to_what_is_granted_it() {
+    let start = [axis(0.0, 1.9, 60.0), STILL, STILL];
+    let way = plan(100, [-8e3, 0.0, 0.0]);
+    let stop = |urgent: bool| {
+        PlanCheck::for_stop(&CONSTRAINTS, &start, urgent)
+            .check(&way.pieces, &start, &mut { BUDGET })
     };
-    assert_eq!(stop(0.785), Ok(()));
-    assert!(matches!(stop(0.795), Err(Violation::Disk(at)) if at > 0.8));
+    assert_eq!(check(&way, &start, &CONSTRAINTS), Err(Violation::Jerk));
+    assert_eq!(stop(false), Err(Violation::Speed));
+    assert_eq!(stop(true), Ok(()));
 }
 
 #[test]
@@ -157,27 +156,22 @@ fn about_another_point_the_platforms_centre_counts() {
     let turning = |x: f64| [axis(x, 0.0, 0.0), STILL, axis(0.0, 0.5, 0.0)];
     // Half a turn later it is as far from the point on the other side.
     assert_eq!(check(&turn, &turning(0.2), &constraints), Ok(()));
-    assert_eq!(
-        check(&turn, &turning(0.35), &constraints),
-        Err(Violation::NoRoomToStop)
-    );
+    let broken = check(&turn, &turning(0.35), &constraints);
+    assert!(matches!(broken, Err(Violation::Disk(at)) if at > 0.8));
 }
 
 #[test]
-fn bounds_are_kept_by_the_way_and_by_a_stop_from_it() {
+fn bounds_are_kept_by_the_way() {
     let turns = |turns: f64| (turns * 4_294_967_296.0) as i64;
     let mut constraints = CONSTRAINTS;
     constraints.bounds[2] = [turns(-0.1), turns(0.1)];
     let turning = |theta: f64| [STILL, STILL, axis(theta, 0.5, 0.0)];
     let way = plan(400, [0.0; 3]);
     assert_eq!(check(&way, &turning(0.0), &constraints), Ok(()));
-    assert_eq!(
-        check(&way, &turning(0.085), &constraints),
-        Err(Violation::NoRoomToStop)
-    );
+    assert_eq!(check(&way, &turning(0.085), &constraints), Ok(()));
     assert_eq!(
         check(&way, &turning(0.095), &constraints),
-        Err(Violation::NoRoomToStop)
+        Err(Violation::Bounds(2))
     );
 }
 
@@ -197,13 +191,7 @@ fn without_looks_left_it_fails() {
             ticks: 2_000,
             jerk: [0; 3],
         }];
-        let with = |intervals: usize| {
-            let mut budget = Budget {
-                intervals,
-                ..Budget::FOR_ANSWER
-            };
-            plan_check.check(&part, &now, &mut budget).is_ok()
-        };
+        let with = |mut budget: usize| plan_check.check(&part, &now, &mut budget).is_ok();
         assert!(with(60) || !with(1));
         undecided += usize::from(with(60) && !with(1));
     }

@@ -25,7 +25,7 @@
 //!               \____                      two add up to a motion that ends at the target all the same. The least delay
 //!                 ________                 at which every limit is kept is taken. Towards a target straight ahead the
 //!           |    /  line  \                stop's braking and the line's acceleration cancel, and the stage goes on.
-//!           |___/          \____           Translation and rotation each have their own line and delay.
+//!           |___/          \____
 //!           delay                    time
 //! ```
 //!

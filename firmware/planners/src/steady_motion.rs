@@ -22,15 +22,6 @@ pub(super) struct SteadyMotion {
     pub centre: [f32; 2],
 }
 
-/// How far it can go.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TravelTime {
-    /// For so many seconds; infinite when nothing ends it.
-    pub seconds: f32,
-    /// Theta has to stop then too, not only the point.
-    pub theta_too: bool,
-}
-
 /// Steps along a curve at most. What has been looked at by then is safe to go.
 const MOST_STEPS: usize = 100;
 /// A step that is no way worth it any more, s.
@@ -38,17 +29,13 @@ const LEAST_STEP: f32 = 2e-5;
 const UNITS_PER_RAD: f32 = POSITION_UNITS / core::f32::consts::TAU;
 
 impl SteadyMotion {
-    /// Until the platform's centre meets the edge of the disk of `radius`.
-    pub fn time_to_edge(&self, radius: f32) -> TravelTime {
+    /// Seconds until the platform's centre meets the edge of the disk of `radius`; infinite when it never does.
+    pub fn time_to_edge(&self, radius: f32) -> f32 {
         let radius = radius - JOG_RADII;
         let arm = self.arm();
         if self.turning == 0.0 || arm == 0.0 {
-            let centre = self.platform(0.0);
-            let seconds = self.straight(centre, radius);
-            return TravelTime {
-                seconds,
-                theta_too: false,
-            };
+            let ([x, y], (square, half_rate)) = (self.velocity, self.square(0.0));
+            return crossing(square - radius * radius, half_rate, x * x + y * y);
         }
         let speed = hypot(self.velocity[0], self.velocity[1]) + self.turning.abs() * arm;
         let second_derivative = speed * speed + radius * self.turning * self.turning * arm;
@@ -57,10 +44,7 @@ impl SteadyMotion {
             let point = self.point_after(seconds);
             // From here on every orientation is inside, as long as the point is in a smaller disk.
             if hypot(point[0], point[1]) + arm <= radius {
-                return TravelTime {
-                    seconds: seconds + self.straight(point, radius - arm),
-                    theta_too: false,
-                };
+                return seconds + self.straight(&point, radius - arm);
             }
             let (square, half_rate) = self.square(seconds);
             let step = crossing(square - radius * radius, half_rate, second_derivative);
@@ -69,10 +53,7 @@ impl SteadyMotion {
                 break;
             }
         }
-        TravelTime {
-            seconds,
-            theta_too: true,
-        }
+        seconds
     }
 
     /// Seconds until the moved point meets its bounds.
@@ -94,7 +75,7 @@ impl SteadyMotion {
 
     /// Seconds until something at `from` that moves as the point does is `radius` out.
     #[inline(never)]
-    fn straight(&self, from: [f32; 2], radius: f32) -> f32 {
+    fn straight(&self, from: &[f32; 2], radius: f32) -> f32 {
         let [x, y] = self.velocity;
         crossing(
             from[0] * from[0] + from[1] * from[1] - radius * radius,
@@ -104,7 +85,7 @@ impl SteadyMotion {
     }
 
     /// How far the moved point lies from the platform's centre.
-    pub fn arm(&self) -> f32 {
+    fn arm(&self) -> f32 {
         hypot(self.centre[0], self.centre[1])
     }
 
@@ -120,7 +101,7 @@ impl SteadyMotion {
         (x * x + y * y, x * rate[0] + y * rate[1])
     }
 
-    pub fn point_after(&self, seconds: f32) -> [f32; 2] {
+    fn point_after(&self, seconds: f32) -> [f32; 2] {
         both!(i => self.point[i] + self.velocity[i] * seconds)
     }
 
@@ -141,7 +122,7 @@ impl SteadyMotion {
 
 /// When `value + 2 slope t + second_derivative t^2` becomes positive; at once where it is and grows, never when nothing
 /// bends it.
-pub(super) fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
+fn crossing(value: f32, slope: f32, second_derivative: f32) -> f32 {
     if second_derivative <= 0.0 {
         return f32::INFINITY;
     }
@@ -178,28 +159,25 @@ mod tests {
         let reach = |steady: SteadyMotion| steady.time_to_edge(0.8);
         let near = |a: f32, b: f32| (a - b).abs() < 1e-5;
         assert!(near(
-            reach(steady([0.0; 2], [2.0, 0.0], 0.0, [0.0; 2])).seconds,
+            reach(steady([0.0; 2], [2.0, 0.0], 0.0, [0.0; 2])),
             0.4
         ));
         assert!(near(
-            reach(steady([0.0, 0.6], [1.0, 0.0], 3.0, [0.0; 2])).seconds,
+            reach(steady([0.0, 0.6], [1.0, 0.0], 3.0, [0.0; 2])),
             0.529_15
         ));
         // The platform's centre counts: at (-0.3, 0) when the point is in the middle.
         assert!(near(
-            reach(steady([0.0; 2], [-1.0, 0.0], 0.0, [0.3, 0.0])).seconds,
+            reach(steady([0.0; 2], [-1.0, 0.0], 0.0, [0.3, 0.0])),
             0.5
         ));
-        assert_eq!(
-            reach(steady([0.8, 0.0], [1.0, 0.0], 0.0, [0.0; 2])).seconds,
-            0.0
-        );
+        assert_eq!(reach(steady([0.8, 0.0], [1.0, 0.0], 0.0, [0.0; 2])), 0.0);
         assert!(near(
-            reach(steady([0.8, 0.0], [-1.0, 0.0], 0.0, [0.0; 2])).seconds,
+            reach(steady([0.8, 0.0], [-1.0, 0.0], 0.0, [0.0; 2])),
             1.6
         ));
         assert_eq!(
-            reach(steady([0.8, 0.0], [0.0; 2], 5.0, [0.0; 2])).seconds,
+            reach(steady([0.8, 0.0], [0.0; 2], 5.0, [0.0; 2])),
             f32::INFINITY
         );
     }
@@ -208,15 +186,12 @@ mod tests {
     fn about_a_point_the_platform_turns_to_the_edge_or_for_ever() {
         // The centre circles (0.2, 0) at 0.5: never outside.
         let inside = steady([0.2, 0.0], [0.0; 2], 1.0, [0.5, 0.0]).time_to_edge(0.8);
-        assert_eq!(inside.seconds, f32::INFINITY);
+        assert_eq!(inside, f32::INFINITY);
         // It circles (0.5, 0) at 0.5, from (0, 0): out where 0.5 - 0.5 cos = 0.32 / 0.5.
         let edge = (1.0_f32 - 0.8 * 0.8 / (2.0 * 0.5 * 0.5)).acos();
         for turning in [1.0, -1.0] {
             let out = steady([0.5, 0.0], [0.0; 2], turning, [0.5, 0.0]).time_to_edge(0.8);
-            assert!(
-                out.theta_too && (out.seconds - edge).abs() < 1e-4,
-                "{out:?} {edge}"
-            );
+            assert!((out - edge).abs() < 1e-4, "{out:?} {edge}");
         }
     }
 
@@ -238,13 +213,16 @@ mod tests {
                 centre,
             );
             let reach = steady.time_to_edge(0.8);
-            assert!(reach.seconds > 0.0 && reach.seconds < 1e3, "{reach:?}");
+            assert!(reach > 0.0 && reach < 1e3, "{reach:?}");
             for k in 0..=200 {
-                let [x, y] = steady.platform(reach.seconds * k as f32 / 200.0);
+                let [x, y] = steady.platform(reach * k as f32 / 200.0);
                 assert!(hypot(x, y) < 0.8, "{reach:?}");
             }
-            let [x, y] = steady.platform(reach.seconds);
-            ended += usize::from(!reach.theta_too || hypot(x, y) > 0.8 - 1e-4);
+            let [x, y] = steady.platform(reach);
+            let [point_x, point_y] = steady.point_after(reach);
+            let inner = hypot(point_x, point_y) + steady.arm();
+            ended +=
+                usize::from(inner > 0.8 - 1e-4 && inner < 0.8 + 1e-4 || hypot(x, y) > 0.8 - 1e-4);
         }
         // The rest graze the edge and end before it.
         assert!(ended > 1_950, "{ended}");

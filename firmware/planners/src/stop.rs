@@ -1,19 +1,17 @@
 //! Planning a stop from any tick of any plan: all axes brake together (see `profile/velocity`).
 //!
 //! From a straight motion the stop goes on along the line. From a curve it goes on where velocity and acceleration
-//! point; a curve is only planned where such a stop ends inside the workspace. The braking of a jog at an edge, in
-//! which theta comes to rest later than the point, leaves no room for a brake that takes as long for both: then each
-//! has its own. So it has where the point, waiting for theta, would get faster than the limit, or theta for the point.
+//! point; where that would leave the workspace it brakes harder.
 
-use motion::check::{Budget, PlanCheck, Violation, is_over};
-use motion::constraints::{Constraints, MotionLimits, Speeds};
+use motion::check::{BUDGET, PlanCheck, Violation};
+use motion::constraints::{Constraints, MotionLimits};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
 use motion::plan::{Piece, Pieces, Plan, state_after_pieces, write_sum};
-use motion::profile::velocity::{VelocityProfile, stop_speeds};
+use motion::profile::velocity::VelocityProfile;
 use motion::tolerances::PIVOT_PART_FOR_BRAKING;
-use number::float::{FloatMinMax, ticks_to_f32};
+use number::float::{FloatMinMax, hypot, ticks_to_f32};
 
 /// How a stop brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +35,7 @@ const GENTLEST: f32 = 0.1;
 ///
 /// A smooth stop is within the ordinary limits, or less where the pivots ask for it, or as hard as the edge of the
 /// workspace asks for.
+#[inline(never)]
 pub fn plan_stop(
     id: u32,
     of: &Plan,
@@ -50,99 +49,57 @@ pub fn plan_stop(
     if at + last >= whole {
         return None;
     }
-    let state = of.state_after(axes, at);
+    let state = &of.state_after(axes, at);
     let mut plan = Plan::new(id, of.left_at(at), of.end);
     plan.nudge = of.nudge;
-    write_stop(&mut plan, &state, whole - at, constraints, stop)?;
-    Some(plan)
-}
-
-/// How hard a stop brakes, in limits of acceleration and of jerk.
-#[derive(Clone, Copy, PartialEq)]
-struct Hardness {
-    acceleration: f32,
-    jerk: f32,
-}
-
-impl Hardness {
-    const PLAIN: Self = Self {
-        acceleration: 1.0,
-        jerk: 1.0,
-    };
-}
-
-/// Writes the pieces and the end of a stop from `state`; `None` where it would last as long as what is `left` of the
-/// plan.
-#[inline(never)]
-fn write_stop(
-    plan: &mut Plan,
-    state: &[AxisState; 3],
-    left: u64,
-    constraints: &Constraints,
-    stop: Stop,
-) -> Option<()> {
-    let plan_check = PlanCheck::for_stop(constraints);
+    let mut plan_check = PlanCheck::for_stop(constraints, state, stop == Stop::Urgent);
     let hz = constraints.limits.rate_hz as f32;
-    let ordinary = constraints.motion_limits();
-    let segment = CubicSegment::new(state, hz);
-    let now = segment.start;
-    let urgent_jerk = || constraints.limits.urgent_jerk();
-    let plain = VelocityProfile::new(&now, &[0.0; 3], &ordinary);
-    let plain_s = plain.times_s();
-    let most = hardest_brake(
-        &segment,
-        plain.direction(&ordinary, plain_s[0]),
-        &plan_check,
-    );
-    let mut hardness = match stop {
-        Stop::Smooth => Hardness {
-            acceleration: most.fmin(1.0),
-            ..Hardness::PLAIN
-        },
-        Stop::Urgent => Hardness {
-            acceleration: most,
-            jerk: urgent_jerk(),
-        },
+    let now = MotionState::new(state, hz);
+    let urgent_jerk = constraints.limits.urgent_jerk();
+    // How hard it brakes, in limits of acceleration and of jerk.
+    let (mut acceleration, mut jerk) = match stop {
+        Stop::Smooth => (1.0, 1.0),
+        Stop::Urgent => (hardest_brake(state, constraints), urgent_jerk),
     };
     let mut apart = false;
     for _ in 0..ATTEMPTS {
-        let limits = ordinary.scaled(hardness.acceleration, hardness.jerk);
+        let limits = constraints.motion_limits().scaled(acceleration, jerk);
         let profile = VelocityProfile::new(&now, &[0.0; 3], &limits);
-        let times_s = if hardness == Hardness::PLAIN {
-            plain_s
-        } else {
-            profile.times_s()
-        };
-        let ticks = profile.whole_ticks(times_s, hz);
-        // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile.
-        apart |= stop == Stop::Smooth && speeds_up(&now, ticks, hz, ordinary.speed);
+        let ticks = profile.ticks(hz);
         if apart {
-            write_apart(&mut plan.pieces, state, &now, &limits, hz);
+            write_apart(&mut plan.pieces, state, &limits, hz);
         } else {
             write_velocity_pieces(&mut plan.pieces, state, &[0; 3], ticks);
         }
         // Rounded up to whole ticks, a stop out of the deceleration would come later than the plan's end, and beyond
         // it. So may one that had to be made softer.
-        if plan.ticks() >= left {
+        if plan.ticks() >= whole - at {
             return None;
         }
-        match plan_check.check(&plan.pieces, state, &mut { Budget::FOR_STOP }) {
+        match plan_check.check(&plan.pieces, state, &mut { BUDGET }) {
             Ok(()) => break,
-            // Translation is not kept waiting for rotation then, nor the other way round.
-            Err(Violation::Disk(_) | Violation::Bounds(_)) if !apart => apart = true,
-            Err(Violation::Disk(_) | Violation::Bounds(_)) => {
-                hardness.acceleration *= 1.3;
-                hardness.jerk = urgent_jerk();
+            // Translation that waits for rotation, or the other way round, may get faster than the limit meanwhile. More
+            // can not be done about it.
+            Err(Violation::Speed) => {
+                apart = true;
+                plan_check = PlanCheck::for_stop(constraints, state, apart);
             }
-            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+            Err(Violation::Disk(_) | Violation::Bounds(_)) => {
+                (acceleration, jerk) = (acceleration * 1.3, urgent_jerk);
+            }
+            Err(Violation::Pivots) => {
+                let most = |pieces: &[Piece]| {
+                    let [rate, acceleration] = plan_check.pivot_parts(pieces, state);
+                    rate.fmax(acceleration)
+                };
+                let over = most(&plan.pieces).fmax(1.0);
                 // What the motion asks of the pivots already, no brake takes from them.
-                if over <= plan_check.pivot_part(&segment) {
+                if over <= most(&[]) {
                     break;
                 }
                 let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
-                let used = hardness.acceleration * profile.peak_size(times_s);
-                hardness.acceleration =
-                    (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
+                let used = acceleration * profile.peak_size(times_s);
+                acceleration = (used * (PIVOT_PART_FOR_BRAKING / over).fmax(0.5)).fmax(GENTLEST);
             }
             // A stop has no limits of its own, and needs no room for another.
             Err(_) => break,
@@ -152,60 +109,36 @@ fn write_stop(
     let end = state_after_pieces(state, &plan.pieces, &[0; 3]);
     let ticks = plan.ticks();
     plan.end = each!(i => end[i].rest_position(ticks, plan.nudge[i]));
-    Some(())
+    Some(plan)
 }
 
-/// Whether the speed rises over its limit before the stop brakes.
-fn speeds_up(from: &MotionState, ticks: [u64; 3], hz: f32, limit: Speeds) -> bool {
-    let times_s = each!(k => ticks_to_f32(ticks[k]) / hz);
-    is_over(stop_speeds(from, times_s), limit.max(Speeds::of(&from.v)))
-}
-
-/// The same where translation and rotation each brake as soon as they can.
-fn write_apart(
-    pieces: &mut Pieces,
-    state: &[AxisState; 3],
-    now: &MotionState,
-    limits: &MotionLimits,
-    hz: f32,
-) {
-    let part = |axes: [usize; 3]| {
-        let still = AxisState::default();
-        let state = axes.map(|i| state.get(i).copied().unwrap_or(still));
-        let each = |vector: &[f32; 3]| axes.map(|i| vector.get(i).copied().unwrap_or(0.0));
-        let now = MotionState {
-            v: each(&now.v),
-            a: each(&now.a),
-            ..*now
-        };
+/// A stop in which translation and rotation each brake as soon as they can.
+fn write_apart(pieces: &mut Pieces, state: &[AxisState; 3], limits: &MotionLimits, hz: f32) {
+    let ([x, y, theta], still) = (*state, AxisState::default());
+    let [translation, rotation] = [[x, y, still], [still, still, theta]].map(|axes| {
+        let now = MotionState::new(&axes, hz);
         let ticks = VelocityProfile::new(&now, &[0.0; 3], limits).ticks(hz);
-        velocity_pieces(&state, &[0; 3], ticks)
-    };
-    const NONE: usize = 3;
-    let (translation, rotation): ([Piece; 4], [Piece; 4]) =
-        (part([0, 1, NONE]), part([NONE, NONE, 2]));
+        velocity_pieces(&axes, &[0; 3], ticks)
+    });
     // Eight of many.
     let _ = write_sum(&translation, &rotation, 0, pieces);
 }
 
-/// How hard the pivots can brake here, in accelerations of `brake`: what their acceleration leaves when the part that
-/// comes of the motion itself is taken off.
-fn hardest_brake(segment: &CubicSegment, brake: [f32; 3], plan_check: &PlanCheck) -> f32 {
-    let most = plan_check.pivot_acceleration() * PIVOT_PART_FOR_BRAKING;
+/// How hard the pivots can brake here, in limits of acceleration: what their own leaves when the part that comes of the
+/// motion itself is taken off.
+fn hardest_brake(state: &[AxisState; 3], constraints: &Constraints) -> f32 {
+    let segment = CubicSegment::new(state, constraints.limits.rate_hz as f32);
+    let (v, limit) = (segment.start.v, constraints.motion_limits().acceleration);
+    let size = (hypot(v[0], v[1]) / limit.linear).fmax(v[2].abs() / limit.angular);
+    let over = 1.0 / size.fmax(f32::MIN_POSITIVE);
     let accelerations = |a: [f32; 3]| {
         let motion = MotionState { a, ..segment.start };
-        let [_, accelerations] = plan_check.pivots(segment, &motion);
-        accelerations
+        segment.platform(&motion, constraints.centre()).pivots()[1]
     };
-    let drift = accelerations([0.0; 3]);
-    let braked = accelerations(brake);
-    let mut hardest = HARDEST;
-    for i in 0..3 {
-        let part = (braked[i] - drift[i]).abs();
+    let (drift, braked) = (accelerations([0.0; 3]), accelerations(v.map(|v| -v * over)));
+    let most = constraints.limits.pivot_acceleration_rad_s2 as f32 * PIVOT_PART_FOR_BRAKING;
+    (0..3).fold(HARDEST, |hardest, i| {
         let left = most - drift[i].abs();
-        if part != 0.0 && left < hardest * part {
-            hardest = left / part;
-        }
-    }
-    hardest.fmax(GENTLEST)
+        hardest.fmin((left / (braked[i] - drift[i]).abs()).fmax(GENTLEST))
+    })
 }

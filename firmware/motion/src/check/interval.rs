@@ -1,7 +1,7 @@
 //! An interval of a plan: the state at its two ends, how large velocity, acceleration and jerk are in between, what the
 //! pivots can make of them at most, and what may be broken in it.
 
-use super::pivots::{PivotGain, greatest};
+use super::pivots::PivotGain;
 use crate::constraints::Speeds;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
 use number::float::{FloatMinMax, hypot};
@@ -13,38 +13,16 @@ pub enum Violation {
     Disk(f32),
     /// The bounds of an axis.
     Bounds(usize),
-    /// Speed, by this factor.
-    Speed(f32),
-    /// Acceleration, by this factor.
-    Acceleration(f32),
-    /// Jerk, by this factor.
-    Jerk(f32),
-    /// The pivots' rate, by this factor.
-    PivotRate(f32),
-    /// The pivots' acceleration, by this factor.
-    PivotAcceleration(f32),
-    /// Disk or bounds, in a stop from an instant on the way; or too long a way to be looked at.
-    NoRoomToStop,
-}
-
-impl Violation {
-    pub(super) fn is_of_pivots(&self) -> bool {
-        matches!(self, Self::PivotRate(_) | Self::PivotAcceleration(_))
-    }
-
-    /// This, or what was seen of the same before, when that was worse.
-    pub(super) fn or_worse(self, before: Option<Self>) -> Self {
-        let is_same = |seen: &Self| core::mem::discriminant(seen) == core::mem::discriminant(&self);
-        (before.filter(|seen| is_same(seen) && seen.over() > self.over())).unwrap_or(self)
-    }
-
-    fn over(&self) -> f32 {
-        match *self {
-            Self::Speed(over) | Self::Acceleration(over) | Self::Jerk(over) => over,
-            Self::PivotRate(over) | Self::PivotAcceleration(over) => over,
-            Self::Disk(_) | Self::Bounds(_) | Self::NoRoomToStop => 0.0,
-        }
-    }
+    /// The limit of speed.
+    Speed,
+    /// That of acceleration.
+    Acceleration,
+    /// That of jerk.
+    Jerk,
+    /// The pivots' rate or acceleration.
+    Pivots,
+    /// Nothing that is known: too long a way to be looked at.
+    TooLong,
 }
 
 /// One end of an interval.
@@ -55,9 +33,7 @@ pub struct IntervalEnd {
     pub v: [f32; 2],
     /// Their acceleration.
     pub a: [f32; 2],
-    /// Distance of the moved point from the track's centre.
-    pub point_distance: f32,
-    /// Distance of the platform's centre from it.
+    /// Distance of the platform's centre from the track's.
     pub(super) centre_distance: f32,
     /// The greatest rate and acceleration of a pivot, once they have been asked for.
     pub(super) pivots: Option<[f32; 2]>,
@@ -65,10 +41,9 @@ pub struct IntervalEnd {
 
 impl IntervalEnd {
     pub(super) fn pivots(&mut self, segment: &CubicSegment, centre: [f32; 2]) -> [f32; 2] {
-        *self.pivots.get_or_insert_with(|| {
-            let pivots = segment.platform(&self.sample, centre).pivots();
-            [greatest(&pivots[0]), greatest(&pivots[1])]
-        })
+        *self
+            .pivots
+            .get_or_insert_with(|| segment.platform(&self.sample, centre).most())
     }
 }
 
@@ -140,7 +115,7 @@ impl IntervalBounds {
     /// Seen from the platform, whose guides stand still, the centre moves with derivatives of at most `d1` to `d4`; a pivot
     /// is at the angle `theta + asin d` with `|d| <= r`, of which these are the third and the fourth derivative at most.
     pub fn pivot_rises(&self, bound: &PivotGain, t: f32) -> [f32; 2] {
-        let PivotGain { radius: r, k } = *bound;
+        let PivotGain { radius: r, k, .. } = *bound;
         let ([v, turn], [a, _], [j, angular_jerk]) = (self.v, self.a, self.j);
         let [second, third, fourth] = self.turned();
         let d1 = v + turn * r;

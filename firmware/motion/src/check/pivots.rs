@@ -77,6 +77,11 @@ impl Platform {
         let motion = pivot_motion_in_platform_axes(&guides, &self.twist, &self.acceleration);
         [motion.rates, motion.accelerations]
     }
+
+    /// The greatest rate and the greatest acceleration of a pivot.
+    pub fn most(&self) -> [f32; 2] {
+        self.pivots().map(|values| greatest(&values))
+    }
 }
 
 impl CubicSegment {
@@ -89,7 +94,7 @@ impl CubicSegment {
 }
 
 /// The greatest size of three; what is not a number is over every limit.
-pub fn greatest(values: &[f32; 3]) -> f32 {
+fn greatest(values: &[f32; 3]) -> f32 {
     let mut greatest = 0.0_f32;
     for value in values {
         let size = value.abs();
@@ -107,30 +112,30 @@ pub struct PivotGain {
     pub radius: f32,
     /// How much faster than the platform a pivot is at most.
     pub k: f32,
+    /// How far the point whose speeds are told lies from the platform's centre.
+    arm: f32,
 }
 
 impl PivotGain {
     /// For a radius inside the track.
-    pub fn new(radius: f32) -> Self {
-        Self {
-            radius,
-            k: 1.0 / sqrt_f32((1.0 - radius) * (1.0 + radius)),
-        }
+    pub fn new(radius: f32, arm: f32) -> Self {
+        let k = 1.0 / sqrt_f32((1.0 - radius) * (1.0 + radius));
+        Self { radius, k, arm }
     }
 
-    /// Rate of a pivot when the platform's centre moves at `speeds`; what its acceleration adds to that of a pivot,
-    /// likewise.
+    /// Rate of a pivot when the point moves at `speeds`; what its acceleration adds to that of a pivot, likewise.
     pub fn rate(&self, speeds: Speeds) -> f32 {
-        self.k * speeds.linear + speeds.angular * (1.0 + self.radius)
+        self.k * (speeds.linear + speeds.angular * self.arm) + speeds.angular * (1.0 + self.radius)
     }
 
-    /// Acceleration of a pivot when the platform's centre moves at `speeds` and is not accelerated.
+    /// Acceleration of a pivot when the point moves at `speeds` and is not accelerated.
     pub fn bias_acceleration(&self, speeds: Speeds) -> f32 {
-        let Speeds { linear, angular } = speeds;
-        let relative_rate = self.k * linear + angular * self.radius;
-        self.k
-            * (angular * (2.0 * linear + angular * self.radius)
-                + relative_rate * relative_rate * self.radius)
+        let Self { radius, k, arm } = *self;
+        let turn = speeds.angular;
+        let linear = speeds.linear + turn * arm;
+        let relative_rate = k * linear + turn * radius;
+        // Turning alone accelerates the centre towards the point.
+        k * (turn * (2.0 * linear + turn * (radius + arm)) + relative_rate * relative_rate * radius)
     }
 }
 
@@ -153,31 +158,20 @@ impl PivotBound {
         }
     }
 
-    /// Whether the pivots' rate holds at `speeds` anywhere within `radius`.
-    pub fn rate_is_within(&self, radius: f32, speeds: Speeds) -> bool {
-        PivotGain::new(radius).rate(self.platform_speeds(speeds)) <= self.rate
-    }
-
-    /// What is left of the pivots' acceleration when the platform moves at `speeds` within `radius`.
+    /// The part of an acceleration that the pivots can follow when the platform moves at `speeds` within `radius`.
     #[inline(never)]
-    pub fn acceleration_margin(&self, radius: f32, speeds: Speeds) -> f32 {
-        let bound = PivotGain::new(radius);
-        // Turning alone accelerates the centre towards the point.
-        let inward = bound.k * speeds.angular * speeds.angular * self.arm;
-        self.acceleration - bound.bias_acceleration(self.platform_speeds(speeds)) - inward
-    }
-
-    /// What accelerations of the moved point and of theta ask of the pivots.
-    pub fn acceleration_demand(&self, radius: f32, accelerations: Speeds) -> f32 {
-        PivotGain::new(radius).rate(self.platform_speeds(accelerations))
+    pub fn part_within(&self, radius: f32, speeds: Speeds, acceleration: Speeds) -> f32 {
+        let gain = PivotGain::new(radius, self.arm);
+        (self.acceleration - gain.bias_acceleration(speeds)) / gain.rate(acceleration)
     }
 
     /// How far from the track's centre, up to `most`, the pivots can follow `speeds` with half of their acceleration to
     /// spare; `None` where they can nowhere.
     pub fn max_radius(&self, speeds: Speeds, most: f32) -> Option<f32> {
         let follows = |radius: f32| {
-            self.rate_is_within(radius, speeds)
-                && self.acceleration_margin(radius, speeds) >= self.acceleration / 2.0
+            let gain = PivotGain::new(radius, self.arm);
+            gain.rate(speeds) <= self.rate
+                && gain.bias_acceleration(speeds) <= self.acceleration / 2.0
         };
         if follows(most) {
             return Some(most);
@@ -196,14 +190,6 @@ impl PivotBound {
             }
         }
         Some(low)
-    }
-
-    /// Speeds, or accelerations, of the platform's centre at most.
-    fn platform_speeds(&self, speeds: Speeds) -> Speeds {
-        Speeds {
-            linear: speeds.linear + speeds.angular * self.arm,
-            ..speeds
-        }
     }
 }
 
@@ -226,11 +212,6 @@ mod tests {
                 0.0
             } else {
                 next().abs() * 0.8
-            };
-            let pivot_bound = PivotBound {
-                rate: 0.0,
-                acceleration: 0.0,
-                arm: arm as f32,
             };
             let (r, direction, theta) = (next().abs() * 0.8, next() * TAU, next() * TAU);
             let (v, turn) = ([next() * 2.0, next() * 2.0], next() * 6.0);
@@ -260,12 +241,9 @@ mod tests {
                 angular: turn.abs() as f32,
             };
             let (speeds, accelerations) = (speeds(v, turn), speeds(a, turn_acceleration));
-            let r = r as f32;
-            let rate = f64::from(PivotGain::new(r).rate(pivot_bound.platform_speeds(speeds)));
-            let asked = f64::from(
-                pivot_bound.acceleration_demand(r, accelerations)
-                    - pivot_bound.acceleration_margin(r, speeds),
-            );
+            let gain = PivotGain::new(r as f32, arm as f32);
+            let rate = f64::from(gain.rate(speeds));
+            let asked = f64::from(gain.rate(accelerations) + gain.bias_acceleration(speeds));
             rates = rates.max(worst(exact.rates) / rate);
             largest = largest.max(worst(exact.accelerations) / asked);
         }
@@ -277,18 +255,13 @@ mod tests {
     /// Without an acceleration of its own the platform asks for some.
     #[test]
     fn a_steady_motion_leaves_less_room() {
-        let pivot_bound = PivotBound {
-            rate: 10.0,
-            acceleration: 300.0,
-            arm: 0.0,
-        };
         let speeds = Speeds {
             linear: 0.0,
             angular: 5.0,
         };
-        assert_eq!(pivot_bound.acceleration_margin(0.0, speeds), 300.0);
+        assert_eq!(PivotGain::new(0.0, 0.0).bias_acceleration(speeds), 0.0);
         // Half a radius out, guide across: theta'^2 d / c.
         let least = 25.0 * 0.5 / 0.75_f32.sqrt();
-        assert!(pivot_bound.acceleration_margin(0.5, speeds) <= 300.0 - least);
+        assert!(PivotGain::new(0.5, 0.0).bias_acceleration(speeds) >= least);
     }
 }

@@ -1,60 +1,34 @@
 //! Holds the pieces of a plan against every limit, interval by interval.
 
 use super::interval::{IntervalBounds, IntervalEnd, Violation};
-use super::pivots::{PivotGain, greatest};
-use super::workspace::{StopLimits, Workspace};
-use crate::constraints::{Constraints, MotionLimits, Speeds};
+use super::pivots::PivotGain;
+use crate::constraints::{Bounds, Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::tolerances::{JERK_TOLERANCE, PLAN_SLACK, STREAM_SLACK};
+use crate::tolerances::{JERK_TOLERANCE, PLAN_SLACK, STREAM_SLACK, WORKSPACE_RADII};
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;
 
 /// What a plan is held against.
 pub struct PlanCheck {
-    /// Of translation, track radii per second (squared, cubed), and of rotation, rad; none for a stop.
-    motion_limits: Option<MotionLimits>,
-    /// What a stop from anywhere brakes with, where there has to be room for one.
-    stop: Option<StopLimits>,
+    /// Of translation, track radii per second (squared, cubed), and of rotation, rad.
+    motion_limits: MotionLimits,
     /// What is granted over a limit.
     slack: f32,
     /// Rate and acceleration, rad/s and rad/s^2.
     pivots: [f32; 2],
-    workspace: Workspace,
+    /// Of the disk for the platform's centre; bounds of the moved point.
+    radius: f32,
+    bounds: Bounds,
+    /// The moved point in the platform's axes, and its distance from the platform's centre.
+    centre: [f32; 2],
+    arm: f32,
     hz: f32,
 }
 
-/// An interval of a piece.
-struct Interval<'a> {
-    segment: &'a CubicSegment,
-    /// Of translation and of rotation.
-    jerk: [f32; 2],
-    /// How far each axis may go from where the motion began.
-    bound_distances: &'a [[f32; 2]; 3],
-    seconds: f32,
-}
-
-/// What a check may take.
-pub struct Budget {
-    /// Intervals that may be looked at, failed ones included, before the next failure counts.
-    pub intervals: usize,
-    /// When the pivots are over a limit, they are sampled all along the plan, which tells by how much.
-    pub samples_pivots: bool,
-}
-
-impl Budget {
-    /// For a stop, which is made anew with what was found.
-    pub const FOR_STOP: Self = Self {
-        intervals: 60,
-        samples_pivots: true,
-    };
-    /// For a plan that is taken or not.
-    pub const FOR_ANSWER: Self = Self {
-        intervals: 60,
-        samples_pivots: false,
-    };
-}
+/// Intervals of one plan that may be looked at before the next failure counts.
+pub const BUDGET: usize = 60;
 
 /// Intervals of one plan at most: a way of many turns that asks for more is not worth the time. A stop waits meanwhile.
 const MOST_INTERVALS: usize = 1_000;
@@ -65,299 +39,257 @@ const SHORT: u64 = 200;
 /// An interval is not cut shorter than this many ticks: what happens in 0.2 ms is less than the slack.
 const SHORTEST: u64 = 4;
 
+/// By how much an interval is longer than the one before, at most; how much shorter where a path's limit is not kept; what
+/// is used of a rise, because the value changes too.
+const LONGER: f32 = 4.0;
+const SHORTER: f32 = 0.5;
+const PART_OF_RISE: f32 = 0.75;
+
 impl PlanCheck {
     /// The check of an ordinary motion, or of the state at the start where that lies outside: it may have been planned
     /// with other limits, and can only be left.
     pub fn new(constraints: &Constraints, start: &[AxisState; 3]) -> Self {
-        let stop = constraints.motion_limits();
+        let limits = constraints.motion_limits();
         let now = MotionState::new(start, constraints.limits.rate_hz as f32);
         // What is granted over a limit is not granted over a state again: it would add up from plan to plan.
         let kept = |state: &[f32; 3]| Speeds::of(state).scaled(1.0 / PLAN_SLACK);
-        let motion_limits = MotionLimits {
-            speed: stop.speed.max(kept(&now.v)),
-            acceleration: stop.acceleration.max(kept(&now.a)),
-            jerk: stop.jerk,
+        let limits = MotionLimits {
+            speed: limits.speed.max(kept(&now.v)),
+            acceleration: limits.acceleration.max(kept(&now.a)),
+            jerk: limits.jerk,
         };
-        Self {
-            motion_limits: Some(motion_limits),
-            stop: Some(StopLimits::new(stop)),
-            ..Self::for_stop(constraints)
+        Self::with(constraints, limits, PLAN_SLACK)
+    }
+
+    /// The check of a stop: of what an ordinary motion keeps to, acceleration and jerk are its own; of an urgent one speed
+    /// too.
+    pub fn for_stop(constraints: &Constraints, start: &[AxisState; 3], urgent: bool) -> Self {
+        const ANY: Speeds = Speeds {
+            linear: f32::INFINITY,
+            angular: f32::INFINITY,
+        };
+        let mut plan_check = Self::new(constraints, start);
+        let limits = &mut plan_check.motion_limits;
+        (limits.acceleration, limits.jerk) = (ANY, ANY);
+        if urgent {
+            limits.speed = ANY;
         }
+        plan_check
     }
 
     /// The check of a motion that others shape, and of the stop that ends it.
     pub fn for_stream(constraints: &Constraints) -> Self {
-        Self {
-            motion_limits: Some(constraints.motion_limits().scaled(1.0, JERK_TOLERANCE)),
-            slack: STREAM_SLACK,
-            ..Self::for_stop(constraints)
-        }
+        let limits = constraints.motion_limits().scaled(1.0, JERK_TOLERANCE);
+        Self::with(constraints, limits, STREAM_SLACK)
     }
 
-    /// The check of a stop: pivots, disk and bounds.
-    pub fn for_stop(constraints: &Constraints) -> Self {
+    fn with(constraints: &Constraints, motion_limits: MotionLimits, slack: f32) -> Self {
         let limits = &constraints.limits;
+        let centre = constraints.centre();
         Self {
-            motion_limits: None,
-            stop: None,
-            slack: PLAN_SLACK,
+            motion_limits,
+            slack,
             pivots: [
                 limits.pivot_rate_rad_s as f32,
                 limits.pivot_acceleration_rad_s2 as f32,
             ],
-            workspace: Workspace::new(constraints),
+            radius: constraints.usable_radius as f32,
+            bounds: constraints.bounds,
+            centre,
+            arm: hypot(centre[0], centre[1]),
             hz: limits.rate_hz as f32,
         }
     }
 
     /// Whether a motion by the pieces of a plan from `start` keeps to everything. The plan's nudge does not show in it.
-    /// What is taken is taken off the budget.
+    /// What is taken is taken off the budget of intervals.
     #[inline(never)]
     pub fn check(
         &self,
         pieces: &[Piece],
         start: &[AxisState; 3],
-        budget: &mut Budget,
+        budget: &mut usize,
     ) -> Result<(), Violation> {
-        let (mut looked_at, mut worst) = (0, None);
-        let mut samples_pivots = budget.samples_pivots;
-        let bound_distances = self.workspace.bound_distances(start);
+        let mut looked_at = 0;
+        // How far each axis may go down and up.
+        let room = each!(i => {
+            self.bounds[i].map(|bound| MotionState::way(i, bound.saturating_sub(start[i].rounded())))
+        });
         let mut segment = CubicSegment::new(start, self.hz);
-        let [mut first, mut second] = [IntervalEnd::default(); 2];
-        let (mut from, mut to) = (&mut first, &mut second);
-        self.evaluate(&segment, 0, from);
+        let mut from = self.evaluate(&segment, 0);
         for piece in pieces {
             segment.start = from.sample;
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let [x, y, theta] = segment.jerk;
             let jerk = [hypot(x, y), theta.abs()];
-            if let Some(limits) = &self.motion_limits {
-                self.within_limit(jerk, &limits.jerk, Violation::Jerk)?;
-            }
+            self.within(jerk, &self.motion_limits.jerk, Violation::Jerk)?;
             if piece.ticks == 1 {
                 // What a tick changes does not show, nor what some of them do, one after the other.
-                self.evaluate(&segment, piece.ticks, to);
-                core::mem::swap(&mut from, &mut to);
+                from = self.evaluate(&segment, 1);
                 continue;
             }
             let (mut done, mut ticks) = (0, piece.ticks);
             while done < piece.ticks {
                 ticks = ticks.min(piece.ticks - done);
-                budget.intervals = budget.intervals.saturating_sub(1);
+                *budget = budget.saturating_sub(1);
                 looked_at += 1;
                 if looked_at > MOST_INTERVALS {
-                    return Err(worst.unwrap_or(Violation::NoRoomToStop));
+                    return Err(Violation::TooLong);
                 }
-                self.evaluate(&segment, done + ticks, to);
-                let interval = Interval {
-                    segment: &segment,
-                    jerk,
-                    bound_distances: &bound_distances,
-                    seconds: ticks_to_f32(ticks) / self.hz,
-                };
-                match self.check_interval(&interval, [from, to]) {
-                    Ok(longer) => {
-                        core::mem::swap(&mut from, &mut to);
-                        done += ticks;
-                        ticks = truncate(ticks_to_f32(ticks) * longer) as u64;
-                    }
-                    Err((broken, shorter)) => {
-                        // Where a limit is passed indeed, sampling the pivots tells by how much.
-                        if broken.is_of_pivots() && core::mem::take(&mut samples_pivots) {
-                            self.sample_pivots(pieces, start)?;
+                let mut to = self.evaluate(&segment, done + ticks);
+                let seconds = ticks_to_f32(ticks) / self.hz;
+                let change =
+                    match self.interval(&segment, jerk, &room, [&mut from, &mut to], seconds) {
+                        Ok(longer) => {
+                            from = to;
+                            done += ticks;
+                            longer
                         }
-                        // Intervals close in on where a limit is met; how far it is passed was seen before.
-                        let broken = broken.or_worse(worst);
-                        worst = Some(broken);
-                        if shorter == 0.0 || ticks <= SHORTEST || budget.intervals == 0 {
-                            return Err(broken);
+                        Err((broken, shorter)) => {
+                            if shorter == 0.0 || ticks <= SHORTEST || *budget == 0 {
+                                return Err(broken);
+                            }
+                            shorter
                         }
-                        ticks = truncate(ticks_to_f32(ticks) * shorter) as u64;
-                    }
-                }
-                ticks = ticks.max(SHORTEST);
+                    };
+                ticks = (truncate(ticks_to_f32(ticks) * change) as u64).max(SHORTEST);
             }
         }
         Ok(())
     }
 
-    fn evaluate(&self, segment: &CubicSegment, ticks: u64, end: &mut IntervalEnd) {
+    fn evaluate(&self, segment: &CubicSegment, ticks: u64) -> IntervalEnd {
         let sample = segment.at(ticks_to_f32(ticks) / self.hz);
-        let [x, y] = segment.point(&sample);
-        let point_distance = hypot(x, y);
         let MotionState { v, a, .. } = sample;
-        *end = IntervalEnd {
-            point_distance,
-            centre_distance: if self.workspace.arm > 0.0 {
-                self.workspace.centre_distance(segment, &sample)
+        IntervalEnd {
+            centre_distance: if self.arm > 0.0 {
+                segment.platform(&sample, self.centre).radius()
             } else {
-                point_distance
+                let [x, y] = segment.point(&sample);
+                hypot(x, y)
             },
             v: [hypot(v[0], v[1]), v[2].abs()],
             a: [hypot(a[0], a[1]), a[2].abs()],
             sample,
             pivots: None,
-        };
+        }
     }
 
-    /// Rates and accelerations of the pivots at a state of a segment.
-    pub fn pivots(&self, segment: &CubicSegment, sample: &MotionState) -> [[f32; 3]; 2] {
-        segment.platform(sample, self.workspace.centre).pivots()
-    }
-
-    /// The pivots' limit of acceleration.
-    pub fn pivot_acceleration(&self) -> f32 {
-        self.pivots[1]
-    }
-
-    /// The largest part of a limit of theirs that the pivots reach at the start of a segment.
-    pub fn pivot_part(&self, segment: &CubicSegment) -> f32 {
-        let [rates, accelerations] = self.pivots(segment, &segment.start);
-        (greatest(&rates) / self.pivots[0]).fmax(greatest(&accelerations) / self.pivots[1])
-    }
-
-    /// What the pivots do at the ends and in the middle of the pieces; in short ones the ends tell enough.
-    fn sample_pivots(&self, pieces: &[Piece], start: &[AxisState; 3]) -> Result<(), Violation> {
-        let [mut rate, mut acceleration] = [0.0_f32; 2];
+    /// The largest parts of their limits of rate and of acceleration that the pivots reach: at the start, and at the ends
+    /// and in the middle of the pieces; in short ones the ends tell enough.
+    pub fn pivot_parts(&self, pieces: &[Piece], start: &[AxisState; 3]) -> [f32; 2] {
         let mut segment = CubicSegment::new(start, self.hz);
+        let mut parts = [0.0; 2];
+        self.look(&segment, 0.0, &mut parts);
         for piece in pieces {
             segment.jerk = CubicSegment::jerk(piece, self.hz);
             let seconds = ticks_to_f32(piece.ticks) / self.hz;
-            let spots = [seconds, seconds / 2.0];
-            for &t in &spots[..1 + usize::from(piece.ticks > SHORT)] {
-                let [rates, accelerations] = self.pivots(&segment, &segment.at(t));
-                rate = rate.fmax(greatest(&rates));
-                acceleration = acceleration.fmax(greatest(&accelerations));
+            if piece.ticks > SHORT {
+                self.look(&segment, seconds / 2.0, &mut parts);
             }
             segment.start = segment.at(seconds);
+            self.look(&segment, 0.0, &mut parts);
         }
-        let [rate_limit, acceleration_limit] = self.pivots;
-        self.within(
-            acceleration / acceleration_limit,
-            Violation::PivotAcceleration,
-        )?;
-        self.within(rate / rate_limit, Violation::PivotRate)
+        parts
+    }
+
+    #[inline(never)]
+    fn look(&self, segment: &CubicSegment, t: f32, parts: &mut [f32; 2]) {
+        let most = segment.platform(&segment.at(t), self.centre).most();
+        *parts = both!(k => f32::fmax(parts[k], most[k] / self.pivots[k]));
     }
 
     /// By how much the next interval may be longer than this; or what is broken, and by how much shorter an interval to
     /// try: zero where it is broken at an end.
-    fn check_interval(
+    fn interval(
         &self,
-        interval: &Interval<'_>,
+        segment: &CubicSegment,
+        jerk: [f32; 2],
+        room: &[[f32; 2]; 3],
         [from, to]: [&mut IntervalEnd; 2],
+        seconds: f32,
     ) -> Result<f32, (Violation, f32)> {
-        const HALF: f32 = 0.5;
-        let sizes = IntervalBounds::new(interval.jerk, from, to, interval.seconds);
-        let moving = sizes.at_offset(self.workspace.arm);
-        let radius = self
-            .path(interval, [from, to], [&sizes, &moving])
-            .map_err(|broken| match broken {
-                Violation::NoRoomToStop => (broken, 0.0),
-                broken => (broken, HALF),
-            })?;
-        self.check_pivots(interval, [from, to], &moving, radius)
-    }
-
-    /// All but the pivots; the greatest distance of the platform's centre from the track's.
-    fn path(
-        &self,
-        interval: &Interval<'_>,
-        [from, to]: [&IntervalEnd; 2],
-        [sizes, moving]: [&IntervalBounds; 2],
-    ) -> Result<f32, Violation> {
-        if let Some(limits) = &self.motion_limits {
-            self.within_limit(sizes.v, &limits.speed, Violation::Speed)?;
-            self.within_limit(sizes.a, &limits.acceleration, Violation::Acceleration)?;
-        }
-        let eighth = interval.seconds * interval.seconds / 8.0;
-        let rise = both!(k => sizes.a[k] * eighth);
-        (self.workspace).check_bounds(interval.bound_distances, &from.sample, &to.sample, rise)?;
+        let sizes = IntervalBounds::new(jerk, from, to, seconds);
+        let moving = sizes.at_offset(self.arm);
+        let eighth = seconds * seconds / 8.0;
         let furthest = from.centre_distance.fmax(to.centre_distance) + moving.a[0] * eighth;
-        let radius = self.workspace.check_disk(furthest)?;
-        if let Some(stop) = &self.stop {
-            (self.workspace)
-                .check_stop(interval.segment, interval.bound_distances, to, stop)
-                .map_err(|_| Violation::NoRoomToStop)?;
+        (self.path(&sizes, furthest))
+            .and_then(|()| {
+                within_bounds(room, &from.sample, &to.sample, sizes.a.map(|a| a * eighth))
+            })
+            .map_err(|broken| (broken, SHORTER))?;
+        let bound = PivotGain::new(furthest, 0.0);
+        let most = moving.pivot_bounds(&bound);
+        if most[0] <= self.pivots[0] && most[1] <= self.pivots[1] {
+            return Ok(LONGER);
         }
-        Ok(radius)
+        let ends = [from, to].map(|end| end.pivots(segment, self.centre));
+        let rises = moving.pivot_rises(&bound, seconds);
+        let mut longer = LONGER;
+        for k in 0..2 {
+            let value = ends[0][k].fmax(ends[1][k]);
+            // A rise goes with the square of the time.
+            let (room, rise) = (
+                self.pivots[k] * self.slack - value,
+                rises[k].fmin(most[k] - value),
+            );
+            let change = PART_OF_RISE * sqrt_f32(room.fmax(0.0) / rise.fmax(f32::MIN_POSITIVE));
+            // What is not a number is no room.
+            if !(room > 0.0) {
+                return Err((Violation::Pivots, 0.0));
+            } else if rise > room {
+                return Err((Violation::Pivots, change.clamp(1.0 / 16.0, 0.7)));
+            }
+            longer = longer.fmin(change);
+        }
+        Ok(longer)
     }
 
-    fn check_pivots(
-        &self,
-        interval: &Interval<'_>,
-        ends: [&mut IntervalEnd; 2],
-        moving: &IntervalBounds,
-        radius: f32,
-    ) -> Result<f32, (Violation, f32)> {
-        const ALL: f32 = 4.0;
-        let bound = PivotGain::new(radius);
-        let [rate, acceleration] = moving.pivot_bounds(&bound);
-        let [rate_limit, acceleration_limit] = self.pivots;
-        if rate <= rate_limit && acceleration <= acceleration_limit {
-            return Ok(ALL);
-        }
-        let [mut rates, mut accelerations] = [0.0_f32; 2];
-        for end in ends {
-            let [rate, acceleration] = end.pivots(interval.segment, self.workspace.centre);
-            rates = rates.fmax(rate);
-            accelerations = accelerations.fmax(acceleration);
-        }
-        let rises = moving.pivot_rises(&bound, interval.seconds);
-        let most = [
-            rate.fmin(rates + rises[0]),
-            acceleration.fmin(accelerations + rises[1]),
-        ];
-        let once = self.rise_within(rates, most[0], rate_limit, Violation::PivotRate)?;
-        let twice = self.rise_within(
-            accelerations,
-            most[1],
-            acceleration_limit,
-            Violation::PivotAcceleration,
-        )?;
-        Ok(once.fmin(twice).fmin(ALL))
-    }
-    /// Whether a value keeps to its limit that is so large at the ends of an interval and may rise in between; what is told is what is sure. A rise goes
-    /// with the square of the time: how much longer an interval may be than this one, or how much shorter it has to be.
-    fn rise_within(
-        &self,
-        value: f32,
-        most: f32,
-        limit: f32,
-        broken: fn(f32) -> Violation,
-    ) -> Result<f32, (Violation, f32)> {
-        /// What is used of that, because the value changes too.
-        const PART: f32 = 0.75;
-        let room = limit * self.slack - value;
-        let rise = most - value;
-        if rise <= room {
-            return Ok(PART * sqrt_f32(room / rise.fmax(f32::MIN_POSITIVE)));
-        }
-        // What is not a number is no room.
-        let shorter = if room > 0.0 {
-            (PART * sqrt_f32(room / rise)).clamp(1.0 / 16.0, 0.7)
+    /// Path and disk.
+    fn path(&self, sizes: &IntervalBounds, furthest: f32) -> Result<(), Violation> {
+        let limits = &self.motion_limits;
+        self.within(sizes.v, &limits.speed, Violation::Speed)?;
+        self.within(sizes.a, &limits.acceleration, Violation::Acceleration)?;
+        if furthest <= self.radius + WORKSPACE_RADII {
+            Ok(())
         } else {
-            0.0
-        };
-        Err((broken((value / limit).fmax(1.0)), shorter))
+            Err(Violation::Disk(furthest))
+        }
     }
+
     /// Whether translation and rotation keep to a limit.
-    fn within_limit(
+    fn within(
         &self,
         [linear, angular]: [f32; 2],
         limit: &Speeds,
-        broken: fn(f32) -> Violation,
+        broken: Violation,
     ) -> Result<(), Violation> {
-        self.within(part(linear, angular, limit), broken)
-    }
-
-    /// The part of a limit that is used is not over one.
-    fn within(&self, part: f32, broken: fn(f32) -> Violation) -> Result<(), Violation> {
-        if part <= self.slack {
+        if part(linear, angular, limit) <= self.slack {
             Ok(())
         } else {
-            Err(broken(part))
+            Err(broken)
         }
     }
+}
+
+/// Holds an interval against the bounds; `rise` is how far translation and rotation can rise between its ends.
+fn within_bounds(
+    room: &[[f32; 2]; 3],
+    from: &MotionState,
+    to: &MotionState,
+    rise: [f32; 2],
+) -> Result<(), Violation> {
+    for (i, [low, high]) in room.iter().enumerate() {
+        let (a, b, rise) = (
+            from.displacement[i],
+            to.displacement[i],
+            rise[i / 2] - WORKSPACE_RADII,
+        );
+        if !(*low <= a.fmin(b) - rise && a.fmax(b) + rise <= *high) {
+            return Err(Violation::Bounds(i));
+        }
+    }
+    Ok(())
 }
 
 /// The part of its limit that translation or rotation reaches, the greater.

@@ -1,7 +1,7 @@
 //! A piece of a plan in floats, track radii, radians and seconds: the state of the motion at an instant of it.
 
+use super::Piece;
 use super::axis_state::{AxisState, PER_AXIS_UNIT, PER_POSITION_UNIT, POSITION_UNITS};
-use super::{Piece, Position};
 use core::f32::consts::TAU;
 use kinematics::Angle;
 use number::float::{i64_to_f32_fast, truncate};
@@ -51,13 +51,9 @@ impl MotionState {
         self.v == [0.0; 3] && self.a == [0.0; 3]
     }
 
-    /// From where the axes are to a position.
-    #[inline(never)]
-    pub fn between(axes: &[AxisState; 3], to: &Position) -> [f32; 3] {
-        each!(i => {
-            let way = to[i].wrapping_sub(axes[i].rounded());
-            i64_to_f32_fast(way) * (PER_POSITION_UNIT * RADIANS[i])
-        })
+    /// A way of an axis in units of a position as track radii or rad.
+    pub fn way(axis: usize, units: i64) -> f32 {
+        i64_to_f32_fast(units) * (PER_POSITION_UNIT * RADIANS[axis])
     }
 }
 
@@ -79,6 +75,7 @@ impl CubicSegment {
     }
 
     /// The state `t` seconds after its start.
+    #[inline(never)]
     pub fn at(&self, t: f32) -> MotionState {
         let MotionState { displacement, v, a } = self.start;
         let j = self.jerk;

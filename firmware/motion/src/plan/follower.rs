@@ -141,12 +141,9 @@ impl PlanFollower {
     /// The setpoint now.
     #[inline]
     pub fn setpoint(&self, scale: &SetpointScale) -> Setpoint {
-        let velocity = self
-            .axes
-            .map(|axis| (axis.velocity >> VELOCITY_CUT) as i32 as f32);
-        let acceleration = self
-            .axes
-            .map(|axis| (axis.acceleration >> ACCELERATION_CUT) as i32 as f32);
+        let axes = &self.axes;
+        let velocity = each!(i => (axes[i].velocity >> VELOCITY_CUT) as i32 as f32);
+        let acceleration = each!(i => (axes[i].acceleration >> ACCELERATION_CUT) as i32 as f32);
         Setpoint {
             position: self.position(),
             twist: Twist {
@@ -191,11 +188,7 @@ impl PlanFollower {
     /// The pose now.
     #[inline]
     pub fn position(&self) -> Position {
-        [
-            self.axes[0].rounded(),
-            self.axes[1].rounded(),
-            self.axes[2].rounded(),
-        ]
+        each!(i => self.axes[i].rounded())
     }
 
     /// Copies a plan into the free slot: of its pieces those that one tick can come to.

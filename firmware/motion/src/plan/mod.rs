@@ -171,19 +171,29 @@ pub fn nudge_to(end: &[AxisState; 3], to: &Position, ticks: u64) -> Option<[i64;
 /// there is room for.
 pub fn write_sum(first: &[Piece], second: &[Piece], delay: u64, pieces: &mut Pieces) -> Option<()> {
     pieces.clear();
-    let mut cursors = [Cursor::new(first, 0), Cursor::new(second, delay)];
+    let wait = Piece {
+        ticks: delay,
+        jerk: [0; 3],
+    };
+    let (mut first, mut second) = (first.iter(), second.iter());
+    let (mut a, mut b) = (first.next().copied(), Some(wait));
     loop {
-        let [a, b] = &cursors;
-        let ticks = a.left.min(b.left);
-        if ticks == NEVER {
-            return Some(());
-        }
-        let jerk = each!(i => a.jerk[i] + b.jerk[i]);
+        let (ticks, jerk) = match (a, b) {
+            (Some(a), Some(b)) => (a.ticks.min(b.ticks), each!(i => a.jerk[i] + b.jerk[i])),
+            (Some(piece), None) | (None, Some(piece)) => (piece.ticks, piece.jerk),
+            (None, None) => return Some(()),
+        };
         push_piece(pieces, Piece { ticks, jerk })?;
-        for cursor in &mut cursors {
-            cursor.pass(ticks);
-        }
+        a = left_of(a, ticks).or_else(|| first.next().copied());
+        b = left_of(b, ticks).or_else(|| second.next().copied());
     }
+}
+
+/// What of a piece is left after so many ticks.
+fn left_of(piece: Option<Piece>, ticks: u64) -> Option<Piece> {
+    let piece = piece.filter(|piece| piece.ticks > ticks)?;
+    let ticks = piece.ticks - ticks;
+    Some(Piece { ticks, ..piece })
 }
 
 /// Adds a piece: nothing where it has no ticks, to the last where that has the same jerk.
@@ -203,45 +213,6 @@ pub fn push_piece(pieces: &mut Pieces, piece: Piece) -> Option<()> {
 #[inline]
 pub(super) fn same(a: &[i64; 3], b: &[i64; 3]) -> bool {
     a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
-}
-
-/// Where one of the motions is.
-struct Cursor<'a> {
-    /// Ticks until its jerk changes.
-    left: u64,
-    jerk: [i64; 3],
-    rest: core::slice::Iter<'a, Piece>,
-}
-
-/// Ticks until anything changes when all is over.
-const NEVER: u64 = u64::MAX;
-
-impl<'a> Cursor<'a> {
-    fn new(pieces: &'a [Piece], delay: u64) -> Self {
-        let mut cursor = Self {
-            left: delay,
-            jerk: [0; 3],
-            rest: pieces.iter(),
-        };
-        cursor.enter();
-        cursor
-    }
-
-    fn pass(&mut self, ticks: u64) {
-        if self.left != NEVER {
-            self.left -= ticks;
-            self.enter();
-        }
-    }
-
-    /// Enters the next piece, if this one is over.
-    fn enter(&mut self) {
-        while self.left == 0 {
-            let next = self.rest.next();
-            (self.left, self.jerk) =
-                next.map_or((NEVER, [0; 3]), |piece| (piece.ticks, piece.jerk));
-        }
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@
 //!
 //! The time-optimal lengths follow from the limits by cases. Rounding each up to whole ticks lengthens a move by three
 //! ticks at most and can only lower speed, acceleration and jerk: the limits hold but for the roundings of the lengths
-//! themselves, a millionth.
+//! themselves, a millionth at most.
 
 use crate::constraints::PathLimits;
 use crate::plan::quantise::{JerkSegment, PathProfile};
@@ -86,9 +86,7 @@ impl RestToRestProfile {
     pub fn volume(&self) -> i128 {
         i128::from(self.jerk * self.ramp) * i128::from(self.travel)
     }
-}
 
-impl RestToRestProfile {
     /// Writes pieces and nudge of a plan from `from` to its end.
     pub fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
         let mut path_profile = PathProfile::default();

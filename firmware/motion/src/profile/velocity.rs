@@ -19,7 +19,7 @@
 //! ([`quantise`](crate::plan::quantise)). One more tick closes what rounding leaves of the acceleration, so
 //! that a velocity that is kept for years is kept.
 
-use crate::constraints::{MotionLimits, Speeds};
+use crate::constraints::MotionLimits;
 use crate::plan::cubic_segment::MotionState;
 use crate::tolerances::{ROUNDED_TIMES, WHOLE_TICKS};
 use number::float::{FloatMinMax, ceil, ceil_ticks, floor, hypot};
@@ -29,8 +29,6 @@ use number::sqrt_f32;
 const ROUNDS: usize = 24;
 const HALVED: usize = 3;
 const SETTLED_S: f32 = 5e-8;
-/// The same where a stop is only estimated: in whole ticks it takes a tick or two more anyway.
-const NEARLY_SETTLED_S: f32 = 1e-5;
 /// How often a time may be lengthened for what rounding put over a limit.
 const LENGTHENINGS: usize = 24;
 
@@ -73,15 +71,6 @@ impl VelocityProfile {
 
     /// The three times, s, before rounding.
     pub fn times_s(&self) -> [f32; 3] {
-        self.settled_to(SETTLED_S)
-    }
-
-    /// The same, within a fraction of a tick.
-    pub fn rough_times_s(&self) -> [f32; 3] {
-        self.settled_to(NEARLY_SETTLED_S)
-    }
-
-    fn settled_to(&self, settled_s: f32) -> [f32; 3] {
         if self.acceleration == [0.0; 3] {
             return self.times_without_acceleration_s();
         }
@@ -90,7 +79,7 @@ impl VelocityProfile {
         for round in 1..=ROUNDS {
             times = self.times_after_s(t1);
             let next = times[0];
-            if (next - t1).abs() < settled_s {
+            if (next - t1).abs() < SETTLED_S {
                 break;
             }
             if next > t1 {
@@ -155,12 +144,9 @@ impl VelocityProfile {
     }
 
     /// The times in whole ticks, with what is too short by then lengthened; the first and the last are not zero.
+    #[inline(never)]
     pub fn ticks(&self, hz: f32) -> [u64; 3] {
-        self.whole_ticks(self.times_s(), hz)
-    }
-
-    /// The same of the three times, as they are before rounding.
-    pub fn whole_ticks(&self, times_s: [f32; 3], hz: f32) -> [u64; 3] {
+        let times_s = self.times_s();
         let [n1, n2, n3] = each!(k => ceil(times_s[k] * hz - WHOLE_TICKS));
         let mut n = [n1.fmax(1.0), n2, n3.fmax(1.0)];
         let tick_s = 1.0 / hz;
@@ -210,65 +196,10 @@ impl VelocityProfile {
         each!(i => self.change[i] - self.acceleration[i] * half_s)
     }
 
-    /// The acceleration of size 1 that points to what is to be gained, track radii and rad per second squared, when the
-    /// first segment lasts this long.
-    pub fn direction(&self, limits: &MotionLimits, first_s: f32) -> [f32; 3] {
-        let w = self.left_after(first_s / 2.0);
-        let scale = 1.0 / size(&w).fmax(f32::MIN_POSITIVE);
-        let (linear, angular) = (limits.acceleration.linear, limits.acceleration.angular);
-        [
-            w[0] * scale * linear,
-            w[1] * scale * linear,
-            w[2] * scale * angular,
-        ]
-    }
-
     /// The time in which jerk makes an acceleration of this.
     fn jerk_time_s(&self, change: &[f32; 3]) -> f32 {
         (hypot(change[0], change[1]) / self.jerk[0]).fmax(change[2].abs() / self.jerk[1])
     }
-}
-
-/// P of a stop from `from` that takes so much time, track radii and rad per second squared.
-pub fn stop_peak(from: &MotionState, [t1, t2, t3]: [f32; 3]) -> [f32; 3] {
-    let over = -1.0 / (t1 / 2.0 + t2 + t3 / 2.0);
-    each!(i => (from.v[i] + from.a[i] * t1 / 2.0) * over)
-}
-
-/// Where the three segments of a stop from `from` that takes so much time end: displacements, track radii and rad.
-pub fn stop_displacements(from: &MotionState, times_s: [f32; 3]) -> [[f32; 3]; 3] {
-    let mut displacements = [from.displacement; 3];
-    if times_s == [0.0; 3] {
-        return displacements;
-    }
-    let ([t1, t2, t3], peaks) = (times_s, stop_peak(from, times_s));
-    each!(i => {
-        let (v, a, peak) = (from.v[i], from.a[i], peaks[i]);
-        let v1 = v + (a + peak) * t1 / 2.0;
-        let v2 = v1 + peak * t2;
-        let first = from.displacement[i] + t1 * (v + t1 * (a / 3.0 + peak / 6.0));
-        let second = first + t2 * (v1 + peak * t2 / 2.0);
-        let third = second + t3 * (v2 + peak * t3 / 3.0);
-        for (displacement, end) in displacements.iter_mut().zip([first, second, third]) {
-            displacement[i] = end;
-        }
-    });
-    displacements
-}
-
-/// The largest speeds in the first segment of a stop from `from`, in which the acceleration turns round: where that of
-/// an axis passes zero, which is where a speed is highest, or close to it.
-pub fn stop_speeds(from: &MotionState, times_s: [f32; 3]) -> Speeds {
-    let peak = stop_peak(from, times_s);
-    (0..3).fold(Speeds::of(&from.v), |most, axis| {
-        let part = from.a[axis] / (from.a[axis] - peak[axis]);
-        if !(0.0 < part && part < 1.0) {
-            return most;
-        }
-        let t = part * times_s[0];
-        let v = each!(i => from.v[i] + t * (from.a[i] + (peak[i] - from.a[i]) * part / 2.0));
-        most.max(Speeds::of(&v))
-    })
 }
 
 /// The greater of translation and rotation.
@@ -279,6 +210,7 @@ fn size(vector: &[f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constraints::Speeds;
     use crate::plan::axis_state::AXIS_UNITS;
     use crate::plan::axis_state::AxisState;
     use crate::plan::quantise::velocity_pieces;

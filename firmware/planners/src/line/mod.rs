@@ -87,10 +87,9 @@ const SAMPLES: u32 = 1;
 impl<'a> LinePlanner<'a> {
     fn new(path: &'a Path, constraints: &Constraints) -> Self {
         let limits = &constraints.limits;
-        let length_mm = path.length * constraints.geometry.radius_mm as f32;
         Self {
             path,
-            limits: limits.for_line(length_mm, path.turn.to_degrees()),
+            limits: (constraints.motion_limits()).for_line(path.length, path.turn.abs()),
             pivot_rate: limits.pivot_rate_rad_s as f32,
             pivot_acceleration: limits.pivot_acceleration_rad_s2 as f32,
             hz: limits.rate_hz as f32,

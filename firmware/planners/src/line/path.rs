@@ -13,17 +13,15 @@
 //! are derivatives by s. A motion s(t) then asks pivot i for the rate `phi_i' s'` and the acceleration
 //! `phi_i' s'' + phi_i'' s'^2`.
 //!
-//! On a line of many turns every orientation is met about everywhere. The largest of the above over all orientations
-//! then stands for them. With `r = |P|`, K the largest `|k_i|`, and the line's way as seen from the track's centre,
-//! `L_r` outwards and `L_t` around: n goes all round, `n.L - T u.P = n.(L - T E P)` with E the quarter turn, whose part
-//! around is `L_t - T r`. Of it `cos a / sqrt(1 - (r sin a + K)^2)` is passed on at most, largest where `x = sin a`
-//! solves `r K x^2 - (1 - r^2 - K^2) x + r K = 0`; of `L_r`, `1 / sqrt(1 - (r + K)^2)`.
+//! On a line of many turns every orientation is met about everywhere: the bounds for any orientation (`check/pivots`) then
+//! stand for them.
 
 use kinematics::{Angle, Scalar};
-use motion::constraints::Constraints;
+use motion::check::pivots::PivotGain;
+use motion::constraints::{Constraints, Speeds};
 use motion::plan::Position;
 use motion::plan::axis_state::PER_POSITION_UNIT;
-use number::float::{FloatMinMax, i64_to_f32_fast};
+use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
 use number::{sin_cos_f32, sqrt_f32};
 
 /// Turns (2^-32) up to which the pivots are followed through each of them.
@@ -44,8 +42,9 @@ pub(super) struct Path {
     theta: i64,
     /// T in 2^-32 turns.
     turn_units: i64,
-    /// k_i.
+    /// k_i, and how far the moved point lies from the platform's centre.
     offsets: [f32; 3],
+    arm: f32,
     /// Radius of the disk that the platform centre keeps to: no `d_i` is larger.
     usable: f32,
 }
@@ -72,11 +71,12 @@ impl Path {
         Self {
             from: both!(i => i64_to_f32_fast(from[i]) * PER_POSITION_UNIT),
             displacement,
-            length: sqrt_f32(displacement[0] * displacement[0] + displacement[1] * displacement[1]),
+            length: hypot(displacement[0], displacement[1]),
             turn: i64_to_f32_fast(turn_units) * (PER_POSITION_UNIT * core::f32::consts::TAU),
             theta: from[2],
             turn_units,
             offsets: [half * x + wide * y, -x, half * x - wide * y],
+            arm: hypot(x, y),
             usable: constraints.usable_radius as f32,
         }
     }
@@ -88,28 +88,18 @@ impl Path {
 
     /// Bounds of the first and the second derivative anywhere on a line of this kind: the place furthest out counts.
     pub fn worst(&self) -> (f32, f32) {
-        let [from, to] = [self.from, self.point(1.0)].map(|[x, y]| sqrt_f32(x * x + y * y));
-        let furthest = from.fmax(to);
-        let r = (furthest + self.offset()).fmin(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - r * r).fmax(LEAST_COSINE));
-        let turn = self.turn.abs();
-        let relative_rate = if self.offset() > 0.0 {
-            (self.length + turn * furthest) * over_c
-        } else {
-            self.length * over_c + turn * furthest
-        };
-        let d_2 = turn * (2.0 * self.length + turn * furthest);
-        (
-            turn + relative_rate,
-            (d_2 + relative_rate * relative_rate * r) * over_c,
-        )
+        let [from, to] = [self.from, self.point(1.0)].map(|[x, y]| hypot(x, y));
+        self.at_any_orientation(from.fmax(to))
     }
 
-    /// K.
-    fn offset(&self) -> f32 {
-        self.offsets
-            .iter()
-            .fold(0.0, |k, offset| k.fmax(offset.abs()))
+    /// The same with the moved point this far from the track's centre.
+    fn at_any_orientation(&self, radius: f32) -> (f32, f32) {
+        let gain = PivotGain::new((radius + self.arm).fmin(self.usable), self.arm);
+        let speeds = Speeds {
+            linear: self.length,
+            angular: self.turn.abs(),
+        };
+        (gain.rate(speeds), gain.bias_acceleration(speeds))
     }
 
     /// P(s).
@@ -117,39 +107,32 @@ impl Path {
         both!(i => self.from[i] + self.displacement[i] * s)
     }
 
-    /// The demands at places evenly spaced, from s = 0 on, with so many intervals in all.
-    pub fn demands(&self, intervals: usize) -> Demands<'_> {
-        let step = 1.0 / intervals as f32;
-        // A direction is worth nothing on a line that is of many turns, and not looked at.
-        let turn = (i64_to_f32_fast(self.turn_units) * step) as i32;
-        Demands {
-            path: self,
-            s: 0.0,
-            step,
-            direction: direction(self.theta),
-            turn: direction(i64::from(turn)),
-        }
-    }
-
-    /// The demand at s, by sine and cosine of theta there.
-    #[cfg(test)]
-    pub fn at(&self, s: f32) -> Demand {
-        if self.spans_many_turns() {
-            return self.demand_of_any_orientation(s);
-        }
-        let turned = (self.turn_units as f64 * f64::from(s)) as i64;
-        self.demand(s, direction(self.theta + turned))
+    /// Cosine and sine of theta at s = 0, and of what it turns in a part of the line.
+    pub fn directions(&self, part: f32) -> [[f32; 2]; 2] {
+        let turn = truncate(i64_to_f32_fast(self.turn_units) * part);
+        [self.theta, turn].map(|theta| {
+            let (sin, cos) = sin_cos_f32(Angle::from_units(theta));
+            [cos, sin]
+        })
     }
 
     /// The demand at s, where the platform's x axis points in this direction (cosine and sine).
-    fn demand(&self, s: f32, [cos, sin]: [f32; 2]) -> Demand {
+    pub fn demand(&self, s: f32, [cos, sin]: [f32; 2]) -> Demand {
+        let point = self.point(s);
+        if self.spans_many_turns() {
+            let (first, second) = self.at_any_orientation(hypot(point[0], point[1]));
+            return Demand {
+                first: [first; 3],
+                // With both signs.
+                second: [second, -second, second],
+            };
+        }
         let (half, wide) = (0.5, f32::SIN_60);
         let directions = [
             [wide * cos + half * sin, wide * sin - half * cos],
             [-sin, cos],
             [half * sin - wide * cos, -wide * sin - half * cos],
         ];
-        let point = self.point(s);
         let pivots = each!(i => self.pivot(&point, &directions[i], self.offsets[i]));
         Demand {
             first: each!(i => pivots[i].0),
@@ -172,77 +155,6 @@ impl Path {
             turn + relative_rate,
             (d_2 + relative_rate * relative_rate * d) * over_c,
         )
-    }
-
-    /// The largest demand of any orientation; with both signs of the second derivative.
-    fn demand_of_any_orientation(&self, s: f32) -> Demand {
-        let [x, y] = self.point(s);
-        let [way_x, way_y] = self.displacement;
-        let square = x * x + y * y;
-        let r = sqrt_f32(square);
-        let k = self.offset();
-        let over_r = if r > 0.0 { 1.0 / r } else { 0.0 };
-        let outwards = (way_x * x + way_y * y) * over_r;
-        let outwards = if r > 0.0 { outwards } else { self.length };
-        let around = (way_y * x - way_x * y) * over_r - self.turn * r;
-        let (rk, b) = (r * k, 1.0 - square - k * k);
-        let mut sine = 2.0 * rk / (b + sqrt_f32((b * b - 4.0 * rk * rk).fmax(0.0)));
-        if !(b > 0.0 && r * sine + k <= self.usable) {
-            // Only orientations that keep to the disk are met here: the best of them is the last.
-            sine = (self.usable - k) * over_r;
-        }
-        let d = r * sine + k;
-        let passed = sqrt_f32(((1.0 - sine * sine) / (1.0 - d * d).fmax(LEAST_COSINE)).fmax(0.0));
-        let furthest = (r + k).fmin(self.usable);
-        let over_c = 1.0 / sqrt_f32((1.0 - furthest * furthest).fmax(LEAST_COSINE));
-        let relative_rate = around.abs() * passed + outwards.abs() * over_c;
-        let turn = self.turn.abs();
-        let d_2 = turn * (2.0 * self.length + turn * r);
-        // Of a guide through the moved point the two parts of phi'' oppose each other.
-        let squared_rate = relative_rate * relative_rate * furthest;
-        let either = if k > 0.0 {
-            d_2 + squared_rate
-        } else {
-            d_2.fmax(squared_rate)
-        };
-        let (first, second) = (turn + relative_rate, either * over_c);
-        Demand {
-            first: [first; 3],
-            second: [second, -second, second],
-        }
-    }
-}
-
-/// Cosine and sine of an angle in 2^-32 turns.
-fn direction(theta: i64) -> [f32; 2] {
-    let (sin, cos) = sin_cos_f32(Angle::from_units(theta));
-    [cos, sin]
-}
-
-/// Demands along a line; see [`Path::demands`].
-pub(super) struct Demands<'a> {
-    path: &'a Path,
-    s: f32,
-    step: f32,
-    /// Cosine and sine of theta, and of what it turns from place to place: turned by a product, which is a fourth of
-    /// what sine and cosine cost, and off by some 1e-7 a place.
-    direction: [f32; 2],
-    turn: [f32; 2],
-}
-
-impl Demands<'_> {
-    /// The demand at the next place.
-    pub fn next(&mut self) -> Demand {
-        let path = self.path;
-        let demand = if path.spans_many_turns() {
-            path.demand_of_any_orientation(self.s)
-        } else {
-            path.demand(self.s, self.direction)
-        };
-        let ([cos, sin], [a, b]) = (self.direction, self.turn);
-        self.direction = [cos * a - sin * b, sin * a + cos * b];
-        self.s += self.step;
-        demand
     }
 }
 

@@ -175,8 +175,6 @@ const MOST: f32 = 0.3;
 /// What was too little grows by this factor and this much more at least.
 const STEP: f32 = 1.35;
 const STEP_MORE: f32 = 0.015;
-/// Shares that differ by less are as good as each other.
-const FINE: f32 = 0.04;
 
 /// Slopes that differ by less than this part of the steepest are the same but for roundings.
 const ALIKE: f32 = 1e-5;
@@ -190,26 +188,16 @@ pub(super) fn fit_segments_below(
     corners: &mut Corners,
 ) -> Option<()> {
     let z = z.get(..=intervals)?;
-    let laid =
-        |loss: f32, corners: &mut Corners| lay_segments(z, acceleration, 1.0 - loss, corners);
-    let (mut before, mut loss) = (0.0, LEAST);
-    while let Err(place) = laid(loss, corners) {
+    let mut loss = LEAST;
+    while let Err(place) = lay_segments(z, acceleration, 1.0 - loss, corners) {
         if loss >= MOST {
             return None;
         }
         // What makes the segments of a curve as much longer as they would have to be, and a step at least.
         let longer = intervals as f32 / place as f32;
-        before = loss;
         loss = (loss * (longer * longer))
             .fmax(STEP * loss + STEP_MORE)
             .fmin(MOST);
-    }
-    if loss - before >= FINE {
-        // Once more, with half of what was added.
-        let mut finer = Corners::new();
-        if laid(0.5 * (before + loss), &mut finer).is_ok() {
-            *corners = finer;
-        }
     }
     Some(())
 }

@@ -1,14 +1,12 @@
 //! How the motion under way comes to rest.
 
-use heapless::Vec;
+use super::overlap::{Corner, Corners};
 use motion::check::is_over;
 use motion::constraints::{Constraints, MotionLimits, Speeds};
 use motion::plan::axis_state::AxisState;
 use motion::plan::cubic_segment::{CubicSegment, MotionState};
 use motion::plan::quantise::write_velocity_pieces;
-use motion::plan::{
-    MAX_PIECES, Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces,
-};
+use motion::plan::{Pieces, Plan, Position, pieces_after, push_piece, state_after_pieces};
 use motion::profile::velocity::VelocityProfile;
 use number::float::ticks_to_f32;
 
@@ -33,36 +31,13 @@ pub(super) struct Leaving<'a> {
     pub hz: f32,
 }
 
-/// Where a motion's jerk changes: the state there, track radii, rad and seconds.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Corner {
-    pub at_s: f32,
-    pub v: [f32; 3],
-    pub a: [f32; 3],
-    pub j: [f32; 3],
-}
-
-impl Corner {
-    /// The state at a later time.
-    fn next(&self, at_s: f32) -> Self {
-        let seconds = at_s - self.at_s;
-        let half = seconds / 2.0;
-        Self {
-            at_s,
-            v: each!(i => self.v[i] + seconds * (self.a[i] + half * self.j[i])),
-            a: each!(i => self.a[i] + seconds * self.j[i]),
-            j: [0.0; 3],
-        }
-    }
-}
-
-/// An ending: its pieces, its corners, of which the last is rest, and how long it takes.
+/// An ending: its pieces, its corners, and how long it takes.
 #[derive(Default)]
 pub(super) struct Ended {
-    /// What these are of; nothing where the pieces have become another motion's.
-    pub of: Option<Ending>,
+    /// What these are of.
+    of: Option<Ending>,
     pub pieces: Pieces,
-    pub corners: Vec<Corner, { MAX_PIECES + 1 }>,
+    pub corners: Corners,
     pub ticks: u64,
     /// Where it comes to rest, and the way from there to the target, track radii and rad.
     pub rest: Position,
@@ -137,7 +112,7 @@ impl<'a> Leaving<'a> {
             // There is room for all.
             let _ = corners.push(now);
             ended.ticks += piece.ticks;
-            now = now.next(ticks_to_f32(ended.ticks) / self.hz);
+            now = now.at(ticks_to_f32(ended.ticks) / self.hz);
         }
         let _ = corners.push(now);
         ended.rest = match ending {
@@ -150,7 +125,7 @@ impl<'a> Leaving<'a> {
             }
         };
         // In whole numbers: of a long way a float does not hold a small correction.
-        ended.left = MotionState::between(&ended.rest.map(AxisState::at_rest), &self.to);
+        ended.left = each!(i => MotionState::way(i, self.to[i].wrapping_sub(ended.rest[i])));
         ended.of = Some(ending);
         Some(())
     }

@@ -14,41 +14,40 @@
 //! end, in place of a stop: for a target that is corrected, and out of a stop. The soonest wins. PLCopen calls it
 //! superimposed motion.
 //!
-//! A first way has to be there soon: of two endings, with one line for all axes, and the check is asked once. The soonest way
-//! is looked for while that is under way: all endings, and a line and a delay each for translation and rotation; a line
-//! that asks too much of the pivots is slowed down, one that meets an edge delayed. Where there is no first way, the stop
-//! that was sent before goes on, and the soonest way leaves that.
+//! A first way has to be there soon: of two endings, and the check is asked once. The soonest way is looked for while that is
+//! under way: all endings and shares, and finer delays; a line that asks too much of the pivots is slowed down, one that
+//! meets an edge delayed. Where there is no first way, the stop that was sent before goes on, and the soonest way leaves that.
 //!
 //! | file | idea |
 //! |---|---|
-//! | here | candidates, and the soonest that the check is content with |
+//! | here | ways: an ending, a line from there, and the delay between them; the soonest that the check is content with |
 //! | `ending` | how the motion under way comes to rest |
-//! | `overlap` | the plain line from there; translation, rotation, or both as one: whether two motions that overlap keep to their limits, in floats |
-//! | `candidate` | for each part an ending, a line, and the least delay between them |
+//! | `overlap` | whether two motions that overlap keep to the limits of path and rotation, in floats; the least delay |
 
-mod candidate;
 mod ending;
 mod overlap;
 
-use candidate::{Candidate, PartWay};
 use ending::{Ended, Ending, Leaving};
 use motion::check::workspace::check_target;
-use motion::check::{Budget, PlanCheck, Violation};
+use motion::check::{PlanCheck, Violation};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::AxisState;
-use motion::plan::{Plan, Position, nudge_to, state_after_pieces};
+use motion::plan::{Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces, write_sum};
+use motion::profile::rest_to_rest::RestToRestProfile;
 use motion::refusal::{Refusal, RetargetError};
 use motion::tolerances::SLOWER_FOR_PIVOTS;
+use number::float::{FloatMinMax, hypot, ticks_to_f32};
 use number::sqrt_f32;
-use overlap::{Overlap, Part};
+use overlap::{Corner, Corners, Overlap};
 
 /// How the motion under way ends, and the shares of the limits that the line gets.
-const ENDINGS: [(Ending, &[f32]); 5] = [
-    (Ending::Followed, &[1.0, 0.5]),
-    (stop(1.0, 1.0), &[1.0, 0.7]),
-    (stop(0.7, 0.7), &[0.7, 1.0]),
-    (stop(1.0, 0.7), &[0.7]),
-    (stop(1.0, 0.5), &[0.5, 0.85]),
+const ENDINGS: [(Ending, &[f32]); 6] = [
+    (Ending::Followed, &[1.0, 0.7, 0.5]),
+    (stop(1.0, 1.0), &[1.0, 0.7, 0.4]),
+    (stop(0.7, 0.7), &[0.7, 1.0, 0.4]),
+    (stop(1.0, 0.7), &[0.7, 1.0, 0.4]),
+    (stop(1.0, 0.5), &[0.5, 0.85, 1.0]),
+    (stop(0.5, 0.5), &[0.5, 0.85, 1.0]),
 ];
 
 const fn stop(acceleration: f32, jerk: f32) -> Ending {
@@ -66,28 +65,28 @@ pub enum Effort {
 
 /// What an effort comes to.
 struct Search {
-    /// What has a line and a delay of its own.
-    parts: &'static [Part],
     /// How many of the endings, and of the shares of each.
     endings: usize,
     shares: usize,
+    /// How often a delay is halved.
+    halvings: usize,
     /// How often the check may be asked, and how many intervals it may take before the next failure counts.
     checks: usize,
     intervals: usize,
 }
 
 const FIRST: Search = Search {
-    parts: &[Part::Whole],
     endings: 2,
     shares: 1,
+    halvings: 2,
     checks: 1,
     intervals: 5,
 };
 
 const ALL: Search = Search {
-    parts: &[Part::Translation, Part::Rotation],
     endings: ENDINGS.len(),
-    shares: 2,
+    shares: 3,
+    halvings: 5,
     checks: 4,
     intervals: 60,
 };
@@ -123,75 +122,142 @@ pub fn plan_retarget(
         return Err(RetargetError::NeedsStop);
     }
     let mut ended = Ended::default();
-    let mut candidate = soonest(&leaving, search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut way = soonest(&leaving, search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    (leaving.write(way.ending, &mut ended)).ok_or(RetargetError::NeedsStop)?;
     let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
-    let mut budget = Budget {
-        intervals: search.intervals,
-        samples_pivots: search.checks > 1,
-    };
-    for _ in 0..search.checks {
-        if budget.intervals == 0 {
-            break;
-        }
-        (candidate.write(&leaving, &to, &mut ended, &mut plan.pieces))
-            .ok_or(RetargetError::NeedsStop)?;
+    let mut budget = search.intervals;
+    for left in (0..search.checks).rev() {
+        (way.write(&ended, &to, &mut plan.pieces)).ok_or(RetargetError::NeedsStop)?;
         match plan_check.check(&plan.pieces, &leaving.state, &mut budget) {
             Ok(()) => {
                 close(&mut plan, &leaving).ok_or(RetargetError::NeedsStop)?;
                 return Ok(plan);
             }
-            Err(Violation::PivotRate(over)) => candidate.slow(margin(over)),
-            Err(Violation::PivotAcceleration(over)) => {
-                candidate.slow(margin(sqrt_f32(over)));
+            Err(_) if left == 0 || budget == 0 => break,
+            Err(Violation::Pivots) => {
+                let [rate, acceleration] = plan_check.pivot_parts(&plan.pieces, &leaving.state);
+                let over = rate.fmax(sqrt_f32(acceleration)) * SLOWER_FOR_PIVOTS;
+                way.slow(over.clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER));
             }
-            Err(_) => {
-                if !candidate.delay_more() {
-                    break;
-                }
-            }
+            Err(_) if way.delay < ended.ticks => way.delay_more(ended.ticks),
+            Err(_) => break,
         }
     }
     Err(RetargetError::NeedsStop)
 }
 
+/// An ending of the motion under way, a line from there, and the delay between them.
+struct Way {
+    ending: Ending,
+    /// None where there is no way left to go.
+    line: Option<RestToRestProfile>,
+    delay: u64,
+    ticks: u64,
+}
+
+/// The part of what is left of the longest delay that is added when a delay was too short.
+const DELAY_STEPS: u64 = 3;
+
+impl Way {
+    /// Takes a longer delay, up to `most`.
+    fn delay_more(&mut self, most: u64) {
+        let left = most - self.delay;
+        self.delay += if left > most / 16 {
+            left.div_ceil(DELAY_STEPS)
+        } else {
+            left
+        };
+    }
+
+    /// A slower line; one that would take longer than can be counted stays as it is.
+    fn slow(&mut self, slower: f32) {
+        let slowed = self.line.and_then(|line| line.slowed(slower));
+        self.line = slowed.or(self.line);
+    }
+
+    /// Writes its pieces; `None` where there are too many.
+    #[inline(never)]
+    fn write(&self, ended: &Ended, to: &Position, pieces: &mut Pieces) -> Option<()> {
+        let mut line_plan = Plan::new(0, PlanStart::Rest(ended.rest), *to);
+        if let Some(line) = &self.line {
+            line.write_plan(&mut line_plan, &ended.rest)?;
+        }
+        write_sum(&ended.pieces, &line_plan.pieces, self.delay, pieces)
+    }
+}
+
 /// What a sample of the pivots says is not taken for more than this.
 const MOST_SLOWER: f32 = 1.3;
 
-/// By how much slower a line is made that asks for so much more of the pivots than they can.
-fn margin(over: f32) -> f32 {
-    (over * SLOWER_FOR_PIVOTS).clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER)
-}
-
-/// The soonest of the candidates, and the part that is over sooner slowed down to the other.
-fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Candidate> {
-    let overlap = Overlap::new(leaving);
-    let mut best: [Option<PartWay>; 2] = [None; 2];
+/// The soonest of the ways.
+fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Way> {
+    let overlap = Overlap::new(&leaving.limits, leaving.hz, search.halvings);
+    let mut best: Option<Way> = None;
     for (ending, shares) in ENDINGS.into_iter().take(search.endings) {
         if leaving.write(ending, ended).is_none() || leaving.is_over(ended) {
             continue;
         }
-        for (&part, best) in search.parts.iter().zip(&mut best) {
-            for &share in shares.iter().take(search.shares) {
-                let soonest = best.as_ref().map_or(u64::MAX, |best| best.ticks());
-                let ending = (ending, &*ended);
-                let other = PartWay::new(leaving, &overlap, ending, share, part, soonest);
-                *best = other.or(*best);
-            }
+        for &share in shares.iter().take(search.shares) {
+            let soonest = best.as_ref().map_or(u64::MAX, |best| best.ticks);
+            best = way(leaving, &overlap, ended, ending, share, soonest).or(best);
         }
     }
-    let ways = best.into_iter().flatten().collect();
-    let mut candidate = Candidate { ways };
-    if candidate.ways.len() < search.parts.len() {
+    best
+}
+
+/// The way with the least delay at which the path's and the rotation's own limits are kept; `None` where it would not be
+/// over before `soonest`.
+fn way(
+    leaving: &Leaving<'_>,
+    overlap: &Overlap,
+    ended: &Ended,
+    ending: Ending,
+    share: f32,
+    soonest: u64,
+) -> Option<Way> {
+    let line = line(&ended.left, share, leaving);
+    let (mut delay, mut ticks) = (0, ended.ticks);
+    if let Some(line) = &line {
+        let latest = soonest.checked_sub(line.ticks() + 1)?;
+        let corners = line_corners(line, &ended.left, leaving.hz);
+        delay = overlap.least_delay(&ended.corners, &corners, ticks.min(latest))?;
+        ticks = ticks.max(delay + line.ticks());
+    }
+    (ticks < soonest).then_some(Way {
+        ending,
+        line,
+        delay,
+        ticks,
+    })
+}
+
+/// The plain line along `way` with a share of the limits of acceleration and jerk; `None` where there is no way to go, or
+/// one that takes longer than can be counted.
+fn line(way: &[f32; 3], share: f32, leaving: &Leaving<'_>) -> Option<RestToRestProfile> {
+    if *way == [0.0; 3] {
         return None;
     }
-    let ticks = candidate.ticks();
-    for way in &mut candidate.ways {
-        if way.ticks() < ticks && leaving.write(way.ending, ended).is_some() {
-            way.stretch(&overlap, ended, ticks);
-        }
+    let limits = leaving.limits.scaled(share, share);
+    let limits = limits.for_line(hypot(way[0], way[1]), way[2].abs());
+    RestToRestProfile::new(&limits, leaving.hz)
+}
+
+/// The states of a line at which its jerk changes.
+#[inline(never)]
+fn line_corners(line: &RestToRestProfile, way: &[f32; 3], hz: f32) -> Corners {
+    let cube = ticks_to_f32(line.jerk) * ticks_to_f32(line.ramp) * ticks_to_f32(line.travel);
+    let push = hz * hz * hz / cube;
+    let (mut corners, mut now, mut ticks) = (Corners::new(), Corner::default(), 0);
+    for (lasts, jerk) in line.segments() {
+        now.j = each!(i => way[i] * (push * jerk as f32));
+        // Eight of many.
+        let _ = corners.push(now);
+        ticks += lasts;
+        now = now.at(ticks_to_f32(ticks) / hz);
     }
-    Some(candidate)
+    let _ = corners.push(now);
+    corners
 }
 
 /// 2^-32 track radii or turns by which pieces may miss a target: what floats leave of a way of four, 0.1 um on the

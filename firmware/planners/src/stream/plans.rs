@@ -6,7 +6,7 @@
 
 use super::curve::curve_point;
 use super::{PART_BITS, SentPlan, Stream};
-use motion::check::{Budget, PlanCheck, Violation};
+use motion::check::{BUDGET, PlanCheck, Violation};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
 use motion::plan::cubic_segment::MotionState;
@@ -69,7 +69,7 @@ impl Stream {
         from: [AxisState; 3],
         plan_check: &PlanCheck,
     ) -> Result<[AxisState; 3], Violation> {
-        let (mut state, mut budget) = (from, Budget::FOR_ANSWER);
+        let (mut state, mut budget) = (from, BUDGET);
         for _ in 0..self.knots {
             self.pass();
             let pieces = self.pieces(&state);
@@ -156,11 +156,11 @@ fn refusal(violation: Violation, constraints: &Constraints) -> Refusal {
             usable_mm: constraints.usable_radius * mm,
         },
         Violation::Bounds(axis) => Refusal::OutOfBounds { axis },
-        Violation::Speed(_) => Refusal::Velocity,
-        Violation::Acceleration(_) => Refusal::Acceleration,
-        Violation::Jerk(_) => Refusal::Jerk,
-        Violation::PivotRate(_) | Violation::PivotAcceleration(_) => Refusal::Pivots,
-        Violation::NoRoomToStop => Refusal::NoRoomToStop,
+        Violation::Speed => Refusal::Velocity,
+        Violation::Acceleration => Refusal::Acceleration,
+        Violation::Jerk => Refusal::Jerk,
+        Violation::Pivots => Refusal::Pivots,
+        Violation::TooLong => Refusal::NoRoomToStop,
     }
 }
 
@@ -182,10 +182,12 @@ fn final_stop(
             .with_first_jerk(JERK_TOLERANCE)
             .ticks(hz);
         let pieces = velocity_pieces(state, &[0; 3], ticks);
-        match plan_check.check(&pieces, state, &mut { Budget::FOR_STOP }) {
+        match plan_check.check(&pieces, state, &mut { BUDGET }) {
             Ok(()) => return Ok(pieces),
-            Err(Violation::Speed(_)) => return Err(Refusal::Velocity),
-            Err(Violation::PivotRate(over) | Violation::PivotAcceleration(over)) => {
+            Err(Violation::Speed) => return Err(Refusal::Velocity),
+            Err(Violation::Pivots) => {
+                let [rate, acceleration] = plan_check.pivot_parts(&pieces, state);
+                let over = rate.fmax(acceleration);
                 part *= (0.9 / over).fmin(0.7);
             }
             Err(_) => break,
