@@ -104,8 +104,10 @@ impl Commander {
             // One that does not count must be such that it can.
             let (calibration, margins) = (wanted.for_tick(&self.base_constraints.geometry))
                 .map_err(|_| CommandError::CalibrationBeyondLimits)?;
-            if wanted.is_on {
+            // One that corrects nothing is none.
+            if wanted.is_on && !calibration.are_zero() {
                 in_force = CalibrationInForce {
+                    is_on: true,
                     calibration,
                     margins,
                 };

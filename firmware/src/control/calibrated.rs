@@ -14,6 +14,8 @@ use kinematics::{
 /// A calibration that the tick is to compute with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationInForce {
+    /// If not, the machine is as drawn, and every bit as it is without a calibration.
+    pub is_on: bool,
     /// The machine.
     pub calibration: Calibration,
     /// By what the supervisor's margins are widened.
@@ -51,6 +53,7 @@ struct Followed {
 impl CalibrationInForce {
     /// As drawn.
     pub const OFF: Self = Self {
+        is_on: false,
         calibration: IDEAL,
         margins: CalibrationMargins::NONE,
     };
@@ -72,9 +75,9 @@ impl Default for Calibrated {
 }
 
 impl Calibrated {
-    /// Another one from now on. One that corrects nothing is none: every bit stays as it is without.
+    /// Another one from now on.
     pub fn set(&mut self, wanted: &CalibrationInForce) {
-        self.is_on = !wanted.calibration.are_zero();
+        self.is_on = wanted.is_on;
         self.margins = wanted.margins;
         self.near.lines = wanted.calibration.lines;
         self.series = wanted.calibration.curves;
@@ -108,7 +111,7 @@ impl Calibrated {
         encoders: &[Angle; 3],
     ) -> Result<Pose<Fixed>, DirectError> {
         if !self.is_on {
-            return direct(encoders);
+            return drawn_pose(encoders);
         }
         let followed = self.followed.take().ok_or(DirectError::OutsideTrack)?;
         if followed.missing_rad < STILL_RAD {
@@ -147,12 +150,12 @@ impl Calibrated {
         for (ring, line) in rings.iter_mut().zip(&self.near.lines) {
             *ring -= line.encoder_zero;
         }
-        let pose = direct(&rings).ok()?;
+        let pose = drawn_pose(&rings).ok()?;
         for ((tangents, series), ring) in self.near.curves.iter_mut().zip(&self.series).zip(rings) {
             *tangents = of_ring(series, ring);
         }
         let at = self.solve(config, &pose)?;
-        let mut missing_rad = missing_rad(&at, encoders);
+        let mut missing_rad = missing_of(&at, encoders);
         for (i, tangents) in self.near.curves.iter_mut().enumerate() {
             let rho = at.guides[i].rho();
             *tangents = with_guide(tangents, &self.series[i], rho);
@@ -160,7 +163,7 @@ impl Calibrated {
             missing_rad[i] -= straightness * at.over_travel[i];
         }
         Some(Followed {
-            pose: newton_step(&pose, &at, &self.near.lines, &missing_rad),
+            pose: nearer(&pose, &at, &self.near.lines, &missing_rad),
             missing_rad: f32::INFINITY,
         })
     }
@@ -174,14 +177,18 @@ impl Calibrated {
         encoders: &[Angle; 3],
     ) -> Option<(Followed, [f32; 3])> {
         let at = self.solve(config, pose)?;
-        let missing = missing_rad(&at, encoders);
-        let [first, second, third] = missing.map(f32::abs);
-        let missing_rad = first.max(second).max(third);
-        if missing_rad.is_nan() || missing_rad > MOST_MISSING_RAD {
+        let missing = missing_of(&at, encoders);
+        let mut missing_rad = 0.0;
+        for missing in missing.map(f32::abs) {
+            if missing > missing_rad {
+                missing_rad = missing;
+            }
+        }
+        if missing_rad > MOST_MISSING_RAD {
             return None;
         }
-        let pose = newton_step(pose, &at, &self.near.lines, &missing);
-        let lengths = [0, 1, 2].map(|i| at.guides[i].rho());
+        let pose = nearer(pose, &at, &self.near.lines, &missing);
+        let lengths = [at.guides[0].rho(), at.guides[1].rho(), at.guides[2].rho()];
         Some((Followed { pose, missing_rad }, lengths))
     }
 
@@ -223,6 +230,29 @@ impl Calibrated {
 }
 
 // Once in the loop's memory: they are long.
+
+/// See [`direct`].
+#[inline(never)]
+fn drawn_pose(rings: &[Angle; 3]) -> Result<Pose<Fixed>, DirectError> {
+    direct(rings)
+}
+
+/// See [`newton_step`].
+#[inline(never)]
+fn nearer(
+    pose: &Pose<Fixed>,
+    at: &CorrectedInverse<Fixed>,
+    lines: &[Line<Fixed>; 3],
+    missing_rad: &[f32; 3],
+) -> Pose<Fixed> {
+    newton_step(pose, at, lines, missing_rad)
+}
+
+/// See [`missing_rad`].
+#[inline(never)]
+fn missing_of(at: &CorrectedInverse<Fixed>, encoders: &[Angle; 3]) -> [f32; 3] {
+    missing_rad(at, encoders)
+}
 
 /// See [`Tangents::of_ring`].
 #[inline(never)]

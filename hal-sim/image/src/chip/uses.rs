@@ -223,6 +223,7 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
         stretches: stretches(ticks),
         following: false,
         commands: 0,
+        switched_on: false,
         answers: Vec::new(),
         calibration: Vec::new(),
         ticks: Vec::new(),
@@ -266,6 +267,8 @@ struct Run {
     stretches: Vec<Stretch>,
     following: bool,
     commands: u32,
+    /// The servo, with the calibration.
+    switched_on: bool,
     /// To what was asked last.
     answers: Vec<u8>,
     /// Lines, the next one last.
@@ -282,9 +285,14 @@ impl Run {
             let tick = period.tick - 1;
             let stretch = self.stretches.iter().find(|it| it.ticks.contains(&tick));
             if let Some(stretch) = stretch {
+                let mut used = stretch.taken.filter(|_| took).unwrap_or(stretch.used);
+                self.switched_on |= used == Use::SwitchedOnCalibrated;
+                if used == Use::OffCalibrated && self.switched_on {
+                    used = Use::HoldingCalibrated;
+                }
                 self.ticks.push(UsedTick {
                     tick,
-                    used: stretch.taken.filter(|_| took).unwrap_or(stretch.used),
+                    used,
                     steps: period.steps()?.to_vec(),
                 });
             }
