@@ -22,7 +22,7 @@ pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
 use crate::record::Timing;
-use evolution::evolve;
+use evolution::{Effort, evolve};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 use nalgebra::DVector;
 use std::f64::consts::TAU;
@@ -71,22 +71,32 @@ pub enum TuningError {
 
 /// Ranges that are searched, inside those of the parameters.
 const VELOCITY: [f64; 2] = [3.0, 500.0];
-/// Position gain and corner of the integral, 1/s, which do the same: a lower one of either hardly costs rejection at 30 Hz, and leaves a tail of
-/// tens of milliseconds after every move.
-const POSITION: [f64; 2] = [60.0, 2_000.0];
+/// Position gain and corner of the integral, 1/s: the same for both. One that is lower than the other hardly costs rejection at 30 Hz, and leaves
+/// a tail of tens of milliseconds after every move.
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const LEAD_TO_HZ: f64 = 3_000.0;
-/// Halvings of the range of the velocity gain; starts that are followed, generations of each, and how far the first goes, as a logarithm.
+/// Halvings of the range of the velocity gain.
 const HALVINGS: usize = 9;
-const FOLLOWED: usize = 2;
-const GENERATIONS: usize = 120;
-const FIRST_STEP: f64 = 0.25;
+/// Starts that are followed, and how: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are
+/// followed to the end, and how.
+const FOLLOWED: usize = 6;
+const FIRST: Effort = Effort {
+    step: 0.25,
+    children: 18,
+    generations: 60,
+};
+const ENDED: usize = 2;
+const LAST: Effort = Effort {
+    step: 0.1,
+    children: 24,
+    generations: 120,
+};
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
 
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
-type Shape = [f64; 8];
+type Shape = [f64; 7];
 
 /// Gains for plants at several places and with several loads. `resonances_hz`: where the first two notches are tried, from the model
 /// in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
@@ -119,23 +129,18 @@ pub fn tune(
         })
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let ended = starts
-        .iter()
-        .take(FOLLOWED)
-        .map(|(rejection, shape, found)| {
-            let unknowns = shape
-                .iter()
-                .copied()
-                .chain([found.gains.pivots[0].gains.velocity_v_s_rad])
-                .map(f64::ln);
-            let start = DVector::from_iterator(shape.len() + 1, unknowns);
-            let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
-            let after = search
-                .best_velocity(&shape_of(&at))
-                .filter(|after| after.margins.rejection < *rejection);
-            after.unwrap_or(*found)
-        });
-    let found = ended
+    let mut found: Vec<_> = (starts.iter().take(FOLLOWED))
+        .map(|(_, shape, found)| {
+            let start = unknowns(shape, found);
+            evolve(&start, &FIRST, |at| search.cost(at))
+        })
+        .collect();
+    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let ended = found.into_iter().take(ENDED).filter_map(|(start, _)| {
+        let (at, _) = evolve(&start, &LAST, |at| search.cost(at));
+        search.best_velocity(&shape_of(&at))
+    });
+    let found = (ended.chain(starts.first().map(|(_, _, found)| *found)))
         .min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection))
         .ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
@@ -154,26 +159,23 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
     }
     // And without: where resonances lie far above what the servos reach, a notch only costs phase.
     let mut starts: Vec<Shape> = (places.iter().take(1))
-        .map(|&hz| [0.25, 0.2, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
+        .map(|&hz| [0.25, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
         .collect();
     for (k, &first) in places.iter().enumerate() {
         for &second in places.iter().skip(k) {
             let spread = if first == second { 1.09 } else { 1.0 };
-            for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
-                starts.push([
-                    position,
-                    corner,
-                    first / spread,
-                    0.4,
-                    0.2,
-                    second * spread,
-                    0.4,
-                    0.2,
-                ]);
+            for corner in [0.22, 0.4] {
+                starts.push([corner, first / spread, 0.4, 0.2, second * spread, 0.4, 0.2]);
             }
         }
     }
     starts
+}
+
+fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
+    let velocity = found.gains.pivots[0].gains.velocity_v_s_rad;
+    let all = shape.iter().copied().chain([velocity]).map(f64::ln);
+    DVector::from_iterator(shape.len() + 1, all)
 }
 
 fn shape_of(unknowns: &DVector<f64>) -> Shape {
@@ -190,7 +192,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn gains(&self, shape: &Shape, velocity: f64) -> Gains {
-        let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
+        let [corner, f1, w1, g1, f2, w2, g2] = *shape;
         let notch = |hz: f64, width: f64, gain: f64| Notch {
             frequency_hz: hz.clamp(10.0, 9_000.0),
             width_hz: (hz * width.min(2.0)).clamp(1.0, 9_000.0),
@@ -206,12 +208,12 @@ impl Search<'_> {
         let pivots = self.electrical.map(|drive| {
             // A motor that takes more volts for its torque gets more.
             let velocity_v_s_rad = velocity * volts_per_torque(&drive) / first;
+            let corner_1_s = (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]);
             PivotGains {
                 gains: parameters::Gains {
                     velocity_v_s_rad,
-                    position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
-                    integral_v_rad: velocity_v_s_rad
-                        * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
+                    position_1_s: corner_1_s,
+                    integral_v_rad: velocity_v_s_rad * corner_1_s,
                 },
                 filters: FeedbackFilters {
                     notches: [notch(f1, w1, g1), notch(f2, w2, g2)],

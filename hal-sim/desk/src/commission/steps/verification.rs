@@ -32,6 +32,7 @@ pub(super) fn run(
     ));
     // What the loop learns by itself it has learnt by now.
     let error_rad = bench.follow(&MOVES, LONGEST_S)?;
+    found.number("largest following error", error_rad * 1e6, "urad");
     found.push(Finding::new(
         "largest following error in the second",
         format!("{:.0} urad", error_rad * 1e6),
