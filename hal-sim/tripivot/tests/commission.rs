@@ -254,11 +254,8 @@ fn what_was_before_is_given_back(seed: u64, folder: &std::path::Path) {
         .split(' ')
         .next()
         .and_then(|text| text.parse::<u32>().ok());
-    // Motor constants, and friction of three pivots.
-    assert!(
-        changed.is_some_and(|changed| (3..=12).contains(&changed)),
-        "{told}"
-    );
+    // Motor constants, and friction of three pivots, and what a record needs.
+    assert!(changed.is_some_and(|changed| changed >= 3), "{told}");
     let again = text(&undo());
     assert!(again.starts_with("0 parameters and 0 macros"), "{again}");
 }
