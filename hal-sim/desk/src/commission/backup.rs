@@ -15,9 +15,6 @@ pub struct Backup {
 /// What is in the file of a controller that had not been commissioned: a comment to whatever else reads it.
 const UNCOMMISSIONED: &str = "# not commissioned";
 
-/// Rounds after the first in which settings are given back at most.
-const MOST_ROUNDS: usize = 3;
-
 impl Backup {
     /// All that the controller is told.
     ///
@@ -69,13 +66,6 @@ impl Backup {
         }
         machine.delay(0.2)?;
         machine.ask(if self.commissioned { "CMS 1" } else { "CMS 0" })?;
-        let first = import_to(&self.settings, &mut |line| machine.ask(line))?;
-        // A number for all pivots takes those of each with it: what it has changed of them is given back by the next round.
-        for _ in 0..MOST_ROUNDS {
-            if import_to(&self.settings, &mut |line| machine.ask(line))?.parameters == 0 {
-                break;
-            }
-        }
-        Ok(first)
+        import_to(&self.settings, &mut |line| machine.ask(line))
     }
 }

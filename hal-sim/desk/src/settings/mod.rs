@@ -12,6 +12,7 @@ pub use file::{Macro, Parameter, Settings, SettingsError};
 use crate::record::RecordError;
 use crate::record::desk::Desk;
 use crate::web::Endpoint;
+use firmware::gcs::PARAMETERS;
 
 /// A line to a controller, and its answer if it has one.
 pub(crate) type Ask<'a> = dyn FnMut(&str) -> Result<Option<String>, RecordError> + 'a;
@@ -25,7 +26,7 @@ pub struct Changed {
     pub macros: usize,
 }
 
-/// Asks a controller for all parameters that can be set, and for its macros.
+/// Asks a controller for all parameters that it keeps, each pivot's by itself, and for its macros.
 ///
 /// # Errors
 /// [`SettingsError::Controller`]
@@ -42,7 +43,7 @@ pub(crate) fn export_from(ask: &mut Ask<'_>) -> Result<Settings, RecordError> {
     let parameters = (help.lines())
         .filter(|line| !line.ends_with("(read only)"))
         .filter_map(|line| {
-            let (id, rest) = line.split_once("=\t")?;
+            let (id, rest) = line.split_once("=\t").filter(|(id, _)| is_kept(id))?;
             // Level, items, kind, group, text.
             let text = rest.splitn(5, '\t').nth(4)?;
             Some(Parameter {
@@ -57,6 +58,13 @@ pub(crate) fn export_from(ask: &mut Ask<'_>) -> Result<Settings, RecordError> {
         parameters,
         macros: macros(ask)?,
     })
+}
+
+/// Whether it is kept under this number: not where it stands for those of three pivots.
+fn is_kept(id: &str) -> bool {
+    let number = id.strip_prefix("0x");
+    let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    !(PARAMETERS.iter()).any(|one| Some(one.id) == number && !one.is_stored())
 }
 
 /// The value of a parameter in an answer of `SPA?`.
@@ -93,42 +101,44 @@ pub(crate) fn import_to(settings: &Settings, ask: &mut Ask<'_>) -> Result<Change
     ask("CCL 1 ADVANCED")?;
     let values = ask("SPA?")?.unwrap_or_default();
     let macros_there = macros(ask)?;
-    let parameters: Vec<(&str, &str)> = (settings.parameters.iter())
-        .map(|parameter| (&*parameter.id, &*parameter.value))
-        .filter(|(id, wanted)| value(&values, id) != Some(wanted))
-        .collect();
+    let parameters = (settings.parameters.iter())
+        .filter(|wanted| value(&values, &wanted.id) != Some(&wanted.value))
+        .count();
     let macros: Vec<&Macro> = (settings.macros.iter())
         .filter(|wanted| !macros_there.contains(wanted))
         .collect();
-    let given = give(ask, &parameters, &macros).and_then(|()| ask("WPA 100").map(|_| ()));
+    let given = give(ask, settings, &macros).and_then(|()| ask("WPA 100").map(|_| ()));
     if let Err(error) = given {
-        let before: Vec<_> = (parameters.iter())
-            .filter_map(|(id, _)| Some((*id, value(&values, id)?)))
-            .collect();
-        let taken_back = take_back(ask, &before, &macros, &macros_there);
+        let taken_back = take_back(ask, &values, &macros, &macros_there);
         return Err(match taken_back {
             Ok(()) => error.into(),
             Err(_) => SettingsError::NotTakenBack(error),
         });
     }
     Ok(Changed {
-        parameters: parameters.len(),
+        parameters,
         macros: macros.len(),
     })
 }
 
-fn give(
-    ask: &mut Ask<'_>,
-    parameters: &[(&str, &str)],
-    macros: &[&Macro],
-) -> Result<(), RecordError> {
-    set(ask, parameters)?;
+fn give(ask: &mut Ask<'_>, settings: &Settings, macros: &[&Macro]) -> Result<(), RecordError> {
+    let wanted = |kept: bool| -> Vec<(&str, &str)> {
+        (settings.parameters.iter())
+            .map(|parameter| (&*parameter.id, &*parameter.value))
+            .filter(|(id, _)| is_kept(id) == kept)
+            .collect()
+    };
+    // A number for all pivots takes those of each with it, so that they come after it.
+    set(ask, wanted(false))?;
+    set(ask, wanted(true))?;
     macros.iter().try_for_each(|wanted| give_macro(ask, wanted))
 }
 
-/// Sets parameters. Those that have to go together with others are tried again after those.
-fn set(ask: &mut Ask<'_>, parameters: &[(&str, &str)]) -> Result<(), RecordError> {
-    let mut left = parameters.to_vec();
+/// Sets parameters that have another value. Those that have to go together with others are tried again after those.
+fn set(ask: &mut Ask<'_>, mut left: Vec<(&str, &str)>) -> Result<(), RecordError> {
+    let values = ask("SPA?")?.unwrap_or_default();
+    // What reads as pivot 1's does not tell those of the others.
+    left.retain(|(id, wanted)| !is_kept(id) || value(&values, id) != Some(wanted));
     while !left.is_empty() {
         let before = left.len();
         let mut refusal = None;
@@ -154,14 +164,17 @@ fn give_macro(ask: &mut Ask<'_>, wanted: &Macro) -> Result<(), RecordError> {
     recorded.and(ended)
 }
 
-/// Gives back the values and macros that were there.
+/// Gives back the values, as `SPA?` has told them, and the macros that were there.
 fn take_back(
     ask: &mut Ask<'_>,
-    before: &[(&str, &str)],
+    values: &str,
     changed: &[&Macro],
     macros_there: &[Macro],
 ) -> Result<(), RecordError> {
-    set(ask, before)?;
+    let before = (values.lines())
+        .filter_map(|line| line.strip_prefix("1 ")?.split_once('='))
+        .filter(|(id, _)| is_kept(id));
+    set(ask, before.collect())?;
     let now = macros(ask)?;
     for changed in changed
         .iter()
