@@ -71,23 +71,27 @@ pub enum TuningError {
 
 /// Ranges that are searched, inside those of the parameters.
 const VELOCITY: [f64; 2] = [3.0, 500.0];
-/// Position gain and corner of the integral, 1/s: the same for both. One that is lower than the other hardly costs rejection at 30 Hz, and leaves
-/// a tail of tens of milliseconds after every move.
+/// Position gain and corner of the integral, 1/s, which do the same: a lower one of either hardly costs rejection at 30 Hz, and leaves a tail of
+/// tens of milliseconds after every move.
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const LEAD_TO_HZ: f64 = 3_000.0;
+/// Frequency of a notch, Hz, its width over that, and its gain.
+const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
+const WIDTH: [f64; 2] = [0.01, 2.0];
+const DEPTH: [f64; 2] = [0.02, 1.0];
 /// Halvings of the range of the velocity gain.
 const HALVINGS: usize = 9;
 /// Starts that are followed, and how: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are
 /// followed to the end, and how.
-const FOLLOWED: usize = 6;
+const FOLLOWED: usize = 4;
 const FIRST: Effort = Effort {
     step: 0.25,
     children: 18,
     generations: 60,
 };
-const ENDED: usize = 2;
+const ENDED: usize = 1;
 const LAST: Effort = Effort {
-    step: 0.1,
+    step: 0.2,
     children: 24,
     generations: 120,
 };
@@ -96,7 +100,7 @@ const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
 
 /// Position gain and corner of the integral over the corner of the velocity loop, and two notches as frequency, width over frequency, gain.
-type Shape = [f64; 7];
+type Shape = [f64; 8];
 
 /// Gains for plants at several places and with several loads. `resonances_hz`: where the first two notches are tried, from the model
 /// in the middle of the disk ([`crate::chain::Chain::resonances_hz`]). `scheduled_inertia_kg_m2`: what the gains are for, or 0.
@@ -159,13 +163,27 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
     }
     // And without: where resonances lie far above what the servos reach, a notch only costs phase.
     let mut starts: Vec<Shape> = (places.iter().take(1))
-        .map(|&hz| [0.25, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
+        .map(|&hz| [0.25, 0.2, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
         .collect();
     for (k, &first) in places.iter().enumerate() {
+        // A wide one turns the phase of all that lies about it, a narrow one takes one resonance out.
+        for (m, &narrow) in places.iter().enumerate() {
+            let narrow = if k == m { 2.0 * first } else { narrow };
+            starts.push([0.4, 0.4, first, 1.8, 0.1, narrow, 0.3, 0.3]);
+        }
         for &second in places.iter().skip(k) {
             let spread = if first == second { 1.09 } else { 1.0 };
-            for corner in [0.22, 0.4] {
-                starts.push([corner, first / spread, 0.4, 0.2, second * spread, 0.4, 0.2]);
+            for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
+                starts.push([
+                    position,
+                    corner,
+                    first / spread,
+                    0.4,
+                    0.2,
+                    second * spread,
+                    0.4,
+                    0.2,
+                ]);
             }
         }
     }
@@ -182,6 +200,18 @@ fn shape_of(unknowns: &DVector<f64>) -> Shape {
     std::array::from_fn(|k| unknowns[k].exp())
 }
 
+fn within(value: f64, [least, most]: [f64; 2]) -> f64 {
+    value.clamp(least, most)
+}
+
+/// How far notches are out of their ranges, where nothing else tells a search which way is back.
+fn outside(shape: &Shape) -> f64 {
+    let [_, _, notches @ ..] = shape;
+    (notches.iter().zip([NOTCH_HZ, WIDTH, DEPTH].iter().cycle()))
+        .map(|(&value, &range)| (value / within(value, range)).ln().powi(2))
+        .sum()
+}
+
 struct Search<'a> {
     plants: &'a [Plant],
     electrical: &'a [Electrical; 3],
@@ -192,11 +222,11 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn gains(&self, shape: &Shape, velocity: f64) -> Gains {
-        let [corner, f1, w1, g1, f2, w2, g2] = *shape;
+        let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
         let notch = |hz: f64, width: f64, gain: f64| Notch {
-            frequency_hz: hz.clamp(10.0, 9_000.0),
-            width_hz: (hz * width.min(2.0)).clamp(1.0, 9_000.0),
-            gain: gain.clamp(0.02, 1.0),
+            frequency_hz: within(hz, NOTCH_HZ),
+            width_hz: within(hz * within(width, WIDTH), [1.0, NOTCH_HZ[1]]),
+            gain: within(gain, DEPTH),
         };
         let volts_per_torque = |drive: &Electrical| drive.resistance_ohm / drive.motor_constant;
         let first = volts_per_torque(&self.electrical[0]);
@@ -208,12 +238,12 @@ impl Search<'_> {
         let pivots = self.electrical.map(|drive| {
             // A motor that takes more volts for its torque gets more.
             let velocity_v_s_rad = velocity * volts_per_torque(&drive) / first;
-            let corner_1_s = (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]);
+            let corner_1_s = |of: f64| within(of * velocity_1_s, CORNER);
             PivotGains {
                 gains: parameters::Gains {
                     velocity_v_s_rad,
-                    position_1_s: corner_1_s,
-                    integral_v_rad: velocity_v_s_rad * corner_1_s,
+                    position_1_s: corner_1_s(position),
+                    integral_v_rad: velocity_v_s_rad * corner_1_s(corner),
                 },
                 filters: FeedbackFilters {
                     notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
@@ -257,6 +287,7 @@ impl Search<'_> {
         }
         let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
         margins.rejection.ln()
+            + outside(&shape_of(unknowns))
             + PENALTY
                 * (over(margins.ms, self.limits.ms)
                     + over(margins.resonance_peak, self.limits.resonance_peak))
