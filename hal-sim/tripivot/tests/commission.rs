@@ -12,10 +12,10 @@ use tripivot::attended::SimulatedMachine;
 
 /// The worst of the machines tried here, and a tenth more. Currents are as their meters have them.
 const MOST_FRICTION_ERROR: f64 = 0.006;
-/// The same of a motor's constant, with safe gains, and measured again with those that were tuned: what the platform holds between its rings is not
-/// the same twice, and 0.30 % was the worst.
+/// The same of a motor's constant, with safe gains; and measured again with those that were tuned, where single motors are further off, by 0.54 % at
+/// the worst, and their mean is not.
 const MOST_CONSTANT_ERROR: f64 = 0.0027;
-const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.0033;
+const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.006;
 
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));
