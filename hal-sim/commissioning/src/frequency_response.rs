@@ -98,7 +98,7 @@ pub enum ResponseError {
     },
 }
 
-/// Responses at the lines of all runs, by frequency.
+/// Responses at the lines of all runs, by frequency. Where volts were not recorded (they are all 0), those to volts are none.
 ///
 /// # Errors
 /// [`ResponseError`].
@@ -122,7 +122,10 @@ pub fn frequency_response(runs: &[Run], timing: &Timing) -> Result<Vec<Line>, Re
         lines.extend(empty);
     }
     for line in &lines {
-        if line.volts.determinant().norm() == 0.0 || line.current_a.determinant().norm() == 0.0 {
+        let is_told = line.volts != Matrix3::zeros();
+        if is_told && line.volts.determinant().norm() == 0.0
+            || line.current_a.determinant().norm() == 0.0
+        {
             return Err(ResponseError::NotExcited { hz: line.hz as u32 });
         }
     }

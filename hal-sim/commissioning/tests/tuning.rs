@@ -287,13 +287,14 @@ fn tuned_gains_give_the_margins_that_were_promised() {
     println!("{tuned:.3?}");
     let found = compare(&stage, &with_gains(parameters, &tuned.gains), 0.0, "tuned");
     found.holds();
-    assert!(found.median < 0.0154 && found.worst < 0.16);
+    // These gains reach further up, 180 Hz, than those for which the second bound was 0.16.
+    assert!(found.median < 0.0154 && found.worst < 0.178);
     // What was asked for.
     assert!(
         tuned.margins.ms <= 1.9 && tuned.margins.resonance_peak <= 0.5 && tuned.margins.is_stable
     );
     assert!(
-        tuned.margins.rejection < 0.0645,
+        tuned.margins.rejection < 0.0514,
         "{}",
         tuned.margins.rejection
     );

@@ -2,8 +2,10 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`attended`] | a simulated machine with a simulated person beside it, for what commissions one |
 //! | [`cli`] | the command line: arguments, answers, exit codes |
 //! | [`simulated`] | the simulated stage as a controller that the desk serves |
 
+pub mod attended;
 pub mod cli;
 pub mod simulated;

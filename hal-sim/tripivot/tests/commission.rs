@@ -1,15 +1,21 @@
 //! `tripivot commission` on machines as workshops build them: those that are sound are brought up, the others refused where it shows.
 
+use desk::commission::Backup;
 use firmware::control::servo::pivot_limits;
 use firmware::parameters::Parameters;
-use hal_sim::machine::devices::StageParameters;
+use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::unknown;
 use hal_sim::rig::Told;
 use std::path::PathBuf;
 use std::process::{Command, Output};
+use tripivot::attended::SimulatedMachine;
 
 /// The worst of the machines tried here, and a tenth more. Currents are as their meters have them.
 const MOST_FRICTION_ERROR: f64 = 0.006;
+/// The same of a motor's constant, with safe gains; and measured again with those that were tuned, where single motors are further off, by 0.54 % at
+/// the worst, and their mean is not.
+const MOST_CONSTANT_ERROR: f64 = 0.0027;
+const MOST_CONSTANT_ERROR_AGAIN: f64 = 0.006;
 
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("tripivot-{name}-{}", std::process::id()));
@@ -76,9 +82,10 @@ fn brings_up(seed: u64) {
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0), "{told}");
     finds_the_wires(&machine, &told);
-    finds_the_motors(&machine, &told);
+    finds_the_motors(&machine, &told, MOST_CONSTANT_ERROR);
     finds_what_is_moved(&machine, &told);
     finds_gains(&told);
+    ends_in_time(&told);
     finds_limits(&machine, &told);
     assert!(folder.join("settings.flash").exists());
     let report = std::fs::read_to_string(folder.join("report.html")).expect("a report");
@@ -87,6 +94,7 @@ fn brings_up(seed: u64) {
     assert_eq!(report.matches("<figure><svg").count(), 4);
     its_settings_run_the_machine(seed, &folder);
     one_step_is_run_again(&machine, seed, &folder);
+    what_was_before_is_given_back(&machine, seed, &folder);
     let _ = std::fs::remove_dir_all(&folder);
 }
 
@@ -127,12 +135,12 @@ fn error(told: &str, name: &str, truth: f64) -> f64 {
     error
 }
 
-fn finds_the_motors(machine: &StageParameters, told: &str) {
+fn finds_the_motors(machine: &StageParameters, told: &str, most: f64) {
     let plant = &machine.plant;
     let constant = plant.torque_constant_n_m_a * plant.gear_ratio * machine.analog.supply_gain;
     for pivot in 1..=3 {
         let off = error(told, &format!("motor of pivot {pivot}"), constant);
-        assert!(off.abs() < 0.0027);
+        assert!(off.abs() < most);
     }
     let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
     assert!(error(told, "mean of three", friction).abs() < MOST_FRICTION_ERROR);
@@ -171,13 +179,36 @@ fn finds_what_is_moved(machine: &StageParameters, told: &str) {
     }
 }
 
-/// Margins as they were measured with the gains that were found.
+/// Margins as they were measured with the gains that were found; and the sensitivity at 30 Hz, where the gains before were sound too, is less.
 fn finds_gains(told: &str) {
+    let (mut sound, mut better) = (true, false);
     for place in ["in the middle", "at X 70 Y 0"] {
-        let found: Vec<f64> = numbers(told, &format!("Ms {place}")).collect();
-        println!("Ms {place}: {found:?}");
-        assert!(found[0] <= 2.0 && found[0] < found[1]);
+        let ms: Vec<f64> = numbers(told, &format!("Ms {place}")).collect();
+        let rejection: Vec<f64> =
+            numbers(told, &format!("S(30 Hz) and crossover {place}")).collect();
+        println!("{place}: Ms {ms:?}, S(30 Hz) {rejection:?}");
+        assert!(ms[0] <= 2.0);
+        sound &= ms[1] <= 2.0;
+        better |= rejection[0] < rejection[2];
     }
+    assert!(better || !sound);
+}
+
+/// Most that all of it may take, by the controller's clock, s.
+const MOST_SECONDS: f64 = 300.0;
+
+fn ends_in_time(told: &str) {
+    let seconds = told
+        .rsplit_once("commissioned in ")
+        .map_or("", |(_, behind)| behind);
+    let seconds = seconds
+        .split(' ')
+        .next()
+        .and_then(|text| text.parse::<f64>().ok());
+    assert!(
+        seconds.is_some_and(|seconds| seconds < MOST_SECONDS),
+        "{told}"
+    );
 }
 
 /// As after a repair: what the other steps found is in the controller's parameters.
@@ -200,7 +231,81 @@ fn one_step_is_run_again(machine: &StageParameters, seed: u64, folder: &std::pat
         .map(|line| line.split(':').next().unwrap_or_default())
         .collect();
     assert_eq!(steps, ["friction", "keep"]);
-    finds_the_motors(machine, &told);
+    finds_the_motors(machine, &told, MOST_CONSTANT_ERROR_AGAIN);
+    // The same machine, of the same parts: what has changed is told, and is little.
+    let changed = told.lines().filter(|line| line.starts_with("changed: "));
+    for line in changed {
+        let share = line.rsplit_once('(').map_or("", |(_, share)| share);
+        let share: f64 = share
+            .split(' ')
+            .next()
+            .and_then(|text| text.parse().ok())
+            .expect("a share");
+        assert!(share.abs() < 5.0, "{line}");
+    }
+}
+
+/// The settings before the last run: those that the run before it left.
+fn what_was_before_is_given_back(machine: &StageParameters, seed: u64, folder: &std::path::Path) {
+    let seed = seed.to_string();
+    let undo = || {
+        Command::new(env!("CARGO_BIN_EXE_tripivot"))
+            .args(["commission", "--undo", "--unknown", &seed, "--out"])
+            .arg(folder)
+            .output()
+            .expect("the program runs")
+    };
+    let told = text(&undo());
+    let changed = told
+        .split(' ')
+        .next()
+        .and_then(|text| text.parse::<u32>().ok());
+    // Motor constants, and friction of three pivots, and what a record needs.
+    assert!(changed.is_some_and(|changed| changed >= 3), "{told}");
+    let again = text(&undo());
+    assert!(again.starts_with("0 parameters and 0 macros"), "{again}");
+    // All of what was before, those of single pivots too.
+    is_as_before(machine, folder);
+}
+
+/// What a controller keeps is what it kept before the last run.
+fn is_as_before(machine: &StageParameters, folder: &std::path::Path) {
+    let flash = SettingsFlash::open(&folder.join("settings.flash")).expect("kept settings");
+    let mut controller = SimulatedMachine::new(machine, flash);
+    let after = folder.join("after.txt");
+    let kept = Backup::of(&mut controller).expect("it answers");
+    kept.write(&after).expect("written");
+    let [before, after] = [folder.join("before.txt"), after]
+        .map(|path| std::fs::read_to_string(path).expect("a file"));
+    assert_eq!(after, before);
+}
+
+/// Half a kilogramme more: fitted, or refused with a reason and as it was before.
+#[test]
+fn a_new_payload_is_fitted_or_leaves_everything_as_it_was() {
+    let mut machine = unknown(14);
+    let (output, folder) = commission("payload", &["--unknown", "14"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    machine.plant.payload.mass_kg += 0.5;
+    let load = format!("plant.payload.mass_kg={}", machine.plant.payload.mass_kg);
+    let output = Command::new(env!("CARGO_BIN_EXE_tripivot"))
+        .args(["tune", "--unknown", "14", "--set", &load, "--out"])
+        .arg(&folder)
+        .output()
+        .expect("the program runs");
+    let told = text(&output);
+    println!("{told}");
+    if output.status.code() == Some(0) {
+        finds_gains(&told);
+    } else {
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(
+            told.contains("FAILED") && told.contains("what to do: "),
+            "{told}"
+        );
+        is_as_before(&machine, &folder);
+    }
+    let _ = std::fs::remove_dir_all(&folder);
 }
 
 #[test]
@@ -268,6 +373,7 @@ fn machines_with_a_defect_are_refused_where_it_shows() {
             "windings",
             "not within a factor of two",
         ),
+        ("gap", "plant.backlash_rad=0.0001", "gains", "swings by"),
     ] {
         let (output, folder) = commission(name, &["--unknown", "1", "--set", set]);
         let told = text(&output);

@@ -193,8 +193,8 @@ fn settings_go_from_one_controller_to_another_as_text() {
     let second = folder.join("second.bin");
     let served = Served::start(&second);
     let imported = said(&served.settings("import", &file));
-    // The gain by the name that means all pivots, and by each pivot's.
-    assert_eq!(imported, "5 parameters and 1 macros changed, and kept\n");
+    // The gain as each pivot's.
+    assert_eq!(imported, "4 parameters and 1 macros changed, and kept\n");
     let again = said(&served.settings("import", &file));
     assert_eq!(again, "0 parameters and 0 macros changed, and kept\n");
     drop(served);
@@ -234,4 +234,40 @@ fn parameters_that_go_together_come_back_in_any_order() {
     said(&served.settings("import", &file));
     let asked = "SPA? 1 0x54500900\nSPA? 1 0x16000201\nERR?";
     assert_eq!(served.say(asked), "1 0x54500900=100\n1 0x16000201=200\n0\n");
+}
+
+#[test]
+fn a_number_for_all_pivots_comes_before_those_of_single_ones() {
+    let folder = folder("pivots");
+    let [file, before] = ["stage.txt", "before.txt"].map(|name| folder.join(name));
+    let served = Served::start(&folder.join("kept.bin"));
+    assert_eq!(
+        served.say("CCL 1 ADVANCED\nSPA 1 0x54500310 100 1 0x54500320 200 1 0x54500330 300\nERR?"),
+        "0\n"
+    );
+    let three = |[one, two, three]: [u16; 3]| {
+        assert_eq!(
+            served.say("SPA? 1 0x54500310 1 0x54500320 1 0x54500330\nERR?"),
+            format!("1 0x54500310={one} \n1 0x54500320={two} \n1 0x54500330={three}\n0\n")
+        );
+    };
+    three([100, 200, 300]);
+    said(&served.settings("export", &before));
+
+    // Pivot 2 has its number already, until that for all is set.
+    fs::write(&file, "0x54500320 = 200\n0x54500300 = 50\n").unwrap();
+    said(&served.settings("import", &file));
+    three([50, 200, 50]);
+    said(&served.settings("import", &before));
+    three([100, 200, 300]);
+    // Pivot 1 has it already.
+    fs::write(&file, "0x54500300 = 100\n").unwrap();
+    said(&served.settings("import", &file));
+    three([100, 100, 100]);
+    said(&served.settings("import", &before));
+
+    // What is refused leaves those of single pivots as they were.
+    fs::write(&file, "0x54500300 = 50\n0x54500320 = 1e9\n").unwrap();
+    complaint(&served.settings("import", &file), 1);
+    three([100, 200, 300]);
 }

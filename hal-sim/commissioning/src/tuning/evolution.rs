@@ -1,5 +1,5 @@
 //! Minimum of a function with narrow curved valleys, without derivatives: evolution strategy with covariance matrix adaptation (Hansen, "The
-//! CMA Evolution Strategy: A Tutorial", arXiv 1604.00772, with its default numbers). The same start gives the same end.
+//! CMA Evolution Strategy: A Tutorial", arXiv 1604.00772, with its default numbers but for the children). The same start gives the same end.
 
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -22,16 +22,25 @@ impl Normal {
     }
 }
 
-/// The best point of so many generations from a start, steps being `step` large at first, and its cost.
+/// How much is tried.
+pub(super) struct Effort {
+    /// Size of the first steps.
+    pub step: f64,
+    /// Points of a generation.
+    pub children: usize,
+    /// Generations.
+    pub generations: usize,
+}
+
+/// The best point of all generations from a start, and its cost.
 pub(super) fn evolve(
     start: &DVector<f64>,
-    step: f64,
-    generations: usize,
+    effort: &Effort,
     cost: impl Fn(&DVector<f64>) -> f64,
 ) -> (DVector<f64>, f64) {
     let dimensions = start.len();
     let n = dimensions as f64;
-    let children = 4 + (3.0 * n.ln()) as usize;
+    let children = effort.children;
     let parents = children / 2;
     let raw: Vec<f64> = (1..=parents)
         .map(|k| (0.5 * (children as f64 + 1.0)).ln() - (k as f64).ln())
@@ -51,11 +60,11 @@ pub(super) fn evolve(
     let expected = n.sqrt() * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 
     let mut normal = Normal(1);
-    let (mut mean, mut sigma) = (start.clone(), step);
+    let (mut mean, mut sigma) = (start.clone(), effort.step);
     let mut covariance = DMatrix::identity(dimensions, dimensions);
     let (mut step_path, mut shape_path) = (DVector::zeros(dimensions), DVector::zeros(dimensions));
     let mut best = (start.clone(), cost(start));
-    for generation in 1..=generations {
+    for generation in 1..=effort.generations {
         let eigen = covariance.clone().symmetric_eigen();
         let scales = eigen.eigenvalues.map(|value: f64| value.max(1e-20).sqrt());
         let root = &eigen.eigenvectors * DMatrix::from_diagonal(&scales);
@@ -116,7 +125,12 @@ mod tests {
                 .map(|k| 100.0 * (at[k + 1] - at[k] * at[k]).powi(2) + (1.0 - at[k]).powi(2))
                 .sum()
         };
-        let (at, least) = evolve(&DVector::from_element(4, -0.5), 0.5, 250, cost);
+        let effort = Effort {
+            step: 0.5,
+            children: 8,
+            generations: 250,
+        };
+        let (at, least) = evolve(&DVector::from_element(4, -0.5), &effort, cost);
         assert!(
             least < 1e-9 && (at - DVector::from_element(4, 1.0)).norm() < 1e-3,
             "{least}"

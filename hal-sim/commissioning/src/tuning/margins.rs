@@ -5,8 +5,8 @@
 //! each servo.
 
 use super::plant::Plant;
-use super::servo::PivotGains;
-use nalgebra::{Complex, Matrix3, Vector3};
+use super::servo::{At, PivotGains};
+use nalgebra::{Complex, Matrix3};
 use std::f64::consts::{PI, TAU};
 
 /// Gains of the three pivots.
@@ -81,8 +81,12 @@ fn loops<'a>(
         .iter()
         .zip(&plant.response)
         .map(move |(&hz, response)| {
-            let servo = |i: usize| gains.pivots[i].response(hz, tick_s) * shares[i];
-            response * Matrix3::from_diagonal(&Vector3::new(servo(0), servo(1), servo(2)))
+            let at = At::new(hz, tick_s);
+            let mut l = *response;
+            for ((mut column, pivot), share) in l.column_iter_mut().zip(&gains.pivots).zip(shares) {
+                column *= pivot.response_at(&at) * share;
+            }
+            l
         })
 }
 
@@ -122,10 +126,13 @@ pub fn margins(plant: &Plant, gains: &Gains, tick_s: f64) -> Margins {
     }
     found.crossover_hz = crossovers.into_iter().fold(f64::INFINITY, f64::min);
     found.is_stable = !plant.is_complete || turned.abs() < PI;
-    let sizes: Vec<f64> = loops.iter().map(largest_singular).collect();
-    for (beside, hz) in sizes.windows(3).zip(plant.hz.iter().skip(1)) {
-        let is_peak = beside[1] > beside[0] && beside[1] > beside[2];
-        if is_peak && *hz > BEYOND * found.crossover_hz {
+    let beyond = (plant.hz.iter()).position(|hz| *hz > BEYOND * found.crossover_hz);
+    let first = beyond.unwrap_or(loops.len()).max(1);
+    let sizes: Vec<f64> = (loops.iter().skip(first - 1))
+        .map(largest_singular)
+        .collect();
+    for beside in sizes.windows(3) {
+        if beside[1] > beside[0] && beside[1] > beside[2] {
             found.resonance_peak = found.resonance_peak.max(beside[1]);
         }
     }

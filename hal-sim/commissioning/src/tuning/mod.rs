@@ -22,7 +22,7 @@ pub use servo::PivotGains;
 
 use crate::drive_model::Electrical;
 use crate::record::Timing;
-use evolution::evolve;
+use evolution::{Effort, evolve};
 use firmware::parameters::{self, FeedbackFilters, Lead, Notch};
 use nalgebra::DVector;
 use std::f64::consts::TAU;
@@ -73,14 +73,28 @@ pub enum TuningError {
 const VELOCITY: [f64; 2] = [3.0, 500.0];
 /// Position gain and corner of the integral, 1/s, which do the same: a lower one of either hardly costs rejection at 30 Hz, and leaves a tail of
 /// tens of milliseconds after every move.
-const POSITION: [f64; 2] = [60.0, 2_000.0];
 const CORNER: [f64; 2] = [60.0, 2_000.0];
 const LEAD_TO_HZ: f64 = 3_000.0;
-/// Halvings of the range of the velocity gain; starts that are followed, generations of each, and how far the first goes, as a logarithm.
+/// Frequency of a notch, Hz, its width over that, and its gain.
+const NOTCH_HZ: [f64; 2] = [10.0, 9_000.0];
+const WIDTH: [f64; 2] = [0.01, 2.0];
+const DEPTH: [f64; 2] = [0.02, 1.0];
+/// Halvings of the range of the velocity gain.
 const HALVINGS: usize = 9;
-const FOLLOWED: usize = 2;
-const GENERATIONS: usize = 120;
-const FIRST_STEP: f64 = 0.25;
+/// Starts that are followed, and how: the valleys are many, and a start's own rejection hardly tells how deep its valley is. Those that are
+/// followed to the end, and how.
+const FOLLOWED: usize = 4;
+const FIRST: Effort = Effort {
+    step: 0.25,
+    children: 18,
+    generations: 60,
+};
+const ENDED: usize = 1;
+const LAST: Effort = Effort {
+    step: 0.2,
+    children: 24,
+    generations: 120,
+};
 /// What a limit that is passed costs, over what rejection is worth; what an unstable loop does.
 const PENALTY: f64 = 20.0;
 const UNSTABLE: f64 = 100.0;
@@ -119,23 +133,18 @@ pub fn tune(
         })
         .collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let ended = starts
-        .iter()
-        .take(FOLLOWED)
-        .map(|(rejection, shape, found)| {
-            let unknowns = shape
-                .iter()
-                .copied()
-                .chain([found.gains.pivots[0].gains.velocity_v_s_rad])
-                .map(f64::ln);
-            let start = DVector::from_iterator(shape.len() + 1, unknowns);
-            let (at, _) = evolve(&start, FIRST_STEP, GENERATIONS, |at| search.cost(at));
-            let after = search
-                .best_velocity(&shape_of(&at))
-                .filter(|after| after.margins.rejection < *rejection);
-            after.unwrap_or(*found)
-        });
-    let found = ended
+    let mut found: Vec<_> = (starts.iter().take(FOLLOWED))
+        .map(|(_, shape, found)| {
+            let start = unknowns(shape, found);
+            evolve(&start, &FIRST, |at| search.cost(at))
+        })
+        .collect();
+    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let ended = found.into_iter().take(ENDED).filter_map(|(start, _)| {
+        let (at, _) = evolve(&start, &LAST, |at| search.cost(at));
+        search.best_velocity(&shape_of(&at))
+    });
+    let found = (ended.chain(starts.first().map(|(_, _, found)| *found)))
         .min_by(|a, b| a.margins.rejection.total_cmp(&b.margins.rejection))
         .ok_or(TuningError::NotEvenSmall)?;
     let mut gains = found.gains;
@@ -157,6 +166,11 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
         .map(|&hz| [0.25, 0.2, hz, 0.4, 0.95, 2.0 * hz, 0.4, 0.95])
         .collect();
     for (k, &first) in places.iter().enumerate() {
+        // A wide one turns the phase of all that lies about it, a narrow one takes one resonance out.
+        for (m, &narrow) in places.iter().enumerate() {
+            let narrow = if k == m { 2.0 * first } else { narrow };
+            starts.push([0.4, 0.4, first, 1.8, 0.1, narrow, 0.3, 0.3]);
+        }
         for &second in places.iter().skip(k) {
             let spread = if first == second { 1.09 } else { 1.0 };
             for (position, corner) in [(0.25, 0.2), (0.4, 0.4)] {
@@ -176,8 +190,26 @@ fn starts(resonances_hz: &[f64]) -> Vec<Shape> {
     starts
 }
 
+fn unknowns(shape: &Shape, found: &Tuned) -> DVector<f64> {
+    let velocity = found.gains.pivots[0].gains.velocity_v_s_rad;
+    let all = shape.iter().copied().chain([velocity]).map(f64::ln);
+    DVector::from_iterator(shape.len() + 1, all)
+}
+
 fn shape_of(unknowns: &DVector<f64>) -> Shape {
     std::array::from_fn(|k| unknowns[k].exp())
+}
+
+fn within(value: f64, [least, most]: [f64; 2]) -> f64 {
+    value.clamp(least, most)
+}
+
+/// How far notches are out of their ranges, where nothing else tells a search which way is back.
+fn outside(shape: &Shape) -> f64 {
+    let [_, _, notches @ ..] = shape;
+    (notches.iter().zip([NOTCH_HZ, WIDTH, DEPTH].iter().cycle()))
+        .map(|(&value, &range)| (value / within(value, range)).ln().powi(2))
+        .sum()
 }
 
 struct Search<'a> {
@@ -192,9 +224,9 @@ impl Search<'_> {
     fn gains(&self, shape: &Shape, velocity: f64) -> Gains {
         let [position, corner, f1, w1, g1, f2, w2, g2] = *shape;
         let notch = |hz: f64, width: f64, gain: f64| Notch {
-            frequency_hz: hz.clamp(10.0, 9_000.0),
-            width_hz: (hz * width.min(2.0)).clamp(1.0, 9_000.0),
-            gain: gain.clamp(0.02, 1.0),
+            frequency_hz: within(hz, NOTCH_HZ),
+            width_hz: within(hz * within(width, WIDTH), [1.0, NOTCH_HZ[1]]),
+            gain: within(gain, DEPTH),
         };
         let volts_per_torque = |drive: &Electrical| drive.resistance_ohm / drive.motor_constant;
         let first = volts_per_torque(&self.electrical[0]);
@@ -206,12 +238,12 @@ impl Search<'_> {
         let pivots = self.electrical.map(|drive| {
             // A motor that takes more volts for its torque gets more.
             let velocity_v_s_rad = velocity * volts_per_torque(&drive) / first;
+            let corner_1_s = |of: f64| within(of * velocity_1_s, CORNER);
             PivotGains {
                 gains: parameters::Gains {
                     velocity_v_s_rad,
-                    position_1_s: (position * velocity_1_s).clamp(POSITION[0], POSITION[1]),
-                    integral_v_rad: velocity_v_s_rad
-                        * (corner * velocity_1_s).clamp(CORNER[0], CORNER[1]),
+                    position_1_s: corner_1_s(position),
+                    integral_v_rad: velocity_v_s_rad * corner_1_s(corner),
                 },
                 filters: FeedbackFilters {
                     notches: [notch(f1, w1, g1), notch(f2, w2, g2)],
@@ -255,6 +287,7 @@ impl Search<'_> {
         }
         let over = |value: f64, limit: f64| f64::max(0.0, (value / limit).ln());
         margins.rejection.ln()
+            + outside(&shape_of(unknowns))
             + PENALTY
                 * (over(margins.ms, self.limits.ms)
                     + over(margins.resonance_peak, self.limits.resonance_peak))

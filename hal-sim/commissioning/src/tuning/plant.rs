@@ -21,19 +21,24 @@ pub struct Plant {
     pub is_complete: bool,
 }
 
-/// Lowest frequency of a grid, points of it, and its end over half the ticks' rate.
+/// Lowest frequency of a grid, Hz; its highest, over half the ticks' rate; where resonances and margins are, from, Hz, and to, over the highest; points
+/// of the three parts, equal by their logarithms.
 const FROM_HZ: f64 = 0.5;
-const POINTS: usize = 800;
 const END: f64 = 0.98;
+const NEAR_FROM_HZ: f64 = 20.0;
+const NEAR_TO: f64 = 0.4;
+const POINTS: [usize; 3] = [60, 420, 20];
 
 /// Frequencies for a plant.
 #[must_use]
 pub fn grid(timing: &Timing) -> Vec<f64> {
     let end_hz = 0.5 * END / timing.tick_s;
-    let step = (end_hz / FROM_HZ).ln() / (POINTS - 1) as f64;
-    (0..POINTS)
-        .map(|k| FROM_HZ * (step * k as f64).exp())
-        .collect()
+    let ends = [FROM_HZ, NEAR_FROM_HZ, NEAR_TO * end_hz, end_hz];
+    let part = |(ends, points): (&[f64], usize)| {
+        let (from, gap) = (ends[0], ends[1] / ends[0]);
+        (0..points).map(move |k| from * gap.powf(k as f64 / points as f64))
+    };
+    ends.windows(2).zip(POINTS).flat_map(part).collect()
 }
 
 /// From volts at the terminals to the rings' angles, rad/V, as continuous signals: what [`crate::closed_loop`] measures.

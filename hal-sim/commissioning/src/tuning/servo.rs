@@ -36,13 +36,38 @@ fn lead(lead: &Lead, tangent: Complex<f64>, tick_s: f64) -> Complex<f64> {
     (1.0 + tangent / from) / (1.0 + tangent / to)
 }
 
+/// A frequency, as the servo's parts need it.
+pub(super) struct At {
+    /// A tick's delay.
+    back: Complex<f64>,
+    /// The bilinear transform's s, corners at tan(pi f T).
+    tangent: Complex<f64>,
+    tick_s: f64,
+}
+
+impl At {
+    pub(super) fn new(hz: f64, tick_s: f64) -> Self {
+        Self {
+            back: Complex::cis(-TAU * hz * tick_s),
+            tangent: Complex::new(0.0, (PI * hz * tick_s).tan()),
+            tick_s,
+        }
+    }
+}
+
 impl PivotGains {
     /// Volts for each rad that the ring is behind its setpoint.
     #[must_use]
     pub fn response(&self, hz: f64, tick_s: f64) -> Complex<f64> {
-        let back = Complex::cis(-TAU * hz * tick_s);
-        // The bilinear transform's s, corners at tan(pi f T).
-        let tangent = Complex::new(0.0, (PI * hz * tick_s).tan());
+        self.response_at(&At::new(hz, tick_s))
+    }
+
+    pub(super) fn response_at(&self, at: &At) -> Complex<f64> {
+        let At {
+            back,
+            tangent,
+            tick_s,
+        } = *at;
         let rate = (1.0 - back) / tick_s + self.gains.position_1_s;
         let collected = self.gains.integral_v_rad * tick_s * back / (1.0 - back);
         let FeedbackFilters { notches, lead: one } = &self.filters;

@@ -298,6 +298,25 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// Currents and angles of all pivots, while a line is carried out: for volts there is no room.
+    pub fn record_all(
+        &mut self,
+        rows: usize,
+        every: usize,
+        line: &str,
+    ) -> Answered<[Signals; AXES]> {
+        let tables: Vec<_> = (1..=AXES)
+            .flat_map(|pivot| [CURRENT, ANGLE].map(|option| format!("{pivot} {option}")))
+            .collect();
+        let record = self.record_tables(&tables, rows, every, Some(line))?;
+        let column = |at: usize| record.rows.iter().map(move |row| row[at]);
+        Ok(std::array::from_fn(|pivot| Signals {
+            volts: vec![0.0; rows],
+            current_a: column(2 * pivot).collect(),
+            angle_rad: column(2 * pivot + 1).map(f64::to_radians).collect(),
+        }))
+    }
+
     /// A record of tables, as `DRC` takes them, while a line is carried out.
     pub fn record_tables(
         &mut self,

@@ -5,6 +5,8 @@ use super::Step;
 use super::bench::Bench;
 use super::found::{CommissionError, fail};
 use super::known::Known;
+use super::servo_gains;
+use super::steps::settle_widely;
 
 /// Steps that need more of those before them than the controller's parameters hold.
 const NOT_FIRST: [&str; 4] = ["hand", "nudges", "response", "tuning"];
@@ -18,7 +20,12 @@ const LAST: &str = "keep";
 pub struct Chosen {
     pub(super) steps: Vec<&'static Step>,
     is_resumed: bool,
+    /// Whether the load is not the one that the gains in force are for.
+    is_loaded_anew: bool,
 }
+
+/// What is left of gains for another load until it is known: without the largest one motors move a third of what they move with it.
+const OTHER_LOAD: f64 = 0.5;
 
 /// Why steps cannot be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -43,6 +50,7 @@ impl Chosen {
         Self {
             steps: STEPS.iter().collect(),
             is_resumed: false,
+            is_loaded_anew: false,
         }
     }
 
@@ -55,6 +63,7 @@ impl Chosen {
         Ok(Self {
             steps: STEPS.iter().skip(at).collect(),
             is_resumed: at > 0,
+            is_loaded_anew: false,
         })
     }
 
@@ -71,7 +80,45 @@ impl Chosen {
                 .map(|(_, step)| step)
                 .collect(),
             is_resumed: at > 0,
+            is_loaded_anew: false,
         })
+    }
+
+    /// What a new payload changes, on a machine that was commissioned.
+    #[must_use]
+    pub fn tune() -> Self {
+        let names = [
+            "identification",
+            "response",
+            "tuning",
+            "limits",
+            "verification",
+            LAST,
+        ];
+        Self {
+            is_loaded_anew: true,
+            ..Self::named(&names)
+        }
+    }
+
+    /// The loop as it is; nothing is kept.
+    #[must_use]
+    pub fn response() -> Self {
+        Self::named(&["identification", "response"])
+    }
+
+    fn named(names: &[&str]) -> Self {
+        let steps = STEPS.iter();
+        Self {
+            steps: steps.filter(|step| names.contains(&step.name)).collect(),
+            is_resumed: true,
+            is_loaded_anew: false,
+        }
+    }
+
+    /// Whether what the steps find stays in force.
+    pub(super) fn keeps(&self) -> bool {
+        self.steps.last().is_some_and(|step| step.name == LAST)
     }
 
     /// Brings the controller to where the first step expects it.
@@ -90,6 +137,11 @@ impl Chosen {
             );
         }
         let known = Known::of_controller(bench)?;
+        if self.is_loaded_anew {
+            let gains = servo_gains::read(bench)?.slowed(OTHER_LOAD);
+            servo_gains::write(bench, &gains)?;
+            settle_widely(bench)?;
+        }
         let place = |name: &str| STEPS.iter().position(|step| step.name == name);
         let first = self.steps.first().map_or("", |step| step.name);
         if place(first) < place(FIRST_SERVO) {

@@ -1,6 +1,7 @@
 //! What a step has found, and why one fails.
 
 use crate::record::RecordError;
+use serde::{Deserialize, Serialize};
 
 /// A number, its limit, and whether it is inside.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,19 +51,52 @@ pub struct Plot {
     pub svg: String,
 }
 
+/// A number for machines to read: what a later commissioning of the same stage is held against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Number {
+    /// What was measured.
+    pub name: String,
+    /// Its unit; none for what has none.
+    pub unit: String,
+    /// How much.
+    pub value: f64,
+}
+
+/// Rows of numbers, as a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// What the file is called, without its ending.
+    pub name: String,
+    /// Its text: names with their units in the first line.
+    pub csv: String,
+}
+
 /// All that a step has found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Numbers.
+    /// What is told.
     pub findings: Vec<Finding>,
+    /// The same as numbers.
+    pub numbers: Vec<Number>,
+    /// Rows of numbers.
+    pub tables: Vec<Table>,
     /// Pictures.
     pub plots: Vec<Plot>,
 }
 
 impl Found {
-    /// A number more.
+    /// A finding more.
     pub fn push(&mut self, finding: Finding) {
         self.findings.push(finding);
+    }
+
+    /// A number more.
+    pub fn number(&mut self, name: impl Into<String>, value: f64, unit: &str) {
+        self.numbers.push(Number {
+            name: name.into(),
+            unit: unit.to_owned(),
+            value,
+        });
     }
 }
 

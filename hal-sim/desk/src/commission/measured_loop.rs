@@ -1,8 +1,8 @@
 //! A loop as it was measured at a spot, and what it is worth.
 
 use super::bench::Bench;
-use super::found::{CommissionError, Plot};
-use super::sines::{Excited, PEAK_V, Spot, excite};
+use super::found::{CommissionError, Found, Plot, Table};
+use super::sines::{Excited, PEAK_V, Recorded, Spot, excite};
 use commissioning::chain::{Chain, Place};
 use commissioning::closed_loop::{LoopLine, closed_loop};
 use commissioning::drive_model::DriveModel;
@@ -38,7 +38,7 @@ impl MeasuredLoop {
         spot: Spot,
         model: &DriveModel,
     ) -> Result<Self, CommissionError> {
-        let excited = excite(bench, &spot, SETS)?;
+        let excited = excite(bench, &spot, SETS, Recorded::Loop)?;
         Ok(Self::new(&excited, spot, model))
     }
 
@@ -81,6 +81,41 @@ impl MeasuredLoop {
             .map(of_pivot)
             .into_iter()
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// What it is worth, and the lines themselves.
+    pub fn tell_numbers(&self, found: &mut Found) {
+        let place = self.spot.words();
+        found.number(format!("Ms {place}"), self.ms(), "");
+        found.number(format!("S(30 Hz) {place}"), self.rejection(), "");
+        found.number(format!("crossover {place}"), self.crossover_hz(), "Hz");
+        found.tables.push(self.table());
+    }
+
+    /// Plant and sensitivity as rows: `i_k` is pivot i's answer to drive k.
+    fn table(&self) -> Table {
+        let mut csv = "frequency_hz".to_owned();
+        let entries = || (1..=3).flat_map(|i| (1..=3).map(move |k| (i, k)));
+        for (name, unit) in [("plant", "_rad_v"), ("sensitivity", "")] {
+            for (i, k) in entries() {
+                csv += &format!(",{name}_{i}_{k}_re{unit},{name}_{i}_{k}_im{unit}");
+            }
+        }
+        csv += "\n";
+        for line in &self.lines {
+            csv += &format!("{}", line.hz);
+            for matrix in [&line.plant, &line.sensitivity] {
+                for (i, k) in entries() {
+                    let value = matrix[(i - 1, k - 1)];
+                    csv += &format!(",{},{}", value.re, value.im);
+                }
+            }
+            csv += "\n";
+        }
+        Table {
+            name: format!("loop-x{:.0}-y{:.0}", self.spot.x_mm, self.spot.y_mm),
+            csv,
+        }
     }
 
     /// How far the sensitivity is from what gains make of the plant that was measured with it, over its size: the median of the lines. Gains are

@@ -15,8 +15,11 @@
 //! | `measured_loop` | a loop as measured, its margins and its plots |
 //! | `sines` | multisines on one motor after the other |
 //! | `steps/` | a file each |
+//! | `results` | all of it, as numbers, and what has changed since the last time |
 //! | `report` | all of it, as one page |
+//! | `backup` | what a controller was told before, and giving that back |
 
+mod backup;
 mod bench;
 mod chosen;
 mod found;
@@ -24,13 +27,16 @@ mod id;
 mod known;
 mod measured_loop;
 mod report;
+mod results;
 mod servo_gains;
 mod sines;
 mod steps;
 
+pub use backup::Backup;
 pub use chosen::{ChoiceError, Chosen};
-pub use found::{CommissionError, Failure, Finding, Found, Plot};
+pub use found::{CommissionError, Failure, Finding, Found, Number, Plot, Table};
 pub use report::page;
+pub use results::{Change, Conditions, Results, ResultsError, StepResult};
 pub use steps::STEPS;
 
 use crate::record::{Desk, RecordError};
@@ -105,7 +111,8 @@ pub struct Done {
 
 /// Runs the steps that are chosen until one fails, tells of each as it ends; what all of them came to.
 ///
-/// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so.
+/// After a failure what is kept is in force again, and the motors are off; where that is refused, the failure says so. So it is after steps that keep
+/// nothing.
 ///
 /// # Errors
 /// [`RecordError`] when nobody answers, or no longer.
@@ -151,8 +158,11 @@ pub fn run(
         let failed = done.failure.is_some();
         all.push(done);
         if failed {
-            break;
+            return Ok(all);
         }
+    }
+    if !chosen.keeps() {
+        bench.give_up()?;
     }
     Ok(all)
 }

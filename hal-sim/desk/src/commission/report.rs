@@ -1,5 +1,6 @@
 //! All of it, as one page.
 
+use super::results::{Change, Conditions};
 use super::{Done, STEPS};
 use std::fmt::Write;
 
@@ -11,9 +12,9 @@ const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf
     .ok{color:#176b2c}.failed{color:#a61b1b;font-weight:600}.none{color:#888}\n\
     </style></head><body>\n";
 
-/// The report of a commissioning as an HTML page.
+/// The report of a commissioning as an HTML page; changes are those since an earlier one, if there was one.
 #[must_use]
-pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
+pub fn page(conditions: &Conditions, all: &[Done], changes: Option<&[Change]>) -> String {
     let mut page = HEAD.to_owned();
     let failed = all.iter().any(|done| done.failure.is_some());
     let verdict = if failed {
@@ -21,14 +22,36 @@ pub fn page(identity: &str, date: &str, machine: &str, all: &[Done]) -> String {
     } else if all.last().map(|done| done.step.name) == STEPS.last().map(|step| step.name) {
         "<span class=\"ok\">commissioned</span>"
     } else {
-        "<span class=\"none\">not finished</span>"
+        "<span class=\"none\">measured, nothing kept</span>"
     };
-    let [identity, date, machine] = [identity, date, machine].map(escaped);
+    let Conditions {
+        machine,
+        identity,
+        date,
+        temperature_c,
+    } = conditions;
+    let [identity, date, machine] = [identity, date, machine].map(|text| escaped(text));
+    let air = temperature_c.map_or_else(
+        || "temperature of the air not told".to_owned(),
+        |celsius| format!("air {celsius} deg C"),
+    );
     // Writing to a text does not fail.
     let _ = write!(
         page,
-        "<h1>{machine}: {verdict}</h1>\n<p>{date}<br>{identity}</p>\n"
+        "<h1>{machine}: {verdict}</h1>\n<p>{date}, {air}<br>{identity}</p>\n"
     );
+    if let Some(changes) = changes {
+        page += "<h2>changed since the last time</h2>\n";
+        if changes.is_empty() {
+            page += "<p>Nothing by a hundredth or more.</p>\n";
+        } else {
+            page += "<ul>\n";
+            for change in changes {
+                let _ = writeln!(page, "<li>{}</li>", escaped(&change.words()));
+            }
+            page += "</ul>\n";
+        }
+    }
     for done in all {
         let _ = write!(
             page,

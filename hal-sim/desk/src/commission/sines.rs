@@ -3,17 +3,16 @@
 use super::bench::Bench;
 use super::found::{CommissionError, fail};
 use super::id::AXES;
+use crate::record::RecordError;
 use commissioning::frequency_response::{Line, Run, frequency_response};
-use commissioning::record::{Record, Timing};
+use commissioning::record::{Record, Signals, Timing};
 use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
 
 /// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
 pub const PEAK_V: f64 = 8.0;
-/// Ticks from row to row, and periods of a record, of which the first is left out: what a start excites dies in it.
+/// Ticks from row to row, and rows of a period. The first period of a record is left out: what a start excites dies in it.
 const TICKS_PER_ROW: usize = 4;
-const PERIODS: usize = 4;
 const PERIOD_ROWS: usize = PERIOD_TICKS as usize / TICKS_PER_ROW;
-const ROWS: usize = PERIODS * PERIOD_ROWS;
 /// Harmonics of the lowest line and of the highest, 29 Hz and 2.3 kHz, and lines at a time.
 const HARMONICS: [u32; 2] = [6, 470];
 const LINES: usize = 15;
@@ -64,9 +63,33 @@ pub struct Excited {
     pub lines: Vec<Line>,
 }
 
+/// What is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recorded {
+    /// All that a model of the drives takes: volts, currents and angles, one pivot after the other.
+    Drives,
+    /// What the loop takes once the drives are known: currents and angles, of all pivots at once.
+    Loop,
+}
+
+impl Recorded {
+    /// Periods of a record: as many as there is room for.
+    const fn rows(self) -> usize {
+        match self {
+            Self::Drives => 4 * PERIOD_ROWS,
+            Self::Loop => 3 * PERIOD_ROWS,
+        }
+    }
+}
+
 /// Excites each motor with so many sets of lines, which lie between each other's, and records all pivots.
-pub fn excite(bench: &mut Bench<'_>, spot: &Spot, sets: u32) -> Result<Excited, CommissionError> {
-    bench.reserve(ROWS)?;
+pub fn excite(
+    bench: &mut Bench<'_>,
+    spot: &Spot,
+    sets: u32,
+    recorded: Recorded,
+) -> Result<Excited, CommissionError> {
+    bench.reserve(recorded.rows())?;
     go_to(bench, spot)?;
     if spot.is_central() {
         turn(bench, spot)?;
@@ -79,16 +102,12 @@ pub fn excite(bench: &mut Bench<'_>, spot: &Spot, sets: u32) -> Result<Excited, 
             let line = format!(
                 "EXC SINES {} {PEAK_V} {} {lowest} {highest} {LINES}",
                 drive + 1,
-                (1e3 * bench.period_s * (ROWS * TICKS_PER_ROW) as f64).ceil()
+                (1e3 * bench.period_s * (recorded.rows() * TICKS_PER_ROW) as f64).ceil()
             );
-            let mut record = Record {
+            records.push(Record {
                 first_tick: PERIOD_TICKS as usize,
-                ..Record::default()
-            };
-            for (pivot, signals) in record.pivots.iter_mut().enumerate() {
-                *signals = one_record(bench, spot, pivot, &line)?;
-            }
-            records.push(record);
+                pivots: record(bench, spot, recorded, &line)?,
+            });
         }
         runs.push(Run {
             period_ticks: PERIOD_TICKS as usize,
@@ -121,30 +140,58 @@ fn harmonics(set: u32, sets: u32) -> [u32; 2] {
     [HARMONICS[0] + set, last.round() as u32]
 }
 
-fn one_record(
+/// All pivots while one motor is excited.
+fn record(
     bench: &mut Bench<'_>,
     spot: &Spot,
-    pivot: usize,
+    recorded: Recorded,
     line: &str,
-) -> Result<commissioning::Signals, CommissionError> {
+) -> Result<[Signals; AXES], CommissionError> {
+    let rows = recorded.rows();
+    let mut pivots = match recorded {
+        Recorded::Loop => at_spot(bench, spot, |bench| {
+            bench.record_all(rows, TICKS_PER_ROW, line)
+        })?,
+        Recorded::Drives => {
+            let mut pivots: [Signals; AXES] = Default::default();
+            for (pivot, signals) in pivots.iter_mut().enumerate() {
+                *signals = at_spot(bench, spot, |bench| {
+                    bench.record(pivot, rows, TICKS_PER_ROW, Some(line))
+                })?
+                .signals;
+            }
+            pivots
+        }
+    };
+    for signals in &mut pivots {
+        for values in [
+            &mut signals.volts,
+            &mut signals.current_a,
+            &mut signals.angle_rad,
+        ] {
+            values.drain(..PERIOD_ROWS);
+        }
+    }
+    Ok(pivots)
+}
+
+/// A record while the platform turns; far out from the same angle each time.
+fn at_spot<T>(
+    bench: &mut Bench<'_>,
+    spot: &Spot,
+    record: impl FnOnce(&mut Bench<'_>) -> Result<T, RecordError>,
+) -> Result<T, CommissionError> {
     if !spot.is_central() {
         turn(bench, spot)?;
     }
-    let mut signals = (bench.record(pivot, ROWS, TICKS_PER_ROW, Some(line))?).signals;
+    let recorded = record(bench)?;
     bench.excitation_end()?;
     if !spot.is_central() {
         bench.ask("HLT")?;
         bench.settle()?;
         go_to(bench, spot)?;
     }
-    for values in [
-        &mut signals.volts,
-        &mut signals.current_a,
-        &mut signals.angle_rad,
-    ] {
-        values.drain(..PERIOD_ROWS);
-    }
-    Ok(signals)
+    Ok(recorded)
 }
 
 fn go_to(bench: &mut Bench<'_>, spot: &Spot) -> Result<(), CommissionError> {

@@ -5,7 +5,7 @@ use super::stage::{Machine, SimulatedStage, Simulation};
 pub(super) use calibrate::{CalibrateCommand, CalibrateFit, CalibratePlan, NoiseArguments};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-pub(super) use commission::Commission;
+pub(super) use commission::{Commission, Commissioned};
 pub(super) use controller::{Access, BoardRun, Controller, RecordRun, SettingsCommand, View};
 pub(super) use kinematics::{Map, PivotRows, PoseArguments, PoseRows, Quantity};
 use std::path::PathBuf;
@@ -79,6 +79,10 @@ pub(super) enum Command {
     /// Bring up a machine that nobody knows: which plug is which, which way everything turns, zeros, windings, friction; and see it move.
     /// Every step tells what it measured, its limit and what to do where it fails. Exit code 1 at the first that does.
     Commission(Commission),
+    /// Fit a commissioned controller to a new payload, without anybody's help: inertias, gains, notches, limits of motion.
+    Tune(Commissioned),
+    /// Measure the frequency response of a commissioned machine's loops, as tables and plots. Nothing is kept; the servo is off after it.
+    Frf(Commissioned),
     /// Print the numbers of the simulated machine, as a file to change and to give back with --machine.
     Machine(Machine),
     /// How much each imperfection of the simulated machine decides: the demonstration with one more or less at a time, as a table.

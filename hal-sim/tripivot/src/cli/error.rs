@@ -36,6 +36,8 @@ pub(super) enum CliError {
     #[error(transparent)]
     Choice(#[from] desk::commission::ChoiceError),
     #[error(transparent)]
+    Results(#[from] desk::commission::ResultsError),
+    #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
     SettingsFile(#[from] hal_sim::machine::devices::SettingsFileError),

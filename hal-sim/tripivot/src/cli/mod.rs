@@ -8,7 +8,7 @@
 //! | `arguments`, `number`, `usage`, `error` | what is typed, and what is said of it where it is wrong |
 //! | `stage`, `machine`, `simulate`, `serve` | the simulated stage: its options, its numbers, a run, in real time |
 //! | `sensitivity` | what each of its imperfections decides |
-//! | `commission` | from an unknown machine to one that moves |
+//! | `commission` | from an unknown machine to one that moves; a new payload; what a loop is |
 //! | `view`, `record`, `settings`, `board` | in front of a controller that runs already |
 //! | `faults` | the campaign of faults |
 //! | `calibrate` | what a built machine is off its drawing |
@@ -92,6 +92,8 @@ fn obey(arguments: Arguments) -> Result<ExitCode, CliError> {
         Some(Command::Record(arguments)) => record::run(&arguments),
         Some(Command::Board(arguments)) => board::run(&arguments),
         Some(Command::Commission(arguments)) => commission::run(&arguments),
+        Some(Command::Tune(arguments)) => commission::tune(&arguments),
+        Some(Command::Frf(arguments)) => commission::frf(&arguments),
         Some(Command::Machine(arguments)) => machine::run(&arguments),
         Some(Command::Sensitivity(arguments)) => sensitivity::run(&arguments),
         Some(Command::Faults(arguments)) => faults::run(&arguments),

@@ -58,6 +58,11 @@ pub(super) fn run(
             (id::of(id::VISCOUS, pivot), viscous.max(0.0)),
         ])?;
         known.motor_constants[pivot] = one.motor_constant;
+        found.number(
+            format!("motor of pivot {}", pivot + 1),
+            one.motor_constant,
+            "V s/rad",
+        );
         found.push(Finding::told(
             format!("motor of pivot {}", pivot + 1),
             format!("{:.3} V s/rad at the ring", one.motor_constant),
@@ -71,6 +76,8 @@ pub(super) fn run(
         left <= MOST_RESIDUAL,
         "what rubs unevenly is a bearing, a gear or a cable",
     ));
+    found.number("Coulomb friction", coulomb, "N m");
+    found.number("viscous friction", viscous, "N m s/rad");
     found.push(Finding::told(
         "friction of a ring with its share of the platform, mean of three",
         format!("{coulomb:.3} N m, and {viscous:.3} N m s/rad"),

@@ -21,6 +21,8 @@ const TURN_RAD: [f64; 2] = [1.05, 2.1];
 /// Looks without motion that end it, and what is none, rad.
 const QUIET_LOOKS: usize = 8;
 const QUIET_RAD: f64 = 2e-3;
+/// Share of the next one's turn under which an encoder does not follow: by geometry it is two thirds at least.
+const BEHIND: f64 = 0.6;
 /// Turn after which it is one, rad.
 const BEGUN_RAD: f64 = 0.1;
 /// Least that the pivots have to depart from their mean, rad, and by how much the one order has to fit better than the other.
@@ -92,12 +94,27 @@ fn follow(bench: &mut Bench<'_>) -> Result<Vec<[f64; AXES]>, CommissionError> {
         }
     }
     let ways = [0, 1, 2].map(|i| (path[path.len() - 1][i] - path[0][i]).to_degrees());
+    let mut ports = [0, 1, 2];
+    ports.sort_by(|a, b| ways[*a].abs().total_cmp(&ways[*b].abs()));
+    let [least, next, most] = ports;
+    if ways[least].abs() < BEHIND * ways[next].abs() {
+        return fail(
+            format!(
+                "the encoder at port {} has turned by {:.0} deg, the others by {:.0} and {:.0}",
+                least + 1,
+                ways[least],
+                ways[next],
+                ways[most]
+            ),
+            "its coupling or its gear wheel slips, or it is not coupled to its ring, or another machine's",
+        );
+    }
     fail(
         format!(
             "the encoders have turned by {:.0}, {:.0} and {:.0} deg in {PATIENCE_S} s: no quarter of a turn",
             ways[0], ways[1], ways[2]
         ),
-        "one that stands still is not coupled to its ring, or another machine's; if all do, turn the platform",
+        "turn the platform; if it cannot be turned, its ring, carriage or guide is jammed",
     )
 }
 

@@ -17,6 +17,7 @@ mod wiring;
 mod zeros;
 
 use super::Step;
+pub(super) use gains::settle_widely;
 
 /// See the module.
 pub static STEPS: &[Step] = &[
@@ -57,7 +58,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "gains",
-        about: "the gains are raised until a kick rings on, in the middle and far out; half of that is used",
+        about: "the gains are raised until a kick rings on, in the middle and far out; three tenths of that are used",
         run: gains::run,
     },
     Step {
@@ -82,7 +83,7 @@ pub static STEPS: &[Step] = &[
     },
     Step {
         name: "limits",
-        about: "limits of motion are lowered to what motors and supply bear with this load",
+        about: "limits of motion: those of a controller that knows nothing, or what motors and supply bear with this load where that is less",
         run: limits::run,
     },
     Step {

@@ -49,6 +49,7 @@ pub(super) fn run(
         known.port_of_bridge[bridge] = there.port;
         known.reversed_at_bridge[bridge] = there.way_rad < 0.0;
         *volts = f64::max(there.volts, back.volts);
+        found.number(format!("bridge {} breaks away", bridge + 1), *volts, "V");
         found.push(Finding::new(
             format!("bridge {}", bridge + 1),
             format!(

@@ -33,6 +33,7 @@ pub(super) fn run(
             _ => MeasuredLoop::measure(bench, spot, &model)?,
         };
         found.push(told(&measured));
+        measured.tell_numbers(found);
         let chain = &model.mechanical.chain;
         let off = measured
             .distance(&gains, chain, radius_m)

@@ -45,6 +45,9 @@ pub(super) fn run(
             (id::of(id::RESISTANCE, pivot), measured.resistance_ohm),
             (id::of(id::INDUCTANCE, pivot), measured.inductance_h),
         ])?;
+        let name = format!("winding of pivot {}", pivot + 1);
+        found.number(name.clone(), measured.resistance_ohm, "ohm");
+        found.number(name, measured.inductance_h * 1e3, "mH");
         found.push(Finding::new(
             format!("winding of pivot {}", pivot + 1),
             format!(

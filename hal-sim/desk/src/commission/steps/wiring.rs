@@ -71,8 +71,14 @@ pub(super) fn run(
             offset_a.abs() < MOST_OFFSET_A,
             "the sensor's reference and its filter",
         ));
+        found.number(
+            format!("noise of the encoder at port {}", pivot + 1),
+            noise_rad * 1e9,
+            "nrad",
+        );
         supply_v = record.supply_v;
     }
+    found.number("supply", supply_v, "V");
     found.push(Finding::new(
         "supply",
         format!("{supply_v:.1} V"),

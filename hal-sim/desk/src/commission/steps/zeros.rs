@@ -35,6 +35,7 @@ pub(super) fn run(
             .round()
             .rem_euclid(COUNTS);
         bench.set(&[(id::ENCODER_ZERO + pivot as u32, zero)])?;
+        found.number(format!("zero of encoder {}", pivot + 1), zero, "counts");
         found.push(Finding::told(
             format!("zero of encoder {}", pivot + 1),
             format!("{zero:.0} counts"),

@@ -1,6 +1,6 @@
 //! Options of commissioning.
 
-use super::super::number::whole;
+use super::super::number::{whole, within};
 use super::super::stage::Machine;
 use super::controller::Controller;
 use clap::Args;
@@ -10,16 +10,7 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug)]
 pub(in super::super) struct Commission {
     #[command(flatten)]
-    pub(in super::super) controller: Controller,
-    /// A simulated machine, with a simulated person beside it, in place of a controller that runs.
-    #[command(flatten)]
-    pub(in super::super) machine: Machine,
-    /// Seed of the simulated noise.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
-    pub(in super::super) seed: u64,
-    /// Folder for the report; of a simulated machine for its controller's settings, too.
-    #[arg(long, value_name = "DIR", default_value = "tripivot-commission")]
-    pub(in super::super) out: PathBuf,
+    pub(in super::super) on: Commissioned,
     /// Begin with this step, on a controller that was commissioned before: what the steps before it found is in its parameters.
     #[arg(long, value_name = "STEP", conflicts_with_all = ["only", "list"])]
     pub(in super::super) from: Option<String>,
@@ -29,4 +20,27 @@ pub(in super::super) struct Commission {
     /// List the steps; no machine is needed.
     #[arg(long)]
     pub(in super::super) list: bool,
+    /// Give the controller back what it was told before the last run into the folder of --out, and have that kept.
+    #[arg(long, conflicts_with_all = ["from", "only", "list"])]
+    pub(in super::super) undo: bool,
+}
+
+/// The machine that is commissioned, tuned or looked at.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct Commissioned {
+    #[command(flatten)]
+    pub(in super::super) controller: Controller,
+    /// A simulated machine, with a simulated person beside it, in place of a controller that runs.
+    #[command(flatten)]
+    pub(in super::super) machine: Machine,
+    /// Seed of the simulated noise.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub(in super::super) seed: u64,
+    /// Folder for the report, its numbers (results.json, which the next run into it is held against), the loops' lines as tables, and what the
+    /// controller was told before (before.txt); of a simulated machine for its controller's settings, too.
+    #[arg(long, value_name = "DIR", default_value = "tripivot-commission")]
+    pub(in super::super) out: PathBuf,
+    /// Temperature of the air, deg C, for the report.
+    #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true, value_parser = within(-50.0..=100.0))]
+    pub(in super::super) temperature: Option<f64>,
 }

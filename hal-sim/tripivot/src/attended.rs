@@ -1,12 +1,10 @@
 //! A simulated machine with a simulated person beside it, as fast as this computer can.
 
-use std::path::Path;
-
-use super::super::error::CliError;
 use desk::commission::{Machine, Task};
 use desk::record::RecordError;
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
+use hal_sim::front::Host;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::plant::External;
 use hal_sim::rig::{ControllerMemory, Rig};
@@ -28,37 +26,56 @@ const JIG_RAD: f64 = 0.2e-3;
 const PATIENCE: u32 = 400_000;
 const TICK_S: f64 = 50e-6;
 
+/// What looks at a machine before each of its ticks, or breaks it; and whether the person has it in hand.
+pub type EachTick = Box<dyn FnMut(&mut Host, bool)>;
+
 /// See the module.
-pub(super) struct SimulatedMachine {
+pub struct SimulatedMachine {
     rig: Rig<'static>,
     session: Session,
     answers: Vec<u8>,
     /// Ticks since the person has begun to turn the platform, and where its theta was.
     turning: Option<(u32, f64)>,
+    each_tick: Option<EachTick>,
 }
 
 impl SimulatedMachine {
-    /// Switched on, with a controller that keeps its settings in a file and knows nothing.
-    ///
-    /// # Errors
-    /// The file.
-    pub fn new(stage: &StageParameters, seed: u64, settings: &Path) -> Result<Self, CliError> {
-        let mut stage = *stage;
-        stage.seed = seed;
-        let flash = SettingsFlash::open(settings)?;
+    /// Switched on, with a controller that keeps its settings in this flash, and knows nothing where that is empty.
+    #[must_use]
+    pub fn new(stage: &StageParameters, flash: SettingsFlash) -> Self {
+        Self::watched(stage, flash, None)
+    }
+
+    /// The same, looked at from the first tick on.
+    #[must_use]
+    pub fn watched(
+        stage: &StageParameters,
+        flash: SettingsFlash,
+        each_tick: Option<EachTick>,
+    ) -> Self {
         let parameters = Parameters::REFERENCE.uncommissioned();
         let mut machine = Self {
-            rig: Rig::simulated(ControllerMemory::endless(), &stage, &parameters, flash),
+            rig: Rig::simulated(ControllerMemory::endless(), stage, &parameters, flash),
             session: Session::new(),
             answers: Vec::new(),
             turning: None,
+            each_tick,
         };
         machine.run(2_000);
-        Ok(machine)
+        machine
+    }
+
+    /// The machine itself, which a controller does not see.
+    pub fn host(&mut self) -> &mut Host {
+        &mut self.rig.front
     }
 
     fn tick(&mut self) {
         self.push();
+        let in_hand = self.turning.is_some();
+        if let Some(each_tick) = &mut self.each_tick {
+            each_tick(&mut self.rig.front, in_hand);
+        }
         self.rig.tick(&mut ());
         // Writing to a vector does not fail.
         let _ = self.rig.service(&mut self.session, &mut self.answers);
