@@ -6,14 +6,72 @@ use calibration::Kit;
 use clap::{Args, Subcommand};
 
 use super::super::number::{whole, within};
+use super::super::stage::Machine;
+use super::controller::Controller;
 
 /// What a built machine is off its drawing.
 #[derive(Subcommand, Clone, Debug)]
 pub(in super::super) enum CalibrateCommand {
     /// Choose poses to measure at, and tell what will come out of it and what the instrument cannot tell, before anything moves.
     Plan(CalibratePlan),
+    /// Drive a plan and read an instrument at each of its poses; taken up where it was left when the file is there.
+    Measure(CalibrateMeasure),
     /// Fit the machine to what was measured, and write it as a calibration file.
     Fit(CalibrateFit),
+    /// Send a calibration to the controller of the machine that it was made for: all of it, or nothing.
+    Apply(CalibrateApply),
+    /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
+    Undo(CalibratedMachine),
+}
+
+/// The machine that is calibrated.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibratedMachine {
+    #[command(flatten)]
+    pub(in super::super) controller: Controller,
+    /// A simulated machine in place of a controller that runs; what it is told is true.
+    #[command(flatten)]
+    pub(in super::super) machine: Machine,
+    /// Seed of the simulated noise and of how the simulated instrument is set up.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub(in super::super) seed: u64,
+    /// File in which the simulated controller keeps its settings and its calibration, as `tripivot commission` leaves one [default:
+    /// it forgets them].
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) settings: Option<PathBuf>,
+}
+
+/// A measurement.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateMeasure {
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
+    /// The instrument: xyt, xy, theta, camera or camera2.
+    #[arg(long)]
+    pub(in super::super) kit: Kit,
+    #[command(flatten)]
+    pub(in super::super) noise: NoiseArguments,
+    /// How many poses; the first is visited again after every twenty, to see what drifts.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Command that reads the instrument: it is run in a shell for each pose, gets x_mm y_mm theta_deg on standard input (for cameras
+    /// mark_x_mm mark_y_mm camera_x_mm camera_y_mm besides) and answers x_mm y_mm theta_deg, or x_mm y_mm, or theta_deg, or of a mark
+    /// off_x_um off_y_um, in one line [default: the simulated instrument beside a simulated machine].
+    #[arg(long, value_name = "COMMAND")]
+    pub(in super::super) reader: Option<String>,
+    /// What was measured, as CSV, for `tripivot calibrate fit`. Each row is kept as it is measured: the same command again goes on
+    /// behind the last one.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) out: PathBuf,
+}
+
+/// A calibration for a controller.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateApply {
+    /// The calibration file.
+    pub(in super::super) file: PathBuf,
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
 }
 
 /// The instrument's noise.

@@ -1,8 +1,11 @@
 //! `tripivot calibrate`: what a built machine is off its drawing.
 
+mod apply;
 pub(super) mod error;
 mod fit;
+mod measure;
 mod plan;
+mod reader;
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +26,10 @@ const URAD_PER_RAD: f64 = 1e6;
 pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
     match command {
         CalibrateCommand::Plan(arguments) => plan::run(arguments),
+        CalibrateCommand::Measure(arguments) => measure::run(arguments),
         CalibrateCommand::Fit(arguments) => fit::run(arguments),
+        CalibrateCommand::Apply(arguments) => apply::run(arguments),
+        CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `tripivot commission`: from a machine that nobody knows to one that moves.
 
-mod simulated;
+pub(super) mod simulated;
 
 use std::fs;
 use std::io::{self, Write};

@@ -1,6 +1,8 @@
 //! A simulated machine with a simulated person beside it, as fast as this computer can.
 
+use std::cell::Cell;
 use std::path::Path;
+use std::rc::Rc;
 
 use super::super::error::CliError;
 use desk::commission::{Machine, Task};
@@ -9,7 +11,7 @@ use firmware::gcs::Session;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::plant::External;
-use hal_sim::rig::{ControllerMemory, Rig};
+use hal_sim::rig::{ControllerMemory, Rig, Told};
 
 /// Where the person holds the platform's middle, m, and how far it is turned, rad, in which time, s.
 const OUT_M: [f64; 2] = [0.025, 0.015];
@@ -29,12 +31,14 @@ const PATIENCE: u32 = 400_000;
 const TICK_S: f64 = 50e-6;
 
 /// See the module.
-pub(super) struct SimulatedMachine {
+pub(in crate::cli) struct SimulatedMachine {
     rig: Rig<'static>,
     session: Session,
     answers: Vec<u8>,
     /// Ticks since the person has begun to turn the platform, and where its theta was.
     turning: Option<(u32, f64)>,
+    /// Where the platform truly is, m, m and rad, for instruments.
+    true_pose: Rc<Cell<[f64; 3]>>,
 }
 
 impl SimulatedMachine {
@@ -43,18 +47,50 @@ impl SimulatedMachine {
     /// # Errors
     /// The file.
     pub fn new(stage: &StageParameters, seed: u64, settings: &Path) -> Result<Self, CliError> {
-        let mut stage = *stage;
-        stage.seed = seed;
         let flash = SettingsFlash::open(settings)?;
         let parameters = Parameters::REFERENCE.uncommissioned();
+        Ok(Self::switched_on(stage, seed, &parameters, flash))
+    }
+
+    /// Switched on, with a controller that is told the machine's true numbers unless its settings have others.
+    ///
+    /// # Errors
+    /// The file.
+    pub fn told(
+        stage: &StageParameters,
+        seed: u64,
+        settings: Option<&Path>,
+    ) -> Result<Self, CliError> {
+        let flash = match settings {
+            Some(path) => SettingsFlash::open(path)?,
+            None => SettingsFlash::in_memory(),
+        };
+        let parameters = Told::Machine.parameters(&Parameters::REFERENCE, stage);
+        Ok(Self::switched_on(stage, seed, &parameters, flash))
+    }
+
+    fn switched_on(
+        stage: &StageParameters,
+        seed: u64,
+        parameters: &Parameters,
+        flash: SettingsFlash,
+    ) -> Self {
+        let mut stage = *stage;
+        stage.seed = seed;
         let mut machine = Self {
-            rig: Rig::simulated(ControllerMemory::endless(), &stage, &parameters, flash),
+            rig: Rig::simulated(ControllerMemory::endless(), &stage, parameters, flash),
             session: Session::new(),
             answers: Vec::new(),
             turning: None,
+            true_pose: Rc::default(),
         };
         machine.run(2_000);
-        Ok(machine)
+        machine
+    }
+
+    /// The platform's true pose, m, m and rad, as it is whenever that is looked at.
+    pub fn true_pose(&self) -> Rc<Cell<[f64; 3]>> {
+        Rc::clone(&self.true_pose)
     }
 
     fn tick(&mut self) {
@@ -63,6 +99,7 @@ impl SimulatedMachine {
         // Writing to a vector does not fail.
         let _ = self.rig.service(&mut self.session, &mut self.answers);
         self.rig.keep();
+        self.true_pose.set(self.rig.front.stage.plant.pose());
     }
 
     fn run(&mut self, ticks: u32) {
