@@ -29,7 +29,8 @@ pub(in super::super) enum CalibrateCommand {
 pub(in super::super) struct CalibratedMachine {
     #[command(flatten)]
     pub(in super::super) controller: Controller,
-    /// A simulated machine in place of a controller that runs; what it is told is true.
+    /// A simulated machine in place of a controller that runs, which is told its drives and its load. Wires and zeros of an unknown one
+    /// are in the settings that `tripivot commission` leaves: give them with --settings.
     #[command(flatten)]
     pub(in super::super) machine: Machine,
     /// Seed of the simulated noise and of how the simulated instrument is set up.

@@ -52,7 +52,7 @@ impl SimulatedMachine {
         Ok(Self::switched_on(stage, seed, &parameters, flash))
     }
 
-    /// Switched on, with a controller that is told the machine's true numbers unless its settings have others.
+    /// Switched on, with a controller that is told the machine's drives and load unless its settings have others.
     ///
     /// # Errors
     /// The file.
