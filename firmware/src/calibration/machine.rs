@@ -69,9 +69,11 @@ impl MachineCalibration {
         &self,
         geometry: &Geometry,
     ) -> Result<(Calibration, CalibrationMargins), BeyondLimits> {
+        let pivots = self.pivots();
         let calibration: Calibration =
-            Corrections::new(&self.pivots(), Series::new).map_err(|_| BeyondLimits)?;
-        let margins = CalibrationMargins::new(&calibration, geometry).map_err(|_| BeyondLimits)?;
+            Corrections::new(&pivots, Series::new).map_err(|_| BeyondLimits)?;
+        let margins =
+            CalibrationMargins::new(&pivots, &calibration, geometry).map_err(|_| BeyondLimits)?;
         if self.pivot_share() < SMALLEST_SHARE {
             return Err(BeyondLimits);
         }

@@ -1,16 +1,14 @@
 //! Kinematics of a calibrated machine in the tick: see [`crate::calibration`].
 
 use super::config::Config;
-use super::pivot_setpoints::{PivotSetpoints, pose};
+use super::pivot_setpoints::PivotSetpoints;
 use super::servo::platform_torques;
-use super::state::State;
 use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
-use crate::motion::Setpoint;
 use crate::number::Fixed;
 use kinematics::{
-    Angle, CorrectedInverse, Corrections, Curves, DirectError, InverseError, Line, Pose, Series,
-    Tangents, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes, missing_rad,
-    newton_step,
+    Acceleration, Angle, CorrectedInverse, Corrections, Curves, DirectError, Line, Pose, Series,
+    Tangents, Twist, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes,
+    missing_rad, newton_step,
 };
 
 /// A calibration that the tick is to compute with.
@@ -22,8 +20,11 @@ pub struct CalibrationInForce {
     pub margins: CalibrationMargins,
 }
 
-/// Of Newton's method, to a pose: less than 1e-8 rad are left.
-const NEWTON_STEPS: u32 = 2;
+/// Encoders may read so much more than in the pose that was followed: one step of Newton's method leaves the square of it. A tick is
+/// 50 us: by hand nothing turns by that much.
+const MOST_MISSING_RAD: f32 = 2e-3;
+/// No more than that, and the machine stands still, but for noise: 0.02 rad/s.
+const STILL_RAD: f32 = 1e-6;
 
 /// The calibration as the tick carries it.
 #[derive(Clone, Debug)]
@@ -35,6 +36,16 @@ pub(super) struct Calibrated {
     /// The lines, and the curves as they are near where the pivots are.
     near: Corrections<Fixed, Tangents<Fixed>>,
     series: [Series<f32>; 3],
+    /// The pose of the encoders up to the last tick, while the servo is off.
+    followed: Option<Followed>,
+}
+
+/// A pose that is followed.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    pose: Pose<Fixed>,
+    /// What the encoders read more than in the pose before, at most, rad.
+    missing_rad: f32,
 }
 
 impl CalibrationInForce {
@@ -55,6 +66,7 @@ impl Default for Calibrated {
                 curves: [Tangents::ZERO; 3],
             },
             series: [Series::ZERO; 3],
+            followed: None,
         }
     }
 }
@@ -66,11 +78,12 @@ impl Calibrated {
         self.margins = wanted.margins;
         self.near.lines = wanted.calibration.lines;
         self.series = wanted.calibration.curves;
+        self.followed = None;
     }
 
     /// The curves of a pivot whose encoder is to read `encoder`, at a place on its guide: for the ticks to come.
     #[inline(never)]
-    pub fn look_up(&mut self, pivot: usize, encoder: Angle, rho: f32) {
+    fn look_up(&mut self, pivot: usize, encoder: Angle, rho: f32) {
         if let (Some(tangents), Some(series), Some(line)) = (
             self.near.curves.get_mut(pivot),
             self.series.get(pivot),
@@ -81,66 +94,135 @@ impl Calibrated {
         }
     }
 
-    /// The pose of measured pivots; and the curves there, from which the ticks to come go on.
+    /// The pose in which the encoders read this; the servo goes on there. Of a machine that stands still it is the pose that was
+    /// followed up to the tick before. One that is moved by hand takes one more step of Newton's method, and the tick that takes
+    /// the command, in which nothing is driven yet, may be late by it.
     ///
-    /// From the drawn machine's pose two steps of Newton's method, the straightness being looked up at each. In a function of
-    /// the loop's own, which the image's linker finds.
+    /// # Errors
+    /// [`DirectError`]: no platform can stand so, or it is not known yet how.
+    // In a function of the loop's own, which the image's linker finds.
     #[inline(never)]
-    pub fn measured_pose(&mut self, encoders: &[Angle; 3]) -> Result<Pose<Fixed>, DirectError> {
-        let Corrections { lines, curves } = &mut self.near;
-        let mut rings = *encoders;
-        for (ring, line) in rings.iter_mut().zip(&*lines) {
-            *ring -= line.encoder_zero;
-        }
-        let mut pose = direct(&rings)?;
+    pub fn measured_pose(
+        &mut self,
+        config: &Config,
+        encoders: &[Angle; 3],
+    ) -> Result<Pose<Fixed>, DirectError> {
         if !self.is_on {
-            return Ok(pose);
+            return direct(encoders);
         }
-        for ((tangents, series), ring) in curves.iter_mut().zip(&self.series).zip(rings) {
-            *tangents = of_ring(series, ring);
+        let followed = self.followed.take().ok_or(DirectError::OutsideTrack)?;
+        if followed.missing_rad < STILL_RAD {
+            return Ok(followed.pose);
         }
-        for _ in 0..NEWTON_STEPS {
-            let at = solve(&pose, &self.near)?;
-            let mut missing = missing_rad(&at, encoders);
-            for (i, tangents) in self.near.curves.iter_mut().enumerate() {
-                let rho = at.guides[i].rho();
-                let before = Curves::<Fixed>::straightness(tangents, rho).value;
-                *tangents = with_guide(tangents, &self.series[i], rho);
-                let now = Curves::<Fixed>::straightness(tangents, rho).value;
-                missing[i] -= (now - before) * at.over_travel[i];
-            }
-            pose = newton_step(&pose, &at, &self.near.lines, &missing);
-        }
-        Ok(pose)
+        let step = self.newton(config, &followed.pose, encoders);
+        let (followed, _) = step.ok_or(DirectError::OutsideTrack)?;
+        Ok(followed.pose)
     }
 
-    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism.
+    /// The curves of the pivot that is inspected in this tick, at its encoder's setpoint and its place on the guide.
+    #[inline]
+    pub fn look_up_at(&mut self, slot: usize, encoders: &[Angle; 3], lengths: &[f32; 3]) {
+        if let (Some(&encoder), Some(&rho)) = (encoders.get(slot), lengths.get(slot)) {
+            self.look_up(slot, encoder, rho);
+        }
+    }
+
+    /// While the servo is off: follows the pose, and looks up the curves of one pivot. Not in the tick that has switched it off,
+    /// which has driven: both would be longer than a period.
     #[inline(never)]
-    pub fn pivot_setpoints(&self, config: &Config, setpoint: &Setpoint) -> Option<PivotSetpoints> {
-        let at = solve(&pose(&setpoint.position)?, &self.near).ok()?;
+    pub fn follow(&mut self, config: &Config, encoders: &[Angle; 3], slot: usize) {
+        let Some(followed) = self.followed.take() else {
+            self.followed = self.begin(config, encoders);
+            return;
+        };
+        if let Some((followed, lengths)) = self.newton(config, &followed.pose, encoders) {
+            self.look_up_at(slot, encoders, &lengths);
+            self.followed = Some(followed);
+        }
+    }
+
+    /// From the drawn machine's pose one step on the built one, with all curves looked up there.
+    fn begin(&mut self, config: &Config, encoders: &[Angle; 3]) -> Option<Followed> {
+        let mut rings = *encoders;
+        for (ring, line) in rings.iter_mut().zip(&self.near.lines) {
+            *ring -= line.encoder_zero;
+        }
+        let pose = direct(&rings).ok()?;
+        for ((tangents, series), ring) in self.near.curves.iter_mut().zip(&self.series).zip(rings) {
+            *tangents = of_ring(series, ring);
+        }
+        let at = self.solve(config, &pose)?;
+        let mut missing_rad = missing_rad(&at, encoders);
+        for (i, tangents) in self.near.curves.iter_mut().enumerate() {
+            let rho = at.guides[i].rho();
+            *tangents = with_guide(tangents, &self.series[i], rho);
+            let straightness = Curves::<Fixed>::straightness(tangents, rho).value;
+            missing_rad[i] -= straightness * at.over_travel[i];
+        }
+        Some(Followed {
+            pose: newton_step(&pose, &at, &self.near.lines, &missing_rad),
+            missing_rad: f32::INFINITY,
+        })
+    }
+
+    /// One step of Newton's method, and the places on the guides before it; `None` when the pose is too far from where it was
+    /// followed to.
+    fn newton(
+        &self,
+        config: &Config,
+        pose: &Pose<Fixed>,
+        encoders: &[Angle; 3],
+    ) -> Option<(Followed, [f32; 3])> {
+        let at = self.solve(config, pose)?;
+        let missing = missing_rad(&at, encoders);
+        let [first, second, third] = missing.map(f32::abs);
+        let missing_rad = first.max(second).max(third);
+        if missing_rad.is_nan() || missing_rad > MOST_MISSING_RAD {
+            return None;
+        }
+        let pose = newton_step(pose, &at, &self.near.lines, &missing);
+        let lengths = [0, 1, 2].map(|i| at.guides[i].rho());
+        Some((Followed { pose, missing_rad }, lengths))
+    }
+
+    /// See [`corrected_inverse`].
+    fn solve(&self, config: &Config, pose: &Pose<Fixed>) -> Option<CorrectedInverse<Fixed>> {
+        let (twist, acceleration) = (Twist::default(), Acceleration::default());
+        let mut at = None;
+        let _ = self.pivot_setpoints(config, pose, &twist, &acceleration, Some(&mut at));
+        at
+    }
+
+    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism; and, if
+    /// asked, how the pose was solved.
+    // The corrected inverse stands here, once in the loop's memory: a function of its own would hand its results over in memory.
+    #[inline(never)]
+    pub fn pivot_setpoints(
+        &self,
+        config: &Config,
+        pose: &Pose<Fixed>,
+        twist: &Twist<f32>,
+        acceleration: &Acceleration<f32>,
+        solved: Option<&mut Option<CorrectedInverse<Fixed>>>,
+    ) -> Option<PivotSetpoints> {
+        let at = corrected_inverse(pose, &self.near).ok()?;
         let guides = &at.guides;
-        let (twist, acceleration) =
-            in_platform_axes(guides, &setpoint.twist, &setpoint.acceleration);
-        Some(PivotSetpoints {
+        let (twist, acceleration) = in_platform_axes(guides, twist, acceleration);
+        let setpoints = PivotSetpoints {
             angles: at.encoders,
             motion: corrected_pivot_motion(&at, &self.near.lines, &twist, &acceleration),
             torques: platform_torques(&config.servo.body, guides, &twist, &acceleration),
             lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
             cosines: [guides[0].cosine, guides[1].cosine, guides[2].cosine],
-        })
+        };
+        if let Some(solved) = solved {
+            *solved = Some(at);
+        }
+        Some(setpoints)
     }
 }
 
 // Once in the loop's memory: they are long.
-
-/// See [`corrected_inverse`].
-#[inline(never)]
-fn solve(
-    pose: &Pose<Fixed>,
-    near: &Corrections<Fixed, Tangents<Fixed>>,
-) -> Result<CorrectedInverse<Fixed>, InverseError> {
-    corrected_inverse(pose, near)
-}
 
 /// See [`Tangents::of_ring`].
 #[inline(never)]
@@ -152,16 +234,4 @@ fn of_ring(series: &Series<f32>, ring: Angle) -> Tangents<Fixed> {
 #[inline(never)]
 fn with_guide(tangents: &Tangents<Fixed>, series: &Series<f32>, rho: f32) -> Tangents<Fixed> {
     tangents.with_guide(series, rho)
-}
-
-impl State {
-    /// Looks up the curves of the pivot that is inspected in this tick, for those to come.
-    #[inline]
-    pub(super) fn look_up_curves(&mut self, slot: usize, target: &[Angle; 3], lengths: &[f32; 3]) {
-        if self.calibrated.is_on
-            && let (Some(&encoder), Some(&rho)) = (target.get(slot), lengths.get(slot))
-        {
-            self.calibrated.look_up(slot, encoder, rho);
-        }
-    }
 }

@@ -4,7 +4,7 @@ use super::command::Command;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
-use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints};
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints, pose};
 use super::rest_mode::Stiffness;
 use super::servo::{LoopSetpoint, PivotSetpoint};
 use super::state::{Inputs, Outputs, State};
@@ -129,7 +129,13 @@ pub fn tick_and_drive<'a>(
         .count_tick(inputs.tick_cycles, inputs.late);
     if let Some(guides) = &guides {
         state.learn(config, guides, slot);
-        state.look_up_curves(slot, &target, &guides[0]);
+    }
+    if state.calibrated.is_on {
+        if let Some(guides) = &guides {
+            state.calibrated.look_up_at(slot, &target, &guides[0]);
+        } else if !drives && !state.servo_on() {
+            state.calibrated.follow(config, &pivots, slot);
+        }
     }
     if let Some(Command::Move(plan)) = queues.commands.peek() {
         state.motion.accept_rest(plan);
@@ -218,7 +224,15 @@ impl State {
         }
         // Used where it lies.
         let wanted = if self.calibrated.is_on {
-            self.calibrated.pivot_setpoints(config, setpoint)
+            pose(&setpoint.position).and_then(|pose| {
+                self.calibrated.pivot_setpoints(
+                    config,
+                    &pose,
+                    &setpoint.twist,
+                    &setpoint.acceleration,
+                    None,
+                )
+            })
         } else {
             pivot_setpoints(config, setpoint)
         };

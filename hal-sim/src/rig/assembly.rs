@@ -13,6 +13,7 @@ use super::simulated_board::SimulatedBoard;
 use crate::front::{Front, Host};
 use crate::machine::devices::{SettingsFlash, StageParameters};
 use embedded_io::Write;
+use firmware::calibration::MachineCalibration;
 use firmware::control::Outputs;
 use firmware::fault::FaultKind;
 use firmware::fault_record::RetainedMemory;
@@ -102,7 +103,7 @@ impl<'a, F: Front> Rig<'a, F> {
         flash: SettingsFlash,
         front: impl FnOnce(&Parameters) -> F,
     ) -> Self {
-        let flash = with_machine_settings(flash, parameters);
+        let flash = with_machine_settings(flash, parameters, None);
         let own = parameters.clone().uncommissioned();
         let mut settings_store = SettingsStore::new(flash);
         let (interpreter, fault) = started(&own, &mut settings_store, &mut command_queues);
@@ -179,9 +180,13 @@ impl<'a, F: Front> Rig<'a, F> {
     }
 }
 
-/// What a machine of these parameters comes with is stored in a flash that keeps nothing yet.
+/// What a machine of these parameters comes with, and its calibration if it has one, is stored in a flash that keeps nothing yet.
 #[must_use]
-pub fn with_machine_settings(flash: SettingsFlash, parameters: &Parameters) -> SettingsFlash {
+pub fn with_machine_settings(
+    flash: SettingsFlash,
+    parameters: &Parameters,
+    calibration: Option<&MachineCalibration>,
+) -> SettingsFlash {
     if !parameters.commissioned || !flash.is_erased() {
         return flash;
     }
@@ -189,7 +194,7 @@ pub fn with_machine_settings(flash: SettingsFlash, parameters: &Parameters) -> S
         &parameters.clone().uncommissioned(),
         IDENTITY,
     ));
-    interpreter.start_with(parameters.clone());
+    interpreter.start_with(parameters.clone(), calibration.cloned());
     let mut settings_store = SettingsStore::new(flash);
     // One that does not take them leaves the controller uncommissioned, or its settings damaged: it says so itself.
     let mut queues = ControllerMemory::new();

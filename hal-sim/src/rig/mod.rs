@@ -8,11 +8,13 @@
 //! | `conditions` | what a run is made under |
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
+//! | `calibrated` | a stage as it was built, and its true calibration |
 //! | `told` | a controller that is told of the machine before it |
 //! | `simulated_board` | what the simulated controller says of its board |
 //! | [`observer`] | looks at every tick for the report |
 
 mod assembly;
+mod calibrated;
 mod conditions;
 pub mod exercise;
 pub mod observer;
@@ -23,6 +25,7 @@ mod told;
 
 pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
+pub use calibrated::{built_stage, calibration_told};
 pub use conditions::run_conditions;
 pub use told::{
     IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_fitted, with_inertia_scheduled,

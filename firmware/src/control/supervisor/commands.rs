@@ -110,7 +110,7 @@ impl State {
         if !ready {
             return false;
         }
-        let Ok(pose) = self.calibrated.measured_pose(pivots) else {
+        let Ok(pose) = self.calibrated.measured_pose(config, pivots) else {
             return false;
         };
         let (theta, unwrapped) = referencing::within_one_turn(pose.theta, pivots);
@@ -127,7 +127,7 @@ impl State {
         if !self.referenced {
             return false;
         }
-        let Ok(pose) = self.calibrated.measured_pose(pivots) else {
+        let Ok(pose) = self.calibrated.measured_pose(config, pivots) else {
             return false;
         };
         self.hold_at(config, &pose);

@@ -1,6 +1,7 @@
 //! `WPA` and `RPA`.
 
 use super::state::{Keeping, KeptParameters};
+use crate::calibration::MachineCalibration;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -143,9 +144,10 @@ impl Interpreter {
         self.commander.repeated_moves()
     }
 
-    /// Starts with these parameters, as if they had been stored: the settings that a machine comes with. To be called before anything
-    /// else is.
-    pub fn start_with(&mut self, parameters: Parameters) {
+    /// Starts with these parameters and this calibration, as if they had been stored: the settings that a machine comes with. To be
+    /// called before anything else is.
+    pub fn start_with(&mut self, parameters: Parameters, calibration: Option<MachineCalibration>) {
+        self.commander.restore_calibration(calibration);
         self.restore_parameters(KeptParameters {
             parameters,
             unknown: 0,

@@ -99,7 +99,11 @@ impl Bench {
             instructions_per_second: STAGE_RATE,
             has_crystal: true,
             flash_kib: None,
-            settings: with_machine_settings(SettingsFlash::in_memory(), &Parameters::REFERENCE),
+            settings: with_machine_settings(
+                SettingsFlash::in_memory(),
+                &Parameters::REFERENCE,
+                None,
+            ),
         })
     }
 
@@ -133,10 +137,17 @@ impl Bench {
     /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
     #[must_use]
     pub fn commissioned_as(self, parameters: &Parameters) -> Self {
-        Self {
-            settings: with_machine_settings(SettingsFlash::in_memory(), parameters),
-            ..self
-        }
+        self.with_settings(with_machine_settings(
+            SettingsFlash::in_memory(),
+            parameters,
+            None,
+        ))
+    }
+
+    /// The same on a board whose flash keeps these settings.
+    #[must_use]
+    pub fn with_settings(self, settings: SettingsFlash) -> Self {
+        Self { settings, ..self }
     }
 
     /// Address of a symbol of the image, for [`Period::word`].

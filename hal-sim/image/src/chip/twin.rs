@@ -121,11 +121,17 @@ impl Twin {
     /// A twin of a chip that has just started.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
+        Self::with_settings(parameters, SettingsFlash::in_memory())
+    }
+
+    /// The same of a board whose flash keeps these settings; where it keeps none, those of a machine of these parameters.
+    #[must_use]
+    pub fn with_settings(parameters: &Parameters, flash: SettingsFlash) -> Self {
         let (mut panel_side, command_queues) = ControllerMemory::endless().split();
         let (mut tick_queues, tick_side) = ControllerMemory::endless().split();
         // The twin's command side orders its records from the twin's tick; nothing of them has to be held back.
         std::mem::swap(&mut panel_side.observers, &mut tick_queues.observers);
-        let (links, flash) = ((tick_queues, command_queues), SettingsFlash::in_memory());
+        let links = (tick_queues, command_queues);
         Self {
             rig: Rig::new(links, parameters, flash, ControlLoop::new),
             record: TickRecord::default(),

@@ -37,11 +37,15 @@ pub enum Use {
     MovingCalibrated,
     /// It takes a plan then.
     PlanTakenCalibrated,
+    /// The servo is off, and the pose is followed.
+    OffCalibrated,
+    /// It is switched on then.
+    SwitchedOnCalibrated,
 }
 
 impl Use {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Off,
         Self::Holding,
         Self::Moving,
@@ -53,6 +57,8 @@ impl Use {
         Self::HoldingCalibrated,
         Self::MovingCalibrated,
         Self::PlanTakenCalibrated,
+        Self::OffCalibrated,
+        Self::SwitchedOnCalibrated,
     ];
 
     /// In words.
@@ -70,6 +76,8 @@ impl Use {
             Self::HoldingCalibrated => "holding, calibrated",
             Self::MovingCalibrated => "moving, calibrated",
             Self::PlanTakenCalibrated => "calibrated, takes a plan",
+            Self::OffCalibrated => "servo off, calibrated",
+            Self::SwitchedOnCalibrated => "calibrated, switched on",
         }
     }
 }
@@ -139,10 +147,11 @@ const LINES: [(u64, &[u8]); 13] = [
     (21_200, b"MOV X 10 Y 40 W 0\n"),
     // A calibration is for a serial number, and is taken with the servo off.
     (SERIAL_ASKED, b"SVO X 0\nCCL 1 ADVANCED\nSSN?\n"),
-    (32_000, b"FRF X\n"),
+    (REFERENCED_AGAIN, b"FRF X\n"),
     (34_000, b"MOV X 40 Y 20 W 90\n"),
 ];
 const SERIAL_ASKED: u64 = 25_000;
+const REFERENCED_AGAIN: u64 = 32_000;
 /// The calibration's lines, and how far they are apart. Its last one keeps the command side busy for some thousand ticks.
 const CALIBRATION_SENT: u64 = 26_000;
 const CALIBRATION_EVERY: u64 = 60;
@@ -183,6 +192,12 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             Some(Use::PlanTakenRecording),
         ),
         stretch(21_200, 400, Use::Recording, Some(Use::PlanTakenRecording)),
+        stretch(
+            REFERENCED_AGAIN,
+            250,
+            Use::OffCalibrated,
+            Some(Use::SwitchedOnCalibrated),
+        ),
         stretch(33_000, ticks.min(900), Use::HoldingCalibrated, None),
         stretch(
             34_000,

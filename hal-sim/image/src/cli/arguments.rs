@@ -52,6 +52,9 @@ pub(super) struct ChipRun {
     /// Flip one bit of an encoder count on the host alone at this tick, counted from 0: the comparison has to find it, exit code 1.
     #[arg(long, value_name = "TICK", requires = "ticks")]
     pub(super) flip: Option<u64>,
+    /// The stage is off its drawing as a workshop builds it, and the controller keeps its calibration.
+    #[arg(long, requires = "ticks")]
+    pub(super) calibrated: bool,
     #[command(flatten)]
     pub(super) simulation: Simulation,
 }

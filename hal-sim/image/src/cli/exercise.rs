@@ -13,6 +13,7 @@ pub(super) fn run(ticks: u64, arguments: &ChipRun) -> Result<ExitCode, CliError>
         ticks,
         run: options("exercise", &arguments.simulation)?,
         flip: arguments.flip,
+        calibrated: arguments.calibrated,
     };
     let seed = options.run.seed;
     println!("seed {seed}");

@@ -24,10 +24,11 @@ use firmware::parameters::Parameters;
 use super::run::ChipError;
 use super::{Bench, Divergence, Period, Twin, elf_file};
 use drawing::Progress;
-use hal_sim::machine::devices::{EncoderFault, Stage};
+use hal_sim::machine::devices::{EncoderFault, SettingsFlash, Stage};
 use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::exercise::{Patience, script};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
+use hal_sim::rig::{built_stage, calibration_told, with_machine_settings};
 
 /// What to do.
 #[derive(Clone, Debug)]
@@ -38,6 +39,8 @@ pub struct ExerciseOptions {
     pub run: RunOptions,
     /// Before this tick (from 0) the host's encoder count differs in one bit: a comparison that is one finds it.
     pub flip: Option<u64>,
+    /// The stage is off its drawing as a workshop builds it, and the controller keeps its calibration.
+    pub calibrated: bool,
 }
 
 /// What came of it.
@@ -98,11 +101,24 @@ pub fn exercise(options: &ExerciseOptions) -> Result<Exercise, ChipError> {
 }
 
 fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipError> {
-    let stage = Stage::new(&stage_parameters(&options.run));
+    let parameters = Parameters::REFERENCE;
+    let (mut stage, mut calibration) = (stage_parameters(&options.run), None);
+    if options.calibrated {
+        stage = built_stage(&stage);
+        calibration = Some(calibration_told(&stage));
+    }
+    let settings = || {
+        with_machine_settings(
+            SettingsFlash::in_memory(),
+            &parameters,
+            calibration.as_ref(),
+        )
+    };
+    let stage = Stage::new(&stage);
     let lines = script(options.run.seed, options.ticks).map_err(ChipError::Script)?;
     let mut runner = Some(Runner {
         client: Client::new(&lines),
-        twin: Twin::new(&Parameters::REFERENCE).with_flip(options.flip),
+        twin: Twin::with_settings(&parameters, settings()).with_flip(options.flip),
         progress: Progress::new(options.ticks, options.run.quiet),
         ticks: options.ticks,
         period_s: stage.period_s(),
@@ -115,6 +131,7 @@ fn run_image(path: &Path, options: &ExerciseOptions) -> Result<Exercise, ChipErr
     let bench = |error| ChipError::Bench(path.to_owned(), error);
     let outcome = Bench::load(path, stage)
         .map_err(bench)?
+        .with_settings(settings())
         .run(move |period| {
             let flow = (runner.as_mut()).map_or(Break(()), |runner| runner.period(period));
             if flow.is_break()
