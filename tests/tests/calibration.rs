@@ -1,11 +1,12 @@
 //! A built machine with its calibration in the controller: true poses against commanded ones, what is refused, what is
 //! kept, and that a calibration of nothing changes no bit.
 
+use desk::calibrate::lines;
 use firmware::calibration::MachineCalibration;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::rig::{built_stage, calibration_told};
 use tests::Bench;
-use tests::calibrated::{lines, nothing_off};
+use tests::calibrated::nothing_off;
 
 /// Targets on the rim, in the middle, and many turns away.
 const TARGETS: [[f64; 3]; 7] = [

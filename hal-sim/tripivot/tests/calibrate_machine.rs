@@ -7,13 +7,16 @@ use std::process::{Command, Output};
 
 use calibration::file::Calibration;
 use calibration::frames::{Pair, without_frames};
+use calibration::position::readings_rad;
 use calibration::spread::over_disk;
 use calibration::table::Table;
-use calibration::{Instrument, Kit, Noise, Seen, plan};
+use calibration::table::to_text;
+use calibration::{Instrument, Kit, Machine, Noise, Seen, Visit, plan};
 use desk::calibrate::with_references;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::file::from_text;
-use hal_sim::machine::instruments::{EncoderErrors, QuasiStatic, commanded};
+use hal_sim::machine::instruments::{EncoderErrors, QuasiStatic, commanded, survey, workshop};
+use hal_sim::random::Random;
 
 const RADIUS_MM: f64 = 100.0;
 /// A machine with errors of its geometry and its encoders alone.
@@ -175,7 +178,13 @@ fn a_measurement_that_was_interrupted_is_what_it_would_have_been() {
     assert!(left < 122.0 && left < 1.3 * expected, "{left} {expected}");
 
     // To its controller, which keeps it.
-    let apply = |file: &str| on_machine(&folder, &["apply", file, "--settings", "kept.flash"]);
+    let apply = |file: &str| {
+        let arguments = ["apply", file, "--measured", "whole.csv"];
+        on_machine(
+            &folder,
+            &[&arguments[..], &["--settings", "kept.flash"]].concat(),
+        )
+    };
     let told = is_done(&apply("own.toml"));
     assert!(told.starts_with("STATE=ON\nSERIAL=SIM\n"), "{told}");
     let after_nm = commanded_nm(&folder, "after.csv", "kept.flash");
@@ -183,27 +192,30 @@ fn a_measurement_that_was_interrupted_is_what_it_would_have_been() {
     println!("true pose against commanded: {before_nm:.0} nm before, {after_nm:.1} nm after");
     assert!(before_nm > 90e3 && after_nm < 77.0, "{after_nm}");
     let text = fs::read_to_string(folder.join("own.toml")).unwrap();
-    let other = |name: &str, from: &str, to: &str| {
-        assert!(text.contains(from), "{from}");
-        fs::write(folder.join(name), text.replacen(from, to, 1)).unwrap();
+    let own = Calibration::from_text(&text).unwrap();
+    let other = |name: &str, text: &str| {
+        fs::write(folder.join(name), text).unwrap();
         apply(name)
     };
+    let mut others = own.clone();
+    others.made.serial = "SIM2".to_owned();
     assert_refused(
-        &other("others.toml", "serial = \"SIM\"", "serial = \"SIM2\""),
+        &other("others.toml", &others.to_text()),
         1,
         "the calibration is of machine 'SIM2', and this one is 'SIM'",
     );
+    let torn = text.replacen("[[pivots]]", "[[piv", 1);
+    assert_refused(&other("torn.toml", &torn), 2, "torn.toml: line ");
+    let changed = text.replacen("serial = \"SIM\"", "serial = \"SIN\"", 1);
     assert_refused(
-        &other("torn.toml", "[[pivots]]", "[[piv"),
+        &other("changed.toml", &changed),
         2,
-        "torn.toml: line ",
+        "it has been changed since it was written",
     );
-    let radius = text
-        .lines()
-        .find(|line| line.starts_with("radius_error_mm"))
-        .unwrap();
+    let mut absurd = own;
+    absurd.pivots[0].radius_error_mm = 1.99;
     assert_refused(
-        &other("absurd.toml", radius, "radius_error_mm = 1.99"),
+        &other("absurd.toml", &absurd.to_text()),
         1,
         "further than a controller corrects",
     );
@@ -250,4 +262,116 @@ fn a_reader_that_reads_nothing_is_named() {
         ],
     );
     assert_refused(&none, 2, "--reader: what reads the instrument?");
+}
+
+const NOISE: Noise = Noise {
+    length: 50e-6 / RADIUS_MM,
+    angle_rad: 1e-6,
+    encoder_rad: Noise::ENCODER_RAD,
+};
+
+/// Fits a machine to 200 poses at which it was measured at rest.
+fn fitted(folder: &Path, name: &str, truth: &QuasiStatic) -> Calibration {
+    let instrument = Instrument::new(Kit::Xyt, NOISE);
+    let stops = plan(&instrument, 200).unwrap().stops;
+    let visits = survey(truth, &instrument, &stops, &mut Random::new(9)).unwrap();
+    let (table, file) = (format!("{name}.csv"), format!("{name}.toml"));
+    fs::write(
+        folder.join(&table),
+        to_text(&instrument, &visits, RADIUS_MM),
+    )
+    .unwrap();
+    fit(folder, &table, "SIM", &file);
+    Calibration::from_text(&fs::read_to_string(folder.join(&file)).unwrap()).unwrap()
+}
+
+/// Writes a calibration of other numbers with the promises of this one, and what would be measured of such a machine.
+fn with_numbers(folder: &Path, name: &str, calibration: &Calibration, machine: &Machine) {
+    let instrument = Instrument::new(Kit::Xyt, NOISE);
+    let other = Calibration::new(calibration.made.clone(), machine);
+    fs::write(folder.join(format!("{name}.toml")), other.to_text()).unwrap();
+    let visits: Vec<Visit> = (over_disk(0.8).take(60))
+        .map(|pose| Visit {
+            readings_rad: readings_rad(machine, &pose).unwrap(),
+            seen: Seen::Pose(pose),
+        })
+        .collect();
+    let text = to_text(&instrument, &visits, RADIUS_MM);
+    fs::write(folder.join(format!("{name}.csv")), text).unwrap();
+}
+
+#[test]
+fn wrong_calibrations_are_not_applied_and_those_in_force_are_found() {
+    let folder = folder("wrong");
+    let own = fitted(&folder, "own", &truth());
+    let [first, second, third] = own.machine();
+    let mut others = fitted(&folder, "others", &workshop::machine(2)).machine();
+    // Of an encoder that is as far off the middle the controller says so itself: it does not hold.
+    for pivot in &mut others {
+        pivot.encoder_rad[0] = pivot.encoder_rad[0].map(|part| 0.1 * part);
+    }
+    let mut damaged = second;
+    // 10 um.
+    damaged.guide_offset += 1e-4;
+    with_numbers(&folder, "others", &own, &others);
+    with_numbers(&folder, "exchanged", &own, &[second, first, third]);
+    with_numbers(&folder, "damaged", &own, &[first, damaged, third]);
+    let apply = |file: &str, measured: &str, more: &[&str]| {
+        let arguments = [
+            "apply",
+            file,
+            "--measured",
+            measured,
+            "--settings",
+            "kept.flash",
+        ];
+        on_machine(&folder, &[&arguments[..], more].concat())
+    };
+    let verify = |file: &str, poses: &str| {
+        let arguments = ["verify", file, "--poses", poses, "--settings", "kept.flash"];
+        on_machine(&folder, &arguments)
+    };
+    assert_refused(&verify("own.toml", "12"), 1, "the controller has none");
+    for wrong in ["others.toml", "exchanged.toml"] {
+        assert_refused(&apply(wrong, "own.csv", &[]), 1, "and what is in force");
+    }
+    is_done(&apply("own.toml", "own.csv", &[]));
+    assert_refused(
+        &apply("damaged.toml", "own.csv", &[]),
+        1,
+        "name its file with --over",
+    );
+    let refused = apply("damaged.toml", "own.csv", &["--over", "own.toml"]);
+    println!("{}", String::from_utf8_lossy(&refused.stderr));
+    assert_refused(&refused, 1, "it is not applied");
+    assert_refused(
+        &verify("others.toml", "12"),
+        1,
+        "the controller has another one",
+    );
+    let told = is_done(&verify("own.toml", "60"));
+    println!("{told}");
+    assert!(
+        told.contains("verdict                 as predicted"),
+        "{told}"
+    );
+
+    // What was measured is that of a machine of the same serial number.
+    for (wrong, verdict) in [
+        ("others", "worse than without it"),
+        ("exchanged", "worse than without it"),
+        ("damaged", "worse than predicted"),
+    ] {
+        is_done(&on_machine(&folder, &["undo", "--settings", "kept.flash"]));
+        let (file, measured) = (format!("{wrong}.toml"), format!("{wrong}.csv"));
+        is_done(&apply(&file, &measured, &[]));
+        let found = verify(&file, "12");
+        let told = String::from_utf8(found.stdout.clone()).unwrap();
+        println!("{wrong}:\n{told}");
+        assert_eq!(found.status.code(), Some(1), "{found:?}");
+        assert!(
+            told.contains(&format!("verdict                 {verdict}")),
+            "{found:?}"
+        );
+    }
 }

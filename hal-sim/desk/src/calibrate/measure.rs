@@ -17,6 +17,10 @@ const TICKS: usize = 128;
 const LONGEST_S: f64 = 30.0;
 /// A mark that is so near the cross-hair is under it, track radii; and how often the stage may try.
 const UNDER: f64 = 1e-5;
+/// How far away a move begins that is to come from one side, track radii and rad: further than guides lose of a motion.
+pub(super) const APPROACH: f64 = 0.01;
+/// Between the directions of two approaches, rad: the golden angle spreads them.
+const APPROACH_STEP_RAD: f64 = 2.399_963;
 const MOST_LOOKS: usize = 8;
 /// Measured angles of the three pivots, as `DRC` takes them.
 const READINGS: [&str; 3] = ["1 2", "2 2", "3 2"];
@@ -30,6 +34,32 @@ pub struct Wanted {
     pub at: At,
     /// Where the stage was sent: x, y (track radii), theta (rad).
     pub pose: [f64; 3],
+}
+
+/// Where to go.
+#[derive(Clone, Copy, Debug)]
+pub struct Way<'a> {
+    /// The stops.
+    pub stops: &'a [Stop],
+    /// The first that is gone to.
+    pub first: usize,
+    /// Radius of the track, mm.
+    pub radius_mm: f64,
+    /// Whether the stops come in pairs, which are gone to from opposite sides.
+    pub is_from_both_sides: bool,
+}
+
+/// What was measured at a stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Which, from 0.
+    pub visit: usize,
+    /// What the encoders read, and what was seen.
+    pub visited: Visit,
+    /// Where the stage was sent: x, y (track radii), theta (rad).
+    pub commanded: [f64; 3],
+    /// The controller's clock, s.
+    pub clock_s: f64,
 }
 
 /// What reads the instrument.
@@ -102,33 +132,48 @@ pub fn serial(machine: &mut dyn Machine) -> Result<String, RecordError> {
     Ok(machine.ask("SSN?")?.unwrap_or_default().trim().to_owned())
 }
 
-/// Visits the stops from `first` on, and has each visit kept, with the controller's clock in s, as it is made.
+/// Visits stops, and has each visit kept as it is made.
 ///
 /// # Errors
 /// [`MeasureError`]: those before it are kept. The stage holds where it is.
 pub fn measure(
     machine: &mut dyn Machine,
     reader: &mut dyn Reader,
-    stops: &[Stop],
-    first: usize,
-    radius_mm: f64,
-    keep: &mut dyn FnMut(usize, &Visit, f64) -> Result<(), std::io::Error>,
+    way: &Way<'_>,
+    keep: &mut dyn FnMut(&Measured) -> Result<(), std::io::Error>,
 ) -> Result<(), MeasureError> {
     let mut stage = Stage {
         bench: Bench::new(machine)?,
-        radius_mm,
+        radius_mm: way.radius_mm,
     };
-    stage.bench.hold()?;
-    for (visit, stop) in stops.iter().enumerate().skip(first) {
-        let seen = stage.seen(reader, visit, stop)?;
+    if let Err(error) = stage.bench.hold() {
+        return Err(match stage.bench.fault()? {
+            fault if fault.is_empty() => error.into(),
+            fault => MeasureError::Stage(format!("the stage does not hold{fault}")),
+        });
+    }
+    for (visit, stop) in way.stops.iter().enumerate().skip(way.first) {
+        let from = way.is_from_both_sides.then(|| approach(visit));
+        let (seen, commanded) = stage.seen(reader, visit, stop, from)?;
         let visited = Visit {
             readings_rad: stage.readings_rad()?,
             seen,
         };
-        let clock_s = stage.bench.clock_s()?;
-        keep(visit, &visited, clock_s)?;
+        keep(&Measured {
+            visit,
+            visited,
+            commanded,
+            clock_s: stage.bench.clock_s()?,
+        })?;
     }
     Ok(())
+}
+
+/// From where a stop of a pair is gone to, beside it: the second from the side opposite to the first's.
+fn approach(visit: usize) -> [f64; 3] {
+    let side = if visit.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let (sin, cos) = ((visit / 2) as f64 * APPROACH_STEP_RAD).sin_cos();
+    [cos, sin, 1.0].map(|part| side * APPROACH * part)
 }
 
 struct Stage<'a> {
@@ -137,25 +182,29 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// Goes there, and reads; over and over for a mark, until it is under the camera.
+    /// Goes there, and reads; over and over for a mark, until it is under the camera. Also where that has sent it.
     fn seen(
         &mut self,
         reader: &mut dyn Reader,
         visit: usize,
         stop: &Stop,
-    ) -> Result<Seen, MeasureError> {
+        from: Option<[f64; 3]>,
+    ) -> Result<(Seen, [f64; 3]), MeasureError> {
         let Stop { mut pose, at } = *stop;
         let mut off_um = 0.0;
         for _ in 0..MOST_LOOKS {
+            if let Some(from) = from {
+                self.go(&[0, 1, 2].map(|k| pose[k] + from[k]))?;
+            }
             self.go(&pose)?;
             let wanted = Wanted { visit, at, pose };
             let seen =
                 (reader.read(&wanted)).map_err(|reason| MeasureError::Reading { visit, reason })?;
             let Seen::Mark { off: [x, y], .. } = seen else {
-                return Ok(seen);
+                return Ok((seen, pose));
             };
             if x.hypot(y) < UNDER {
-                return Ok(seen);
+                return Ok((seen, pose));
             }
             off_um = x.hypot(y) * self.radius_mm * 1e3;
             pose[0] -= x;

@@ -18,8 +18,11 @@ pub(in super::super) enum CalibrateCommand {
     Measure(CalibrateMeasure),
     /// Fit the machine to what was measured, and write it as a calibration file.
     Fit(CalibrateFit),
-    /// Send a calibration to the controller of the machine that it was made for: all of it, or nothing.
+    /// Send a calibration to the controller of the machine that it was made for: all of it, or nothing. Exit code 1 where it is refused.
     Apply(CalibrateApply),
+    /// Judge the calibration in force by what an instrument sees at fresh poses, each gone to from both sides. Exit code 1 if it is worse
+    /// than predicted, or worse than none.
+    Verify(CalibrateVerify),
     /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
     Undo(CalibratedMachine),
 }
@@ -71,8 +74,45 @@ pub(in super::super) struct CalibrateMeasure {
 pub(in super::super) struct CalibrateApply {
     /// The calibration file.
     pub(in super::super) file: PathBuf,
+    /// What was measured of the machine as it is now, as `tripivot calibrate measure` leaves it: a calibration that explains it worse than
+    /// what is in force is refused.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) measured: PathBuf,
+    /// The file of the calibration that is in force, if one is.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) over: Option<PathBuf>,
     #[command(flatten)]
     pub(in super::super) stage: CalibratedMachine,
+}
+
+/// A verification.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateVerify {
+    /// The calibration file: the controller has to have it in force.
+    pub(in super::super) file: PathBuf,
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
+    /// The instrument: xyt, xy, theta, camera or camera2 [default: that of the calibration].
+    #[arg(long)]
+    pub(in super::super) kit: Option<Kit>,
+    /// Standard deviation of one measurement of x or y [default: as in the calibration].
+    #[arg(long, value_name = "LENGTH", value_parser = length_m)]
+    pub(in super::super) noise: Option<f64>,
+    /// Standard deviation of one measurement of theta [default: that of lengths over a base of 50 mm, or as in the calibration].
+    #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
+    pub(in super::super) noise_theta: Option<f64>,
+    /// How many fresh poses; each is gone to twice.
+    #[arg(long, value_name = "N", default_value_t = 60, allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Command that reads the instrument, as for `tripivot calibrate measure`.
+    #[arg(long, value_name = "COMMAND")]
+    pub(in super::super) reader: Option<String>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); verdict.
+    #[arg(long)]
+    pub(in super::super) json: bool,
 }
 
 /// The instrument's noise.

@@ -3,25 +3,45 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use calibration::file::Calibration;
-use desk::calibrate::{ApplyError, apply, switch_off};
+use calibration::Noise;
+use calibration::file::Made;
+use calibration::table::Table;
+use desk::calibrate::{ApplyError, Evidence, apply, switch_off};
+use kinematics::Geometry;
 
 use super::super::arguments::{CalibrateApply, CalibratedMachine};
 use super::super::error::CliError;
 use super::error::CalibrateError;
 use super::measure::machine;
-use super::read;
+use super::{URAD_PER_RAD, calibration, nm, read};
 
 pub(super) fn run(arguments: &CalibrateApply) -> Result<ExitCode, CliError> {
-    let path = &arguments.file;
     // Before anything is asked of the machine.
-    let calibration = Calibration::from_text(&read(path)?).map_err(|source| {
-        let path = path.clone();
-        CalibrateError::Calibration { path, source }
-    })?;
+    let calibration = calibration(&arguments.file)?;
+    let evidence = evidence(arguments, &calibration.made)?;
     let mut machine = machine(&arguments.stage)?;
-    let told = apply(machine.as_mut(), &calibration).map_err(CalibrateError::Apply)?;
+    let told = apply(machine.as_mut(), &calibration, &evidence).map_err(CalibrateError::Apply)?;
     tell(&told)
+}
+
+fn evidence(arguments: &CalibrateApply, made: &Made) -> Result<Evidence, CliError> {
+    let path = &arguments.measured;
+    let table =
+        Table::from_text(&read(path)?, Geometry::REFERENCE.radius_mm).map_err(|source| {
+            let path = path.clone();
+            CalibrateError::Table { path, source }
+        })?;
+    let noise = Noise {
+        length: made.noise_nm / nm(1.0),
+        angle_rad: made.noise_urad / URAD_PER_RAD,
+        encoder_rad: Noise::ENCODER_RAD,
+    };
+    let over = arguments.over.as_deref().map(calibration);
+    Ok(Evidence {
+        instrument: table.instrument(noise),
+        visits: table.visits,
+        over: over.transpose()?,
+    })
 }
 
 pub(super) fn undo(stage: &CalibratedMachine) -> Result<ExitCode, CliError> {

@@ -33,6 +33,8 @@ pub(in crate::cli) enum CalibrateError {
     Measure(#[from] desk::calibrate::MeasureError),
     #[error(transparent)]
     Apply(#[from] desk::calibrate::ApplyError),
+    #[error(transparent)]
+    Verify(#[from] desk::calibrate::VerifyError),
     /// The file is there, and was begun otherwise.
     #[error("{}: this is another measurement, begun as '{found}'; now it is '{wanted}'", path.display())]
     Begun {
@@ -55,7 +57,12 @@ impl CalibrateError {
     pub(in crate::cli) const fn is_failure(&self) -> bool {
         matches!(
             self,
-            Self::Fit { .. } | Self::File(_) | Self::Lost | Self::Measure(_) | Self::Apply(_)
+            Self::Fit { .. }
+                | Self::File(_)
+                | Self::Lost
+                | Self::Measure(_)
+                | Self::Apply(_)
+                | Self::Verify(_)
         )
     }
 }

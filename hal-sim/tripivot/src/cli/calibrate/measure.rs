@@ -7,8 +7,8 @@ use std::process::ExitCode;
 
 use calibration::plan::Stop;
 use calibration::table::{Table, to_text};
-use calibration::{Instrument, Kit, Visit, plan};
-use desk::calibrate::{MeasureError, Reader, measure, serial, with_references};
+use calibration::{Instrument, Kit, plan};
+use desk::calibrate::{MeasureError, Measured, Reader, Way, measure, serial, with_references};
 use desk::commission::{Attended, Machine};
 use hal_sim::date::today;
 use hal_sim::machine::instruments::Beside;
@@ -32,7 +32,8 @@ pub(super) fn run(arguments: &CalibrateMeasure) -> Result<ExitCode, CliError> {
     let instrument = Instrument::new(arguments.kit, noise(&arguments.noise));
     let planned = plan(&instrument, arguments.poses).ok_or(CalibrateError::Lost)?;
     let stops = with_references(&planned.stops);
-    let (mut machine, mut reader) = opened(arguments, &instrument)?;
+    let (mut machine, mut reader) =
+        opened(&arguments.stage, arguments.reader.as_deref(), &instrument)?;
     let begun = format!(
         "{BEGUN}machine {}, {}, {:.4} nm, {} poses",
         serial(machine.as_mut())?,
@@ -42,15 +43,15 @@ pub(super) fn run(arguments: &CalibrateMeasure) -> Result<ExitCode, CliError> {
     );
     let kept = kept(&arguments.out, &begun)?;
     let mut file = Kept::open(&arguments.out, &begun, &instrument, kept)?;
-    let radius_mm = Geometry::REFERENCE.radius_mm;
-    measure(
-        machine.as_mut(),
-        reader.as_mut(),
-        &stops,
-        kept,
-        radius_mm,
-        &mut |visit, visited, clock_s| file.keep(&stops, visit, visited, clock_s),
-    )
+    let way = Way {
+        stops: &stops,
+        first: kept,
+        radius_mm: Geometry::REFERENCE.radius_mm,
+        is_from_both_sides: false,
+    };
+    measure(machine.as_mut(), reader.as_mut(), &way, &mut |measured| {
+        file.keep(&stops, measured)
+    })
     .map_err(CalibrateError::Measure)?;
     let text = [
         line(
@@ -88,11 +89,15 @@ fn simulated(stage: &CalibratedMachine) -> Result<SimulatedMachine, CliError> {
 
 type Opened = (Box<dyn Machine>, Box<dyn Reader>);
 
-fn opened(arguments: &CalibrateMeasure, instrument: &Instrument) -> Result<Opened, CliError> {
-    let stage = &arguments.stage;
-    if let Some(command) = &arguments.reader {
+/// The machine, with what reads the instrument: this command, or the simulated one.
+pub(super) fn opened(
+    stage: &CalibratedMachine,
+    command: Option<&str>,
+    instrument: &Instrument,
+) -> Result<Opened, CliError> {
+    if let Some(command) = command {
         let reader = Asked {
-            command: command.clone(),
+            command: command.to_owned(),
             instrument: instrument.clone(),
         };
         return Ok((machine(stage)?, Box::new(reader)));
@@ -169,14 +174,10 @@ impl Kept {
     }
 
     /// A row, with what it is and when above it.
-    fn keep(
-        &mut self,
-        stops: &[Stop],
-        visit: usize,
-        visited: &Visit,
-        clock_s: f64,
-    ) -> io::Result<()> {
-        let rows = to_text(&self.instrument, &[*visited], Geometry::REFERENCE.radius_mm);
+    fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
+        let Measured { visit, clock_s, .. } = *measured;
+        let radius_mm = Geometry::REFERENCE.radius_mm;
+        let rows = to_text(&self.instrument, &[measured.visited], radius_mm);
         let row = rows.lines().nth(1).unwrap_or_default();
         let is_reference = visit > 0 && stops.get(visit) == stops.first();
         let what = if is_reference { "reference" } else { "pose" };

@@ -6,12 +6,14 @@ mod fit;
 mod measure;
 mod plan;
 mod reader;
+mod verify;
 
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
 use calibration::Noise;
+use calibration::file::Calibration;
 use kinematics::Geometry;
 
 use super::arguments::{CalibrateCommand, NoiseArguments};
@@ -29,6 +31,7 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
         CalibrateCommand::Measure(arguments) => measure::run(arguments),
         CalibrateCommand::Fit(arguments) => fit::run(arguments),
         CalibrateCommand::Apply(arguments) => apply::run(arguments),
+        CalibrateCommand::Verify(arguments) => verify::run(arguments),
         CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }
@@ -52,6 +55,13 @@ fn read(path: &Path) -> Result<String, CalibrateError> {
     fs::read_to_string(path).map_err(|source| CalibrateError::Unreadable {
         path: path.to_owned(),
         source,
+    })
+}
+
+fn calibration(path: &Path) -> Result<Calibration, CalibrateError> {
+    Calibration::from_text(&read(path)?).map_err(|source| {
+        let path = path.to_owned();
+        CalibrateError::Calibration { path, source }
     })
 }
 
