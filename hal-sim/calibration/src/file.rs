@@ -189,7 +189,7 @@ impl Calibration {
             // Numbers, words and tables of them, all of which TOML has.
             Err(error) => format!("{head}# {error}\n"),
         };
-        format!("{text}{CHECKSUM}{:08x}\n", checksum(&text))
+        with_checksum(&text)
     }
 
     /// From text.
@@ -216,6 +216,12 @@ impl Calibration {
         }
         Ok(calibration)
     }
+}
+
+/// A text with its checksum in a last line, without which no file is taken.
+#[must_use]
+pub fn with_checksum(text: &str) -> String {
+    format!("{text}{CHECKSUM}{:08x}\n", checksum(text))
 }
 
 /// Of all lines, however they are ended.
