@@ -212,6 +212,33 @@ fn tangents_hold_until_the_next_look() {
     assert!(worst <= GOAL_RAD, "{worst:e} rad");
 }
 
+/// The reference gives each encoder the turn that it is in: the tangents are those of the same place on the ring, whichever turn they
+/// were looked up in.
+#[test]
+fn tangents_hold_in_any_turn() {
+    for row in &all().rows {
+        let pose = rounded(&row.pose);
+        let from = corrected_inverse(&pose, &BUILT).expect("inside the track");
+        let setpoints = |turns: i64| {
+            let near = Corrections {
+                lines: BUILT.lines,
+                curves: [0, 1, 2].map(|i| {
+                    let ring = from.encoders[i] - BUILT.lines[i].encoder_zero;
+                    let ring = ring + Angle::from_units(turns << 32);
+                    Tangents::of_ring(&BUILT.curves[i], ring)
+                        .with_guide(&BUILT.curves[i], from.guides[i].rho())
+                }),
+            };
+            corrected_inverse(&pose, &near)
+                .expect("inside the track")
+                .encoders
+        };
+        for turns in [-3, -1, 1, 1_000] {
+            assert_eq!(setpoints(turns), setpoints(0), "{turns} turns");
+        }
+    }
+}
+
 #[test]
 fn one_curve_of_three_is_not_none() {
     let is_zero = |pivot| Curves::<Fixed>::are_zero(&Series::<f32>::new(&pivot));

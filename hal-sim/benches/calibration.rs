@@ -106,7 +106,7 @@ fn instrument(row: &Row) -> Instrument {
 fn stops_of(row: &Row) -> (Vec<Stop>, String) {
     let instrument = instrument(row);
     if !row.is_planned {
-        return (stops(&instrument, row.visits), "-".to_owned());
+        return (stops(&instrument, 0, row.visits), "-".to_owned());
     }
     let plan = plan(&instrument, row.visits).expect("finite numbers");
     let Accuracy {

@@ -101,7 +101,8 @@ impl<T: CorrectedScalar> Curves<T> for Tangents<T> {
 
     #[inline]
     fn ring_errors(&self, ring: T::Angle) -> RingErrors<T::Correction> {
-        let way = T::angle_to_correction(ring - self.ring);
+        // Curves have the same values in every turn.
+        let way = T::angle_to_correction(T::near(ring, self.ring) - self.ring);
         RingErrors {
             encoder: self.errors.encoder.after(way),
             runout: self.errors.runout.after(way),

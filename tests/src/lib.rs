@@ -5,7 +5,7 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`calibrated`] | a stage as it was built, and its calibration as lines |
+//! | [`calibrated`] | a calibration of a machine as drawn |
 //! | [`trouble`] | ways to break a bench |
 //! | [`repeated`] | a way that is repeated, for iterative learning |
 //! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |

@@ -86,7 +86,8 @@ impl CorrectedScalar for Fixed {
 
     #[inline]
     fn angle_to_correction(angle: Angle) -> f32 {
-        i64_to_f32_fast(angle.units()) * RADIANS_PER_UNIT
+        // Less than half a turn: 32 bits.
+        angle.units() as i32 as f32 * RADIANS_PER_UNIT
     }
 
     /// Rounded to nearest, but for a sixteenth of a unit, up to 0.19 rad; beyond, that.

@@ -19,6 +19,8 @@ const SMALL_STEP: f64 = 0.02;
 /// Where Gauss-Newton stands: all unknowns, in their sizes.
 pub(crate) struct State {
     pub(crate) instrument: Instrument,
+    /// From where the machine's numbers are counted.
+    machine: Machine,
     pub(crate) sizes: Vec<f64>,
     guess: Vec<f64>,
     pub(crate) now: DVector<f64>,
@@ -27,6 +29,7 @@ pub(crate) struct State {
 impl State {
     pub(crate) fn new(instrument: Instrument) -> Self {
         Self {
+            machine: DRAWN,
             sizes: instrument.sizes(),
             guess: instrument.guess(),
             now: DVector::zeros(instrument.unknowns()),
@@ -34,14 +37,22 @@ impl State {
         }
     }
 
+    /// With the instrument's numbers alone unknown: the machine is this one, and its numbers have no size.
+    pub(crate) fn of_machine(mut self, machine: &Machine) -> Self {
+        self.machine = *machine;
+        self.sizes[..MACHINE_NUMBERS].fill(0.0);
+        self
+    }
+
     /// The machine and the instrument's unknowns.
     pub(crate) fn values(&self) -> (Machine, Vec<f64>) {
-        let mut machine = DRAWN;
+        let mut machine = self.machine;
         let off: Vec<f64> = (self.now.iter().zip(&self.sizes))
             .map(|(now, size)| now * size)
             .collect();
-        for (pivot, numbers) in machine.iter_mut().zip(off.as_chunks::<COEFFICIENTS>().0) {
-            *pivot = numbers::from_list(numbers);
+        for (pivot, off) in machine.iter_mut().zip(off.as_chunks::<COEFFICIENTS>().0) {
+            let from = numbers::to_list(pivot);
+            *pivot = numbers::from_list(&core::array::from_fn(|number| from[number] + off[number]));
         }
         let unknowns = (self.guess.iter().zip(off.iter().skip(MACHINE_NUMBERS)))
             .map(|(guess, off)| guess + off)

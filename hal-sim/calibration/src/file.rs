@@ -1,10 +1,15 @@
 //! A fitted machine as a text file: every number with its unit in its name, and how it came about.
 
+use crc::{CRC_32_ISO_HDLC, Crc};
 use kinematics::PivotCoefficients;
 use serde::{Deserialize, Serialize};
 
 use crate::Machine;
 use crate::kit::Kit;
+
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+/// Begins the last line.
+const CHECKSUM: &str = "# CRC-32 of the lines above: ";
 
 /// What a file tells.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -96,6 +101,19 @@ pub enum FileError {
         /// What it may be.
         most: f64,
     },
+    /// Its end is missing.
+    #[error("no checksum in its last line: its end is missing")]
+    NoChecksum,
+    /// Something in it is not what was written.
+    #[error(
+        "it has the checksum {found:08x}, and {told:08x} is in its last line: it has been changed since it was written"
+    )]
+    Changed {
+        /// Of what stands there.
+        found: u32,
+        /// Of what was written.
+        told: u32,
+    },
 }
 
 impl Pivot {
@@ -166,11 +184,12 @@ impl Calibration {
     #[must_use]
     pub fn to_text(&self) -> String {
         let head = "# What a built machine is off its drawing, for `tripivot --calibration FILE`. Every number has its unit in its name.\n\n";
-        match toml::to_string(self) {
+        let text = match toml::to_string(self) {
             Ok(text) => head.to_owned() + &text,
             // Numbers, words and tables of them, all of which TOML has.
             Err(error) => format!("{head}# {error}\n"),
-        }
+        };
+        with_checksum(&text)
     }
 
     /// From text.
@@ -189,8 +208,30 @@ impl Calibration {
                 within(&format!("pivots.{i}.{name}"), value, -most, most)?;
             }
         }
+        let (above, told) = text.rsplit_once(CHECKSUM).ok_or(FileError::NoChecksum)?;
+        let told = u32::from_str_radix(told.trim_end(), 16).map_err(|_| FileError::NoChecksum)?;
+        let found = checksum(above);
+        if found != told {
+            return Err(FileError::Changed { found, told });
+        }
         Ok(calibration)
     }
+}
+
+/// A text with its checksum in a last line, without which no file is taken.
+#[must_use]
+pub fn with_checksum(text: &str) -> String {
+    format!("{text}{CHECKSUM}{:08x}\n", checksum(text))
+}
+
+/// Of all lines, however they are ended.
+fn checksum(text: &str) -> u32 {
+    let mut digest = CRC.digest();
+    for line in text.lines() {
+        digest.update(line.as_bytes());
+        digest.update(b"\n");
+    }
+    digest.finalize()
 }
 
 fn within(key: &str, value: f64, least: f64, most: f64) -> Result<(), FileError> {
@@ -275,5 +316,25 @@ mod tests {
             "pivots.0.encoder_zero_rad = NaN: must be from -7 to 7"
         );
         assert!(error("[made]", "[made").starts_with("line 3: "));
+    }
+
+    #[test]
+    fn a_changed_digit_is_found() {
+        let text = calibration().to_text();
+        let radius = (text
+            .lines()
+            .find(|line| line.starts_with("radius_error_mm")))
+        .unwrap();
+        let digit = radius
+            .find(|letter: char| ('1'..='8').contains(&letter))
+            .unwrap();
+        let mut changed = radius.to_owned();
+        changed.replace_range(digit..=digit, "9");
+        let error = |text: &str| Calibration::from_text(text).unwrap_err();
+        let changed = error(&text.replacen(radius, &changed, 1));
+        assert!(matches!(changed, FileError::Changed { .. }), "{changed}");
+        let (above, _) = text.rsplit_once(CHECKSUM).unwrap();
+        assert_eq!(error(above), FileError::NoChecksum);
+        assert!(Calibration::from_text(&text.replace('\n', "\r\n")).is_ok());
     }
 }

@@ -106,7 +106,7 @@ pub(crate) fn few(outliers: usize, visits: usize, chi2: f64) -> Result<(), FitEr
 }
 
 /// Every visit is one that the instrument can make.
-fn check(instrument: &Instrument, visits: &[Visit]) -> Result<(), FitError> {
+pub(crate) fn check(instrument: &Instrument, visits: &[Visit]) -> Result<(), FitError> {
     const LEAST: usize = 12;
     if visits.len() < LEAST {
         return Err(FitError::TooFew {

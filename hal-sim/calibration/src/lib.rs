@@ -17,6 +17,7 @@
 //! | [`least_squares`] | rows to an orthogonal factor, and what that says of uncertainty |
 //! | [`mod@fit`] | the fit: robust, with some visits held out |
 //! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
+//! | [`mod@judge`] | whether a machine of given numbers is the one that was measured |
 //! | `error` | why there is no fit |
 //! | [`frames`] | errors of poses without what only the choice of frames and of scale makes |
 //! | [`accuracy`] | what is left of the machine's errors after a fit, before anything is measured |
@@ -34,6 +35,7 @@ pub mod file;
 pub mod fit;
 pub mod frames;
 pub mod freedom;
+pub mod judge;
 pub mod kit;
 pub mod least_squares;
 pub mod model;
@@ -48,6 +50,7 @@ pub mod visit;
 pub use accuracy::Accuracy;
 pub use error::FitError;
 pub use fit::{Fit, fit};
+pub use judge::{Judged, Predicted, judge};
 pub use kit::{Instrument, Kit, Noise};
 pub use plan::{Plan, plan};
 pub use visit::{Seen, Visit};

@@ -75,7 +75,7 @@ pub struct Plan {
 #[must_use]
 pub fn plan(instrument: &Instrument, poses: usize) -> Option<Plan> {
     let sizes = instrument.sizes();
-    let all: Vec<(Stop, Rows)> = (stops(instrument, CANDIDATES.max(2 * poses)).into_iter())
+    let all: Vec<(Stop, Rows)> = (stops(instrument, 0, CANDIDATES.max(2 * poses)).into_iter())
         .filter_map(|stop| Some((stop, rows(instrument, &stop)?)))
         .collect();
     let candidates: Vec<&Rows> = all.iter().map(|(_, rows)| rows).collect();
@@ -92,13 +92,13 @@ pub fn plan(instrument: &Instrument, poses: usize) -> Option<Plan> {
     })
 }
 
-/// Poses all over the disk, for cameras such as bring a mark under it, for ends such as touch one.
+/// Poses all over the disk, for cameras such as bring a mark under it, for ends such as touch one; from this one of an endless sequence on.
 #[must_use]
-pub fn stops(instrument: &Instrument, count: usize) -> Vec<Stop> {
+pub fn stops(instrument: &Instrument, first: usize, count: usize) -> Vec<Stop> {
     // Half of all marks and orientations bring the platform out of the disk: so many tries are plenty.
-    let tries = (0..20 * count).map(in_cube);
+    let tries = (first..first + 20 * count).map(in_cube);
     match instrument.kit {
-        Kit::Xyt | Kit::Xy | Kit::Theta => (over_disk(DISK).take(count))
+        Kit::Xyt | Kit::Xy | Kit::Theta => (over_disk(DISK).skip(first).take(count))
             .map(|pose| Stop { pose, at: At::Pose })
             .collect(),
         Kit::Camera | Kit::Camera2 => (tries.filter_map(|share| under_camera(instrument, share)))

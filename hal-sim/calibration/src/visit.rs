@@ -4,8 +4,8 @@ use kinematics::COEFFICIENTS;
 use nalgebra::{Matrix3, Rotation2, SMatrix, Vector2, Vector3};
 
 use crate::kit::Instrument;
-use crate::position::{OutOfReach, Position, position, within_half_turn};
-use crate::{MACHINE_NUMBERS, Machine};
+use crate::position::{OutOfReach, Position, position, readings_rad, within_half_turn};
+use crate::{DRAWN, MACHINE_NUMBERS, Machine};
 
 /// What an instrument has seen.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -52,6 +52,17 @@ pub struct Visit {
     pub readings_rad: [f64; 3],
     /// What was seen there.
     pub seen: Seen,
+}
+
+impl Visit {
+    /// What was seen where a controller was sent to a pose (track radii, rad): a visit of the machine as drawn, which goes where it is sent.
+    ///
+    /// # Errors
+    /// [`OutOfReach`]: a pivot does not reach its guide.
+    pub fn commanded(pose: &[f64; 3], seen: Seen) -> Result<Self, OutOfReach> {
+        let readings_rad = readings_rad(&DRAWN, pose)?;
+        Ok(Self { readings_rad, seen })
+    }
 }
 
 /// What was seen on one visit less what the model says, over the noise, with derivatives of what the model says. In x, y, theta.

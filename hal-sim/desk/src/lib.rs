@@ -7,6 +7,7 @@
 //! | `record` | a record of a controller's data recorder |
 //! | `board` | the tests to be repeated on every board |
 //! | `commission` | from an unknown machine to one that moves |
+//! | `calibrate` | a built machine is measured, and its calibration given to its controller |
 //! | `settings` | a controller's settings to a file and back |
 //! | [`error_words`] | error numbers in words |
 //! | `reference` | the parameters of the reference stage |
@@ -14,6 +15,7 @@
 
 mod assets;
 pub mod board;
+pub mod calibrate;
 pub mod commission;
 pub mod error_words;
 pub mod record;

@@ -12,7 +12,7 @@ const TEMPERATURE_C: f32 = 20.5;
 /// A stage with the errors of a workshop in its rings, guides and encoders.
 #[must_use]
 pub fn built_stage(stage: &StageParameters) -> StageParameters {
-    let mut stage = stage.clone();
+    let mut stage = *stage;
     let on = &mut stage.plant.imperfections;
     on.geometry = true;
     on.encoder_eccentricity = true;

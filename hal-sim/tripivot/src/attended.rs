@@ -1,5 +1,8 @@
 //! A simulated machine with a simulated person beside it, as fast as this computer can.
 
+use std::cell::Cell;
+use std::rc::Rc;
+
 use desk::commission::{Machine, Task};
 use desk::record::RecordError;
 use firmware::gcs::Session;
@@ -7,7 +10,7 @@ use firmware::parameters::Parameters;
 use hal_sim::front::Host;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
 use hal_sim::machine::plant::External;
-use hal_sim::rig::{ControllerMemory, Rig};
+use hal_sim::rig::{ControllerMemory, Rig, Told};
 
 /// Where the person holds the platform's middle, m, and how far it is turned, rad, in which time, s.
 const OUT_M: [f64; 2] = [0.025, 0.015];
@@ -37,6 +40,8 @@ pub struct SimulatedMachine {
     /// Ticks since the person has begun to turn the platform, and where its theta was.
     turning: Option<(u32, f64)>,
     each_tick: Option<EachTick>,
+    /// Where the platform truly is, m, m and rad, for instruments.
+    true_pose: Rc<Cell<[f64; 3]>>,
 }
 
 impl SimulatedMachine {
@@ -53,16 +58,43 @@ impl SimulatedMachine {
         flash: SettingsFlash,
         each_tick: Option<EachTick>,
     ) -> Self {
-        let parameters = Parameters::REFERENCE.uncommissioned();
+        Self::switched_on(
+            stage,
+            &Parameters::REFERENCE.uncommissioned(),
+            flash,
+            each_tick,
+        )
+    }
+
+    /// Switched on, with a controller that is told the machine's drives and load unless this flash keeps others.
+    #[must_use]
+    pub fn told(stage: &StageParameters, flash: SettingsFlash) -> Self {
+        let parameters = Told::Machine.parameters(&Parameters::REFERENCE, stage);
+        Self::switched_on(stage, &parameters, flash, None)
+    }
+
+    fn switched_on(
+        stage: &StageParameters,
+        parameters: &Parameters,
+        flash: SettingsFlash,
+        each_tick: Option<EachTick>,
+    ) -> Self {
         let mut machine = Self {
-            rig: Rig::simulated(ControllerMemory::endless(), stage, &parameters, flash),
+            rig: Rig::simulated(ControllerMemory::endless(), stage, parameters, flash),
             session: Session::new(),
             answers: Vec::new(),
             turning: None,
             each_tick,
+            true_pose: Rc::default(),
         };
         machine.run(2_000);
         machine
+    }
+
+    /// The platform's true pose, m, m and rad, as it is whenever that is looked at.
+    #[must_use]
+    pub fn true_pose(&self) -> Rc<Cell<[f64; 3]>> {
+        Rc::clone(&self.true_pose)
     }
 
     /// The machine itself, which a controller does not see.
@@ -80,6 +112,7 @@ impl SimulatedMachine {
         // Writing to a vector does not fail.
         let _ = self.rig.service(&mut self.session, &mut self.answers);
         self.rig.keep();
+        self.true_pose.set(self.rig.front.stage.plant.pose());
     }
 
     fn run(&mut self, ticks: u32) {

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use calibration::file::with_checksum;
 use serde_json::{Map, Value, json};
 
 const CSV: &str = include_str!("../../../kinematics/tests/data/built-all.csv");
@@ -97,7 +98,7 @@ fn ours() -> Value {
 }
 
 fn toml_of(document: &Value) -> String {
-    toml::to_string(document).expect("numbers and words")
+    with_checksum(&toml::to_string(document).expect("numbers and words"))
 }
 
 #[test]

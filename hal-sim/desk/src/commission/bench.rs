@@ -30,7 +30,7 @@ const PERIOD: u32 = 0x0E00_0200;
 const LOOK_S: f64 = 0.02;
 
 /// The machine as the steps see it.
-pub(super) struct Bench<'a> {
+pub(crate) struct Bench<'a> {
     machine: &'a mut dyn Machine,
     /// Control period.
     pub period_s: f64,
@@ -40,7 +40,7 @@ pub(super) struct Bench<'a> {
 
 /// How an excitation has ended.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Ended {
+pub(crate) struct Ended {
     /// Why: `time`, `way`, `current`.
     pub by: String,
     /// Seconds that it took.
@@ -48,7 +48,7 @@ pub(super) struct Ended {
 }
 
 /// A record of a pivot.
-pub(super) struct Recorded {
+pub(crate) struct Recorded {
     /// Volts, currents and angles.
     pub signals: Signals,
     /// Mean supply, V.

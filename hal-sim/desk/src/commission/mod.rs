@@ -41,7 +41,7 @@ pub use steps::STEPS;
 
 use crate::record::{Desk, RecordError};
 use crate::web::Endpoint;
-use bench::Bench;
+pub(crate) use bench::Bench;
 use known::Known;
 
 /// A machine with its controller, and somebody beside it.

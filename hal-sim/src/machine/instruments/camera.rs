@@ -21,6 +21,11 @@ pub struct Camera {
 
 /// How well the stage finds a mark before it looks, m.
 const FOUND_M: f64 = 1e-6;
+/// Half the width of the camera's picture, m; and its scale, turn and distortion.
+const FIELD_M: f64 = 5e-3;
+const OPTICS_SCALE: f64 = 1.02;
+const OPTICS_RAD: f64 = 10e-3;
+const OPTICS_DISTORTION: f64 = 0.01;
 
 impl Camera {
     /// Every mark 0.1 mm and every place of the camera 0.5 mm from where the instrument says, one standard deviation; but the marks'
@@ -80,6 +85,35 @@ impl Camera {
                     off.y + noise.length * random.normal(),
                 ],
             },
+        })
+    }
+
+    /// Looks at a platform at a pose (m, m, rad), through optics whose scale, turn and distortion nobody has measured. `None`: the mark
+    /// is not in the picture.
+    pub fn look(
+        &self,
+        (mark, camera): (usize, usize),
+        pose: [f64; 3],
+        radius_m: f64,
+        random: &mut Random,
+    ) -> Option<Seen> {
+        let place_m =
+            Vector2::new(pose[0], pose[1]) + Rotation2::new(pose[2]) * self.marks_m.get(mark)?;
+        let off_m = place_m - self.cameras_m.get(camera)?;
+        let share = off_m.norm() / FIELD_M;
+        if share > 1.0 {
+            return None;
+        }
+        let imaged =
+            Rotation2::new(OPTICS_RAD) * off_m * (OPTICS_SCALE + OPTICS_DISTORTION * share * share);
+        let length = self.instrument.noise.length;
+        Some(Seen::Mark {
+            mark,
+            camera,
+            off: [
+                imaged.x / radius_m + length * random.normal(),
+                imaged.y / radius_m + length * random.normal(),
+            ],
         })
     }
 }

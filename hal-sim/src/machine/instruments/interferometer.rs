@@ -40,7 +40,14 @@ impl Interferometer {
         pose: [f64; 3],
         random: &mut Random,
     ) -> Result<Visit, OffGuide> {
-        let radius_m = machine.track_radius_m();
+        Ok(Visit {
+            readings_rad: noisy(machine.readings_rad(pose)?, &self.noise, random),
+            seen: self.read(pose, machine.track_radius_m(), random),
+        })
+    }
+
+    /// Reads a platform at a pose (m, m, rad).
+    pub fn read(&self, pose: [f64; 3], radius_m: f64, random: &mut Random) -> Seen {
         let [target_x, target_y, target_angle] = self.target;
         let [axes_x, axes_y, axes_angle] = self.axes;
         let arm = Rotation2::new(pose[2]) * Vector2::new(target_x, target_y);
@@ -49,14 +56,11 @@ impl Interferometer {
         let Noise {
             length, angle_rad, ..
         } = self.noise;
-        Ok(Visit {
-            readings_rad: noisy(machine.readings_rad(pose)?, &self.noise, random),
-            seen: Seen::Pose([
-                place.x + length * random.normal(),
-                place.y + length * random.normal(),
-                pose[2] + target_angle - axes_angle + angle_rad * random.normal(),
-            ]),
-        })
+        Seen::Pose([
+            place.x + length * random.normal(),
+            place.y + length * random.normal(),
+            pose[2] + target_angle - axes_angle + angle_rad * random.normal(),
+        ])
     }
 }
 

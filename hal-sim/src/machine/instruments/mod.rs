@@ -11,8 +11,10 @@
 //! | [`target`] | x and y of one target on the platform |
 //! | [`camera`] | a camera at fixed places over a plate of marks |
 //! | [`ends`] | no instrument: ends of guides, touched |
+//! | [`beside`] | one of them beside a machine that moves |
 //! | [`survey`](mod@survey) | a whole measurement, and its proof |
 
+pub mod beside;
 pub mod camera;
 pub mod ends;
 pub mod interferometer;
@@ -21,5 +23,6 @@ pub mod survey;
 pub mod target;
 pub mod workshop;
 
+pub use beside::Beside;
 pub use quasi_static::{EncoderErrors, QuasiStatic};
 pub use survey::{commanded, survey};

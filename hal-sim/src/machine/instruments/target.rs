@@ -32,10 +32,19 @@ impl Target {
         random: &mut Random,
     ) -> Result<Visit, OffGuide> {
         let visit = self.0.visit(machine, pose, random)?;
-        let seen = match visit.seen {
-            Seen::Pose([x, y, _]) => Seen::Place([x, y]),
-            other => other,
-        };
+        let seen = place_of(visit.seen);
         Ok(Visit { seen, ..visit })
+    }
+
+    /// Reads a platform at a pose (m, m, rad).
+    pub fn read(&self, pose: [f64; 3], radius_m: f64, random: &mut Random) -> Seen {
+        place_of(self.0.read(pose, radius_m, random))
+    }
+}
+
+const fn place_of(seen: Seen) -> Seen {
+    match seen {
+        Seen::Pose([x, y, _]) => Seen::Place([x, y]),
+        other => other,
     }
 }

@@ -2,7 +2,10 @@
 
 use super::number::{whole, within};
 use super::stage::{Machine, SimulatedStage, Simulation};
-pub(super) use calibrate::{CalibrateCommand, CalibrateFit, CalibratePlan, NoiseArguments};
+pub(super) use calibrate::{
+    CalibrateApply, CalibrateCommand, CalibrateFit, CalibrateMeasure, CalibratePlan,
+    CalibrateVerify, CalibratedMachine, NoiseArguments,
+};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 pub(super) use commission::{Commission, Commissioned};

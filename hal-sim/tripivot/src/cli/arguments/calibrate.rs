@@ -6,14 +6,113 @@ use calibration::Kit;
 use clap::{Args, Subcommand};
 
 use super::super::number::{whole, within};
+use super::super::stage::Machine;
+use super::controller::Controller;
 
 /// What a built machine is off its drawing.
 #[derive(Subcommand, Clone, Debug)]
 pub(in super::super) enum CalibrateCommand {
     /// Choose poses to measure at, and tell what will come out of it and what the instrument cannot tell, before anything moves.
     Plan(CalibratePlan),
+    /// Drive a plan and read an instrument at each of its poses; taken up where it was left when the file is there.
+    Measure(CalibrateMeasure),
     /// Fit the machine to what was measured, and write it as a calibration file.
     Fit(CalibrateFit),
+    /// Send a calibration to the controller of the machine that it was made for: all of it, or nothing. Exit code 1 where it is refused.
+    Apply(CalibrateApply),
+    /// Judge the calibration in force by what an instrument sees at fresh poses, each gone to from both sides. Exit code 1 if it is worse
+    /// than predicted, or worse than none.
+    Verify(CalibrateVerify),
+    /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
+    Undo(CalibratedMachine),
+}
+
+/// The machine that is calibrated.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibratedMachine {
+    #[command(flatten)]
+    pub(in super::super) controller: Controller,
+    /// A simulated machine in place of a controller that runs, which is told its drives and its load. Wires and zeros of an unknown one
+    /// are in the settings that `tripivot commission` leaves: give them with --settings.
+    #[command(flatten)]
+    pub(in super::super) machine: Machine,
+    /// Seed of the simulated noise and of how the simulated instrument is set up.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub(in super::super) seed: u64,
+    /// File in which the simulated controller keeps its settings and its calibration, as `tripivot commission` leaves one [default:
+    /// it forgets them].
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) settings: Option<PathBuf>,
+}
+
+/// A measurement.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateMeasure {
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
+    /// The instrument: xyt, xy, theta, camera or camera2.
+    #[arg(long)]
+    pub(in super::super) kit: Kit,
+    #[command(flatten)]
+    pub(in super::super) noise: NoiseArguments,
+    /// How many poses; the first is visited again after every twenty, to see what drifts.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Command that reads the instrument: it is run in a shell for each pose, gets x_mm y_mm theta_deg on standard input (for cameras
+    /// mark_x_mm mark_y_mm camera_x_mm camera_y_mm besides) and answers x_mm y_mm theta_deg, or x_mm y_mm, or theta_deg, or of a mark
+    /// off_x_um off_y_um, in one line [default: the simulated instrument beside a simulated machine].
+    #[arg(long, value_name = "COMMAND")]
+    pub(in super::super) reader: Option<String>,
+    /// What was measured, as CSV, for `tripivot calibrate fit`. Each row is kept as it is measured: the same command again goes on
+    /// behind the last one.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) out: PathBuf,
+}
+
+/// A calibration for a controller.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateApply {
+    /// The calibration file.
+    pub(in super::super) file: PathBuf,
+    /// What was measured of the machine as it is now, as `tripivot calibrate measure` leaves it: a calibration that explains it worse than
+    /// what is in force is refused.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) measured: PathBuf,
+    /// The file of the calibration that is in force, if one is.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) over: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
+}
+
+/// A verification.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateVerify {
+    /// The calibration file: the controller has to have it in force.
+    pub(in super::super) file: PathBuf,
+    #[command(flatten)]
+    pub(in super::super) stage: CalibratedMachine,
+    /// The instrument: xyt, xy, theta, camera or camera2 [default: that of the calibration].
+    #[arg(long)]
+    pub(in super::super) kit: Option<Kit>,
+    /// Standard deviation of one measurement of x or y [default: as in the calibration].
+    #[arg(long, value_name = "LENGTH", value_parser = length_m)]
+    pub(in super::super) noise: Option<f64>,
+    /// Standard deviation of one measurement of theta [default: that of lengths over a base of 50 mm, or as in the calibration].
+    #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
+    pub(in super::super) noise_theta: Option<f64>,
+    /// How many fresh poses; each is gone to twice.
+    #[arg(long, value_name = "N", default_value_t = 60, allow_negative_numbers = true, value_parser = whole(12..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Command that reads the instrument, as for `tripivot calibrate measure`.
+    #[arg(long, value_name = "COMMAND")]
+    pub(in super::super) reader: Option<String>,
+    /// Tell the result as one JSON document on standard output.
+    ///
+    /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); verdict.
+    #[arg(long)]
+    pub(in super::super) json: bool,
 }
 
 /// The instrument's noise.

@@ -27,6 +27,27 @@ pub(in crate::cli) enum CalibrateError {
     Fit { path: PathBuf, source: FitError },
     #[error("the fit is no calibration: {0}")]
     File(#[from] FileError),
+    #[error("{}: {source}", path.display())]
+    Calibration { path: PathBuf, source: FileError },
+    #[error(transparent)]
+    Measure(#[from] desk::calibrate::MeasureError),
+    #[error(transparent)]
+    Apply(#[from] desk::calibrate::ApplyError),
+    #[error(transparent)]
+    Verify(#[from] desk::calibrate::VerifyError),
+    /// The file is there, and was begun otherwise.
+    #[error("{}: this is another measurement, begun as '{found}'; now it is '{wanted}'", path.display())]
+    Begun {
+        path: PathBuf,
+        found: String,
+        wanted: String,
+    },
+    #[error("--kit ends: `measure` reads instruments, and ends of guides are touched without one")]
+    Ends,
+    #[error(
+        "--reader: what reads the instrument? Only a simulated machine has a simulated one beside it"
+    )]
+    NoReader,
     #[error("the numbers of the instrument leave nothing to compute with")]
     Lost,
 }
@@ -34,6 +55,14 @@ pub(in crate::cli) enum CalibrateError {
 impl CalibrateError {
     /// Whether the request was sound and what was measured is not.
     pub(in crate::cli) const fn is_failure(&self) -> bool {
-        matches!(self, Self::Fit { .. } | Self::File(_) | Self::Lost)
+        matches!(
+            self,
+            Self::Fit { .. }
+                | Self::File(_)
+                | Self::Lost
+                | Self::Measure(_)
+                | Self::Apply(_)
+                | Self::Verify(_)
+        )
     }
 }

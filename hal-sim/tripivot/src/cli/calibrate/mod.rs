@@ -1,14 +1,19 @@
 //! `tripivot calibrate`: what a built machine is off its drawing.
 
+mod apply;
 pub(super) mod error;
 mod fit;
+mod measure;
 mod plan;
+mod reader;
+mod verify;
 
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
 use calibration::Noise;
+use calibration::file::Calibration;
 use kinematics::Geometry;
 
 use super::arguments::{CalibrateCommand, NoiseArguments};
@@ -23,7 +28,11 @@ const URAD_PER_RAD: f64 = 1e6;
 pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
     match command {
         CalibrateCommand::Plan(arguments) => plan::run(arguments),
+        CalibrateCommand::Measure(arguments) => measure::run(arguments),
         CalibrateCommand::Fit(arguments) => fit::run(arguments),
+        CalibrateCommand::Apply(arguments) => apply::run(arguments),
+        CalibrateCommand::Verify(arguments) => verify::run(arguments),
+        CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }
 
@@ -46,6 +55,13 @@ fn read(path: &Path) -> Result<String, CalibrateError> {
     fs::read_to_string(path).map_err(|source| CalibrateError::Unreadable {
         path: path.to_owned(),
         source,
+    })
+}
+
+fn calibration(path: &Path) -> Result<Calibration, CalibrateError> {
+    Calibration::from_text(&read(path)?).map_err(|source| {
+        let path = path.to_owned();
+        CalibrateError::Calibration { path, source }
     })
 }
 

@@ -1,0 +1,168 @@
+//! A calibration that is in force is judged by fresh poses, each gone to from both sides: what the instrument sees there is the commanded
+//! pose, but for what was predicted and for noise, or the calibration is not this machine's.
+
+use calibration::accuracy::DISK;
+use calibration::file::Calibration;
+use calibration::plan::{Stop, stops};
+use calibration::{DRAWN, FitError, Instrument, Judged, Kit, Predicted, Visit, judge};
+use kinematics::Geometry;
+
+use super::apply::{ApplyError, checksum, in_force};
+use super::measure::{APPROACH, MeasureError, Measured, Reader, Way, measure};
+use crate::commission::Machine;
+use crate::record::RecordError;
+
+/// So many poses of the sequence are a plan's.
+const PLANNED: usize = 10_000;
+/// What may be seen over what was to be seen.
+pub const AS_PREDICTED: core::ops::RangeInclusive<f64> = 0.77..=1.3;
+
+/// Why nothing is verified.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// The controller.
+    #[error(transparent)]
+    Controller(#[from] RecordError),
+    /// The file is none that a controller takes.
+    #[error(transparent)]
+    Calibration(#[from] ApplyError),
+    /// Another is in force, or none.
+    #[error(
+        "this calibration is not in force: the controller has {has}; `tripivot calibrate apply` gives it one"
+    )]
+    NotInForce {
+        /// What is there.
+        has: &'static str,
+    },
+    /// Nobody reads where ends of guides are.
+    #[error("ends of guides see no pose: verify with another kit")]
+    Ends,
+    /// The measurement.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+    /// What was measured.
+    #[error(transparent)]
+    Judge(#[from] FitError),
+}
+
+/// What has come of it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Verified {
+    /// With the calibration.
+    pub now: Judged,
+    /// The same visits, had the controller taken the machine for the drawn one.
+    pub drawn: Judged,
+    /// How far the errors of both sides are apart, rms, noise in it: x and y (track radii), and theta (rad).
+    pub sides: [f64; 2],
+}
+
+/// How it stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// As predicted.
+    Holds,
+    /// So much better that the prediction or the noise was not what it is.
+    Better,
+    /// Worse than predicted.
+    Worse,
+    /// Worse than without it.
+    WorseThanDrawn,
+}
+
+impl Verified {
+    /// How it stands.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let (now, drawn) = (&self.now, &self.drawn);
+        let kinds = [(now.places, drawn.places), (now.turns, drawn.turns)];
+        let kinds = || kinds.into_iter().filter_map(|(now, drawn)| now.zip(drawn));
+        if kinds().any(|(now, drawn)| !(now.seen <= drawn.seen)) {
+            return Verdict::WorseThanDrawn;
+        }
+        if kinds().any(|(now, _)| !(now.ratio() <= *AS_PREDICTED.end())) {
+            return Verdict::Worse;
+        }
+        if kinds().all(|(now, _)| now.ratio() >= *AS_PREDICTED.start()) {
+            return Verdict::Holds;
+        }
+        Verdict::Better
+    }
+}
+
+/// Poses that no plan has, each twice.
+fn fresh(instrument: &Instrument, poses: usize) -> Vec<Stop> {
+    let inside = |stop: &Stop| stop.pose[0].hypot(stop.pose[1]) < DISK - APPROACH;
+    (stops(instrument, PLANNED, 2 * poses).into_iter())
+        .filter(inside)
+        .take(poses)
+        .flat_map(|stop| [stop, stop])
+        .collect()
+}
+
+/// Goes to fresh poses with the calibration in force, and judges what is seen there.
+///
+/// # Errors
+/// [`VerifyError`].
+pub fn verify(
+    machine: &mut dyn Machine,
+    reader: &mut dyn Reader,
+    calibration: &Calibration,
+    instrument: &Instrument,
+    poses: usize,
+) -> Result<Verified, VerifyError> {
+    if instrument.kit == Kit::Ends {
+        return Err(VerifyError::Ends);
+    }
+    let has = match in_force(machine)? {
+        Some(there) if there == checksum(calibration)? => None,
+        Some(_) => Some("another one"),
+        None => Some("none"),
+    };
+    if let Some(has) = has {
+        return Err(VerifyError::NotInForce { has });
+    }
+    let stops = fresh(instrument, poses);
+    let way = Way {
+        stops: &stops,
+        first: 0,
+        radius_mm: Geometry::REFERENCE.radius_mm,
+        is_from_both_sides: true,
+    };
+    let mut all: Vec<Measured> = Vec::new();
+    measure(machine, reader, &way, &mut |measured| {
+        all.push(*measured);
+        Ok(())
+    })?;
+    let commanded: Result<Vec<Visit>, _> = (all.iter().enumerate())
+        .map(|(visit, measured)| {
+            Visit::commanded(&measured.commanded, measured.visited.seen).map_err(|_| {
+                let reason = "it was commanded where no pivot reaches its guide";
+                FitError::Visit { visit, reason }
+            })
+        })
+        .collect();
+    let read: Vec<Visit> = all.iter().map(|measured| measured.visited).collect();
+    let radius_nm = calibration.made.track_radius_mm * 1e6;
+    let predicted = Predicted {
+        place: calibration.made.expected_xy_nm / radius_nm,
+        turn_rad: calibration.made.expected_theta_urad * 1e-6,
+    };
+    let now = judge(instrument, &DRAWN, &commanded?, &predicted)?;
+    Ok(Verified {
+        sides: apart(&now),
+        now,
+        drawn: judge(instrument, &DRAWN, &read, &predicted)?,
+    })
+}
+
+/// How far the errors of visits that follow each other are apart.
+fn apart(judged: &Judged) -> [f64; 2] {
+    let (mut place, mut turn, mut count) = (0.0, 0.0, 0.0);
+    for [one, other] in judged.visits.as_chunks::<2>().0 {
+        let [x, y, theta] = [0, 1, 2].map(|k| one[k] - other[k]);
+        place += x * x + y * y;
+        turn += theta * theta;
+        count += 1.0;
+    }
+    [place, turn].map(|square: f64| (square / count).sqrt())
+}

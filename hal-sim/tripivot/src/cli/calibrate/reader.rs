@@ -1,0 +1,102 @@
+//! What reads the instrument: a command of the user's, or the simulated instrument beside a simulated machine.
+
+use std::cell::Cell;
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::rc::Rc;
+
+use calibration::plan::At;
+use calibration::{Instrument, Kit, Seen};
+use desk::calibrate::{Reader, Wanted};
+use hal_sim::machine::instruments::Beside;
+use kinematics::Geometry;
+
+const UM_PER_MM: f64 = 1e3;
+
+/// A command that is run in a shell for each reading.
+pub(super) struct Asked {
+    pub(super) command: String,
+    pub(super) instrument: Instrument,
+}
+
+impl Reader for Asked {
+    fn read(&mut self, wanted: &Wanted) -> Result<Seen, String> {
+        let failed = |error: std::io::Error| format!("--reader: {error}");
+        let (shell, flag) = if cfg!(windows) {
+            ("cmd", "/C")
+        } else {
+            ("sh", "-c")
+        };
+        let mut child = Command::new(shell)
+            .args([flag, &self.command])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(failed)?;
+        if let Some(mut input) = child.stdin.take() {
+            // A command that does not look at the pose may have ended by now.
+            let _ = input.write_all(self.question(wanted).as_bytes());
+        }
+        let output = child.wait_with_output().map_err(failed)?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        if !output.status.success() {
+            return Err(format!("--reader ended with {}", output.status));
+        }
+        let values: Option<Vec<f64>> = (text.split([' ', ',', '\t']))
+            .filter(|word| !word.is_empty())
+            .map(|word| word.parse().ok().filter(|value: &f64| value.is_finite()))
+            .collect();
+        (values.and_then(|values| self.seen(wanted.at, &values))).ok_or_else(|| {
+            format!("--reader answered '{text}', which is no reading of this instrument")
+        })
+    }
+}
+
+impl Asked {
+    fn question(&self, wanted: &Wanted) -> String {
+        let radius_mm = Geometry::REFERENCE.radius_mm;
+        let [x, y, theta_rad] = wanted.pose;
+        let mut values = vec![x * radius_mm, y * radius_mm, theta_rad.to_degrees()];
+        if let At::Mark { mark, camera } = wanted.at {
+            let drawn = [
+                self.instrument.marks.get(mark),
+                self.instrument.cameras.get(camera),
+            ];
+            let drawn = drawn.into_iter().flatten().flatten();
+            values.extend(drawn.map(|value| value * radius_mm));
+        }
+        let words: Vec<String> = values.iter().map(|value| format!("{value:.9}")).collect();
+        words.join(" ") + "\n"
+    }
+
+    fn seen(&self, at: At, values: &[f64]) -> Option<Seen> {
+        let radii = |mm: f64| mm / Geometry::REFERENCE.radius_mm;
+        match (self.instrument.kit, at, values) {
+            (Kit::Xyt, _, &[x, y, theta]) => {
+                Some(Seen::Pose([radii(x), radii(y), theta.to_radians()]))
+            }
+            (Kit::Xy, _, &[x, y]) => Some(Seen::Place([radii(x), radii(y)])),
+            (Kit::Theta, _, &[theta]) => Some(Seen::Turn(theta.to_radians())),
+            (Kit::Camera | Kit::Camera2, At::Mark { mark, camera }, &[x_um, y_um]) => {
+                let off = [radii(x_um / UM_PER_MM), radii(y_um / UM_PER_MM)];
+                Some(Seen::Mark { mark, camera, off })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The simulated instrument, which sees the true pose.
+pub(super) struct Simulated {
+    pub(super) instrument: Beside,
+    pub(super) true_pose: Rc<Cell<[f64; 3]>>,
+}
+
+impl Reader for Simulated {
+    fn read(&mut self, wanted: &Wanted) -> Result<Seen, String> {
+        (self
+            .instrument
+            .read(wanted.at, self.true_pose.get(), wanted.visit))
+        .ok_or_else(|| "the mark is not in the camera's picture".to_owned())
+    }
+}

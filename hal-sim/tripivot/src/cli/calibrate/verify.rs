@@ -1,0 +1,174 @@
+//! `tripivot calibrate verify`: the calibration in force, judged by fresh poses.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use calibration::judge::Errors;
+use calibration::{Instrument, Noise};
+use desk::calibrate::{AS_PREDICTED, Verdict, Verified, verify};
+use serde::Serialize;
+
+use super::super::FAILED;
+use super::super::arguments::CalibrateVerify;
+use super::super::error::CliError;
+use super::super::json;
+use super::error::CalibrateError;
+use super::measure::opened;
+use super::{BASE_M, URAD_PER_RAD, calibration, line, nm};
+use kinematics::Geometry;
+
+/// x and y, um, or theta, urad.
+#[derive(Serialize)]
+struct Kind {
+    seen: f64,
+    noise: f64,
+    of_stage: f64,
+    predicted: f64,
+    ratio: f64,
+    largest: f64,
+    largest_at_visit: usize,
+    both_sides_apart: f64,
+    as_drawn: f64,
+}
+
+/// What a verification is told as with `--json`.
+#[derive(Serialize)]
+struct Document {
+    kit: &'static str,
+    visits: usize,
+    xy_um: Option<Kind>,
+    theta_urad: Option<Kind>,
+    verdict: &'static str,
+}
+
+pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
+    let calibration = calibration(&arguments.file)?;
+    let made = &calibration.made;
+    let noise_m = arguments.noise.unwrap_or(made.noise_nm * 1e-9);
+    let noise = Noise {
+        length: noise_m * 1e9 / nm(1.0),
+        angle_rad: match (arguments.noise_theta, arguments.noise) {
+            (Some(theta_rad), _) => theta_rad,
+            (None, Some(_)) => noise_m / BASE_M,
+            (None, None) => made.noise_urad / URAD_PER_RAD,
+        },
+        encoder_rad: Noise::ENCODER_RAD,
+    };
+    let instrument = Instrument::new(arguments.kit.unwrap_or(made.kit), noise);
+    let (mut machine, mut reader) =
+        opened(&arguments.stage, arguments.reader.as_deref(), &instrument)?;
+    let verified = verify(
+        machine.as_mut(),
+        reader.as_mut(),
+        &calibration,
+        &instrument,
+        arguments.poses,
+    )
+    .map_err(CalibrateError::Verify)?;
+    let document = document(&instrument, &verified);
+    if arguments.json {
+        json::print(&document)?;
+    } else {
+        (io::stdout().write_all(text(&document).as_bytes())).map_err(CliError::output)?;
+    }
+    Ok(match verified.verdict() {
+        Verdict::Holds | Verdict::Better => ExitCode::SUCCESS,
+        Verdict::Worse | Verdict::WorseThanDrawn => ExitCode::from(FAILED),
+    })
+}
+
+fn document(instrument: &Instrument, verified: &Verified) -> Document {
+    let um = Geometry::REFERENCE.radius_mm * 1e3;
+    let kind = |now: Option<Errors>, drawn: Option<Errors>, apart: f64, unit: f64| {
+        let (now, drawn) = now.zip(drawn)?;
+        Some(Kind {
+            seen: now.seen * unit,
+            noise: now.noise * unit,
+            of_stage: now.of_stage() * unit,
+            predicted: now.predicted_of_stage() * unit,
+            ratio: now.ratio(),
+            largest: now.largest * unit,
+            largest_at_visit: now.at + 1,
+            both_sides_apart: apart * unit,
+            as_drawn: drawn.seen * unit,
+        })
+    };
+    let Verified { now, drawn, sides } = verified;
+    Document {
+        kit: instrument.kit.name(),
+        visits: now.visits.len(),
+        xy_um: kind(now.places, drawn.places, sides[0], um),
+        theta_urad: kind(now.turns, drawn.turns, sides[1], URAD_PER_RAD),
+        verdict: match verified.verdict() {
+            Verdict::Holds => "as predicted",
+            Verdict::Better => "better than predicted",
+            Verdict::Worse => "worse than predicted",
+            Verdict::WorseThanDrawn => "worse than without it",
+        },
+    }
+}
+
+fn text(document: &Document) -> String {
+    let poses = document.visits / 2;
+    let mut text = line(
+        "verified",
+        &format!(
+            "{}, {poses} fresh poses, each from both sides",
+            document.kit
+        ),
+    );
+    let kinds = [
+        ("x and y", "um", &document.xy_um),
+        ("theta", "urad", &document.theta_urad),
+    ];
+    for (what, unit, kind) in kinds {
+        let Some(kind) = kind else { continue };
+        let told = |more: &str, told: String| line(&format!("{what}{more}"), &told);
+        text += &told(
+            "",
+            format!(
+                "{:.4} {unit} rms seen, {:.4} of it noise: {:.4} of the stage, {:.4} predicted",
+                kind.seen, kind.noise, kind.of_stage, kind.predicted
+            ),
+        );
+        text += &told(
+            ", over predicted",
+            format!(
+                "{:.3}, noise in both; from {} to {} is as predicted",
+                kind.ratio,
+                AS_PREDICTED.start(),
+                AS_PREDICTED.end()
+            ),
+        );
+        text += &told(
+            ", largest",
+            format!(
+                "{:.4} {unit}, on visit {}",
+                kind.largest, kind.largest_at_visit
+            ),
+        );
+        text += &told(
+            ", both sides",
+            format!(
+                "{:.4} {unit} rms apart, {:.4} by noise alone",
+                kind.both_sides_apart,
+                kind.noise * std::f64::consts::SQRT_2
+            ),
+        );
+        text += &told(
+            ", as drawn",
+            format!("{:.3} {unit} rms without it", kind.as_drawn),
+        );
+    }
+    let verdict = match document.verdict {
+        "worse than predicted" | "worse than without it" => format!(
+            "{}: another machine's, damaged, out of date, or the instrument is not what was said; `tripivot calibrate undo` takes it out of force",
+            document.verdict
+        ),
+        "better than predicted" => {
+            "better than predicted: the noise is not what was said".to_owned()
+        }
+        verdict => verdict.to_owned(),
+    };
+    text + &line("verdict", &verdict)
+}
