@@ -1,7 +1,7 @@
 //! [`Fixed`] as the number of the kinematics: rounding and the elementary functions.
 
 use super::fixed::{Fixed, HALF_LSB};
-use super::float::{i64_to_f32_fast, round_i32};
+use super::float::round_i32;
 use super::{arcsine, polar, trigonometric};
 use kinematics::{Angle, CorrectedScalar, Scalar};
 
