@@ -18,6 +18,8 @@ const COMMANDS: &[&str] = &[
     "settings",
     "board",
     "commission",
+    "tune",
+    "frf",
     "machine",
     "sensitivity",
     "faults",

@@ -10,7 +10,7 @@ use firmware::control::excitation::{PERIOD_TICKS, line_harmonics};
 
 /// Peak of an excitation, V: its root mean square is a third of it, some times what the dead time takes.
 pub const PEAK_V: f64 = 8.0;
-/// Ticks from row to row, and rows of a period. The first period of a record is left out: what a start excites dies in it.
+/// Ticks from row to row, and rows of a period.
 const TICKS_PER_ROW: usize = 4;
 const PERIOD_ROWS: usize = PERIOD_TICKS as usize / TICKS_PER_ROW;
 /// Harmonics of the lowest line and of the highest, 29 Hz and 2.3 kHz, and lines at a time.
@@ -73,12 +73,22 @@ pub enum Recorded {
 }
 
 impl Recorded {
-    /// Periods of a record: as many as there is room for.
-    const fn rows(self) -> usize {
+    /// Rows at the beginning of a record that are left out: what a start excites dies in them.
+    const fn left_out(self) -> usize {
         match self {
-            Self::Drives => 4 * PERIOD_ROWS,
-            Self::Loop => 3 * PERIOD_ROWS,
+            Self::Drives => PERIOD_ROWS,
+            // More there is no room for.
+            Self::Loop => 800,
         }
+    }
+
+    /// Rows of a record: behind what is left out, as many periods as there is room for.
+    const fn rows(self) -> usize {
+        let periods = match self {
+            Self::Drives => 3,
+            Self::Loop => 2,
+        };
+        self.left_out() + periods * PERIOD_ROWS
     }
 }
 
@@ -105,7 +115,7 @@ pub fn excite(
                 (1e3 * bench.period_s * (recorded.rows() * TICKS_PER_ROW) as f64).ceil()
             );
             records.push(Record {
-                first_tick: PERIOD_TICKS as usize,
+                first_tick: recorded.left_out() * TICKS_PER_ROW,
                 pivots: record(bench, spot, recorded, &line)?,
             });
         }
@@ -169,7 +179,7 @@ fn record(
             &mut signals.current_a,
             &mut signals.angle_rad,
         ] {
-            values.drain(..PERIOD_ROWS);
+            values.drain(..recorded.left_out());
         }
     }
     Ok(pivots)

@@ -127,8 +127,15 @@ fn text(document: &Document) -> String {
         text += &told(
             "",
             format!(
-                "{:.4} {unit} rms seen, {:.4} of it noise: {:.4} of the stage, {:.4} predicted",
-                kind.seen, kind.noise, kind.of_stage, kind.predicted
+                "{:.4} {unit} rms seen, {:.4} of it noise: {}, {:.4} predicted",
+                kind.seen,
+                kind.noise,
+                if kind.of_stage > 0.0 {
+                    format!("{:.4} of the stage", kind.of_stage)
+                } else {
+                    "nothing of the stage to be seen".to_owned()
+                },
+                kind.predicted
             ),
         );
         text += &told(
