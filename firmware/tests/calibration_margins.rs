@@ -16,7 +16,7 @@ const POSES: [u32; 3] = [4, 24, 36];
 const WIDE: f64 = 1.52;
 
 fn pivot(numbers: [f64; 48], share: f64) -> PivotCoefficients {
-    // What a workshop's machine is off: CALIBRATION's sizes, three times.
+    // What a workshop's machine is off: some three standard deviations.
     let mut sizes = [0.0; 48];
     sizes[..6].copy_from_slice(&[3e-3, 3e-3, 6e-4, 6e-4, 6e-3, 6e-3]);
     sizes[6..8].fill(6e-4);
@@ -73,7 +73,7 @@ fn as_drawn_there_are_none() {
     let pivots = [PivotCoefficients::IDEAL; 3];
     let calibration = Corrections::new(&pivots, Series::new).expect("within the limits");
     let margins = CalibrationMargins::new(&pivots, &calibration, &Geometry::REFERENCE);
-    assert_eq!(margins, Ok(CalibrationMargins::NONE));
+    assert_eq!(margins, Some(CalibrationMargins::NONE));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn zeros_apart_by_more_than_is_put_right_are_refused() {
     let mut pivots = [PivotCoefficients::IDEAL; 3];
     pivots[1].encoder_zero_rad = -0.035;
     let calibration = Corrections::new(&pivots, Series::new).expect("within the limits");
-    assert!(CalibrationMargins::new(&pivots, &calibration, &Geometry::REFERENCE).is_err());
+    assert!(CalibrationMargins::new(&pivots, &calibration, &Geometry::REFERENCE).is_none());
 }
 
 /// Machines of which every number is something: what the margins take from the supervisor is needed.

@@ -89,7 +89,7 @@ fn a_calibrated_machine_is_where_it_was_sent() {
     assert!(after[0] < 1.2e-9 && after[1] < 1.1e-8, "{after:?}");
 }
 
-/// As large as encoders usually are off their rings' centres: 400 urad once a turn, four times what the default has and more.
+/// As large as encoders usually are off their rings' centres: 400 urad once a turn, 80 times what the default has.
 #[test]
 fn a_machine_with_encoders_off_their_centres_is_referenced_in_any_turn() {
     let mut stage = built_stage(&StageParameters::REFERENCE);

@@ -73,7 +73,7 @@ impl MachineCalibration {
         let calibration: Calibration =
             Corrections::new(&pivots, Series::new).map_err(|_| BeyondLimits)?;
         let margins =
-            CalibrationMargins::new(&pivots, &calibration, geometry).map_err(|_| BeyondLimits)?;
+            CalibrationMargins::new(&pivots, &calibration, geometry).ok_or(BeyondLimits)?;
         if self.pivot_share() < SMALLEST_SHARE {
             return Err(BeyondLimits);
         }

@@ -14,7 +14,6 @@
 
 use super::Calibration;
 use crate::number::Fixed;
-use core::fmt;
 use kinematics::{Angle, Curves, Geometry, PivotCoefficients, RingErrors, Scalar, Series};
 
 /// Steps of the ring's angle, of s from the disk's one rim to the other, and of the place on the guide.
@@ -42,18 +41,6 @@ pub struct CalibrationMargins {
     pub separation: u32,
 }
 
-/// The pivots are further off than can be put right. Most often an encoder's zero is not the parameter's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MarginsTooLarge;
-
-impl fmt::Display for MarginsTooLarge {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("pivots stand more than 2 % of the track radius or 30 mrad from where the drawing has them")
-    }
-}
-
-impl core::error::Error for MarginsTooLarge {}
-
 impl CalibrationMargins {
     /// As drawn.
     pub const NONE: Self = Self {
@@ -61,17 +48,15 @@ impl CalibrationMargins {
         separation: 0,
     };
 
-    /// Those of a calibration of such pivots.
-    ///
-    /// # Errors
-    /// [`MarginsTooLarge`].
+    /// Those of a calibration of such pivots; `None` if they are further off than can be put right. Most often an encoder's zero is
+    /// not the parameter's then.
     pub fn new(
         pivots: &[PivotCoefficients; 3],
         calibration: &Calibration,
         geometry: &Geometry,
-    ) -> Result<Self, MarginsTooLarge> {
+    ) -> Option<Self> {
         if calibration.are_zero() {
-            return Ok(Self::NONE);
+            return Some(Self::NONE);
         }
         let rim = geometry.usable_radius() as f32;
         let mut off = [PivotErrors::default(); 3];
@@ -90,12 +75,10 @@ impl CalibrationMargins {
             closer * (1.0 + SHARE_BETWEEN) + SEPARATION_BETWEEN,
         );
         // What is no number is none.
-        (guide <= GUIDE_MOST && separation_rad <= SEPARATION_MOST)
-            .then_some(Self {
-                guide,
-                separation: (separation_rad * UNITS_PER_RAD) as u32,
-            })
-            .ok_or(MarginsTooLarge)
+        (guide <= GUIDE_MOST && separation_rad <= SEPARATION_MOST).then_some(Self {
+            guide,
+            separation: (separation_rad * UNITS_PER_RAD) as u32,
+        })
     }
 }
 

@@ -20,7 +20,7 @@ pub use machine::{
     BeyondLimits, BuiltMachine, CALIBRATION_TEXT_BYTES, CalibrationNumbers, CalibrationText,
     MachineCalibration,
 };
-pub use margins::{CalibrationMargins, MarginsTooLarge};
+pub use margins::CalibrationMargins;
 
 /// What the corrected kinematics take in the tick: the lines of the three pivots and their curves.
 pub type Calibration = Corrections<Fixed, Series<f32>>;

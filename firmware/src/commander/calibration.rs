@@ -8,30 +8,6 @@ use crate::control::CalibrationInForce;
 use crate::mode::Mode;
 use crate::queues::{Command, CommandQueues};
 
-/// The calibration that there is, and what of it the tick has.
-#[derive(Default)]
-pub(super) struct Calibrating {
-    kept: Option<MachineCalibration>,
-    /// It was kept over a restart, and the tick does not have it yet.
-    is_due: bool,
-    /// Share of the pivots' limits that plans may use.
-    share: Option<f64>,
-}
-
-impl Calibrating {
-    /// See [`MachineCalibration::pivot_share`]; 1 exactly where nothing is corrected.
-    pub fn pivot_share(&self) -> f64 {
-        self.share.unwrap_or(1.0)
-    }
-
-    fn keep(&mut self, wanted: Option<MachineCalibration>) {
-        self.share = (wanted.as_ref())
-            .filter(|wanted| wanted.is_on)
-            .map(MachineCalibration::pivot_share);
-        self.kept = wanted;
-    }
-}
-
 impl Commander {
     /// The calibration that there is, whether it counts or not.
     pub fn calibration(&self) -> Option<&MachineCalibration> {

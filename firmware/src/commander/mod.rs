@@ -67,6 +67,7 @@ mod frame_changes;
 mod furthest_target;
 mod in_flight;
 mod jog;
+mod kept_calibration;
 mod moves;
 mod pending;
 mod quantity;

@@ -1,11 +1,11 @@
 //! What is known of the stage and asked of it, and how snapshots change it.
 
 use super::axis::{AxisSet, AxisValues, Coordinates};
-use super::calibration::Calibrating;
 use super::coordinates::coordinates;
 use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
 use super::in_flight::InFlight;
+use super::kept_calibration::KeptCalibration;
 use super::pending::Pending;
 use super::reach::ReachMargins;
 use super::recovery::Recovery;
@@ -51,7 +51,7 @@ pub struct Commander {
     pub(super) stop_seen: bool,
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
-    pub(super) calibrating: Calibrating,
+    pub(super) calibrating: KeptCalibration,
     pub(super) frames: FrameTree,
     /// What targets mean, with the frames in force.
     pub(super) active_frames: ActiveFrames,
@@ -110,7 +110,7 @@ impl Commander {
             stop_test_needed: parameters.supervision.stop_test_needed,
             stop_seen: false,
             cycle_ms: DEFAULT_CYCLE_MS,
-            calibrating: Calibrating::default(),
+            calibrating: KeptCalibration::default(),
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,
             snapshot: None,
