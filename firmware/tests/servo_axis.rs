@@ -4,7 +4,7 @@ mod proptest_settings;
 
 use firmware::control::rest_mode::Stiffness;
 use firmware::control::servo::{
-    LoopSetpoint, PivotServo, PivotServoConfig, PivotSetpoint, ServoConfig,
+    LoopSetpoint, PivotFeedback, PivotServo, PivotServoConfig, PivotSetpoint, ServoConfig,
 };
 use firmware::drivers::bridge::Duty;
 use firmware::parameters::{Drive, Parameters};
@@ -40,12 +40,30 @@ fn full_loop(supply_counts: f32) -> LoopSetpoint {
     }
 }
 
-fn asking(torque_n_m: f32, error_rad: f64) -> PivotSetpoint {
-    PivotSetpoint {
-        error: (error_rad * UNITS_PER_RAD) as i32,
-        platform_torque: torque_n_m,
-        ..PivotSetpoint::default()
-    }
+type Asking = (PivotSetpoint, PivotFeedback);
+
+fn asking(torque_n_m: f32, error_rad: f64) -> Asking {
+    (
+        PivotSetpoint {
+            platform_torque: torque_n_m,
+            ..PivotSetpoint::default()
+        },
+        PivotFeedback {
+            error: (error_rad * UNITS_PER_RAD) as i32,
+            ..PivotFeedback::default()
+        },
+    )
+}
+
+/// One tick of a servo, its setpoint before it.
+fn step(
+    servo: &mut PivotServo,
+    config: &PivotServoConfig,
+    (setpoint, measured): &Asking,
+    common: &LoopSetpoint,
+) -> Duty {
+    servo.feed_forward(config, setpoint);
+    servo.step(config, measured, common)
 }
 
 proptest! {
@@ -57,7 +75,7 @@ proptest! {
         let config = config();
         let full = full_loop(SUPPLY_COUNTS);
         let mut servo = PivotServo::default();
-        let mut duty = || servo.step(&config, &asking(torque_n_m, 0.0), &full).0;
+        let mut duty = || step(&mut servo, &config, &asking(torque_n_m, 0.0), &full).0;
         // The first tick sees the torque jump, and looks ahead.
         duty();
         let mut sum = 0i64;
@@ -79,7 +97,7 @@ proptest! {
         let full = full_loop(SUPPLY_COUNTS);
         let mut servo = PivotServo::default();
         for _ in 0..200 {
-            let Duty(counts) = servo.step(&config, &asking(torque_n_m, error_rad), &full);
+            let Duty(counts) = step(&mut servo, &config, &asking(torque_n_m, error_rad), &full);
             // 98 % of 4,200.
             prop_assert!(counts.abs() <= 4_116, "{counts}");
         }
@@ -93,12 +111,12 @@ fn saturation_does_not_wind_up() {
     for sign in [1.0, -1.0] {
         let mut servo = PivotServo::default();
         for _ in 0..20_000 {
-            let Duty(counts) = servo.step(&config, &asking(0.0, sign * 0.01), &full);
+            let Duty(counts) = step(&mut servo, &config, &asking(0.0, sign * 0.01), &full);
             assert_eq!(f64::from(counts), -sign * 4_116.0);
         }
         // The error is gone: one tick sees it go, then nothing is left.
-        servo.step(&config, &asking(0.0, 0.0), &full);
-        let Duty(counts) = servo.step(&config, &asking(0.0, 0.0), &full);
+        step(&mut servo, &config, &asking(0.0, 0.0), &full);
+        let Duty(counts) = step(&mut servo, &config, &asking(0.0, 0.0), &full);
         assert_eq!(counts, 0, "counts left");
     }
 }
@@ -110,14 +128,14 @@ fn an_error_that_stays_is_collected_below_saturation() {
     let mut servo = PivotServo::default();
     // 1 urad: 400 / s of it for 1 s times 14,000 V/rad is 5.6 V, where proportional action gives 16 mV.
     for _ in 0..20_000 {
-        servo.step(&config, &asking(0.0, 1e-6), &full);
+        step(&mut servo, &config, &asking(0.0, 1e-6), &full);
     }
-    let Duty(counts) = servo.step(&config, &asking(0.0, 1e-6), &full);
+    let Duty(counts) = step(&mut servo, &config, &asking(0.0, 1e-6), &full);
     let volts = f32::from(counts) / full.counts_per_volt;
     assert!((volts + 5.6).abs() < 0.026, "{volts} V");
     // A fresh start forgets it.
     servo.restart();
-    assert_eq!(servo.step(&config, &asking(0.0, 0.0), &full), Duty(0));
+    assert_eq!(step(&mut servo, &config, &asking(0.0, 0.0), &full), Duty(0));
 }
 
 #[test]
@@ -125,7 +143,7 @@ fn duty_follows_the_supply() {
     let config = config();
     let first = |supply: f32| {
         let mut servo = PivotServo::default();
-        servo.step(&config, &asking(0.5, 0.0), &full_loop(supply)).0
+        step(&mut servo, &config, &asking(0.5, 0.0), &full_loop(supply)).0
     };
     let (full, half) = (first(SUPPLY_COUNTS), first(SUPPLY_COUNTS / 2.0));
     assert!(full > 0 && (half - 2 * full).abs() <= 1, "{full} {half}");
@@ -141,7 +159,8 @@ fn dead_time_is_made_up_for_in_the_direction_of_the_current() {
         // The mean: a duty is a whole number.
         let settled = |config: &PivotServoConfig| {
             let mut servo = PivotServo::default();
-            let duties = (0..2_000).map(|_| servo.step(config, &asking(torque_n_m, 0.0), &full).0);
+            let duties =
+                (0..2_000).map(|_| step(&mut servo, config, &asking(torque_n_m, 0.0), &full).0);
             duties.skip(1_000).map(f32::from).sum::<f32>() / 1e3
         };
         // 200 ns of 25 us: 33.6 counts of 4,200.
@@ -161,7 +180,7 @@ fn the_loop_is_stable_on_a_ring() {
     let step_s = 50e-6 / 8.0;
     let mut late = 0.0_f64;
     for tick in 0..4_000 {
-        let duty = servo.step(&config, &asking(0.0, angle), &full);
+        let duty = step(&mut servo, &config, &asking(0.0, angle), &full);
         for part in 0..8 {
             // The duty acts half a period late.
             if part == 4 {
@@ -184,21 +203,22 @@ fn the_loop_is_stable_on_a_ring() {
 fn what_is_no_number_asks_for_no_drive() {
     let config = config();
     let full = full_loop(SUPPLY_COUNTS);
+    let with = |setpoint| (setpoint, asking(1.0, 1e-5).1);
     for broken in [
-        PivotSetpoint {
+        with(PivotSetpoint {
             rate: f32::NAN,
-            ..asking(1.0, 1e-5)
-        },
-        PivotSetpoint {
+            ..PivotSetpoint::default()
+        }),
+        with(PivotSetpoint {
             acceleration: f32::NAN,
-            ..asking(1.0, 1e-5)
-        },
+            ..PivotSetpoint::default()
+        }),
         asking(f32::NAN, 1e-5),
     ] {
         let mut servo = PivotServo::default();
-        servo.step(&config, &asking(1.0, 1e-5), &full);
+        step(&mut servo, &config, &asking(1.0, 1e-5), &full);
         for _ in 0..3 {
-            let duty = servo.step(&config, &broken, &full).0;
+            let duty = step(&mut servo, &config, &broken, &full).0;
             assert_eq!(duty, 0, "{broken:?}");
         }
     }
@@ -213,13 +233,13 @@ fn what_was_learnt_leads_as_the_model_does() {
     let mut learnt = PivotServo::default();
     for _ in 0..4_000 {
         // It comes 1 urad short of what 6 N m should do.
-        learnt.step(&config, &asking(6.0, -1e-6), &full);
+        step(&mut learnt, &config, &asking(6.0, -1e-6), &full);
         learnt.learn(&config);
     }
     let mut torques = Vec::new();
     for mut servo in [PivotServo::default(), learnt] {
         servo.restart();
-        let [first, then] = [0, 1].map(|_| servo.step(&config, &asking(4.0, 0.0), &full).0);
+        let [first, then] = [0, 1].map(|_| step(&mut servo, &config, &asking(4.0, 0.0), &full).0);
         let ratio = f64::from(first) / f64::from(then);
         assert!((ratio / (1.0 + lead) - 1.0).abs() < 2.41e-3, "{ratio}");
         torques.push(then);
@@ -236,11 +256,11 @@ fn what_learning_adds_is_bounded_whatever_the_torque() {
     for (torque_n_m, expected) in [(3.0, 0.25), (5.4, 0.81), (12.0, 1.0), (30.0, 1.0)] {
         let mut servo = PivotServo::default();
         for _ in 0..10 {
-            servo.step(&config, &asking(torque_n_m, -1e-4), &full);
+            step(&mut servo, &config, &asking(torque_n_m, -1e-4), &full);
         }
         servo.skip_learning();
         let before = servo.integral_volts();
-        servo.step(&config, &asking(torque_n_m, -1e-4), &full);
+        step(&mut servo, &config, &asking(torque_n_m, -1e-4), &full);
         servo.learn(&config);
         let collected = servo.integral_volts() - before;
         let added = servo.learnt().weights[1] * torque_n_m / collected;
@@ -256,12 +276,10 @@ fn a_restart_keeps_what_the_current_has_told() {
     let full = full_loop(SUPPLY_COUNTS);
     let mut servo = PivotServo::default();
     for _ in 0..2_000 {
-        let setpoint = PivotSetpoint {
-            rate: 5.0,
-            current_counts: 400,
-            ..asking(2.0, 0.0)
-        };
-        servo.step(&config, &setpoint, &full);
+        let (mut setpoint, mut measured) = asking(2.0, 0.0);
+        setpoint.rate = 5.0;
+        measured.current_counts = 400;
+        step(&mut servo, &config, &(setpoint, measured), &full);
         servo.learn(&config);
     }
     let learnt = *servo.learnt();
@@ -276,15 +294,16 @@ fn what_is_taken_over_is_no_step() {
     let config = config();
     let full = full_loop(SUPPLY_COUNTS);
     let mut servo = PivotServo::default();
-    let with = |added_volts| PivotSetpoint {
-        added_volts,
-        ..asking(1.0, 0.0)
+    let with = |added_volts| {
+        let (setpoint, mut measured) = asking(1.0, 0.0);
+        measured.added_volts = added_volts;
+        (setpoint, measured)
     };
-    servo.step(&config, &with(2.0), &full);
-    let Duty(before) = servo.step(&config, &with(2.0), &full);
+    step(&mut servo, &config, &with(2.0), &full);
+    let Duty(before) = step(&mut servo, &config, &with(2.0), &full);
     servo.take_over(&config, 2.0);
     for _ in 0..10 {
-        let Duty(after) = servo.step(&config, &with(0.0), &full);
+        let Duty(after) = step(&mut servo, &config, &with(0.0), &full);
         assert!(after.abs_diff(before) <= 1, "{before} {after}");
         servo.learn(&config);
     }

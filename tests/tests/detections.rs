@@ -399,7 +399,7 @@ fn a_controlled_stop_stays_on_its_path() {
         assert!(jerk < 3_280.0, "{jerk} track radii/s^3");
         last = now;
     }
-    assert_eq!((bench.mode(), ticks), (Mode::Fault, 1_200));
+    assert_eq!((bench.mode(), ticks), (Mode::Fault, 1_201));
     assert!(bench.worst_error_counts() < 313);
     assert_at_rest(&mut bench);
     let way_mm = (last.position[0] - start.position[0]) as f64 / TURN * 100.0;

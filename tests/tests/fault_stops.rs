@@ -7,7 +7,7 @@ use tests::Bench;
 const TURN: f64 = 4_294_967_296.0;
 const RADIUS_MM: f64 = 100.0;
 /// Ticks of a controlled stop.
-const STOP_TICKS: usize = 1_200;
+const STOP_TICKS: usize = 1_201;
 /// How far the stop may be off the path, in track radii and rad: what it is, at most 0.4 nm or 4 nrad, and a tenth more.
 const OFF: f64 = 4.1e-9;
 /// The same for a stream: the command side's end of it is not taken any more, and the tick's own is a few um beside that.

@@ -114,13 +114,18 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
         }
         let outputs = host.tick(&mut tick_queues, &mut ());
         now = commands.snapshot().or(now);
-        if let Some(fault) = host.fault() {
+        if let Some(fault) = host.fault()
+            && let Some(told) = now.as_ref().filter(|now| now.fault.is_some())
+        {
+            assert_eq!(
+                told.tick,
+                fault.tick + 1,
+                "{fault}: the tick that should have followed it"
+            );
             assert!(outputs.awake, "{fault}: it brakes");
             assert!(outputs.duty.iter().all(|duty| duty.0 == 0), "{fault}");
-            if let Some(told) = now.as_ref().filter(|now| now.fault.is_some()) {
-                assert_eq!(told.mode, Mode::Fault, "{fault}: at once");
-                return Some(fault.kind);
-            }
+            assert_eq!(told.mode, Mode::Fault, "{fault}: at once");
+            return Some(fault.kind);
         }
     }
     None

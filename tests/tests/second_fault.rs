@@ -14,7 +14,7 @@ use tests::Bench;
 
 const BRIDGED: u32 = Parameters::REFERENCE.supervision.bridged_frames as u32;
 /// Ticks of a controlled stop.
-const STOP_TICKS: u32 = 1_200;
+const STOP_TICKS: u32 = 1_201;
 /// Losses of two encoders that are tried unless `CASES` says otherwise.
 const CASES: usize = 30;
 

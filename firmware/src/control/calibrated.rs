@@ -48,6 +48,8 @@ struct Followed {
     pose: Pose<Fixed>,
     /// What the encoders read more than in the pose before, at most, rad.
     missing_rad: f32,
+    /// It is the drawn machine's.
+    is_drawn: bool,
 }
 
 impl CalibrationInForce {
@@ -80,6 +82,7 @@ impl Calibrated {
         self.is_on = wanted.is_on;
         self.margins = wanted.margins;
         self.near.lines = wanted.calibration.lines;
+        self.near.curves = [Tangents::ZERO; 3];
         self.series = wanted.calibration.curves;
         self.followed = None;
     }
@@ -117,6 +120,9 @@ impl Calibrated {
         if followed.missing_rad < STILL_RAD {
             return Ok(followed.pose);
         }
+        if followed.is_drawn {
+            return Err(DirectError::OutsideTrack);
+        }
         let step = self.newton(config, &followed.pose, encoders);
         let (followed, _) = step.ok_or(DirectError::OutsideTrack)?;
         Ok(followed.pose)
@@ -135,17 +141,19 @@ impl Calibrated {
     #[inline(never)]
     pub fn follow(&mut self, config: &Config, encoders: &[Angle; 3], slot: usize) {
         let Some(followed) = self.followed.take() else {
-            self.followed = self.begin(config, encoders);
+            self.followed = self.begin(encoders);
             return;
         };
-        if let Some((followed, lengths)) = self.newton(config, &followed.pose, encoders) {
+        if followed.is_drawn {
+            self.followed = self.approach(config, &followed.pose, encoders);
+        } else if let Some((followed, lengths)) = self.newton(config, &followed.pose, encoders) {
             self.look_up_at(slot, encoders, &lengths);
             self.followed = Some(followed);
         }
     }
 
-    /// From the drawn machine's pose one step on the built one, with all curves looked up there.
-    fn begin(&mut self, config: &Config, encoders: &[Angle; 3]) -> Option<Followed> {
+    /// The drawn machine's pose, with all curves looked up near it: a tick has no room for more beside it.
+    fn begin(&mut self, encoders: &[Angle; 3]) -> Option<Followed> {
         let mut rings = *encoders;
         for (ring, line) in rings.iter_mut().zip(&self.near.lines) {
             *ring -= line.encoder_zero;
@@ -154,7 +162,21 @@ impl Calibrated {
         for ((tangents, series), ring) in self.near.curves.iter_mut().zip(&self.series).zip(rings) {
             *tangents = of_ring(series, ring);
         }
-        let at = self.solve(config, &pose)?;
+        Some(Followed {
+            pose,
+            missing_rad: f32::INFINITY,
+            is_drawn: true,
+        })
+    }
+
+    /// From the drawn machine's pose one step on the built one, with the curves along the guides looked up there too.
+    fn approach(
+        &mut self,
+        config: &Config,
+        pose: &Pose<Fixed>,
+        encoders: &[Angle; 3],
+    ) -> Option<Followed> {
+        let at = self.solve(config, pose)?;
         let mut missing_rad = missing_of(&at, encoders);
         for (i, tangents) in self.near.curves.iter_mut().enumerate() {
             let rho = at.guides[i].rho();
@@ -163,9 +185,20 @@ impl Calibrated {
             missing_rad[i] -= straightness * at.over_travel[i];
         }
         Some(Followed {
-            pose: nearer(&pose, &at, &self.near.lines, &missing_rad),
+            pose: nearer(pose, &at, &self.near.lines, &missing_rad),
             missing_rad: f32::INFINITY,
+            is_drawn: false,
         })
+    }
+
+    /// Where the setpoint is: the pose is followed from there when the servo goes off, with the curves as they are.
+    #[inline]
+    pub fn follow_from(&mut self, pose: &Pose<Fixed>) {
+        self.followed = Some(Followed {
+            pose: *pose,
+            missing_rad: f32::INFINITY,
+            is_drawn: false,
+        });
     }
 
     /// One step of Newton's method, and the places on the guides before it; `None` when the pose is too far from where it was
@@ -187,9 +220,13 @@ impl Calibrated {
         if missing_rad > MOST_MISSING_RAD {
             return None;
         }
-        let pose = nearer(pose, &at, &self.near.lines, &missing);
+        let followed = Followed {
+            pose: nearer(pose, &at, &self.near.lines, &missing),
+            missing_rad,
+            is_drawn: false,
+        };
         let lengths = [at.guides[0].rho(), at.guides[1].rho(), at.guides[2].rho()];
-        Some((Followed { pose, missing_rad }, lengths))
+        Some((followed, lengths))
     }
 
     /// See [`corrected_inverse`].

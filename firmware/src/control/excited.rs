@@ -48,7 +48,8 @@ impl State {
                 gains: stiffness,
                 integral_rate: stiffness,
             };
-            let (asked, _) = self.step_servos(config, &errors, &wanted, stiffness, current_counts);
+            self.feed_forward(config, &wanted);
+            let (asked, _) = self.step_servos(config, &errors, stiffness, current_counts);
             duty = asked.map(|asked| Duty(asked.0.min(most_counts).max(-most_counts)));
         } else if let Some(duty) = duty.get_mut(pivot) {
             let counts = number::round_ties_even(volts * counts_per_volt).0;

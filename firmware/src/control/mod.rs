@@ -10,6 +10,7 @@
 //! | `encoder` | frames to a multi-turn angle: which frame is believed, what bridges one that is not |
 //! | `referencing` | turns for theta and the pivots from single-turn encoders |
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
+//! | `next_setpoint` | the setpoint of the next tick, computed after the duties of this one |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
 //! | `calibrated` | the same of a machine that is calibrated, and the pose of its encoders |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
@@ -38,6 +39,7 @@ mod excited;
 pub mod held_position;
 mod inspection;
 pub mod loop_counters;
+mod next_setpoint;
 mod observers;
 mod oscillation;
 mod pivot_setpoints;

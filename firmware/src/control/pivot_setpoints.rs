@@ -10,6 +10,7 @@ use kinematics::{
 };
 
 /// Setpoints of the three pivots.
+#[derive(Clone, Debug)]
 pub(super) struct PivotSetpoints {
     pub angles: [Angle; 3],
     pub motion: PivotMotion<f32>,

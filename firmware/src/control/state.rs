@@ -7,6 +7,7 @@ use super::encoder::Encoder;
 use super::excitation::ExcitationRun;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
+use super::next_setpoint::NextSetpoint;
 use super::rest_mode::RestMode;
 use super::servo::PivotServo;
 use super::settling::Settling;
@@ -63,6 +64,7 @@ pub struct State {
     pub(super) encoders: [Encoder; 3],
     pub(super) calibrated: Calibrated,
     pub(super) motion: PlanFollower,
+    pub(super) next: NextSetpoint,
     pub(super) servo: [PivotServo; 3],
     pub(super) trial: Trial,
     pub(super) excitation: ExcitationRun,
@@ -71,10 +73,8 @@ pub struct State {
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,
-    /// Mode and commands at the end of the last tick, and whether they have changed since and no snapshot has been due
-    /// yet.
+    /// Mode and commands at the end of the last tick.
     pub(super) last_mode_and_commands: (Mode, u32),
-    pub(super) report_due: bool,
     pub(super) loop_counters: LoopCounters,
     /// The pivot whose servo is told of in the next snapshot.
     pub(super) reported_servo: usize,

@@ -30,11 +30,14 @@ impl State {
         config: &Config,
         table: TrialTable<'_>,
         pivots: &[Angle; 3],
-        target: &[Angle; 3],
     ) {
+        let Some(wanted) = &self.next.pivots else {
+            return;
+        };
         if !self.trial.is_under_way() {
             return;
         }
+        let target = &wanted.angles;
         let steps = [0, 1, 2].map(|i| ServoStep {
             error: (pivots[i] - target[i]).units() as i32,
             feedback: self.servo[i].feedback_volts(),

@@ -33,7 +33,7 @@ pub struct Sample {
     pub supply_counts: u16,
     /// What the tick before cost, cycles.
     pub tick_cycles: u32,
-    /// Commands taken so far.
+    /// Commands taken before this tick: those that it can have followed.
     pub commands: u32,
     /// One servo, another one in each tick, as it is at its end.
     pub servo: Option<ServoSample>,

@@ -393,7 +393,8 @@ pub const SECTIONS: &[Section] = &[
                 RAM is not in it. \
                 [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
                 `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2 % off \
-                `llvm-mca`'s.",
+                `llvm-mca`'s, both with one cycle for each load and store: ARM's table has more. No tick, with all that it does after its \
+                duties, may be longer than a period.",
         command: "cargo chip-cycles",
         short: Some("cargo chip-cycles --ticks 100"),
         kind: Kind::Compiled,

@@ -300,6 +300,7 @@ mod app {
         rtic::pend(Interrupt::CRYP);
         // The interrupt's acknowledgement has arrived before the core looks whether there is one (erratum 838869).
         cortex_m::asm::dsb();
+        trace::mark_end_of_handler();
     }
 
     /// Records the tick that has just ended, in what it leaves of the period: below latch and tick, above the command

@@ -3,11 +3,14 @@
 use crate::timeline::{DEADLINE_CYCLES, PERIOD_CYCLES};
 use cortex_m::peripheral::{DCB, DWT};
 
-// Told to who models the tick's cycles: a symbol whose value is the number.
+// Told to who models the tick's cycles: symbols whose values are the numbers.
 core::arch::global_asm!(
     ".global stage_deadline_cycles",
     ".set stage_deadline_cycles, {}",
-    const DEADLINE_CYCLES
+    ".global stage_period_cycles",
+    ".set stage_period_cycles, {}",
+    const DEADLINE_CYCLES,
+    const PERIOD_CYCLES
 );
 
 /// More than this between two ticks, and one has been missed: one and a half periods.

@@ -89,3 +89,17 @@ pub fn mark_end_of_tick() {
         );
     }
 }
+
+/// The same at the end of all that a tick does.
+#[allow(named_asm_labels)]
+#[inline(always)]
+pub fn mark_end_of_handler() {
+    // SAFETY: as above.
+    unsafe {
+        core::arch::asm!(
+            ".global stage_handler_end",
+            "stage_handler_end:",
+            options(nostack, preserves_flags)
+        );
+    }
+}

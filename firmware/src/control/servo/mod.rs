@@ -47,7 +47,7 @@ pub use drive_limits::pivot_limits;
 pub use filter::{FilterConfig, Filters};
 pub use inertia::carried_inertia;
 pub use learnt::Learnt;
-pub use pivot::{LoopSetpoint, PivotServo, PivotSetpoint};
+pub use pivot::{LoopSetpoint, PivotFeedback, PivotServo, PivotSetpoint};
 pub use platform_torque::{Body, platform_torques};
 pub use presliding::Presliding;
 pub use ripple::RippleConfig;

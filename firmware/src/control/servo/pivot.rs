@@ -17,8 +17,6 @@ const LEAST_MEASURED: f32 = 0.5;
 /// What one pivot should do at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PivotSetpoint {
-    /// Measured minus setpoint, 2^-32 turns.
-    pub error: i32,
     /// Rate, rad/s.
     pub rate: f32,
     /// Acceleration, rad/s^2.
@@ -27,6 +25,13 @@ pub struct PivotSetpoint {
     pub platform_torque: f32,
     /// Angle.
     pub angle: Angle,
+}
+
+/// What is measured of one pivot at a tick, and what somebody else asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PivotFeedback {
+    /// Measured minus setpoint, 2^-32 turns.
+    pub error: i32,
     /// The motor's current as it was measured, ADC counts.
     pub current_counts: i16,
     /// What iterative learning or an excitation adds, V.
@@ -48,8 +53,10 @@ pub struct PivotServo {
     integral: f32,
     last_error: f32,
     last_inertial: f32,
-    /// The signals at the last tick, as far ahead as the drive takes to follow.
+    /// The signals of the setpoint, as far ahead as the drive takes to follow; the voltage for them, and against ripple.
     signals: [f32; FEATURES],
+    feedforward: f32,
+    ripple: f32,
     friction: Presliding,
     learnt: Learnt,
     /// The integral when it learnt last.
@@ -131,25 +138,9 @@ impl PivotServo {
         self.requested_counts.abs() > config.max_counts || self.current_limit.is_active()
     }
 
-    /// Duty for this tick.
+    /// Takes the setpoint of the next [`step`](Self::step), and computes the voltage for it: before that tick has begun.
     #[inline]
-    pub fn step(
-        &mut self,
-        config: &PivotServoConfig,
-        setpoint: &PivotSetpoint,
-        common: &LoopSetpoint,
-    ) -> Duty {
-        let Stiffness {
-            gains: share,
-            integral_rate,
-        } = common.stiffness;
-        let error = setpoint.error as f32;
-        let unsmoothed =
-            config.rate_gain * (error - self.last_error) + share * (config.position_gain * error);
-        self.smoothed += (unsmoothed - self.smoothed) * share;
-        let r = self.smoothed;
-        self.last_error = error;
-
+    pub fn feed_forward(&mut self, config: &PivotServoConfig, setpoint: &PivotSetpoint) {
         let last_contact = self.friction.deflection();
         let contact = self
             .friction
@@ -162,24 +153,46 @@ impl PivotServo {
         let friction = contact + config.lead_ticks * (contact - last_contact);
         self.last_inertial = inertial;
         self.signals = [rate, torque, friction];
-        let feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
+        self.feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
             + (config.model_weights[1] + self.learnt.weights[1]) * torque
-            + (config.model_weights[2] + self.learnt.weights[2]) * friction
-            + setpoint.added_volts;
+            + (config.model_weights[2] + self.learnt.weights[2]) * friction;
+        self.ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
+    }
 
+    /// Duty for this tick.
+    #[inline]
+    pub fn step(
+        &mut self,
+        config: &PivotServoConfig,
+        measured: &PivotFeedback,
+        common: &LoopSetpoint,
+    ) -> Duty {
+        let Stiffness {
+            gains: share,
+            integral_rate,
+        } = common.stiffness;
+        let error = measured.error as f32;
+        let unsmoothed =
+            config.rate_gain * (error - self.last_error) + share * (config.position_gain * error);
+        self.smoothed += (unsmoothed - self.smoothed) * share;
+        let r = self.smoothed;
+        self.last_error = error;
+
+        let rate = self.signals[0];
+        let feedforward = self.feedforward + measured.added_volts;
         let r = r + self.scheduled_excess * r;
         let feedback = self.filters.step(
             &config.filters,
             self.integral + share * (config.velocity_gain * r),
         );
         self.feedback = feedback;
-        let ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
+        let ripple = self.ripple;
         let volts = feedforward + feedback + ripple + config.volt_per_rate * rate;
         // Without the back-EMF: what the current follows. A weight that the rate has learnt is a motor constant that is
         // off. It follows the voltage that is wanted, since what the dead time takes of it is made up for.
-        let measured = f32::from(setpoint.current_counts) * config.knee_currents_per_count;
-        if measured.abs() > LEAST_MEASURED {
-            let missing = measured - self.current;
+        let current = f32::from(measured.current_counts) * config.knee_currents_per_count;
+        if current.abs() > LEAST_MEASURED {
+            let missing = current - self.current;
             let excess = self.learnt.motor_constant_excess
                 - config.motor_constant_step * missing * rate / (1.0 + rate * rate);
             self.learnt.motor_constant_excess =
@@ -196,13 +209,13 @@ impl PivotServo {
         );
         self.requested_counts = counts;
         let limited = clamp_symmetric(counts, config.max_counts);
-        let taken = self.current_limit.volts(&config.current_limit, measured);
+        let taken = self.current_limit.volts(&config.current_limit, current);
 
         // Anti-windup: collecting stops while the bridge or the motor's current is saturated and the error asks for more.
         let (is_free, drive) = if taken == 0.0 {
             (counts == limited, counts)
         } else {
-            (false, measured)
+            (false, current)
         };
         if is_free || drive * r < 0.0 {
             self.integral = clamp_symmetric(

@@ -76,8 +76,7 @@ impl State {
             Command::Reference if !self.referenced => self.reference(config, pivots),
             Command::Reference | Command::Servo(_) => self.hold(config, pivots),
             Command::Move(plan) => {
-                // The rest of it is copied once the duties are written.
-                let taken = self.motion.accept_first(plan).is_ok();
+                let taken = self.motion.accept(plan).is_ok();
                 if taken {
                     self.settling.start();
                 }
@@ -165,7 +164,7 @@ impl State {
         true
     }
 
-    /// Takes other constants: a quarter of the bytes that a plan has, copied in a tick that sends no snapshot.
+    /// Takes other constants: a quarter of the bytes that a plan has.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
         let moved = [0, 1, 2].map(|i| {
             !config.encoders[i].has_same_mounting(&wanted.encoders[i])

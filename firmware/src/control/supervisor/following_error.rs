@@ -2,7 +2,6 @@
 
 use super::input_faults::LATE_RECOVERY_TICKS;
 use crate::control::config::Config;
-use crate::control::pivot_setpoints::PivotSetpoints;
 use crate::control::state::State;
 use crate::control::units::UNITS_PER_RAD;
 use crate::fault::FaultKind;
@@ -15,9 +14,9 @@ impl State {
         &mut self,
         config: &Config,
         pivots: &[Angle; 3],
-        wanted: &PivotSetpoints,
+        target: &[Angle; 3],
     ) -> Option<([i32; 3], u32)> {
-        let errors = [0, 1, 2].map(|i| (pivots[i] - wanted.angles[i]).units());
+        let errors = [0, 1, 2].map(|i| (pivots[i] - target[i]).units());
         let small = errors.map(|error| error as i32);
         let (mut worst, mut beyond) = (0, 0);
         for i in 0..3 {
@@ -27,7 +26,7 @@ impl State {
         }
         // What any rate allows, as a rule; else each is checked by its own rate.
         let least = config.limits.following_error.unsigned_abs();
-        if (beyond != 0 || worst > least) && !self.is_following_allowed(config, pivots, wanted) {
+        if (beyond != 0 || worst > least) && !self.is_following_allowed(config, pivots) {
             return None;
         }
         Some((small, worst))
@@ -35,12 +34,10 @@ impl State {
 
     /// Whether errors are allowed at these rates.
     #[cold]
-    fn is_following_allowed(
-        &mut self,
-        config: &Config,
-        pivots: &[Angle; 3],
-        wanted: &PivotSetpoints,
-    ) -> bool {
+    fn is_following_allowed(&mut self, config: &Config, pivots: &[Angle; 3]) -> bool {
+        let Some(wanted) = self.next.pivots.clone() else {
+            return true;
+        };
         // A tick that does not come leaves the setpoint behind the pivots, by what they go in it.
         let late_ticks = self.lateness.div_ceil(LATE_RECOVERY_TICKS) as f32;
         let late_lag = late_ticks / config.limits.rate_hz * UNITS_PER_RAD as f32;

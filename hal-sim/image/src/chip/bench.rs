@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 /// Symbols of the image: the handler of the tick, where its cost ends, the record.
 pub(super) const TICK_BEGIN: &str = "TIM1_CC";
 pub(super) const TICK_END: &str = "stage_tick_end";
+pub(super) const HANDLER_END: &str = "stage_handler_end";
 const TRACE: &str = "TRACE";
 /// Where the image keeps its settings: at the beginning of bank 2.
 const SETTINGS_AT: u64 = 0x0810_0000;
@@ -163,6 +164,7 @@ impl Bench {
         let landmarks = Landmarks {
             tick_begin: self.symbol(TICK_BEGIN)?,
             tick_end: self.symbol(TICK_END)?,
+            handler_end: self.symbol(HANDLER_END)?,
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;
@@ -177,6 +179,7 @@ impl Bench {
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
         session.watch(Watch::Instruction(landmarks.tick_begin));
         session.watch(Watch::Instruction(landmarks.tick_end));
+        session.watch(Watch::Instruction(landmarks.handler_end));
         let driver = StageDriver::new(on_period, self.stage, landmarks);
         let settings = self.settings.bytes().to_vec();
         let settings = Image::new(Path::new("settings"), settings, Some(SETTINGS_AT));

@@ -24,8 +24,10 @@ const COUNTER_ENABLE: u64 = 1;
 pub struct Landmarks {
     /// First instruction of the tick's interrupt handler.
     pub tick_begin: u64,
-    /// Where its cost ends.
+    /// Where its cost ends: its duties are written.
     pub tick_end: u64,
+    /// Where all that it does has ended.
+    pub handler_end: u64,
     /// The image's record.
     pub trace: u64,
 }
@@ -119,8 +121,12 @@ impl<F> StageDriver<F> {
         let (address, at, instructions) = (hit.address, hit.at, hit.instruction_count);
         if let Some(following) = &mut self.following {
             match address {
-                _ if address == self.landmarks.tick_begin => following.begin(address, host),
-                _ if address == self.landmarks.tick_end => following.end(),
+                // The tick under way is the one before the one to come.
+                _ if address == self.landmarks.tick_begin => {
+                    following.begin(address, self.tick.saturating_sub(1), host);
+                }
+                _ if address == self.landmarks.tick_end => following.duties(address, host),
+                _ if address == self.landmarks.handler_end => following.end(),
                 _ => following.step(address, host),
             }
         }
@@ -194,7 +200,11 @@ where
             resets: &self.resets,
             probes: &self.probes,
             following: &mut self.following,
-            ends: [self.landmarks.tick_begin, self.landmarks.tick_end],
+            ends: [
+                self.landmarks.tick_begin,
+                self.landmarks.tick_end,
+                self.landmarks.handler_end,
+            ],
         });
         let tripped = self.stage.tripped();
         let faults = [0, 1, 2].map(|axis| self.bridge_faults[axis] || tripped[axis]);

@@ -1,5 +1,6 @@
 //! What `llvm-mca` makes of instructions that ran one after the other: cycles of a Cortex-M4 without wait states. Jumps count
-//! as instructions; that the core refills its pipeline after one is not in it.
+//! as instructions; that the core refills its pipeline after one is not in it. Calls are given as jumps: for one it takes a hundred
+//! cycles, whatever is called. Its model has one cycle for each load and store.
 
 use super::follow::Step;
 use crate::cycles::{Kind, Program};
@@ -78,6 +79,9 @@ fn source(program: &Program, steps: &[Step]) -> String {
 }
 
 fn jump(text: &str) -> String {
+    if text.starts_with("bl ") || text.starts_with("blx") {
+        return "b #4".to_owned();
+    }
     match text.rsplit_once('#') {
         Some((before, _)) => format!("{before}#4"),
         None => text.to_owned(),

@@ -25,21 +25,40 @@ const PC: usize = 15;
 #[derive(Debug)]
 pub struct Following {
     program: Arc<Program>,
-    /// Where a tick begins and ends, which is watched whoever follows it.
-    ends: [u64; 2],
+    /// Where a tick begins, writes its duties and ends, which is watched whoever follows it.
+    ends: [u64; 3],
     steps: Vec<Step>,
     inside: bool,
     complete: bool,
+    /// Steps of the tick under way, or of the last one, until its duties were written.
+    until_duties: usize,
+    /// The tick under way, and those that are over and were not taken yet.
+    tick: u64,
+    over: Vec<FollowedTick>,
+}
+
+/// The instructions of a tick, all of them.
+#[derive(Clone, Debug)]
+pub struct FollowedTick {
+    /// Its number.
+    pub tick: u64,
+    /// Its instructions.
+    pub steps: Vec<Step>,
+    /// So many of them until its duties are written.
+    pub until_duties: usize,
 }
 
 impl Following {
-    pub fn new(program: &Arc<Program>, ends: [u64; 2]) -> Self {
+    pub fn new(program: &Arc<Program>, ends: [u64; 3]) -> Self {
         Self {
             program: Arc::clone(program),
             ends,
             steps: Vec::new(),
             inside: false,
             complete: false,
+            until_duties: 0,
+            tick: 0,
+            over: Vec::new(),
         }
     }
 
@@ -51,20 +70,42 @@ impl Following {
             .filter(move |at| !ends.contains(at))
     }
 
-    /// The steps of the last tick.
+    /// The steps of the last tick until its duties were written.
     pub fn steps(&self) -> Option<&[Step]> {
-        self.complete.then_some(&self.steps)
+        self.steps
+            .get(..self.until_duties)
+            .filter(|_| self.complete)
     }
 
-    pub fn begin(&mut self, at: u64, host: &mut dyn Host) {
+    /// The ticks that are over since this was asked last; `None` when one was not followed to its end.
+    pub fn take_over(&mut self) -> Option<Vec<FollowedTick>> {
+        self.complete.then(|| std::mem::take(&mut self.over))
+    }
+
+    pub fn begin(&mut self, at: u64, tick: u64, host: &mut dyn Host) {
         self.steps.clear();
+        (self.tick, self.until_duties) = (tick, 0);
         self.inside = true;
         self.complete = true;
         self.step(at, host);
     }
 
+    /// The duties are written before this instruction.
+    pub fn duties(&mut self, at: u64, host: &mut dyn Host) {
+        if self.inside {
+            self.until_duties = self.steps.len();
+        }
+        self.step(at, host);
+    }
+
     pub fn end(&mut self) {
-        self.inside = false;
+        if std::mem::replace(&mut self.inside, false) {
+            self.over.push(FollowedTick {
+                tick: self.tick,
+                steps: self.steps.clone(),
+                until_duties: self.until_duties,
+            });
+        }
     }
 
     /// The core has come to an instruction.

@@ -2,7 +2,7 @@
 
 use super::board::ChipBoard;
 use super::cost::TickCost;
-use super::follow::{Following, Step};
+use super::follow::{FollowedTick, Following, Step};
 use super::timeline::{EARLY_NS, FIRST_TICK_NS, LATCH_NS, PERIOD_NS};
 use crate::cycles::Program;
 use hal_sim::machine::devices::{BridgeState, Stage};
@@ -85,8 +85,8 @@ pub struct Period<'a> {
     /// What [`Action::Probe`] found, with the instants (ns since power on) of probing.
     pub probes: &'a [(u64, [BridgeState; 3])],
     pub(super) following: &'a mut Option<Following>,
-    /// Where a tick begins and ends.
-    pub(super) ends: [u64; 2],
+    /// Where a tick begins, writes its duties and ends.
+    pub(super) ends: [u64; 3],
 }
 
 impl Period<'_> {
@@ -175,6 +175,12 @@ impl Period<'_> {
     #[must_use]
     pub fn steps(&self) -> Option<&[Step]> {
         self.following.as_ref().and_then(Following::steps)
+    }
+
+    /// The ticks that are over since this was asked last: the last one may still be under way. `None` when one was not followed to
+    /// its end.
+    pub fn followed(&mut self) -> Option<Vec<FollowedTick>> {
+        self.following.as_mut().and_then(Following::take_over)
     }
 
     /// The register of a peripheral at an address, as the program last left it, or `None` where there is none. The registers of

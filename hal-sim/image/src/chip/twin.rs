@@ -215,7 +215,8 @@ impl Twin {
     /// Where the two went apart.
     pub fn catch_up(&mut self) -> Result<Option<Agreed<'_>>, Divergence> {
         self.serve_panel()?;
-        let Some(Executed { trace, .. }) = self.executed.front() else {
+        // A tick takes its command last: the next one's record tells of it.
+        let Some(Executed { trace, .. }) = self.executed.get(1) else {
             return Ok(None);
         };
         let commanded = trace.commands != self.commands;

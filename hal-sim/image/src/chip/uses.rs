@@ -1,6 +1,6 @@
 //! What the tick is used for, one use after the other on the emulated chip, and the instructions of its ticks in each.
 
-use super::follow::Step;
+use super::follow::{FollowedTick, Step};
 use super::{Bench, ChipError, Period, bench, elf_file};
 use crate::cycles::{Bus, Program};
 use firmware::calibration::{CalibrationText, MachineCalibration};
@@ -97,6 +97,16 @@ pub struct UsedTick {
     pub used: Use,
     /// Its instructions.
     pub steps: Vec<Step>,
+    /// So many of them until its duties are written.
+    pub until_duties: usize,
+}
+
+impl UsedTick {
+    /// The instructions that have a deadline.
+    #[must_use]
+    pub fn until_duties(&self) -> &[Step] {
+        self.steps.get(..self.until_duties).unwrap_or(&self.steps)
+    }
 }
 
 /// Ticks of every use, and the program that they are of.
@@ -226,6 +236,8 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
         switched_on: false,
         answers: Vec::new(),
         calibration: Vec::new(),
+        taken: BTreeSet::new(),
+        pending: Vec::new(),
         ticks: Vec::new(),
     };
     let (tell, told) = mpsc::channel();
@@ -256,7 +268,7 @@ fn keep_orders(ticks: &mut Vec<UsedTick>) {
     let mut longest: BTreeMap<u64, (usize, u64)> = BTreeMap::new();
     for tick in ticks.iter().filter(|tick| tick.used == Use::RecordOrder) {
         let longest = longest.entry(tick.tick / 100).or_default();
-        *longest = (*longest).max((tick.steps.len(), tick.tick));
+        *longest = (*longest).max((tick.until_duties, tick.tick));
     }
     let taken: BTreeSet<u64> = longest.into_values().map(|(_, tick)| tick).collect();
     ticks.retain(|tick| tick.used != Use::RecordOrder || taken.contains(&tick.tick));
@@ -273,28 +285,31 @@ struct Run {
     answers: Vec<u8>,
     /// Lines, the next one last.
     calibration: Vec<String>,
+    /// Ticks that have taken a command.
+    taken: BTreeSet<u64>,
+    /// Ticks of which it is not known yet whether they have.
+    pending: Vec<FollowedTick>,
     ticks: Vec<UsedTick>,
 }
 
 impl Run {
     /// One control period; `None` where the ticks can not be followed.
     fn period(&mut self, period: &mut Period<'_>) -> Option<()> {
-        let commands = period.trace().commands;
-        let took = commands != std::mem::replace(&mut self.commands, commands);
+        let trace = period.trace();
+        let recorded = u64::from(trace.ticks);
+        let took = trace.commands != std::mem::replace(&mut self.commands, trace.commands);
+        if took {
+            // The tick before the one that tells of it.
+            self.taken.insert(recorded - 2);
+        }
         if self.following {
-            let tick = period.tick - 1;
-            let stretch = self.stretches.iter().find(|it| it.ticks.contains(&tick));
-            if let Some(stretch) = stretch {
-                let mut used = stretch.taken.filter(|_| took).unwrap_or(stretch.used);
-                self.switched_on |= used == Use::SwitchedOnCalibrated;
-                if used == Use::OffCalibrated && self.switched_on {
-                    used = Use::HoldingCalibrated;
-                }
-                self.ticks.push(UsedTick {
-                    tick,
-                    used,
-                    steps: period.steps()?.to_vec(),
-                });
+            self.pending.extend(period.followed()?);
+            let (over, pending) = std::mem::take(&mut self.pending)
+                .into_iter()
+                .partition(|followed| followed.tick + 1 < recorded);
+            self.pending = pending;
+            for followed in over {
+                self.keep(followed);
             }
         }
         send(period);
@@ -310,6 +325,26 @@ impl Run {
                 .then_some(())?;
         }
         Some(())
+    }
+
+    /// Keeps a tick of one of the stretches, with what it was used for.
+    fn keep(&mut self, followed: FollowedTick) {
+        let tick = followed.tick;
+        let Some(stretch) = self.stretches.iter().find(|it| it.ticks.contains(&tick)) else {
+            return;
+        };
+        let taken = stretch.taken.filter(|_| self.taken.contains(&tick));
+        let mut used = taken.unwrap_or(stretch.used);
+        self.switched_on |= used == Use::SwitchedOnCalibrated;
+        if used == Use::OffCalibrated && self.switched_on {
+            used = Use::HoldingCalibrated;
+        }
+        self.ticks.push(UsedTick {
+            tick,
+            used,
+            steps: followed.steps,
+            until_duties: followed.until_duties,
+        });
     }
 
     fn calibrate(&mut self, period: &mut Period<'_>) {

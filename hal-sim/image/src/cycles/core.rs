@@ -136,6 +136,12 @@ impl Core {
         }
     }
 
+    /// Cycles from an interrupt to its handler.
+    #[must_use]
+    pub const fn entry(&self) -> u64 {
+        ENTRY + self.setting.vector
+    }
+
     /// The cycles of a handler, from its interrupt to the end of the last of these instructions. `each` is told those of each.
     pub fn run<'a, I, F>(&mut self, handler: I, mut each: F) -> Cycles
     where
@@ -146,7 +152,7 @@ impl Core {
         let mut handler = handler.into_iter().peekable();
         let first = handler.peek().map_or(0, |ran| ran.at);
         // Entry ends with the first instruction in the pipeline: its fetch begins two cycles before.
-        let entry = ENTRY + self.setting.vector;
+        let entry = self.entry();
         let mut fetch = Fetch::new(&self.setting, first, entry - 2);
         let mut before = Before::default();
         let mut now = entry;

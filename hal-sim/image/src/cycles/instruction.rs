@@ -67,6 +67,15 @@ pub struct Instruction {
 }
 
 impl Instruction {
+    /// Whether it moves words from or to memory.
+    #[must_use]
+    pub const fn is_transfer(&self) -> bool {
+        matches!(
+            self.kind,
+            Kind::Load | Kind::Store | Kind::StoreIndexed | Kind::Many(_) | Kind::JumpLoaded(_)
+        )
+    }
+
     /// Whether it is one load that overlaps with a load or store behind it.
     #[must_use]
     pub const fn is_load(&self) -> bool {

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 
 /// Share of the deadline that a tick may take at most, nominally, in every use: what protection and calibration will need comes on top.
 pub const GOAL: f64 = 0.62;
-/// Until it does, no tick may grow by more than this.
+/// And no tick may grow by more than this.
 const SPARE: f64 = 1.10;
-const COLUMNS: [&str; 4] = ["use", "nominal worst", "limit", "why"];
-const BY_GOAL: &str = "62 % of the deadline";
-const BY_FIGURE: &str = "the figure and 10 %, until 62 % of the deadline is met";
+const COLUMNS: [&str; 3] = ["use", "nominal worst", "limit"];
 
 /// The limit of a use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,8 +18,6 @@ pub struct Limit {
     pub worst: u64,
     /// What it may be, cycles.
     pub limit: u64,
-    /// Why that.
-    pub why: String,
 }
 
 /// Why the file cannot be had.
@@ -45,22 +41,16 @@ pub enum LimitsError {
     },
 }
 
-/// The limits that these ticks give, at a deadline in cycles.
+/// The limits that these ticks give, at a deadline in cycles: the figure and 10 %, and never more than the goal.
 #[must_use]
 pub fn limits(nominal: &Tally, deadline: u64) -> Vec<Limit> {
     let goal = (GOAL * deadline as f64) as u64;
     let limit = |row: &Row| {
         let worst = row.worst();
-        let (limit, why) = if worst <= goal {
-            (goal, BY_GOAL)
-        } else {
-            ((worst as f64 * SPARE) as u64, BY_FIGURE)
-        };
         Limit {
             name: row.name(),
             worst,
-            limit,
-            why: why.to_owned(),
+            limit: ((worst as f64 * SPARE) as u64).min(goal),
         }
     };
     nominal.rows.iter().map(limit).collect()
@@ -106,19 +96,14 @@ pub fn read_limits(path: &Path) -> Result<Vec<Limit>, LimitsError> {
     let mut limits = Vec::new();
     for (row, line) in reader.records().zip(2..) {
         let row = row.map_err(bad)?;
-        let [name, worst, limit, why] =
+        let [name, worst, limit] =
             std::array::from_fn(|column| row.get(column).unwrap_or_default());
         let (Ok(worst), Ok(limit)) = (worst.parse(), limit.parse()) else {
             let path = path.to_owned();
             return Err(LimitsError::Line { path, line });
         };
-        let (name, why) = (name.to_owned(), why.to_owned());
-        limits.push(Limit {
-            name,
-            worst,
-            limit,
-            why,
-        });
+        let name = name.to_owned();
+        limits.push(Limit { name, worst, limit });
     }
     Ok(limits)
 }
@@ -133,7 +118,7 @@ pub fn write_limits(path: &Path, limits: &[Limit]) -> Result<(), LimitsError> {
         writer.write_record(COLUMNS)?;
         for limit in limits {
             let numbers = [limit.worst, limit.limit].map(|number| number.to_string());
-            writer.write_record([&limit.name, &numbers[0], &numbers[1], &limit.why])?;
+            writer.write_record([&limit.name, &numbers[0], &numbers[1]])?;
         }
         Ok(writer.flush()?)
     };
@@ -155,6 +140,7 @@ mod tests {
             used: Use::Moving,
             writing: false,
             cycles: ticks.to_vec(),
+            whole: 0,
             sum: Cycles::default(),
             instructions: 0,
         };
@@ -166,19 +152,19 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_is_the_goal_or_else_the_figure_and_a_tenth() {
-        assert_eq!(limits(&tally(&[600, 620]), 1_000)[0].limit, 620);
-        let grown = limits(&tally(&[600, 700]), 1_000);
-        assert_eq!((grown[0].limit, grown[0].why.as_str()), (770, BY_FIGURE));
+    fn a_limit_is_the_figure_and_a_tenth_and_never_over_the_goal() {
+        assert_eq!(limits(&tally(&[400, 500]), 1_000)[0].limit, 550);
+        assert_eq!(limits(&tally(&[600]), 1_000)[0].limit, 620);
+        assert_eq!(limits(&tally(&[700]), 1_000)[0].limit, 620);
     }
 
     #[test]
     fn what_is_over_its_limit_is_named() {
-        let kept = limits(&tally(&[700]), 1_000);
-        assert_eq!(over(&tally(&[770]), &kept), [""; 0]);
+        let kept = limits(&tally(&[500]), 1_000);
+        assert_eq!(over(&tally(&[550]), &kept), [""; 0]);
         assert_eq!(
-            over(&tally(&[771]), &kept),
-            ["moving: 771 cycles, its limit is 770"]
+            over(&tally(&[551]), &kept),
+            ["moving: 551 cycles, its limit is 550"]
         );
         assert_eq!(over(&tally(&[]), &kept), ["moving: there was no such tick"]);
         assert_eq!(over(&tally(&[1]), &[]), ["moving: has no limit"]);
@@ -190,7 +176,7 @@ mod tests {
         let kept = limits(&tally(&[700]), 1_000);
         write_limits(&path, &kept).expect("a file");
         assert_eq!(read_limits(&path).expect("limits"), kept);
-        std::fs::write(&path, "use,nominal worst,limit,why\nmoving,many,1,\n").expect("a file");
+        std::fs::write(&path, "use,nominal worst,limit\nmoving,many,1\n").expect("a file");
         let error = read_limits(&path).unwrap_err();
         assert!(
             matches!(error, LimitsError::Line { line: 2, .. }),

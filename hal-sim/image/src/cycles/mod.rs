@@ -31,4 +31,4 @@ pub use print::{Tallies, print_cycles, print_kinds, print_places};
 pub use program::Program;
 pub use registers::Registers;
 pub use setting::Setting;
-pub use tally::{Row, Tally, modelled_without_jumps};
+pub use tally::{Row, Tally, modelled_by_schedule};

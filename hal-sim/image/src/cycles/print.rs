@@ -36,23 +36,31 @@ impl Tallies {
     }
 }
 
-/// The table; a tick's deadline in cycles.
+/// The table; a tick's deadline and its period in cycles.
 #[must_use]
-pub fn print_cycles(tallies: &Tallies, deadline: u64) -> String {
+pub fn print_cycles(tallies: &Tallies, deadline: u64, period: u64) -> String {
     let share = |cycles: u64| 100.0 * cycles as f64 / deadline as f64;
     let mut text = format!(
         "cycles of a tick, from its interrupt until its duties are written, by a model of core and flash: no board was measured\n\
-         deadline {deadline} cycles; the goal is {:.0} % of it nominally, and under 100 % pessimistically\n\n",
+         deadline {deadline} cycles; the goal is {:.0} % of it nominally, and under 100 % pessimistically\n\
+         whole: all that the longest tick does, the next setpoint among it; period {period} cycles\n\n",
         100.0 * GOAL,
     );
     let _ = writeln!(
         text,
-        "{:<45}{:>6}{:>8}{:>10}{:>12}{:>39}{:>19}",
-        "", "", "instr.", "no waits", "optimistic", "nominal", "pessimistic"
+        "{:<45}{:>6}{:>8}{:>10}{:>12}{:>39}{:>19}{:>28}",
+        "",
+        "",
+        "instr.",
+        "no waits",
+        "optimistic",
+        "nominal",
+        "pessimistic",
+        "whole, nominal, pessimistic"
     );
     let _ = writeln!(
         text,
-        "{:<45}{:>6}{:>8}{:>10}{:>12}{:>8}{:>7}{:>7}{:>7}{:>10}{:>9}{:>10}",
+        "{:<45}{:>6}{:>8}{:>10}{:>12}{:>8}{:>7}{:>7}{:>7}{:>10}{:>9}{:>10}{:>9}{:>9}{:>10}",
         "use",
         "ticks",
         "mean",
@@ -64,15 +72,19 @@ pub fn print_cycles(tallies: &Tallies, deadline: u64) -> String {
         "worst",
         "deadline",
         "worst",
-        "deadline"
+        "deadline",
+        "cycles",
+        "cycles",
+        "period"
     );
     let [optimistic, nominal, pessimistic] = &tallies.guesses;
     for (index, row) in nominal.rows.iter().enumerate() {
         let ticks = row.cycles.len();
         let worst = |tally: &Tally| tally.rows.get(index).map_or(0, Row::worst);
+        let whole = pessimistic.rows.get(index).map_or(0, |row| row.whole);
         let _ = writeln!(
             text,
-            "{:<45}{:>6}{:>8.0}{:>10.0}{:>12}{:>8.0}{:>7}{:>7}{:>7}{:>8.1} %{:>9}{:>8.1} %",
+            "{:<45}{:>6}{:>8.0}{:>10.0}{:>12}{:>8.0}{:>7}{:>7}{:>7}{:>8.1} %{:>9}{:>8.1} %{:>9}{:>9}{:>8.1} %",
             row.name(),
             ticks,
             row.instructions as f64 / ticks.max(1) as f64,
@@ -85,6 +97,9 @@ pub fn print_cycles(tallies: &Tallies, deadline: u64) -> String {
             share(row.worst()),
             worst(pessimistic),
             share(worst(pessimistic)),
+            row.whole,
+            whole,
+            100.0 * whole as f64 / period as f64,
         );
     }
     text

@@ -1,6 +1,7 @@
 //! Ticks of each use through the model, and what they come to.
 
 use super::core::{Core, Cycles, Ran};
+use super::instruction::Instruction;
 use super::setting::Setting;
 use crate::chip::{Step, Use, Used, UsedTick};
 use std::collections::HashMap;
@@ -12,11 +13,13 @@ pub struct Row {
     pub used: Use,
     /// Whether the data cache was off, as while settings are written.
     pub writing: bool,
-    /// In ascending order.
+    /// Until the duties are written, in ascending order.
     pub cycles: Vec<u64>,
-    /// Of all together.
+    /// All that the longest tick does.
+    pub whole: u64,
+    /// Until the duties are written, of all together.
     pub sum: Cycles,
-    /// Instructions of all together.
+    /// Instructions until then of all together.
     pub instructions: u64,
 }
 
@@ -100,29 +103,45 @@ fn row<'a>(
         used: doing,
         writing,
         cycles: Vec::new(),
+        whole: 0,
         sum: Cycles::default(),
         instructions: 0,
     };
     for tick in ticks {
-        let cycles = core.run(ran(used, &tick.steps), |at, cycles| {
+        let (mut until_duties, mut done) = (Cycles::default(), 0);
+        let whole = core.run(ran(used, &tick.steps), |at, cycles| {
+            done += 1;
+            if done > tick.until_duties {
+                return;
+            }
+            until_duties.add(cycles);
             if let Some(places) = &mut places {
                 places.entry(at).or_default().add(cycles);
             }
         });
-        row.cycles.push(cycles.all());
-        row.sum.add(&cycles);
-        row.instructions += tick.steps.len() as u64;
+        until_duties.entry += core.entry();
+        row.cycles.push(until_duties.all());
+        row.whole = row.whole.max(whole.all());
+        row.sum.add(&until_duties);
+        row.instructions += tick.until_duties as u64;
     }
     row.cycles.sort_unstable();
     row
 }
 
-/// Cycles of a tick's instructions by themselves, one behind the other: what another model without a memory is compared with.
+/// Cycles of all of a tick's instructions by themselves, one behind the other, as the scheduling model that it is compared with has
+/// them: without a memory, and with one cycle for each load or store. ARM's table has two for a load by itself, and one more for each
+/// word of those that move several: what that comes to is told beside.
 #[must_use]
-pub fn modelled_without_jumps(used: &Used, tick: &UsedTick) -> u64 {
+pub fn modelled_by_schedule(used: &Used, tick: &UsedTick) -> [u64; 2] {
     let mut core = Core::new(Setting::WITHOUT_WAIT_STATES);
-    let cycles = core.run(ran(used, &tick.steps), |_, _| {});
-    cycles.table + cycles.float
+    let mut transfers = 0;
+    let cycles = core.run(ran(used, &tick.steps), |at, cycles| {
+        if used.program.at(at).is_some_and(Instruction::is_transfer) {
+            transfers += cycles.table - 1;
+        }
+    });
+    [cycles.table + cycles.float - transfers, transfers]
 }
 
 /// The steps of a tick as the model takes them.

@@ -1,0 +1,112 @@
+//! The setpoint of the next tick, computed in this one after its duties are written.
+//!
+//! A setpoint is known ahead: it hangs on the plan and on no measurement. Only what does hang on one, from the encoders'
+//! frames to the duties, has a deadline. A command is taken where the next setpoint is computed, so that it acts with the
+//! tick after the one that takes it; and so does the stop that answers a fault.
+//! The servos' feedforward hangs on the setpoint alone, and is computed here too.
+
+use super::config::Config;
+use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints, pose};
+use super::servo::PivotSetpoint;
+use super::state::State;
+use crate::fault::FaultKind;
+use crate::iterative_learning::TrialTable;
+use crate::mode::Mode;
+use crate::motion::Setpoint;
+
+/// What the next tick is to follow.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NextSetpoint {
+    /// Of the point that is moved.
+    pub point: Setpoint,
+    /// Of the platform's own centre.
+    pub platform: Setpoint,
+    /// Whether the plan goes on after it.
+    pub moving: bool,
+    /// Of the pivots, where the servo is on.
+    pub pivots: Option<PivotSetpoints>,
+    /// Whether that of the pivot that is inspected hardly moves.
+    pub slowly: bool,
+}
+
+impl State {
+    /// One tick on: the setpoint that the next tick follows, and what a trial adds in it. One that can not be followed is
+    /// a fault, and nothing drives.
+    #[inline(never)]
+    pub(super) fn prepare_next(&mut self, config: &Config, table: TrialTable<'_>) {
+        let point = self.advance_motion(config);
+        self.advance_trial(config, table);
+        let platform = self.motion.centre().platform_setpoint(&point);
+        self.next.point = point;
+        self.next.platform = platform;
+        self.next.moving = self.motion.is_moving();
+        self.next.pivots = if self.servo_on() && self.is_in_disk(config, &platform.position) {
+            self.pivots_of(config, &platform)
+        } else {
+            None
+        };
+    }
+
+    fn advance_motion(&mut self, config: &Config) -> Setpoint {
+        let motion = &mut self.motion;
+        if self.mode == Mode::Stopping {
+            motion.advance_fault_stop(&config.fault_stop);
+            return motion.fault_stop_setpoint(&config.scale);
+        }
+        // With the servo off there is nothing under way.
+        if matches!(self.mode, Mode::Holding | Mode::Moving) {
+            motion.advance();
+        }
+        motion.setpoint(&config.scale)
+    }
+
+    fn pivots_of(&mut self, config: &Config, platform: &Setpoint) -> Option<PivotSetpoints> {
+        let wanted = if self.calibrated.is_on {
+            pose(&platform.position).and_then(|pose| {
+                self.calibrated.follow_from(&pose);
+                self.calibrated.pivot_setpoints(
+                    config,
+                    &pose,
+                    &platform.twist,
+                    &platform.acceleration,
+                    None,
+                )
+            })
+        } else {
+            pivot_setpoints(config, platform)
+        };
+        let Some(wanted) = wanted else {
+            self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
+            return None;
+        };
+        // Of the pivot that is inspected in the next tick.
+        let i = self.inspection_slot;
+        if let (Some(&length), Some(rate), Some(acceleration)) = (
+            wanted.lengths.get(i),
+            wanted.motion.rates.get(i),
+            wanted.motion.accelerations.get(i),
+        ) {
+            self.next.slowly = rate.abs() < config.limits.slow_rate
+                && acceleration.abs() < config.limits.slow_acceleration;
+            if !self.is_in_guide_range(config, i, length) {
+                return None;
+            }
+        }
+        self.feed_forward(config, &wanted);
+        Some(wanted)
+    }
+
+    /// The servos' voltages for these setpoints.
+    #[inline(never)]
+    pub(super) fn feed_forward(&mut self, config: &Config, wanted: &PivotSetpoints) {
+        for (i, (servo, config)) in (self.servo.iter_mut().zip(&config.servo.pivots)).enumerate() {
+            let setpoint = PivotSetpoint {
+                rate: wanted.motion.rates[i],
+                acceleration: wanted.motion.accelerations[i],
+                platform_torque: wanted.torques[i],
+                angle: wanted.angles[i],
+            };
+            servo.feed_forward(config, &setpoint);
+        }
+    }
+}
