@@ -5,7 +5,7 @@ use kinematics::PivotCoefficients;
 use serde::{Deserialize, Serialize};
 
 use crate::Machine;
-use crate::kit::Kit;
+use crate::kit::{Kit, Noise};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Begins the last line.
@@ -40,11 +40,14 @@ pub struct Made {
     pub noise_nm: f64,
     /// Its noise in theta, urad.
     pub noise_urad: f64,
+    /// What the machine itself does not repeat, nm on the track at each pivot; 0 where the noise explains all that is left.
+    #[serde(default)]
+    pub scatter_nm: f64,
     /// Measured poses.
     pub visits: usize,
     /// How many of them were left out.
     pub outliers: usize,
-    /// Square misses over what is expected of them, a row.
+    /// Square misses over what noise and scatter make of them, a row.
     pub chi2: f64,
     /// The same of those that were held out.
     pub chi2_held_out: f64,
@@ -166,6 +169,19 @@ impl Pivot {
     }
 }
 
+impl Made {
+    /// The noise that it was fitted with, the machine's scatter in it.
+    #[must_use]
+    pub fn noise(&self) -> Noise {
+        let radii = |nm: f64| nm * 1e-6 / self.track_radius_mm;
+        Noise {
+            length: radii(self.noise_nm),
+            angle_rad: self.noise_urad * 1e-6,
+            encoder_rad: Noise::ENCODER_RAD.hypot(radii(self.scatter_nm)),
+        }
+    }
+}
+
 impl Calibration {
     /// Of a machine, in track radii of what was made.
     #[must_use]
@@ -269,6 +285,7 @@ mod tests {
                 kit: Kit::Camera2,
                 noise_nm: 50.0,
                 noise_urad: 1.0,
+                scatter_nm: 120.0,
                 visits: 600,
                 outliers: 2,
                 chi2: 1.01,

@@ -17,6 +17,7 @@
 //! | [`least_squares`] | rows to an orthogonal factor, and what that says of uncertainty |
 //! | [`mod@fit`] | the fit: robust, with some visits held out |
 //! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
+//! | `scatter` | what the machine itself does not repeat |
 //! | [`mod@judge`] | whether a machine of given numbers is the one that was measured |
 //! | `error` | why there is no fit |
 //! | [`frames`] | errors of poses without what only the choice of frames and of scale makes |
@@ -43,6 +44,7 @@ pub mod numbers;
 pub mod plan;
 pub mod position;
 mod residuals;
+mod scatter;
 pub mod spread;
 pub mod table;
 pub mod visit;

@@ -12,4 +12,4 @@ mod verify;
 
 pub use apply::{ApplyError, Evidence, apply, lines, switch_off};
 pub use measure::{MeasureError, Measured, Reader, Wanted, Way, measure, serial, with_references};
-pub use verify::{AS_PREDICTED, Verdict, Verified, VerifyError, verify};
+pub use verify::{Verdict, Verified, VerifyError, verify};

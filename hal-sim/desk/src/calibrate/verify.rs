@@ -5,6 +5,7 @@ use calibration::accuracy::DISK;
 use calibration::file::Calibration;
 use calibration::plan::{Stop, stops};
 use calibration::{DRAWN, FitError, Instrument, Judged, Kit, Predicted, Visit, judge};
+use core::ops::RangeInclusive;
 use kinematics::Geometry;
 
 use super::apply::{ApplyError, checksum, in_force};
@@ -14,8 +15,9 @@ use crate::record::RecordError;
 
 /// So many poses of the sequence are a plan's.
 const PLANNED: usize = 10_000;
-/// What may be seen over what was to be seen.
-pub const AS_PREDICTED: core::ops::RangeInclusive<f64> = 0.77..=1.3;
+/// What may be seen over what was to be seen; and where the machine does not repeat, whose scatter is known less well than a noise.
+const AS_PREDICTED: RangeInclusive<f64> = 0.77..=1.3;
+const WITH_SCATTER: RangeInclusive<f64> = 0.7..=1.4;
 
 /// Why nothing is verified.
 #[derive(Debug, thiserror::Error)]
@@ -54,6 +56,8 @@ pub struct Verified {
     pub drawn: Judged,
     /// How far the errors of both sides are apart, rms, noise in it: x and y (track radii), and theta (rad).
     pub sides: [f64; 2],
+    /// What may be seen over what was to be seen.
+    pub as_predicted: RangeInclusive<f64>,
 }
 
 /// How it stands.
@@ -79,10 +83,10 @@ impl Verified {
         if kinds().any(|(now, drawn)| !(now.seen <= drawn.seen)) {
             return Verdict::WorseThanDrawn;
         }
-        if kinds().any(|(now, _)| !(now.ratio() <= *AS_PREDICTED.end())) {
+        if kinds().any(|(now, _)| !(now.ratio() <= *self.as_predicted.end())) {
             return Verdict::Worse;
         }
-        if kinds().all(|(now, _)| now.ratio() >= *AS_PREDICTED.start()) {
+        if kinds().all(|(now, _)| now.ratio() >= *self.as_predicted.start()) {
             return Verdict::Holds;
         }
         Verdict::Better
@@ -150,6 +154,11 @@ pub fn verify(
     let now = judge(instrument, &DRAWN, &commanded?, &predicted)?;
     Ok(Verified {
         sides: apart(&now),
+        as_predicted: if calibration.made.scatter_nm > 0.0 {
+            WITH_SCATTER
+        } else {
+            AS_PREDICTED
+        },
         now,
         drawn: judge(instrument, &DRAWN, &read, &predicted)?,
     })

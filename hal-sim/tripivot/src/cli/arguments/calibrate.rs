@@ -110,7 +110,7 @@ pub(in super::super) struct CalibrateVerify {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
-    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); verdict.
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), verdict.
     #[arg(long)]
     pub(in super::super) json: bool,
 }
@@ -170,8 +170,8 @@ pub(in super::super) struct CalibrateFit {
     pub(in super::super) temperature: Option<f64>,
     /// Tell the result as one JSON document on standard output.
     ///
-    /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_held_out, chi2_is_doubtful, expected_xy_nm, expected_worst_xy_nm,
-    /// expected_theta_urad, steps, file.
+    /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_of_noise, scatter_nm, chi2_held_out, chi2_is_doubtful,
+    /// expected_xy_nm, expected_worst_xy_nm, expected_theta_urad, steps, file.
     #[arg(long)]
     pub(in super::super) json: bool,
 }

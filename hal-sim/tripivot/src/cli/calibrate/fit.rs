@@ -26,6 +26,8 @@ struct Document {
     /// Lines of the file.
     outliers: Vec<usize>,
     chi2: f64,
+    chi2_of_noise: f64,
+    scatter_nm: f64,
     chi2_held_out: f64,
     chi2_is_doubtful: bool,
     expected_xy_nm: f64,
@@ -62,6 +64,8 @@ pub(super) fn run(arguments: &CalibrateFit) -> Result<ExitCode, CliError> {
             .filter_map(|&visit| table.lines.get(visit).copied())
             .collect(),
         chi2: fit.chi2,
+        chi2_of_noise: fit.chi2_of_noise,
+        scatter_nm: made.scatter_nm,
         chi2_held_out: fit.chi2_held_out,
         chi2_is_doubtful: fit.is_doubtful(),
         expected_xy_nm: made.expected_xy_nm,
@@ -106,6 +110,7 @@ fn made(
         kit: table.kit,
         noise_nm: nm(instrument.noise.length),
         noise_urad: instrument.noise.angle_rad * URAD_PER_RAD,
+        scatter_nm: nm(fit.scatter_rad),
         visits: table.visits.len(),
         outliers: fit.outliers.len(),
         chi2: fit.chi2,
@@ -114,6 +119,17 @@ fn made(
         expected_worst_xy_nm: nm(accuracy.worst_place_rms),
         expected_theta_urad: accuracy.turn_rms_rad * URAD_PER_RAD,
     }
+}
+
+/// What the machine does not repeat, in words.
+fn scatter(document: &Document) -> String {
+    if document.scatter_nm == 0.0 {
+        return "none to be seen: the noise explains what is left".to_owned();
+    }
+    format!(
+        "{:.0} nm at each pivot: what is left is {:.1} times the square of the noise, and counts in what is expected",
+        document.scatter_nm, document.chi2_of_noise
+    )
 }
 
 fn text_of(document: &Document) -> String {
@@ -141,6 +157,7 @@ fn text_of(document: &Document) -> String {
                 document.chi2, document.chi2_held_out
             ),
         ),
+        line("machine's scatter", &scatter(document)),
         line(
             "expected, x and y",
             &format!(

@@ -20,7 +20,7 @@ use super::super::arguments::{CalibrateMeasure, CalibratedMachine};
 use super::super::error::CliError;
 use super::super::view::endpoint;
 use super::error::CalibrateError;
-use super::reader::{Asked, Simulated};
+use super::reader::{Asked, Simulated, TruePose};
 use super::{line, nm, noise, read};
 
 /// Begins the line that says what is measured.
@@ -111,11 +111,12 @@ pub(super) fn opened(
     if !stage.machine.is_simulated() {
         return Err(CalibrateError::NoReader.into());
     }
-    let radius_m = stage.machine.parameters()?.plant.track_radius_m;
+    let built = stage.machine.parameters()?;
+    let radius_m = built.plant.track_radius_m;
     let machine = simulated(stage)?;
     let reader = Simulated {
         instrument: Beside::set_up(instrument, radius_m, stage.seed).ok_or(CalibrateError::Ends)?,
-        true_pose: machine.true_pose(),
+        true_pose: TruePose::new(machine.true_pose(), &built.wiring),
     };
     Ok((Box::new(machine), Box::new(reader)))
 }

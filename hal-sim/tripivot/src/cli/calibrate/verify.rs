@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use calibration::judge::Errors;
 use calibration::{Instrument, Noise};
-use desk::calibrate::{AS_PREDICTED, Verdict, Verified, verify};
+use desk::calibrate::{Verdict, Verified, verify};
 use serde::Serialize;
 
 use super::super::FAILED;
@@ -38,21 +38,25 @@ struct Document {
     visits: usize,
     xy_um: Option<Kind>,
     theta_urad: Option<Kind>,
+    as_predicted: [f64; 2],
     verdict: &'static str,
 }
 
 pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     let calibration = calibration(&arguments.file)?;
     let made = &calibration.made;
-    let noise_m = arguments.noise.unwrap_or(made.noise_nm * 1e-9);
+    let told = made.noise();
     let noise = Noise {
-        length: noise_m * 1e9 / nm(1.0),
+        length: arguments
+            .noise
+            .map_or(told.length, |noise_m| noise_m * 1e9 / nm(1.0)),
         angle_rad: match (arguments.noise_theta, arguments.noise) {
             (Some(theta_rad), _) => theta_rad,
-            (None, Some(_)) => noise_m / BASE_M,
-            (None, None) => made.noise_urad / URAD_PER_RAD,
+            (None, Some(noise_m)) => noise_m / BASE_M,
+            (None, None) => told.angle_rad,
         },
-        encoder_rad: Noise::ENCODER_RAD,
+        // The machine's scatter is the same before any instrument.
+        ..told
     };
     let instrument = Instrument::new(arguments.kit.unwrap_or(made.kit), noise);
     let (mut machine, mut reader) =
@@ -93,12 +97,15 @@ fn document(instrument: &Instrument, verified: &Verified) -> Document {
             as_drawn: drawn.seen * unit,
         })
     };
-    let Verified { now, drawn, sides } = verified;
+    let Verified {
+        now, drawn, sides, ..
+    } = verified;
     Document {
         kit: instrument.kit.name(),
         visits: now.visits.len(),
         xy_um: kind(now.places, drawn.places, sides[0], um),
         theta_urad: kind(now.turns, drawn.turns, sides[1], URAD_PER_RAD),
+        as_predicted: [*verified.as_predicted.start(), *verified.as_predicted.end()],
         verdict: match verified.verdict() {
             Verdict::Holds => "as predicted",
             Verdict::Better => "better than predicted",
@@ -127,7 +134,7 @@ fn text(document: &Document) -> String {
         text += &told(
             "",
             format!(
-                "{:.4} {unit} rms seen, {:.4} of it noise: {}, {:.4} predicted",
+                "{:.4} {unit} rms seen, {:.4} of it noise and scatter: {}, {:.4} predicted",
                 kind.seen,
                 kind.noise,
                 if kind.of_stage > 0.0 {
@@ -142,9 +149,7 @@ fn text(document: &Document) -> String {
             ", over predicted",
             format!(
                 "{:.3}, noise in both; from {} to {} is as predicted",
-                kind.ratio,
-                AS_PREDICTED.start(),
-                AS_PREDICTED.end()
+                kind.ratio, document.as_predicted[0], document.as_predicted[1]
             ),
         );
         text += &told(
@@ -157,7 +162,7 @@ fn text(document: &Document) -> String {
         text += &told(
             ", both sides",
             format!(
-                "{:.4} {unit} rms apart, {:.4} by noise alone",
+                "{:.4} {unit} rms apart, {:.4} by noise and scatter alone",
                 kind.both_sides_apart,
                 kind.noise * std::f64::consts::SQRT_2
             ),
