@@ -148,8 +148,8 @@ impl Pivot {
         }
     }
 
-    /// Its numbers by name, and how large each can be.
-    fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
+    /// Its numbers by name, and how large each can be, in their own order.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
         let all = |name, most, values: &[f64]| {
             let values = values.iter();
             values.map(|&value| (name, value, most)).collect::<Vec<_>>()
@@ -170,15 +170,27 @@ impl Pivot {
 }
 
 impl Made {
-    /// The noise that it was fitted with, the machine's scatter in it.
+    /// The instrument's noise, as it was said.
+    #[must_use]
+    pub fn instrument_noise(&self) -> Noise {
+        Noise {
+            length: self.radii(self.noise_nm),
+            angle_rad: self.noise_urad * 1e-6,
+            encoder_rad: Noise::ENCODER_RAD,
+        }
+    }
+
+    /// The same with the machine's scatter in it.
     #[must_use]
     pub fn noise(&self) -> Noise {
-        let radii = |nm: f64| nm * 1e-6 / self.track_radius_mm;
         Noise {
-            length: radii(self.noise_nm),
-            angle_rad: self.noise_urad * 1e-6,
-            encoder_rad: Noise::ENCODER_RAD.hypot(radii(self.scatter_nm)),
+            encoder_rad: Noise::ENCODER_RAD.hypot(self.radii(self.scatter_nm)),
+            ..self.instrument_noise()
         }
+    }
+
+    fn radii(&self, nm: f64) -> f64 {
+        nm * 1e-6 / self.track_radius_mm
     }
 }
 

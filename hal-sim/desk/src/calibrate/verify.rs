@@ -54,6 +54,8 @@ pub struct Verified {
     pub now: Judged,
     /// The same visits, had the controller taken the machine for the drawn one.
     pub drawn: Judged,
+    /// Where the stage was sent: x, y (track radii), theta (rad).
+    pub commanded: Vec<[f64; 3]>,
     /// How far the errors of both sides are apart, rms, noise in it: x and y (track radii), and theta (rad).
     pub sides: [f64; 2],
     /// What may be seen over what was to be seen.
@@ -153,6 +155,7 @@ pub fn verify(
     };
     let now = judge(instrument, &DRAWN, &commanded?, &predicted)?;
     Ok(Verified {
+        commanded: all.iter().map(|measured| measured.commanded).collect(),
         sides: apart(&now),
         as_predicted: if calibration.made.scatter_nm > 0.0 {
             WITH_SCATTER

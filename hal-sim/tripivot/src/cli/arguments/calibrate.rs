@@ -23,6 +23,9 @@ pub(in super::super) enum CalibrateCommand {
     /// Judge the calibration in force by what an instrument sees at fresh poses, each gone to from both sides. Exit code 1 if it is worse
     /// than predicted, or worse than none.
     Verify(CalibrateVerify),
+    /// All that is known of a calibration as one page: error maps before and after, what the fit leaves, predicted beside verified, its
+    /// numbers with their uncertainties, what cannot be told, drift.
+    Report(CalibrateReport),
     /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
     Undo(CalibratedMachine),
 }
@@ -110,9 +113,26 @@ pub(in super::super) struct CalibrateVerify {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
-    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), verdict.
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), verdict; poses
+    /// (commanded_mm_deg, off_um_urad, as_drawn_um_urad). `tripivot calibrate report` takes it.
     #[arg(long)]
     pub(in super::super) json: bool,
+}
+
+/// A report.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateReport {
+    /// The calibration file.
+    pub(in super::super) file: PathBuf,
+    /// What it was fitted to, as `tripivot calibrate measure` leaves it.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) measured: PathBuf,
+    /// What `tripivot calibrate verify --json` has told of it.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) verified: Option<PathBuf>,
+    /// The page.
+    #[arg(long, value_name = "FILE", default_value = "calibration.html")]
+    pub(in super::super) out: PathBuf,
 }
 
 /// The instrument's noise.

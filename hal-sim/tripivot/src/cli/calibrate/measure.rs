@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use crate::attended::SimulatedMachine;
 use calibration::plan::Stop;
-use calibration::table::{Table, to_text};
+use calibration::table::{Table, note, to_text};
 use calibration::{Instrument, Kit, plan};
 use desk::calibrate::{MeasureError, Measured, Reader, Way, measure, serial, with_references};
 use desk::commission::{Attended, Machine};
@@ -187,11 +187,7 @@ impl Kept {
         let rows = to_text(&self.instrument, &[measured.visited], radius_mm);
         let row = rows.lines().nth(1).unwrap_or_default();
         let is_reference = visit > 0 && stops.get(visit) == stops.first();
-        let what = if is_reference { "reference" } else { "pose" };
-        let text = format!(
-            "# visit {}, {what}, {clock_s:.3} s of the controller's clock\n{row}\n",
-            visit + 1
-        );
+        let text = format!("{}\n{row}\n", note(visit, is_reference, clock_s));
         self.file.write_all(text.as_bytes())
     }
 }

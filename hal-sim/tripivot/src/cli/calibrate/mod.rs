@@ -6,6 +6,7 @@ mod fit;
 mod measure;
 mod plan;
 mod reader;
+mod report;
 mod verify;
 
 use std::fs;
@@ -32,6 +33,7 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
         CalibrateCommand::Fit(arguments) => fit::run(arguments),
         CalibrateCommand::Apply(arguments) => apply::run(arguments),
         CalibrateCommand::Verify(arguments) => verify::run(arguments),
+        CalibrateCommand::Report(arguments) => report::run(arguments),
         CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }
