@@ -13,6 +13,7 @@ use crate::error::FitError;
 use crate::fit::check;
 use crate::kit::Instrument;
 use crate::least_squares::Factor;
+use crate::left::Miss;
 use crate::visit::{Rows, Seen, Visit};
 
 /// What is said of the poses' errors before they are measured, rms over the disk and all orientations.
@@ -71,8 +72,8 @@ pub struct Judged {
     pub places: Option<Errors>,
     /// In theta, where the instrument sees it.
     pub turns: Option<Errors>,
-    /// Of each visit: x, y (track radii) and theta (rad), 0 where it was not seen.
-    pub visits: Vec<[f64; 3]>,
+    /// What each visit was off.
+    pub visits: Vec<Miss>,
 }
 
 /// Sums over rows of one kind.
@@ -155,7 +156,11 @@ pub fn judge(
         }
         places.largest(error[0].hypot(error[1]), visit);
         turns.largest(error[2].abs(), visit);
-        errors.push(error);
+        errors.push(Miss {
+            off: error,
+            seen: rows.seen,
+            noise: rows.noise.into(),
+        });
     }
     let axes = if instrument.ends.is_empty() { 2.0 } else { 1.0 };
     Ok(Judged {

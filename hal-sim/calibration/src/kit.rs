@@ -37,6 +37,16 @@ pub const KITS: [Kit; 6] = [
 ];
 
 impl Kit {
+    /// Numbers that it reads at a pose, or learns there.
+    #[must_use]
+    pub const fn rows(self) -> usize {
+        match self {
+            Self::Xyt => 3,
+            Self::Xy | Self::Camera | Self::Camera2 => 2,
+            Self::Theta | Self::Ends => 1,
+        }
+    }
+
     /// Its name in files and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -162,6 +162,13 @@ impl Table {
         instrument
     }
 
+    /// Visits of the reference pose that are not among these.
+    #[must_use]
+    pub fn references_but(&self, outliers: &[usize]) -> Vec<(usize, f64)> {
+        let all = self.references.iter().copied();
+        all.filter(|(visit, _)| !outliers.contains(visit)).collect()
+    }
+
     /// The visit of a row.
     fn visit(&mut self, values: &[f64], radius_mm: f64) -> Option<Visit> {
         let (readings_deg, seen) = values.split_first_chunk::<3>()?;

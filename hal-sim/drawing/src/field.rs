@@ -22,6 +22,8 @@ pub struct Worth<'a> {
     pub longest: (f64, &'a str),
     /// The strongest colour, what it is, and its unit.
     pub strongest: (f64, &'a str, &'a str),
+    /// Whether there is another error.
+    pub has_shades: bool,
 }
 
 impl Worth<'_> {
@@ -45,6 +47,7 @@ impl Worth<'_> {
         Worth {
             longest: (round(longest), unit),
             strongest: (round(strongest), what, shade_unit),
+            has_shades: strongest > 0.0,
         }
     }
 }
@@ -138,6 +141,9 @@ impl Field<'_> {
             draw_arrow(svg, [left, top], [left + longest_px, top]);
         }
         svg.text([left, top + 34.0], &format!("{most} {unit}"), &font);
+        if !self.worth.has_shades {
+            return;
+        }
         let (most, what, unit) = self.worth.strongest;
         svg.text([left, top + 74.0], &format!("{what}, {unit}"), &font);
         let (shade, low): (fn(f64) -> String, _) = if are_circles {

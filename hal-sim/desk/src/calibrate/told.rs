@@ -108,10 +108,10 @@ fn seen(verified: &Verified) -> Vec<Seen> {
     let off = |[x, y, theta]: [f64; 3]| [x * radius_mm * 1e3, y * radius_mm * 1e3, theta * URAD];
     let errors = verified.now.visits.iter().zip(&verified.drawn.visits);
     (verified.commanded.iter().zip(errors))
-        .map(|(&[x, y, theta], (&now, &drawn))| Seen {
+        .map(|(&[x, y, theta], (now, drawn))| Seen {
             commanded_mm_deg: [x * radius_mm, y * radius_mm, theta.to_degrees()],
-            off_um_urad: off(now),
-            as_drawn_um_urad: off(drawn),
+            off_um_urad: off(now.off),
+            as_drawn_um_urad: off(drawn.off),
         })
         .collect()
 }

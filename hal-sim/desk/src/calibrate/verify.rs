@@ -171,7 +171,7 @@ pub fn verify(
 fn apart(judged: &Judged) -> [f64; 2] {
     let (mut place, mut turn, mut count) = (0.0, 0.0, 0.0);
     for [one, other] in judged.visits.as_chunks::<2>().0 {
-        let [x, y, theta] = [0, 1, 2].map(|k| one[k] - other[k]);
+        let [x, y, theta] = [0, 1, 2].map(|k| one.off[k] - other.off[k]);
         place += x * x + y * y;
         turn += theta * theta;
         count += 1.0;

@@ -3,7 +3,7 @@
 use super::number::{whole, within};
 use super::stage::{Machine, SimulatedStage, Simulation};
 pub(super) use calibrate::{
-    CalibrateApply, CalibrateCommand, CalibrateFit, CalibrateMeasure, CalibratePlan,
+    CalibrateApply, CalibrateCommand, CalibrateDemo, CalibrateFit, CalibrateMeasure, CalibratePlan,
     CalibrateReport, CalibrateVerify, CalibratedMachine, NoiseArguments,
 };
 use clap::{Args, Parser, Subcommand};

@@ -42,6 +42,15 @@ pub struct Truth {
     pub after: Vec<Pair>,
 }
 
+impl Truth {
+    /// Root mean squares without and with it, frames and scale out: um and urad.
+    #[must_use]
+    pub fn sizes(&self) -> [[f64; 2]; 2] {
+        let radius_mm = kinematics::Geometry::REFERENCE.radius_mm;
+        [&self.before, &self.after].map(|pairs| sizes_of(pairs, radius_mm))
+    }
+}
+
 /// Why there is no report.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum ReportError {
@@ -111,7 +120,8 @@ pub fn page(report: &Report<'_>) -> Result<String, ReportError> {
         page += &figure(
             &maps::seen(told),
             "What the instrument saw at fresh poses, each gone to from both sides: above as the controller without calibration would have had it, below \
-             with it; the instrument's noise is in both. Below there should be no pattern: arrows of all directions.",
+             with it; the instrument's noise is in both. Below there should be no pattern: arrows of all directions. \
+             Above, a camera takes a part of the machine's errors for those of the plate, whose marks nobody knows.",
         );
     }
     page += "<h2>What the fit leaves</h2>\n";
@@ -134,8 +144,9 @@ fn found(report: &Report<'_>) -> Result<Found, ReportError> {
     let left = left(&instrument, &fit, &table.visits)?;
     let deviations = fit.factor.deviations().ok_or(FitError::NotFinite)?;
     let sizes = instrument.sizes();
+    let references = table.references_but(&fit.outliers);
     Ok(Found {
-        drift: drift(table, &left, &fit),
+        drift: Drift::of(&references, &left.visits, &instrument.noise),
         deviations: (deviations.iter().zip(&sizes))
             .map(|(deviation, size)| deviation * size)
             .collect(),
@@ -143,17 +154,6 @@ fn found(report: &Report<'_>) -> Result<Found, ReportError> {
         fit,
         left,
     })
-}
-
-/// What has moved while was measured; `None` where the reference pose was not visited often enough.
-#[must_use]
-pub fn drift(table: &Table, left: &Left, fit: &Fit) -> Option<Drift> {
-    let references = table.references.iter();
-    let kept = references.filter(|(visit, _)| !fit.outliers.contains(visit));
-    let misses: Vec<_> = kept
-        .filter_map(|&(visit, at_s)| Some((at_s, *left.visits.get(visit)?)))
-        .collect();
-    Drift::new(&misses)
 }
 
 /// A calibration is this fit, to what its file has rounded.

@@ -205,7 +205,7 @@ pub(super) fn drift(table: &Table, found: &Found) -> String {
             })
             .collect();
         let verdict = if drift.is_significant() {
-            "That is more than the noise explains: the stage or the instrument was warming up, and the calibration is not to be applied."
+            "That is more than the noise explains: the stage or the instrument was warming up; `tripivot calibrate apply` refuses such a calibration."
         } else {
             "That is no more than the noise explains."
         };

@@ -26,6 +26,9 @@ pub(in super::super) enum CalibrateCommand {
     /// All that is known of a calibration as one page: error maps before and after, what the fit leaves, predicted beside verified, its
     /// numbers with their uncertainties, what cannot be told, drift.
     Report(CalibrateReport),
+    /// All of it on a simulated machine that nobody knows: it is commissioned, calibrates itself with a plate that nobody has measured, and
+    /// the report shows true poses against commanded ones before and after. Takes some minutes.
+    Demo(CalibrateDemo),
     /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
     Undo(CalibratedMachine),
 }
@@ -135,6 +138,23 @@ pub(in super::super) struct CalibrateReport {
     pub(in super::super) out: PathBuf,
 }
 
+/// A demonstration.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateDemo {
+    /// The machine, as a workshop would build it.
+    #[arg(long, value_name = "SEED", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub(in super::super) unknown: u64,
+    /// Settings of this machine's controller, as `tripivot commission --unknown SEED` leaves them [default: it is commissioned first].
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) settings: Option<PathBuf>,
+    /// How many poses are measured.
+    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = whole(100..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Folder for the report, the error maps, what was measured, the calibration and the controller's settings.
+    #[arg(long, value_name = "DIR", default_value = "tripivot-calibration")]
+    pub(in super::super) out: PathBuf,
+}
+
 /// The instrument's noise.
 #[derive(Args, Clone, Copy, Debug)]
 pub(in super::super) struct NoiseArguments {
@@ -191,7 +211,8 @@ pub(in super::super) struct CalibrateFit {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_of_noise, scatter_nm, chi2_held_out, chi2_is_doubtful,
-    /// expected_xy_nm, expected_worst_xy_nm, expected_theta_urad, steps, file.
+    /// expected_xy_nm, expected_worst_xy_nm, expected_theta_urad, drift (minutes, moved_nm_nm_urad, noise_nm_nm_urad; null if unknown),
+    /// drift_is_significant, steps, file.
     #[arg(long)]
     pub(in super::super) json: bool,
 }

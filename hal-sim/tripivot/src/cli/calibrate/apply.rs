@@ -34,6 +34,7 @@ fn evidence(arguments: &CalibrateApply, made: &Made) -> Result<Evidence, CliErro
     Ok(Evidence {
         instrument: table.instrument(made.noise()),
         visits: table.visits,
+        references: table.references,
         over: over.transpose()?,
     })
 }

@@ -151,14 +151,14 @@ fn kept(path: &Path, begun: &str) -> Result<usize, CliError> {
 }
 
 /// The file, and what its rows are of.
-struct Kept {
+pub(super) struct Kept {
     file: File,
     instrument: Instrument,
 }
 
 impl Kept {
     /// Opened behind what it holds; begun if that is nothing.
-    fn open(
+    pub(super) fn open(
         path: &Path,
         begun: &str,
         instrument: &Instrument,
@@ -181,7 +181,7 @@ impl Kept {
     }
 
     /// A row, with what it is and when above it.
-    fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
+    pub(super) fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
         let Measured { visit, clock_s, .. } = *measured;
         let radius_mm = Geometry::REFERENCE.radius_mm;
         let rows = to_text(&self.instrument, &[measured.visited], radius_mm);

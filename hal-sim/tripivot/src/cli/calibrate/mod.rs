@@ -1,6 +1,7 @@
 //! `tripivot calibrate`: what a built machine is off its drawing.
 
 mod apply;
+mod demo;
 pub(super) mod error;
 mod fit;
 mod measure;
@@ -34,6 +35,7 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
         CalibrateCommand::Apply(arguments) => apply::run(arguments),
         CalibrateCommand::Verify(arguments) => verify::run(arguments),
         CalibrateCommand::Report(arguments) => report::run(arguments),
+        CalibrateCommand::Demo(arguments) => demo::run(arguments),
         CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }
