@@ -1,10 +1,10 @@
 //! The numbers of a report: what came of it, predicted beside seen, what cannot be told, and the coefficients.
 
-use calibration::file::Calibration;
+use calibration::file::{Calibration, Made};
 use calibration::freedom::{Freedom, Freedoms};
 use calibration::table::Table;
 use calibration::visit::Rows;
-use calibration::{DRAWN, numbers as names};
+use calibration::{DRAWN, Kit, numbers as names};
 use drawing::page::{escaped, table};
 use kinematics::COEFFICIENTS;
 
@@ -53,12 +53,11 @@ pub(super) fn summary(report: &Report<'_>, found: &Found) -> String {
             row(
                 "measured",
                 format!(
-                    "{}, {} poses, {} of them left out; noise {} nm and {} urad",
+                    "{}, {} poses, {} of them left out; noise {}",
                     made.kit,
                     made.visits,
                     made.outliers,
-                    figures(made.noise_nm),
-                    figures(made.noise_urad)
+                    noise(made)
                 ),
             ),
             row(
@@ -72,6 +71,17 @@ pub(super) fn summary(report: &Report<'_>, found: &Found) -> String {
             row("temperature", celsius),
         ],
     )
+}
+
+/// The noise of what the instrument sees.
+fn noise(made: &Made) -> String {
+    let length = format!("{} nm", figures(made.noise_nm));
+    let angle = format!("{} urad", figures(made.noise_urad));
+    match made.kit {
+        Kit::Xyt => format!("{length} and {angle}"),
+        Kit::Theta => angle,
+        Kit::Xy | Kit::Camera | Kit::Camera2 | Kit::Ends => length,
+    }
 }
 
 /// Predicted beside seen.

@@ -147,8 +147,8 @@ pub(in super::super) struct CalibrateDemo {
     /// Settings of this machine's controller, as `tripivot commission --unknown SEED` leaves them [default: it is commissioned first].
     #[arg(long, value_name = "FILE")]
     pub(in super::super) settings: Option<PathBuf>,
-    /// How many poses are measured.
-    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = whole(100..=3000_usize))]
+    /// How many poses are measured; fewer would not tell the machine's scatter from the noise.
+    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = whole(200..=3000_usize))]
     pub(in super::super) poses: usize,
     /// Folder for the report, the error maps, what was measured, the calibration and the controller's settings.
     #[arg(long, value_name = "DIR", default_value = "tripivot-calibration")]

@@ -35,7 +35,7 @@ use crate::attended::SimulatedMachine;
 /// Noise of the camera, nm.
 const NOISE_NM: f64 = 50.0;
 /// Poses at which true and commanded ones are compared, and those that the sequence has before them.
-const COMPARED: usize = 120;
+const COMPARED: usize = 100;
 const PASSED: usize = 20_000;
 /// Fresh poses of the verification.
 const VERIFIED: usize = 40;
