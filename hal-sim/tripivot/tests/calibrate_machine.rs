@@ -356,6 +356,30 @@ fn wrong_calibrations_are_not_applied_and_those_in_force_are_found() {
         "{told}"
     );
 
+    // By other instruments too: each tells of what it sees.
+    let by_kit = |kit: &str, poses: &str| {
+        let arguments = ["verify", "own.toml", "--kit", kit, "--poses", poses];
+        on_machine(
+            &folder,
+            &[&arguments[..], &["--settings", "kept.flash"]].concat(),
+        )
+    };
+    for (kit, sees_place, sees_theta) in [
+        ("xy", true, false),
+        ("theta", false, true),
+        ("camera", true, false),
+    ] {
+        let told = is_done(&by_kit(kit, "40"));
+        println!("{told}");
+        assert_eq!(told.contains("\nx and y  "), sees_place, "{told}");
+        assert_eq!(told.contains("\ntheta  "), sees_theta, "{told}");
+        assert!(
+            told.contains("verdict                 as predicted"),
+            "{told}"
+        );
+    }
+    assert_refused(&by_kit("ends", "40"), 2, "ends");
+
     // What was measured is that of a machine of the same serial number.
     for (wrong, verdict) in [
         ("others", "worse than without it"),

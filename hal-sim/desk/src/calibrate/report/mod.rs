@@ -90,7 +90,7 @@ pub fn page(report: &Report<'_>) -> Result<String, ReportError> {
     let made = &report.calibration.made;
     let mut page = head(&format!("Calibration of {}", made.serial));
     // Writing to a text does not fail.
-    let _ = write!(page, "<h1>Calibration of {}</h1>\n", escaped(&made.serial));
+    let _ = writeln!(page, "<h1>Calibration of {}</h1>", escaped(&made.serial));
     page += &tables::summary(report, &found);
     if let Some(truth) = report.truth {
         page += "<h2>True pose against commanded pose</h2>\n";
