@@ -82,7 +82,7 @@ fn left_nm(folder: &Path, file: &str) -> (f64, f64) {
     let text = fs::read_to_string(folder.join(file)).unwrap();
     let calibration = Calibration::from_text(&text).unwrap();
     let poses = over_disk(0.8).skip(5000).take(500);
-    let pairs = commanded(&truth(), &calibration.machine(), poses).unwrap();
+    let pairs = commanded(&truth(), &calibration.machine(), poses, &mut Random::new(1)).unwrap();
     let left = without_frames(&pairs).size().place_rms * RADIUS_MM * 1e6;
     (left, calibration.made.expected_xy_nm)
 }

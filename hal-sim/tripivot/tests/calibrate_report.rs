@@ -197,7 +197,10 @@ fn an_unknown_machine_calibrates_itself() {
     };
     let (before_um, after_um) = (number("true, as drawn"), number("true, calibrated"));
     // 82.5 and 0.157 were measured.
-    assert!(before_um > 74.0 && after_um < 0.173, "{before_um} {after_um}");
+    assert!(
+        before_um > 74.0 && after_um < 0.173,
+        "{before_um} {after_um}"
+    );
     let ratio = number("x and y, over predicted");
     assert!((0.7..=1.4).contains(&ratio), "{ratio}");
 }
