@@ -166,6 +166,7 @@ fn what_drifted_and_what_does_not_hold_is_not_applied() {
 
 /// An unknown machine from its first start to a calibration, in full dynamics.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "takes minutes unless optimised")]
 fn an_unknown_machine_calibrates_itself() {
     let folder = folder("demo");
     let told = is_done(&calibrate(

@@ -13,7 +13,7 @@ use calibration::table::Table;
 use calibration::{Instrument, Kit, Noise, Seen, plan};
 use desk::calibrate::report::{Report, Truth, before_and_after, page};
 use desk::calibrate::{
-    Evidence, Reader, Told, Wanted, Way, apply, measure, serial, verify, with_references,
+    Evidence, Reader, Told, Verdict, Wanted, Way, apply, measure, serial, verify, with_references,
 };
 use desk::commission::{Chosen, run as run_steps};
 use drawing::{make_folder, write_file, write_png};
@@ -143,7 +143,10 @@ pub(super) fn run(arguments: &CalibrateDemo) -> Result<ExitCode, CliError> {
         line("took", &format!("{:.0} s", start.elapsed().as_secs_f64())),
     ]
     .concat())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(match verified.verdict() {
+        Verdict::Holds | Verdict::Better => ExitCode::SUCCESS,
+        Verdict::Worse | Verdict::WorseThanDrawn => ExitCode::from(FAILED),
+    })
 }
 
 /// Brings it up by the steps of `tripivot commission`, into these settings. Whether it came up.
