@@ -72,28 +72,28 @@ struct Outcome {
 
 /// What machines do not repeat.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum Repeats {
     /// Nothing.
-    Kind,
+    Fully,
     /// 1 N over 50 N/um.
     Reference,
     /// As `--unknown` draws it.
     Workshop,
 }
 
-impl Kind {
+impl Repeats {
     fn asked() -> Self {
         match std::env::var("UNKIND").as_deref() {
             Ok("reference") => Self::Reference,
             Ok("workshop") => Self::Workshop,
             Ok(other) => panic!("UNKIND={other}: reference or workshop"),
-            Err(_) => Self::Kind,
+            Err(_) => Self::Fully,
         }
     }
 
     fn unrepeated(self, seed: u64) -> Unrepeated {
         match self {
-            Self::Kind => Unrepeated::default(),
+            Self::Fully => Unrepeated::default(),
             Self::Reference => Unrepeated {
                 lost_m: 1.0 / 50e6,
                 readings_rad: 0.0,
@@ -114,7 +114,7 @@ impl Kind {
 }
 
 fn main() {
-    let kind = Kind::asked();
+    let kind = Repeats::asked();
     let machines =
         std::env::var("MACHINES").map_or(5, |text| text.parse().expect("a number of machines"));
     let only = std::env::var("ONLY").unwrap_or_default();
@@ -129,7 +129,7 @@ fn main() {
     let mut slowest_s = 0.0;
     for row in &ROWS {
         // What is expected of planned poses is told already, and a machine that does not repeat is no match for 5 nm.
-        let is_asked = kind == Kind::Kind || row.is_planned && row.noise_nm > 5.0;
+        let is_asked = kind == Repeats::Fully || row.is_planned && row.noise_nm > 5.0;
         if row.kit.name().contains(&only) && is_asked {
             let (stops, predicted) = stops_of(row);
             let outcomes = outcomes(row, &stops, machines, kind);
@@ -167,7 +167,7 @@ fn stops_of(row: &Row) -> (Vec<Stop>, String) {
     (plan.stops, predicted)
 }
 
-fn outcomes(row: &Row, stops: &[Stop], machines: usize, kind: Kind) -> Vec<Outcome> {
+fn outcomes(row: &Row, stops: &[Stop], machines: usize, kind: Repeats) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
     let outcomes = Mutex::new(Vec::new());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -188,7 +188,7 @@ fn outcomes(row: &Row, stops: &[Stop], machines: usize, kind: Kind) -> Vec<Outco
     outcomes.into_inner().expect("no thread has failed")
 }
 
-fn outcome(row: &Row, stops: &[Stop], seed: u64, kind: Kind) -> Outcome {
+fn outcome(row: &Row, stops: &[Stop], seed: u64, kind: Repeats) -> Outcome {
     let machine = workshop::machine(seed).with_unrepeated(kind.unrepeated(seed));
     let instrument = instrument(row);
     let random = &mut Random::new(1000 + seed);
