@@ -130,7 +130,7 @@ pub fn page(report: &Report<'_>) -> Result<String, ReportError> {
     page += "<h2>Drift while was measured</h2>\n";
     page += &plots::drift(report.measured, &found);
     page += "<h2>What cannot be told</h2>\n";
-    page += &tables::freedoms(&found, report.measured);
+    page += &tables::freedoms(&found);
     page += "<h2>Numbers</h2>\n";
     page += &tables::numbers(report.calibration, &found);
     Ok(page + END)

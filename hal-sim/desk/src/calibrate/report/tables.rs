@@ -1,10 +1,8 @@
 //! The numbers of a report: what came of it, predicted beside seen, what cannot be told, and the coefficients.
 
 use calibration::file::{Calibration, Made};
-use calibration::freedom::{Freedom, Freedoms};
-use calibration::table::Table;
-use calibration::visit::Rows;
-use calibration::{DRAWN, Kit, numbers as names};
+use calibration::freedom::Freedom;
+use calibration::{Kit, Plan, numbers as names, plan};
 use drawing::page::{escaped, table};
 use kinematics::COEFFICIENTS;
 
@@ -131,13 +129,11 @@ pub(super) fn verified(told: Option<&Told>) -> String {
 }
 
 /// What cannot be told, and what is the user's to choose.
-pub(super) fn freedoms(found: &Found, measured: &Table) -> String {
-    let rows: Vec<Rows> = (measured.visits.iter())
-        .filter_map(|visit| {
-            Rows::new(&found.instrument, &DRAWN, &found.instrument.guess(), visit).ok()
-        })
-        .collect();
-    let freedoms = Freedoms::new(&found.instrument, &rows, &found.instrument.sizes());
+pub(super) fn freedoms(found: &Found) -> String {
+    // Of the plan, not of what was measured: a frame is free to rounding only where every mark is under its camera.
+    let Some(Plan { freedoms, .. }) = plan(&found.instrument, 1) else {
+        return String::new();
+    };
     let listed = |is_choice: bool| {
         let named = freedoms
             .named
