@@ -9,7 +9,7 @@ use calibration::{
 };
 use hal_sim::machine::instruments::camera::Camera;
 use hal_sim::machine::instruments::interferometer::Interferometer;
-use hal_sim::machine::instruments::{QuasiStatic, commanded, survey, workshop};
+use hal_sim::machine::instruments::{QuasiStatic, Unrepeated, commanded, survey, workshop};
 use hal_sim::machine::plant::{Imperfections, Plant, PlantParameters};
 use hal_sim::random::Random;
 
@@ -33,7 +33,8 @@ fn stops(instrument: &Instrument, count: usize) -> Vec<Stop> {
 
 fn size(truth: &QuasiStatic, fitted: &Machine) -> Size {
     let poses = over_disk(DISK).skip(5000).take(1000);
-    without_frames(&commanded(truth, fitted, poses).expect("inside the disk")).size()
+    without_frames(&commanded(truth, fitted, poses, &mut Random::new(1)).expect("inside the disk"))
+        .size()
 }
 
 /// Fits a machine and proves it.
@@ -67,7 +68,10 @@ fn hold(instrument: &Instrument, count: usize, [rms_nm, max_nm, urad]: [f64; 3])
         assert!((0.8..1.2).contains(&fit.chi2), "seed {seed}: {}", fit.chi2);
         let held_out = fit.chi2_held_out;
         assert!((0.6..1.5).contains(&held_out), "seed {seed}: {held_out}");
-        assert!(fit.outliers.is_empty(), "seed {seed}: {:?}", fit.outliers);
+        // Four standard deviations come by chance in one of some 25 such measurements.
+        assert!(fit.outliers.len() <= 1, "seed {seed}: {:?}", fit.outliers);
+        let scatter = fit.scatter_rad / instrument.noise.length;
+        assert!(scatter < 0.5, "seed {seed}: {scatter}");
     }
 }
 
@@ -228,6 +232,60 @@ fn an_instrument_may_stand_anywhere() {
     assert!(size.place_rms * NM < 50.0, "{}", size.place_rms * NM);
 }
 
+/// Guides that lose motion, scales with errors within a period, noise that is more than was said: what is left shows it, and what is
+/// promised has it in it.
+#[test]
+fn what_a_machine_does_not_repeat_is_found() {
+    let instrument = instrument(Kit::Xyt, 50.0, 1.0);
+    let stops = stops(&instrument, 200);
+    for seed in 1..=3 {
+        let truth = workshop::machine(seed);
+        let random = &mut Random::new(1000 + seed);
+        let mut visits = survey(&truth, &instrument, &stops, random).expect("inside the disk");
+        for visit in &mut visits {
+            visit.readings_rad = visit.readings_rad.map(|m| m + 3e-6 * random.normal());
+        }
+        let fit = fit(&instrument, &visits).expect("a fit");
+        let predicted = Accuracy::new(&fit.machine, &fit.factor, &instrument.sizes());
+        let size = size(&truth, &fit.machine);
+        let ratio = size.place_rms / predicted.expect("a factor of full rank").place_rms;
+        println!(
+            "seed {seed}: scatter {:.3} urad, {} outliers, chi^2 {:.2} and {:.1} of the noise alone, held out {:.2}, {:.1} nm, ratio {ratio:.2}",
+            fit.scatter_rad * 1e6,
+            fit.outliers.len(),
+            fit.chi2,
+            fit.chi2_of_noise,
+            fit.chi2_held_out,
+            size.place_rms * NM
+        );
+        assert!((fit.scatter_rad / 3e-6 - 1.0).abs() < 0.08, "seed {seed}");
+        assert!((fit.chi2 - 1.0).abs() < 1e-2 && fit.chi2_of_noise > 5.0);
+        assert!((0.7..1.4).contains(&ratio), "seed {seed}: {ratio}");
+    }
+}
+
+/// Friction over stiffness of the guides, rms over the disk: 1.29 times their quotient. Another program's statics had 1.45.
+#[test]
+fn guides_lose_motion() {
+    let lost_m = 1.0 / 50e6;
+    let machine = workshop::machine(1).with_unrepeated(Unrepeated {
+        lost_m,
+        readings_rad: 0.0,
+    });
+    let random = &mut Random::new(1);
+    let mut square = 0.0;
+    let poses: Vec<[f64; 3]> = over_disk(DISK).take(2000).collect();
+    for [x, y, theta] in &poses {
+        let pose = [x * RADIUS_M, y * RADIUS_M, *theta];
+        let readings = machine.readings_rad(pose).expect("inside the disk");
+        let reached = machine.reached(readings, random).expect("inside the disk");
+        square += (reached[0] - pose[0]).powi(2) + (reached[1] - pose[1]).powi(2);
+    }
+    let share = (square / poses.len() as f64).sqrt() / lost_m;
+    println!("{share:.3} of friction over stiffness");
+    assert!((1.16..1.42).contains(&share), "{share}");
+}
+
 /// Somebody knocked against the table now and then: those visits are found, all of them and no others, and do no harm.
 #[test]
 fn outliers_are_found_and_left_out() {
@@ -276,11 +334,13 @@ fn what_cannot_be_fitted_is_refused() {
     }
     let error = fit(&instrument, &swapped).expect_err("another machine");
     println!("{error}");
-    // The noise is ten times what was said.
-    let mut modest = instrument.clone();
-    modest.noise.length *= 0.1;
-    modest.noise.angle_rad *= 0.1;
-    let error = fit(&modest, &visits).expect_err("too much noise");
+    // Poses that scatter by 20 um: no sound machine.
+    let mut loose = visits.clone();
+    let random = &mut Random::new(3);
+    for visit in &mut loose {
+        spoil(visit, 20_000.0 * random.normal());
+    }
+    let error = fit(&instrument, &loose).expect_err("too much scatter");
     assert!(matches!(error, FitError::TooManyOutliers { .. }), "{error}");
     // A camera's rows for an interferometer.
     let mut other = visits.clone();

@@ -52,7 +52,7 @@ fn verified(
     let beams = Interferometer::set_up(instrument.noise, random);
     let poses = stops(&instrument, PASSED, count);
     let poses = poses.iter().map(|stop| stop.pose);
-    let pairs = commanded(truth, given, poses).expect("inside the disk");
+    let pairs = commanded(truth, given, poses, random).expect("inside the disk");
     let visits: Vec<Visit> = (pairs.iter())
         .map(|pair| {
             let [x, y, theta] = pair.reached;

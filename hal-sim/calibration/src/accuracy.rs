@@ -31,25 +31,11 @@ impl Accuracy {
     #[must_use]
     pub fn new(machine: &Machine, factor: &Factor, sizes: &[f64]) -> Option<Self> {
         let poses: Vec<[f64; 3]> = over_disk(DISK).take(POSES).collect();
-        let mut by_unknowns = DMatrix::zeros(3 * POSES, factor.root.ncols());
-        for (pose, at) in poses.iter().zip((0..).step_by(3)) {
-            let readings_rad = readings_rad(machine, pose).ok()?;
-            let by_numbers = position(machine, &readings_rad).ok()?.by_numbers;
-            for (column, size) in (0..MACHINE_NUMBERS).zip(sizes) {
-                let by = by_numbers.column(column) * *size;
-                by_unknowns
-                    .fixed_view_mut::<3, 1>(at, column)
-                    .copy_from(&by);
-            }
-        }
-        take_out(&mut by_unknowns, &poses);
-        let spread = factor.spread(&by_unknowns.transpose())?;
-        let variance = |row: usize| spread.column(row).norm_squared();
+        let variances = variances(machine, factor, sizes, &poses)?;
         let (mut place, mut turn, mut worst) = (0.0, 0.0, (0.0, [0.0; 3]));
-        for (&pose, at) in poses.iter().zip((0..).step_by(3)) {
-            let here = variance(at) + variance(at + 1);
+        for (&pose, [here, turn_here]) in poses.iter().zip(variances) {
             place += here;
-            turn += variance(at + 2);
+            turn += turn_here;
             if here > worst.0 {
                 worst = (here, pose);
             }
@@ -62,4 +48,31 @@ impl Accuracy {
             worst_pose: worst.1,
         })
     }
+}
+
+/// Variances of commanded poses, with the best frames and scale of all of them: of the place (track radii) and of theta (rad). `None` where the
+/// factor has lost a number, or a pose is out of reach.
+#[must_use]
+pub fn variances(
+    machine: &Machine,
+    factor: &Factor,
+    sizes: &[f64],
+    poses: &[[f64; 3]],
+) -> Option<Vec<[f64; 2]>> {
+    let mut by_unknowns = DMatrix::zeros(3 * poses.len(), factor.root.ncols());
+    for (pose, at) in poses.iter().zip((0..).step_by(3)) {
+        let readings_rad = readings_rad(machine, pose).ok()?;
+        let by_numbers = position(machine, &readings_rad).ok()?.by_numbers;
+        for (column, size) in (0..MACHINE_NUMBERS).zip(sizes) {
+            let by = by_numbers.column(column) * *size;
+            by_unknowns
+                .fixed_view_mut::<3, 1>(at, column)
+                .copy_from(&by);
+        }
+    }
+    take_out(&mut by_unknowns, poses);
+    let spread = factor.spread(&by_unknowns.transpose())?;
+    let variance = |row: usize| spread.column(row).norm_squared();
+    let of_pose = |at: usize| [variance(at) + variance(at + 1), variance(at + 2)];
+    Some((0..poses.len()).map(|pose| of_pose(3 * pose)).collect())
 }

@@ -31,7 +31,7 @@ pub enum FitError {
     },
     /// Too many visits miss by much: the noise is larger than was said, or the machine is not of this model.
     #[error(
-        "{outliers} of {visits} visits miss by more than 4 standard deviations (chi^2 {chi2:.2}): is the noise larger than was said?"
+        "{outliers} of {visits} visits miss by more than 4 standard deviations (chi^2 {chi2:.2}), beyond all that a sound machine does not repeat: is the noise larger than was said, or something loose?"
     )]
     TooManyOutliers {
         /// How many.

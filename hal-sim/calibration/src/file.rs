@@ -5,7 +5,7 @@ use kinematics::PivotCoefficients;
 use serde::{Deserialize, Serialize};
 
 use crate::Machine;
-use crate::kit::Kit;
+use crate::kit::{Kit, Noise};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Begins the last line.
@@ -40,11 +40,14 @@ pub struct Made {
     pub noise_nm: f64,
     /// Its noise in theta, urad.
     pub noise_urad: f64,
+    /// What the machine itself does not repeat, nm on the track at each pivot; 0 where the noise explains all that is left.
+    #[serde(default)]
+    pub scatter_nm: f64,
     /// Measured poses.
     pub visits: usize,
     /// How many of them were left out.
     pub outliers: usize,
-    /// Square misses over what is expected of them, a row.
+    /// Square misses over what noise and scatter make of them, a row.
     pub chi2: f64,
     /// The same of those that were held out.
     pub chi2_held_out: f64,
@@ -145,8 +148,8 @@ impl Pivot {
         }
     }
 
-    /// Its numbers by name, and how large each can be.
-    fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
+    /// Its numbers by name, and how large each can be, in their own order.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
         let all = |name, most, values: &[f64]| {
             let values = values.iter();
             values.map(|&value| (name, value, most)).collect::<Vec<_>>()
@@ -163,6 +166,31 @@ impl Pivot {
         ]
         .into_iter()
         .flatten()
+    }
+}
+
+impl Made {
+    /// The instrument's noise, as it was said.
+    #[must_use]
+    pub fn instrument_noise(&self) -> Noise {
+        Noise {
+            length: self.radii(self.noise_nm),
+            angle_rad: self.noise_urad * 1e-6,
+            encoder_rad: Noise::ENCODER_RAD,
+        }
+    }
+
+    /// The same with the machine's scatter in it.
+    #[must_use]
+    pub fn noise(&self) -> Noise {
+        Noise {
+            encoder_rad: Noise::ENCODER_RAD.hypot(self.radii(self.scatter_nm)),
+            ..self.instrument_noise()
+        }
+    }
+
+    fn radii(&self, nm: f64) -> f64 {
+        nm * 1e-6 / self.track_radius_mm
     }
 }
 
@@ -269,6 +297,7 @@ mod tests {
                 kit: Kit::Camera2,
                 noise_nm: 50.0,
                 noise_urad: 1.0,
+                scatter_nm: 120.0,
                 visits: 600,
                 outliers: 2,
                 chi2: 1.01,

@@ -2,13 +2,14 @@
 //!
 //! First plain steps, since at the start every miss is large and says nothing; then steps in which a visit that misses by much counts
 //! less (soft L1), and those beyond four standard deviations are left out, the worst first. What was held out is judged by that fit
-//! and joins the last steps.
+//! and joins the last steps. Where the misses are larger than the instrument's noise, the rest is the machine's own scatter, and counts
+//! in every uncertainty.
 
 use crate::Machine;
 use crate::alignment::aligned;
 use crate::descent::State;
 use crate::error::FitError;
-use crate::kit::Instrument;
+use crate::kit::{Instrument, Noise};
 use crate::least_squares::Factor;
 use crate::visit::{Seen, Visit};
 
@@ -26,8 +27,12 @@ pub struct Fit {
     pub unknowns: Vec<f64>,
     /// The factor of the last step.
     pub factor: Factor,
-    /// Square misses over what is expected of them, a row: 1 where noise and model are right.
+    /// Square misses over what noise and scatter make of them, a row: 1 where noise and model are right.
     pub chi2: f64,
+    /// The same over what the instrument's noise alone, as it was said, would make of them.
+    pub chi2_of_noise: f64,
+    /// What the machine itself does not repeat, rad at each encoder: 0 where the instrument's noise explains what is left.
+    pub scatter_rad: f64,
     /// The same of the visits that were held out.
     pub chi2_held_out: f64,
     /// Visits that were left out, by their places in the list.
@@ -39,6 +44,15 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The instrument's noise with the machine's scatter in it.
+    #[must_use]
+    pub fn noise(&self, said: Noise) -> Noise {
+        Noise {
+            encoder_rad: said.encoder_rad.hypot(self.scatter_rad),
+            ..said
+        }
+    }
+
     /// Whether chi^2 is further from 1 than chance brings it: the noise is not what was said, or the machine is not of this model.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
@@ -64,8 +78,9 @@ pub fn fit(instrument: &Instrument, visits: &[Visit]) -> Result<Fit, FitError> {
         .map(|visit| f64::from(u8::from(!is_held_out(visit))))
         .collect();
     let mut steps = state.descend(visits, &weights)?;
-    steps += state.cut(visits, &mut weights)?;
-    let (factor, more) = state.settle(visits, &weights)?;
+    let said_rad = instrument.noise.encoder_rad;
+    steps += state.cut(visits, &mut weights, said_rad)?;
+    let (factor, more) = state.settle_with_scatter(visits, &weights, said_rad)?;
     steps += more;
     // A visit may come back, or go, now that outliers no longer pull.
     let outliers = state.outliers(visits, &weights, &factor)?;
@@ -76,9 +91,12 @@ pub fn fit(instrument: &Instrument, visits: &[Visit]) -> Result<Fit, FitError> {
     let weights: Vec<f64> = (0..visits.len())
         .map(|visit| f64::from(u8::from(!outliers.contains(&visit))))
         .collect();
-    let (factor, more) = state.settle(visits, &weights)?;
+    let (factor, more) = state.settle_with_scatter(visits, &weights, said_rad)?;
     steps += more;
+    let found_rad = state.instrument.noise.encoder_rad;
     let (chi2, rows_left) = state.chi2(visits, &weights, &factor)?;
+    state.instrument.noise.encoder_rad = said_rad;
+    let (chi2_of_noise, _) = state.chi2(visits, &weights, &factor)?;
     few(outliers.len(), visits.len(), chi2)?;
     let (machine, unknowns) = state.values();
     Ok(Fit {
@@ -86,6 +104,8 @@ pub fn fit(instrument: &Instrument, visits: &[Visit]) -> Result<Fit, FitError> {
         unknowns,
         factor,
         chi2,
+        chi2_of_noise,
+        scatter_rad: (found_rad.powi(2) - said_rad.powi(2)).max(0.0).sqrt(),
         chi2_held_out,
         outliers,
         rows_left,

@@ -4,7 +4,7 @@
 //! The commanded poses of a controller with a calibration in force are judged as those of a machine as drawn ([`Visit::commanded`]); a
 //! calibration that is not in force is judged by the encoders' readings. No visit is left out: an error that shows now and then is one.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
 use crate::Machine;
 use crate::alignment::aligned;
@@ -13,6 +13,7 @@ use crate::error::FitError;
 use crate::fit::check;
 use crate::kit::Instrument;
 use crate::least_squares::Factor;
+use crate::left::Miss;
 use crate::visit::{Rows, Seen, Visit};
 
 /// What is said of the poses' errors before they are measured, rms over the disk and all orientations.
@@ -71,14 +72,15 @@ pub struct Judged {
     pub places: Option<Errors>,
     /// In theta, where the instrument sees it.
     pub turns: Option<Errors>,
-    /// Of each visit: x, y (track radii) and theta (rad), 0 where it was not seen.
-    pub visits: Vec<[f64; 3]>,
+    /// What each visit was off.
+    pub visits: Vec<Miss>,
 }
 
 /// Sums over rows of one kind.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     rows: f64,
+    chi2: f64,
     square: f64,
     noise: f64,
     predicted: f64,
@@ -91,6 +93,7 @@ impl Sum {
     /// prediction.
     fn add(&mut self, square: f64, left: f64, noise: f64, predicted: f64) {
         self.rows += left;
+        self.chi2 += square;
         self.square += square * noise;
         self.noise += left * noise;
         self.predicted += left * (noise + predicted);
@@ -129,7 +132,6 @@ pub fn judge(
     let mut state = State::new(aligned(instrument, visits)).of_machine(machine);
     let (factor, _) = state.settle(visits, &vec![1.0; visits.len()])?;
     let (machine, unknowns) = state.values();
-    let noise = Vector3::from(instrument.noise.with_encoders());
     let (mut places, mut turns) = (Sum::default(), Sum::default());
     let mut errors = Vec::new();
     for (visit, measured) in visits.iter().enumerate() {
@@ -137,7 +139,7 @@ pub fn judge(
         let left = shares_left(&rows, &state.sizes, &factor)?;
         let mut error = [0.0; 3];
         for &row in rows.seen {
-            error[row] = rows.misses[row] * noise[row];
+            error[row] = rows.misses[row] * rows.noise[row];
         }
         let arm = arm(instrument, &unknowns, &measured.seen);
         let place = predicted
@@ -150,16 +152,19 @@ pub fn judge(
                 2 => (&mut turns, predicted.turn_rad.powi(2)),
                 _ => (&mut places, place),
             };
-            sum.add(square, left[row], noise[row].powi(2), predicted);
+            sum.add(square, left[row], rows.noise[row].powi(2), predicted);
         }
         places.largest(error[0].hypot(error[1]), visit);
         turns.largest(error[2].abs(), visit);
-        errors.push(error);
+        errors.push(Miss {
+            off: error,
+            seen: rows.seen,
+            noise: rows.noise.into(),
+        });
     }
     let axes = if instrument.ends.is_empty() { 2.0 } else { 1.0 };
-    let square = places.square / noise.x.powi(2) + turns.square / noise.z.powi(2);
     Ok(Judged {
-        chi2: square / (places.rows + turns.rows),
+        chi2: (places.chi2 + turns.chi2) / (places.rows + turns.rows),
         places: places.errors(axes),
         turns: turns.errors(1.0),
         visits: errors,

@@ -37,6 +37,16 @@ pub const KITS: [Kit; 6] = [
 ];
 
 impl Kit {
+    /// Numbers that it reads at a pose, or learns there.
+    #[must_use]
+    pub const fn rows(self) -> usize {
+        match self {
+            Self::Xyt => 3,
+            Self::Xy | Self::Camera | Self::Camera2 => 2,
+            Self::Theta | Self::Ends => 1,
+        }
+    }
+
     /// Its name in files and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -78,23 +88,13 @@ pub struct Noise {
     pub length: f64,
     /// Of theta, rad.
     pub angle_rad: f64,
-    /// Of each encoder's reading, rad.
+    /// Of each encoder's reading, rad; with it what the machine itself does not repeat.
     pub encoder_rad: f64,
 }
 
 impl Noise {
     /// Encoder readings in the mean of some ticks: a third of an LSB of 26 bits.
     pub const ENCODER_RAD: f64 = 30e-9;
-
-    /// With the encoders' share in it, as it is in the middle of the disk: x, y and theta, in units of the measurement.
-    ///
-    /// There the platform's place is `2/3 sum n_i f_i` and its angle `1/3 sum f_i` for errors f_i of the rings.
-    #[must_use]
-    pub fn with_encoders(&self) -> [f64; 3] {
-        let length = self.length.hypot(self.encoder_rad * (2.0_f64 / 3.0).sqrt());
-        let angle_rad = (self.angle_rad).hypot(self.encoder_rad * (1.0_f64 / 3.0).sqrt());
-        [length, length, angle_rad]
-    }
 }
 
 /// An instrument in front of a stage: its kind, its noise, and roughly where its parts are.

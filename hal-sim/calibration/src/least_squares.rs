@@ -114,6 +114,14 @@ impl Factor {
         self.root.tr_solve_upper_triangular(derivatives)
     }
 
+    /// One standard deviation of each unknown, in its size.
+    #[must_use]
+    pub fn deviations(&self) -> Option<Vec<f64>> {
+        let unknowns = self.root.ncols();
+        let inverse = self.spread(&DMatrix::identity(unknowns, unknowns))?;
+        Some(inverse.column_iter().map(|column| column.norm()).collect())
+    }
+
     /// Numbers that the measured rows have paid for: all less what was known before.
     #[must_use]
     pub fn fitted(&self) -> Option<f64> {
@@ -152,6 +160,10 @@ mod tests {
         assert!((step - &covariance * right).amax() < 1e-9);
         let spread = (factor.spread(&DMatrix::identity(UNKNOWNS, UNKNOWNS))).expect("full rank");
         assert!((spread.tr_mul(&spread) - &covariance).amax() < 1e-9);
+        let deviations = factor.deviations().expect("full rank");
+        for (deviation, variance) in deviations.iter().zip(covariance.diagonal().iter()) {
+            assert!((deviation * deviation - variance).abs() < 1e-9);
+        }
         let fitted = factor.fitted().expect("full rank");
         assert!((fitted - (UNKNOWNS as f64 - covariance.trace())).abs() < 1e-9);
     }

@@ -17,6 +17,9 @@
 //! | [`least_squares`] | rows to an orthogonal factor, and what that says of uncertainty |
 //! | [`mod@fit`] | the fit: robust, with some visits held out |
 //! | `descent`, `residuals` | Gauss-Newton's steps; what is left after them, and outliers |
+//! | `scatter` | what the machine itself does not repeat |
+//! | [`mod@left`] | what a fit leaves, by visit, pivot and harmonic |
+//! | [`drift`] | what has moved while was measured |
 //! | [`mod@judge`] | whether a machine of given numbers is the one that was measured |
 //! | `error` | why there is no fit |
 //! | [`frames`] | errors of poses without what only the choice of frames and of scale makes |
@@ -30,6 +33,7 @@
 pub mod accuracy;
 pub mod alignment;
 mod descent;
+pub mod drift;
 mod error;
 pub mod file;
 pub mod fit;
@@ -38,20 +42,24 @@ pub mod freedom;
 pub mod judge;
 pub mod kit;
 pub mod least_squares;
+pub mod left;
 pub mod model;
 pub mod numbers;
 pub mod plan;
 pub mod position;
 mod residuals;
+mod scatter;
 pub mod spread;
 pub mod table;
 pub mod visit;
 
 pub use accuracy::Accuracy;
+pub use drift::Drift;
 pub use error::FitError;
 pub use fit::{Fit, fit};
 pub use judge::{Judged, Predicted, judge};
 pub use kit::{Instrument, Kit, Noise};
+pub use left::{Left, left};
 pub use plan::{Plan, plan};
 pub use visit::{Seen, Visit};
 

@@ -49,6 +49,9 @@ const CLEAR_OF_ENDS: core::ops::Range<f64> = 0.18..1.82;
 /// Beyond this angle between pivot and guide no end is inside that disk.
 const MOST_LEAN_RAD: f64 = 0.2;
 
+/// So far from the disk's rim a mark is looked for: it is not where it was drawn, nor is the camera, and the stage follows.
+const FOUND_WITHIN: f64 = 0.015;
+
 /// One pose to go to.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Stop {
@@ -129,7 +132,7 @@ fn under_camera(instrument: &Instrument, [mark, camera, turn]: [f64; 3]) -> Opti
         theta,
     ];
     let at = At::Mark { mark, camera };
-    (pose[0].hypot(pose[1]) < DISK).then_some(Stop { pose, at })
+    (pose[0].hypot(pose[1]) < DISK - FOUND_WITHIN).then_some(Stop { pose, at })
 }
 
 /// A pivot at an end of its guide and the others not: with the pivot's angle to its guide, `C = P - rho u`.

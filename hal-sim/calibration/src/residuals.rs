@@ -6,6 +6,7 @@ use crate::descent::State;
 use crate::error::FitError;
 use crate::fit::{few, is_held_out};
 use crate::least_squares::Factor;
+use crate::scatter::Over;
 use crate::visit::Visit;
 
 /// Steps with soft L1 before outliers are looked for.
@@ -20,9 +21,16 @@ const CUT_SHARE: f64 = 0.3;
 impl State {
     /// Takes the weight of outliers away, the worst first: while one of 100 standard deviations pulls, others of 10 cannot be told from
     /// good visits.
-    pub(crate) fn cut(&mut self, visits: &[Visit], weights: &mut [f64]) -> Result<usize, FitError> {
+    pub(crate) fn cut(
+        &mut self,
+        visits: &[Visit],
+        weights: &mut [f64],
+        said_rad: f64,
+    ) -> Result<usize, FitError> {
         let mut steps = 0;
         loop {
+            let (factor, _) = self.step(visits, weights)?;
+            self.find_scatter(visits, weights, &factor, said_rad, Over::Median)?;
             for _ in 0..SOFT_STEPS {
                 let misses = self.misses(visits)?;
                 let soft: Vec<f64> = (weights.iter().zip(&misses))

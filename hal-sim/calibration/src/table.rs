@@ -11,6 +11,9 @@
 //! m1 to m3 are the encoders' readings, multi-turn or not. A mark and a place of the camera are known by where they were drawn, in the
 //! platform's and in the base frame: the same numbers are the same mark. An end is known by its guide, 1 to 3, and by where it was
 //! drawn on it. `off` is how far the mark was seen from the cross-hair.
+//!
+//! A line `# visit N, pose, T s of the controller's clock` before a row says when it was made; `reference` in place of `pose`, that the first
+//! pose was visited again.
 
 use crate::kit::{Instrument, Kit, Noise};
 use crate::visit::{Seen, Visit};
@@ -82,6 +85,8 @@ pub struct Table {
     pub visits: Vec<Visit>,
     /// The line of each visit, from 1.
     pub lines: Vec<usize>,
+    /// Visits of the reference pose, the first pose among them, by their places in the list, and when they were made, s.
+    pub references: Vec<(usize, f64)>,
     marks: Vec<[f64; 2]>,
     cameras: Vec<[f64; 2]>,
     ends: Vec<[f64; 2]>,
@@ -95,8 +100,10 @@ impl Table {
     pub fn from_text(text: &str, radius_mm: f64) -> Result<Self, TableError> {
         let mut lines = (text.lines().zip(1..))
             .map(|(text, line)| (text.trim(), line))
-            .filter(|(text, _)| !text.is_empty() && !text.starts_with('#'));
-        let (head, line) = lines.next().ok_or(TableError::Empty)?;
+            .filter(|(text, _)| !text.is_empty());
+        let (head, line) = (lines.by_ref())
+            .find(|(text, _)| !text.starts_with('#'))
+            .ok_or(TableError::Empty)?;
         let head: String = head.split(',').map(str::trim).collect::<Vec<_>>().join(",");
         let named = (COLUMNS.iter()).find(|(_, columns)| head == format!("{READINGS},{columns}"));
         let Some(&(kit, _)) = named else {
@@ -106,12 +113,19 @@ impl Table {
             kit,
             visits: Vec::new(),
             lines: Vec::new(),
+            references: Vec::new(),
             marks: Vec::new(),
             cameras: Vec::new(),
             ends: Vec::new(),
         };
         let wanted = head.split(',').count();
         for (text, line) in lines {
+            if let Some(words) = text.strip_prefix('#') {
+                let next = table.visits.len();
+                let at_s = reference_s(words, next == 0);
+                table.references.extend(at_s.map(|at_s| (next, at_s)));
+                continue;
+            }
             let values = numbers(text, line, wanted)?;
             if kit == Kit::Ends && ![1.0, 2.0, 3.0].contains(&values[3]) {
                 let text = values[3].to_string();
@@ -146,6 +160,13 @@ impl Table {
             .map(|&[guide, place]| (guide as usize - 1, place));
         instrument.ends = ends.collect();
         instrument
+    }
+
+    /// Visits of the reference pose that are not among these.
+    #[must_use]
+    pub fn references_but(&self, outliers: &[usize]) -> Vec<(usize, f64)> {
+        let all = self.references.iter().copied();
+        all.filter(|(visit, _)| !outliers.contains(visit)).collect()
     }
 
     /// The visit of a row.
@@ -214,6 +235,24 @@ pub fn to_text(instrument: &Instrument, visits: &[Visit], radius_mm: f64) -> Str
         text += &(row.join(",") + "\n");
     }
     text
+}
+
+/// What is said of the visit below, and when it was made.
+#[must_use]
+pub fn note(visit: usize, is_reference: bool, clock_s: f64) -> String {
+    let what = if is_reference { "reference" } else { "pose" };
+    format!(
+        "# visit {}, {what}, {clock_s:.3} s of the controller's clock",
+        visit + 1
+    )
+}
+
+/// When a visit of the reference pose was made, from what is said of it; the first pose is the reference pose.
+fn reference_s(note: &str, is_first: bool) -> Option<f64> {
+    let mut parts = note.trim().strip_prefix("visit ")?.split(", ");
+    let is_reference = parts.nth(1)? == "reference" || is_first;
+    let at_s = parts.next()?.split(' ').next()?.parse().ok()?;
+    is_reference.then_some(at_s)
 }
 
 /// The place of an entry in a list, which gets it if it has not.

@@ -3,7 +3,7 @@
 use kinematics::COEFFICIENTS;
 use nalgebra::{Matrix3, Rotation2, SMatrix, Vector2, Vector3};
 
-use crate::kit::Instrument;
+use crate::kit::{Instrument, Noise};
 use crate::position::{OutOfReach, Position, position, readings_rad, within_half_turn};
 use crate::{DRAWN, MACHINE_NUMBERS, Machine};
 
@@ -72,6 +72,10 @@ pub struct Rows {
     pub seen: &'static [usize],
     /// Seen less said, in standard deviations.
     pub misses: Vector3<f64>,
+    /// Standard deviations: the instrument's, and what the encoders' make of it here; track radii and rad.
+    pub noise: Vector3<f64>,
+    /// What a rad at every encoder, each for itself, makes of what is said.
+    pub by_encoders: Vector3<f64>,
     /// Derivatives of what is said by the machine's numbers, over the noise.
     by_machine: SMatrix<f64, 3, MACHINE_NUMBERS>,
     /// Derivatives by the instrument's unknowns, over the noise: which, and by it.
@@ -113,9 +117,20 @@ impl Rows {
         };
         let mut misses = Vector3::from(values) - said;
         misses.z = within_half_turn(misses.z);
-        let noise = Vector3::from(instrument.noise.with_encoders());
+        let by_pose = Matrix3::from_columns(&by_pose);
+        let mut by_readings = by_pose * position.by_readings;
+        if let Seen::End { end } = visit.seen {
+            // A pivot that goes on also stands elsewhere on its guide where the platform stays.
+            let guide = instrument.guide_of(end);
+            let by_zero = position.contacts[guide].rho_by_numbers(&position.rings[guide])[0];
+            by_readings[(0, guide)] -= by_zero;
+        }
+        let by_encoders = Vector3::from_fn(|row, _| by_readings.row(row).norm());
+        let noise = instrument_noise(&instrument.noise).zip_map(&by_encoders, |own, by| {
+            own.hypot(instrument.noise.encoder_rad * by)
+        });
         let scaled = |column: Vector3<f64>| column.component_div(&noise);
-        let by_pose = Matrix3::from_columns(&by_pose.map(scaled));
+        let by_pose = Matrix3::from_columns(&[0, 1, 2].map(|k| scaled(by_pose.column(k).into())));
         let mut by_machine = by_pose * position.by_numbers;
         if let Seen::End { end } = visit.seen {
             // The place on a guide changes with its pivot's numbers also where the platform stays.
@@ -128,6 +143,8 @@ impl Rows {
         Ok(Self {
             seen,
             misses: scaled(misses),
+            noise,
+            by_encoders,
             by_machine,
             by_instrument: (by_instrument.into_iter())
                 .map(|(unknown, column)| (unknown, scaled(column)))
@@ -146,6 +163,11 @@ impl Rows {
             put(column, rows * sizes[column]);
         }
     }
+}
+
+/// The instrument's own standard deviations of x, y and theta.
+pub(crate) fn instrument_noise(noise: &Noise) -> Vector3<f64> {
+    Vector3::new(noise.length, noise.length, noise.angle_rad)
 }
 
 /// What is said, its derivatives by the pose, and those by the instrument's unknowns.

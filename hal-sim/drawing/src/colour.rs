@@ -106,6 +106,9 @@ fn contrast(one: &str, other: &str) -> f64 {
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
+/// Blue by nothing to red (ends and middle of ColorBrewer's "RdBu", Apache-2.0).
+const BLUE_TO_RED: [[u8; 3]; 3] = [[33, 102, 172], [247, 247, 247], [178, 24, 43]];
+
 /// Dark to light in equal steps of lightness (samples of Matplotlib's "viridis", public domain).
 const VIRIDIS: [[u8; 3]; 9] = [
     [68, 1, 84],
@@ -121,11 +124,21 @@ const VIRIDIS: [[u8; 3]; 9] = [
 
 /// The colour of `share`, 0 (dark) to 1 (light), of a filled contour.
 pub fn viridis(share: f64) -> String {
-    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
+    mixed(&VIRIDIS, share)
+}
+
+/// The colour of a signed `share`, -1 (blue) to 1 (red).
+pub fn diverging(share: f64) -> String {
+    mixed(&BLUE_TO_RED, share.midpoint(1.0))
+}
+
+/// Between the colours of a table, by a share of its length.
+fn mixed(table: &[[u8; 3]], share: f64) -> String {
+    let place = share.clamp(0.0, 1.0) * (table.len() - 1) as f64;
+    let below = (place as usize).min(table.len() - 2);
     let part = place - below as f64;
     let mix = |channel: usize| {
-        let (low, high) = (VIRIDIS[below][channel], VIRIDIS[below + 1][channel]);
+        let (low, high) = (table[below][channel], table[below + 1][channel]);
         (f64::from(low) + part * (f64::from(high) - f64::from(low))).round() as u8
     };
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
@@ -142,6 +155,17 @@ mod tests {
     fn least(name: &str, behind: &str) -> f64 {
         let (colour, behind) = (named(name), named(behind));
         contrast(colour.light, behind.light).min(contrast(colour.dark, behind.dark))
+    }
+
+    #[test]
+    fn colours_are_mixed_between_those_of_a_table() {
+        assert_eq!(viridis(0.0), "#440154");
+        assert_eq!(viridis(2.0), "#fde725");
+        assert_eq!(
+            [-1.0, 0.0, 1.0].map(diverging),
+            ["#2166ac", "#f7f7f7", "#b2182b"]
+        );
+        assert_eq!(diverging(0.5), "#d58891");
     }
 
     #[test]

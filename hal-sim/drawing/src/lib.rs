@@ -5,6 +5,8 @@
 //! | [`svg`], [`png`] | pictures |
 //! | [`chart`], [`scale`], [`envelope`] | quantities over time |
 //! | [`plane`] | curves over frequency, and loci |
+//! | [`field`] | errors over a disk |
+//! | [`page`] | reports as pages that stand alone |
 //! | [`colour`] | one set of colours |
 //! | [`mechanism`] | sizes of the drawn mechanism |
 //! | [`assets`] | scripts and styles that the live page and a run's document share |
@@ -16,9 +18,11 @@ pub mod assets;
 pub mod chart;
 pub mod colour;
 pub mod envelope;
+pub mod field;
 pub mod files;
 pub mod mechanism;
 mod outlines;
+pub mod page;
 pub mod plane;
 pub mod png;
 pub mod progress;

@@ -117,6 +117,19 @@ impl Plane<'_> {
         svg.rect(frame, "none", Some(&Stroke::new(colour::STEEL, 1.0)));
     }
 
+    /// Draws places into a frame that is drawn, each set in its colour.
+    pub fn draw_dots(&self, svg: &mut Svg, frame: &Rect, dots: &[(&str, Vec<Point>)]) {
+        let x = Laid::new(self.x, (frame.left, frame.right()));
+        let y = Laid::new(self.y, (frame.bottom(), frame.top));
+        svg.clipped_to_rect(frame, |svg| {
+            for (colour, places) in dots {
+                for &[at_x, at_y] in places {
+                    svg.circle([x.pixel(at_x), y.pixel(at_y)], 2.6, colour, None);
+                }
+            }
+        });
+    }
+
     fn draw_words(&self, svg: &mut Svg, frame: &Rect) {
         let title = Font::new(16.0, colour::INK, Anchor::Start).bold();
         svg.text([frame.left, frame.top - 30.0], self.title, &title);

@@ -130,7 +130,13 @@ fn a_machine_is_planned_measured_and_fitted() {
     assert_eq!(calibration.made.serial, "bench 3");
     assert_eq!(calibration.made.kit, Kit::Xyt);
     let poses = over_disk(0.8).skip(5000).take(500);
-    let pairs = commanded(&workshop::machine(3), &calibration.machine(), poses).unwrap();
+    let pairs = commanded(
+        &workshop::machine(3),
+        &calibration.machine(),
+        poses,
+        &mut Random::new(1),
+    )
+    .unwrap();
     let left_nm = without_frames(&pairs).size().place_rms * RADIUS_MM * 1e6;
     assert!(left_nm < 50.0, "{left_nm}");
     assert!(

@@ -1,8 +1,8 @@
 //! A calibration is sent to the controller it was made for: all of it, or nothing; and only where it explains what was measured no worse
-//! than what is in force.
+//! than what is in force, was fitted so that it holds at poses that were held out, and nothing has moved meanwhile.
 
-use calibration::file::Calibration;
-use calibration::{DRAWN, FitError, Instrument, Judged, Predicted, Visit, judge};
+use calibration::file::{Calibration, Made};
+use calibration::{DRAWN, Drift, FitError, Instrument, Judged, Predicted, Visit, judge};
 use firmware::calibration::{CalibrationText, MachineCalibration};
 use kinematics::Geometry;
 use std::fmt::Write;
@@ -68,9 +68,34 @@ pub enum ApplyError {
         /// With what is in force.
         old: Box<Judged>,
     },
+    /// The fit does not hold at poses that were held out of it.
+    #[error(
+        "poses that were held out of its fit miss by {:.2} times what is expected of them (square, a row), and chance brings no more than {most:.2}: \
+         measure at more poses, or with less noise", .found
+    )]
+    HeldOut {
+        /// Square misses over what is expected of them.
+        found: f64,
+        /// What chance brings.
+        most: f64,
+    },
+    /// Something has moved while was measured.
+    #[error(
+        "the reference pose has moved by {} in the {:.0} minutes of the measurement, with {} by noise: the stage or the instrument was warming up; \
+         measure again when it is warm",
+        moved(&.0.moved), .0.seconds / 60.0, moved(&.0.noise)
+    )]
+    Drift(Box<Drift>),
     /// The measurement.
     #[error("the measurement: {0}")]
     Measurement(#[from] FitError),
+}
+
+/// x, y and theta in words.
+fn moved([x, y, theta]: &[f64; 3]) -> String {
+    let nm = Geometry::REFERENCE.radius_mm * 1e6;
+    let (x, y, theta) = (x * nm, y * nm, theta * 1e6);
+    format!("{x:.0} nm, {y:.0} nm, {theta:.2} urad")
 }
 
 /// What a calibration is judged by before it is applied.
@@ -80,6 +105,8 @@ pub struct Evidence {
     pub instrument: Instrument,
     /// What was measured.
     pub visits: Vec<Visit>,
+    /// Visits of the reference pose, and when they were made, s.
+    pub references: Vec<(usize, f64)>,
     /// What is said to be in force.
     pub over: Option<Calibration>,
 }
@@ -123,7 +150,7 @@ fn no_worse(
     machine: &mut dyn Machine,
     calibration: &Calibration,
     evidence: &Evidence,
-) -> Result<(), ApplyError> {
+) -> Result<Judged, ApplyError> {
     let there = in_force(machine)?;
     let mut old = DRAWN;
     if let Some(there) = there {
@@ -141,9 +168,29 @@ fn no_worse(
     };
     let (new, old) = (of(&calibration.machine())?, of(&old)?);
     if new.chi2 <= old.chi2 {
-        return Ok(());
+        return Ok(*new);
     }
     Err(ApplyError::Worse { new, old })
+}
+
+/// Refuses one whose fit did not hold where it was not made, and a measurement in which something has moved.
+fn is_sound(made: &Made, evidence: &Evidence, judged: &Judged) -> Result<(), ApplyError> {
+    let (found, most) = (made.chi2_held_out, most_held_out(made));
+    if !(found <= most) {
+        return Err(ApplyError::HeldOut { found, most });
+    }
+    let noise = made.instrument_noise();
+    match Drift::of(&evidence.references, &judged.visits, &noise) {
+        Some(drift) if drift.is_significant() => Err(ApplyError::Drift(Box::new(drift))),
+        _ => Ok(()),
+    }
+}
+
+/// What chance brings of the square misses of poses that were held out.
+fn most_held_out(made: &Made) -> f64 {
+    const CHANCES: f64 = 4.0;
+    let rows = 0.15 * made.visits as f64 * made.kit.rows() as f64;
+    1.0 + CHANCES * (2.0 / rows).sqrt()
 }
 
 /// Sends it, with the servo off; what the controller says of it afterwards.
@@ -167,7 +214,8 @@ pub fn apply(
         return Err(ApplyError::AnotherSize { of_mm, here_mm });
     }
     (sent.for_tick(&Geometry::REFERENCE)).map_err(|_| ApplyError::BeyondLimits)?;
-    no_worse(machine, calibration, evidence)?;
+    let judged = no_worse(machine, calibration, evidence)?;
+    is_sound(&calibration.made, evidence, &judged)?;
     rest(machine)?;
     for line in lines(&sent) {
         machine.ask(&line)?;

@@ -3,6 +3,7 @@
 //! A camera is a null detector: the stage brings the mark under its cross-hair before the reading counts, so the camera's own scale, turn
 //! and distortion do not.
 
+use calibration::accuracy::DISK;
 use calibration::plan::{At, Stop};
 use calibration::{Seen, Visit};
 
@@ -153,8 +154,7 @@ pub fn measure(
         });
     }
     for (visit, stop) in way.stops.iter().enumerate().skip(way.first) {
-        let from = way.is_from_both_sides.then(|| approach(visit));
-        let (seen, commanded) = stage.seen(reader, visit, stop, from)?;
+        let (seen, commanded) = stage.seen(reader, visit, stop, way.is_from_both_sides)?;
         let visited = Visit {
             readings_rad: stage.readings_rad()?,
             seen,
@@ -169,11 +169,20 @@ pub fn measure(
     Ok(())
 }
 
-/// From where a stop of a pair is gone to, beside it: the second from the side opposite to the first's.
+/// From where a stop is gone to, beside it; of a pair the second from the side opposite to the first's.
 fn approach(visit: usize) -> [f64; 3] {
     let side = if visit.is_multiple_of(2) { 1.0 } else { -1.0 };
     let (sin, cos) = ((visit / 2) as f64 * APPROACH_STEP_RAD).sin_cos();
     [cos, sin, 1.0].map(|part| side * APPROACH * part)
+}
+
+/// A pose beside another: on the other side, where that one is out of the disk.
+fn beside(pose: &[f64; 3], from: &[f64; 3]) -> [f64; 3] {
+    let there = [0, 1, 2].map(|k| pose[k] + from[k]);
+    if there[0].hypot(there[1]) < DISK {
+        return there;
+    }
+    [0, 1, 2].map(|k| pose[k] - from[k])
 }
 
 struct Stage<'a> {
@@ -188,13 +197,15 @@ impl Stage<'_> {
         reader: &mut dyn Reader,
         visit: usize,
         stop: &Stop,
-        from: Option<[f64; 3]>,
+        is_approached: bool,
     ) -> Result<(Seen, [f64; 3]), MeasureError> {
         let Stop { mut pose, at } = *stop;
         let mut off_um = 0.0;
-        for _ in 0..MOST_LOOKS {
-            if let Some(from) = from {
-                self.go(&[0, 1, 2].map(|k| pose[k] + from[k]))?;
+        let from = approach(visit);
+        for look in 0..MOST_LOOKS {
+            // A short correction would leave guides with what they have lost of the motion before it, and their scatter unseen.
+            if is_approached || look > 0 {
+                self.go(&beside(&pose, &from))?;
             }
             self.go(&pose)?;
             let wanted = Wanted { visit, at, pose };

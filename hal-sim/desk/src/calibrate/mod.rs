@@ -4,12 +4,16 @@
 //! |---|---|
 //! | `measure` | a plan is driven, and an instrument read at each of its poses |
 //! | `apply` | a calibration is sent to the controller it was made for, all of it or nothing |
-//! | `verify` | one that is in force is judged by fresh poses |
+//! | `verify`, `told` | one that is in force is judged by fresh poses |
+//! | [`report`] | all that is known of one, as a page |
 
 mod apply;
 mod measure;
+pub mod report;
+mod told;
 mod verify;
 
 pub use apply::{ApplyError, Evidence, apply, lines, switch_off};
 pub use measure::{MeasureError, Measured, Reader, Wanted, Way, measure, serial, with_references};
-pub use verify::{AS_PREDICTED, Verdict, Verified, VerifyError, verify};
+pub use told::{Kind, Told};
+pub use verify::{Verdict, Verified, VerifyError, verify};

@@ -5,6 +5,7 @@ use calibration::accuracy::DISK;
 use calibration::file::Calibration;
 use calibration::plan::{Stop, stops};
 use calibration::{DRAWN, FitError, Instrument, Judged, Kit, Predicted, Visit, judge};
+use core::ops::RangeInclusive;
 use kinematics::Geometry;
 
 use super::apply::{ApplyError, checksum, in_force};
@@ -14,8 +15,9 @@ use crate::record::RecordError;
 
 /// So many poses of the sequence are a plan's.
 const PLANNED: usize = 10_000;
-/// What may be seen over what was to be seen.
-pub const AS_PREDICTED: core::ops::RangeInclusive<f64> = 0.77..=1.3;
+/// What may be seen over what was to be seen; and where the machine does not repeat, whose scatter is known less well than a noise.
+const AS_PREDICTED: RangeInclusive<f64> = 0.77..=1.3;
+const WITH_SCATTER: RangeInclusive<f64> = 0.7..=1.4;
 
 /// Why nothing is verified.
 #[derive(Debug, thiserror::Error)]
@@ -52,8 +54,12 @@ pub struct Verified {
     pub now: Judged,
     /// The same visits, had the controller taken the machine for the drawn one.
     pub drawn: Judged,
+    /// Where the stage was sent: x, y (track radii), theta (rad).
+    pub commanded: Vec<[f64; 3]>,
     /// How far the errors of both sides are apart, rms, noise in it: x and y (track radii), and theta (rad).
     pub sides: [f64; 2],
+    /// What may be seen over what was to be seen.
+    pub as_predicted: RangeInclusive<f64>,
 }
 
 /// How it stands.
@@ -79,10 +85,10 @@ impl Verified {
         if kinds().any(|(now, drawn)| !(now.seen <= drawn.seen)) {
             return Verdict::WorseThanDrawn;
         }
-        if kinds().any(|(now, _)| !(now.ratio() <= *AS_PREDICTED.end())) {
+        if kinds().any(|(now, _)| !(now.ratio() <= *self.as_predicted.end())) {
             return Verdict::Worse;
         }
-        if kinds().all(|(now, _)| now.ratio() >= *AS_PREDICTED.start()) {
+        if kinds().all(|(now, _)| now.ratio() >= *self.as_predicted.start()) {
             return Verdict::Holds;
         }
         Verdict::Better
@@ -149,7 +155,13 @@ pub fn verify(
     };
     let now = judge(instrument, &DRAWN, &commanded?, &predicted)?;
     Ok(Verified {
+        commanded: all.iter().map(|measured| measured.commanded).collect(),
         sides: apart(&now),
+        as_predicted: if calibration.made.scatter_nm > 0.0 {
+            WITH_SCATTER
+        } else {
+            AS_PREDICTED
+        },
         now,
         drawn: judge(instrument, &DRAWN, &read, &predicted)?,
     })
@@ -159,7 +171,7 @@ pub fn verify(
 fn apart(judged: &Judged) -> [f64; 2] {
     let (mut place, mut turn, mut count) = (0.0, 0.0, 0.0);
     for [one, other] in judged.visits.as_chunks::<2>().0 {
-        let [x, y, theta] = [0, 1, 2].map(|k| one[k] - other[k]);
+        let [x, y, theta] = [0, 1, 2].map(|k| one.off[k] - other.off[k]);
         place += x * x + y * y;
         turn += theta * theta;
         count += 1.0;

@@ -2,20 +2,13 @@
 
 use super::results::{Change, Conditions};
 use super::{Done, STEPS};
+use drawing::page::{END, escaped, figure, head};
 use std::fmt::Write;
-
-const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Commissioning</title><style>\n\
-    body{font:15px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n\
-    h1{font-size:1.6em}h2{font-size:1.15em;margin:1.6em 0 .3em}p{margin:.2em 0 .6em;color:#555}\n\
-    table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.25em .6em;border-bottom:1px solid #ddd;vertical-align:top}\n\
-    figure{margin:1em 0}figure svg{width:100%;height:auto}figcaption{color:#555}\n\
-    .ok{color:#176b2c}.failed{color:#a61b1b;font-weight:600}.none{color:#888}\n\
-    </style></head><body>\n";
 
 /// The report of a commissioning as an HTML page; changes are those since an earlier one, if there was one.
 #[must_use]
 pub fn page(conditions: &Conditions, all: &[Done], changes: Option<&[Change]>) -> String {
-    let mut page = HEAD.to_owned();
+    let mut page = head("Commissioning");
     let failed = all.iter().any(|done| done.failure.is_some());
     let verdict = if failed {
         "<span class=\"failed\">not commissioned</span>"
@@ -79,12 +72,7 @@ pub fn page(conditions: &Conditions, all: &[Done], changes: Option<&[Change]>) -
             page += "</table>\n";
         }
         for plot in &done.found.plots {
-            let _ = writeln!(
-                page,
-                "<figure>{}<figcaption>{}</figcaption></figure>",
-                plot.svg,
-                escaped(&plot.caption)
-            );
+            page += &figure(&plot.svg, &plot.caption);
         }
         if let Some(failure) = &done.failure {
             let _ = writeln!(
@@ -95,12 +83,5 @@ pub fn page(conditions: &Conditions, all: &[Done], changes: Option<&[Change]>) -
             );
         }
     }
-    page += "</body></html>\n";
-    page
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    page + END
 }

@@ -73,7 +73,7 @@ impl Camera {
         let off_m = Vector2::new(random.normal(), random.normal()) * FOUND_M;
         let turned = Rotation2::new(theta_rad) * self.marks_m[mark];
         let centre_m = self.cameras_m[camera] + off_m - turned;
-        let readings_rad = machine.readings_rad([centre_m.x, centre_m.y, theta_rad])?;
+        let readings_rad = machine.visited_rad([centre_m.x, centre_m.y, theta_rad], random)?;
         let off = off_m / machine.track_radius_m();
         Ok(Visit {
             readings_rad: noisy(readings_rad, &noise, random),

@@ -52,7 +52,7 @@ impl Ends {
             pose[1] -= (rho_m - stop_m) * by_y;
         }
         Ok(Visit {
-            readings_rad: noisy(machine.readings_rad(pose)?, &noise, random),
+            readings_rad: noisy(machine.visited_rad(pose, random)?, &noise, random),
             seen: Seen::End { end },
         })
     }

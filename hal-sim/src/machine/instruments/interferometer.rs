@@ -41,7 +41,7 @@ impl Interferometer {
         random: &mut Random,
     ) -> Result<Visit, OffGuide> {
         Ok(Visit {
-            readings_rad: noisy(machine.readings_rad(pose)?, &self.noise, random),
+            readings_rad: noisy(machine.visited_rad(pose, random)?, &self.noise, random),
             seen: self.read(pose, machine.track_radius_m(), random),
         })
     }

@@ -24,5 +24,5 @@ pub mod target;
 pub mod workshop;
 
 pub use beside::Beside;
-pub use quasi_static::{EncoderErrors, QuasiStatic};
+pub use quasi_static::{EncoderErrors, QuasiStatic, Unrepeated};
 pub use survey::{commanded, survey};

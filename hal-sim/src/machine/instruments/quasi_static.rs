@@ -1,9 +1,14 @@
 //! A machine at rest: where its rings and encoders are at a pose, and where its platform is at readings of the encoders.
+//!
+//! What it does not repeat is drawn at each visit. Guides that give way lose motion: at rest friction F of the carriages, of either sign, holds
+//! against guides of stiffness k. With the gaps' derivatives G by the pose and those of the carriages' places R, the platform is off by
+//! `(G^T G)^-1 R^T (+-F) / k`.
 
 use kinematics::{Scalar, direct};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::machine::plant::{AXES, Geometry, OffGuide, PlantParameters};
+use crate::random::Random;
 
 /// What an encoder reads beside the ring's angle. All zero is the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,12 +39,22 @@ impl EncoderErrors {
     }
 }
 
+/// What a machine does not repeat.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Unrepeated {
+    /// Friction of the carriages over the stiffness of the guides, m.
+    pub lost_m: f64,
+    /// What else the encoders do not show or show wrongly, one standard deviation at each, rad.
+    pub readings_rad: f64,
+}
+
 /// A machine at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct QuasiStatic {
     geometry: Geometry,
     encoders: [EncoderErrors; AXES],
     track_radius_m: f64,
+    unrepeated: Unrepeated,
 }
 
 impl QuasiStatic {
@@ -52,7 +67,68 @@ impl QuasiStatic {
             geometry: Geometry::new(&plant),
             encoders,
             track_radius_m: plant.track_radius_m,
+            unrepeated: Unrepeated::default(),
         }
+    }
+
+    /// The same machine, which does not repeat.
+    #[must_use]
+    pub const fn with_unrepeated(self, unrepeated: Unrepeated) -> Self {
+        Self { unrepeated, ..self }
+    }
+
+    /// What the encoders read where the platform has come to a pose (m, m, rad) from any side.
+    ///
+    /// # Errors
+    /// [`OffGuide`]: a pivot does not reach its guide.
+    pub fn visited_rad(
+        &self,
+        pose: [f64; 3],
+        random: &mut Random,
+    ) -> Result<[f64; AXES], OffGuide> {
+        if self.unrepeated == Unrepeated::default() {
+            return self.readings_rad(pose);
+        }
+        let off = self.lost(pose, random)?;
+        let readings_rad = self.readings_rad([0, 1, 2].map(|k| pose[k] - off[k]))?;
+        let size_rad = self.unrepeated.readings_rad;
+        Ok(readings_rad.map(|reading_rad| reading_rad + size_rad * random.normal()))
+    }
+
+    /// The pose (m, m, rad) to which readings of the encoders bring the platform from any side.
+    ///
+    /// # Errors
+    /// As [`Self::pose`].
+    pub fn reached(
+        &self,
+        readings_rad: [f64; AXES],
+        random: &mut Random,
+    ) -> Result<[f64; 3], OffGuide> {
+        if self.unrepeated == Unrepeated::default() {
+            return self.pose(readings_rad);
+        }
+        let size_rad = self.unrepeated.readings_rad;
+        let pose = self.pose(readings_rad.map(|m| m + size_rad * random.normal()))?;
+        let off = self.lost(pose, random)?;
+        Ok([0, 1, 2].map(|k| pose[k] + off[k]))
+    }
+
+    /// By how much friction of the carriages holds the platform off a pose, each guide's in either direction.
+    fn lost(&self, pose: [f64; 3], random: &mut Random) -> Result<[f64; 3], OffGuide> {
+        let pose = Vector3::from(pose);
+        let guides = self
+            .geometry
+            .guides(&pose, &self.geometry.rings_rad(&pose)?);
+        let gaps = Matrix3::from_columns(&guides.map(|guide| guide.gap_by_pose()));
+        let stiffness = gaps * gaps.transpose();
+        let pull: Vector3<f64> = (guides.iter())
+            .map(|guide| {
+                let sign = if random.once_in(2) { 1.0 } else { -1.0 };
+                guide.rho_by_pose() * sign
+            })
+            .sum();
+        let inverse = stiffness.try_inverse().ok_or(OffGuide { guide: 0 })?;
+        Ok((inverse * pull * self.unrepeated.lost_m).into())
     }
 
     /// Radius of the track, m.

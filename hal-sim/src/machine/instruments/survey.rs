@@ -73,7 +73,7 @@ pub fn survey(
     }
 }
 
-/// Poses (track radii, rad) that a controller commands with fitted numbers, and where the machine goes.
+/// Poses (track radii, rad) that a controller commands with fitted numbers, and where the machine goes, from any side.
 ///
 /// # Errors
 /// [`OffGuide`]: the machine cannot be there.
@@ -81,12 +81,13 @@ pub fn commanded(
     truth: &QuasiStatic,
     fitted: &Machine,
     poses: impl Iterator<Item = [f64; 3]>,
+    random: &mut Random,
 ) -> Result<Vec<Pair>, OffGuide> {
     let radius_m = truth.track_radius_m();
     poses
         .map(|asked| {
             let readings = readings_rad(fitted, &asked).map_err(|_| OffGuide { guide: 0 })?;
-            let [x, y, theta] = truth.pose(readings)?;
+            let [x, y, theta] = truth.reached(readings, random)?;
             Ok(Pair {
                 asked,
                 reached: [x / radius_m, y / radius_m, theta],

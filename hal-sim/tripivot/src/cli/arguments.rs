@@ -3,8 +3,8 @@
 use super::number::{whole, within};
 use super::stage::{Machine, SimulatedStage, Simulation};
 pub(super) use calibrate::{
-    CalibrateApply, CalibrateCommand, CalibrateFit, CalibrateMeasure, CalibratePlan,
-    CalibrateVerify, CalibratedMachine, NoiseArguments,
+    CalibrateApply, CalibrateCommand, CalibrateDemo, CalibrateFit, CalibrateMeasure, CalibratePlan,
+    CalibrateReport, CalibrateVerify, CalibratedMachine, NoiseArguments,
 };
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;

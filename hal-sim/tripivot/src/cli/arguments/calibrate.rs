@@ -23,6 +23,12 @@ pub(in super::super) enum CalibrateCommand {
     /// Judge the calibration in force by what an instrument sees at fresh poses, each gone to from both sides. Exit code 1 if it is worse
     /// than predicted, or worse than none.
     Verify(CalibrateVerify),
+    /// All that is known of a calibration as one page: error maps before and after, what the fit leaves, predicted beside verified, its
+    /// numbers with their uncertainties, what cannot be told, drift.
+    Report(CalibrateReport),
+    /// All of it on a simulated machine that nobody knows: it is commissioned, calibrates itself with a plate that nobody has measured, and
+    /// the report shows true poses against commanded ones before and after. Takes some minutes.
+    Demo(CalibrateDemo),
     /// Take the calibration that is in force out of it: the controller's geometry is the drawing's again.
     Undo(CalibratedMachine),
 }
@@ -110,9 +116,43 @@ pub(in super::super) struct CalibrateVerify {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: kit, visits; xy_um and theta_urad, null where the instrument does not see it (seen, noise, of_stage, predicted: each rms;
-    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); verdict.
+    /// ratio, of seen over predicted with the noise in both; largest, largest_at_visit, both_sides_apart, as_drawn); as_predicted (from, to), verdict; poses
+    /// (commanded_mm_deg, off_um_urad, as_drawn_um_urad). `tripivot calibrate report` takes it.
     #[arg(long)]
     pub(in super::super) json: bool,
+}
+
+/// A report.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateReport {
+    /// The calibration file.
+    pub(in super::super) file: PathBuf,
+    /// What it was fitted to, as `tripivot calibrate measure` leaves it.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) measured: PathBuf,
+    /// What `tripivot calibrate verify --json` has told of it.
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) verified: Option<PathBuf>,
+    /// The page.
+    #[arg(long, value_name = "FILE", default_value = "calibration.html")]
+    pub(in super::super) out: PathBuf,
+}
+
+/// A demonstration.
+#[derive(Args, Clone, Debug)]
+pub(in super::super) struct CalibrateDemo {
+    /// The machine, as a workshop would build it.
+    #[arg(long, value_name = "SEED", default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
+    pub(in super::super) unknown: u64,
+    /// Settings of this machine's controller, as `tripivot commission --unknown SEED` leaves them [default: it is commissioned first].
+    #[arg(long, value_name = "FILE")]
+    pub(in super::super) settings: Option<PathBuf>,
+    /// How many poses are measured; fewer would not tell the machine's scatter from the noise.
+    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = whole(200..=3000_usize))]
+    pub(in super::super) poses: usize,
+    /// Folder for the report, the error maps, what was measured, the calibration and the controller's settings.
+    #[arg(long, value_name = "DIR", default_value = "tripivot-calibration")]
+    pub(in super::super) out: PathBuf,
 }
 
 /// The instrument's noise.
@@ -170,8 +210,9 @@ pub(in super::super) struct CalibrateFit {
     pub(in super::super) temperature: Option<f64>,
     /// Tell the result as one JSON document on standard output.
     ///
-    /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_held_out, chi2_is_doubtful, expected_xy_nm, expected_worst_xy_nm,
-    /// expected_theta_urad, steps, file.
+    /// Fields: kit, visits, outliers (lines of the file), chi2, chi2_of_noise, scatter_nm, chi2_held_out, chi2_is_doubtful,
+    /// expected_xy_nm, expected_worst_xy_nm, expected_theta_urad, drift (minutes, moved_nm_nm_urad, noise_nm_nm_urad; null if unknown),
+    /// drift_is_significant, steps, file.
     #[arg(long)]
     pub(in super::super) json: bool,
 }

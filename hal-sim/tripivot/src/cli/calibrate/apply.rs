@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use calibration::Noise;
 use calibration::file::Made;
 use calibration::table::Table;
 use desk::calibrate::{ApplyError, Evidence, apply, switch_off};
@@ -13,7 +12,7 @@ use super::super::arguments::{CalibrateApply, CalibratedMachine};
 use super::super::error::CliError;
 use super::error::CalibrateError;
 use super::measure::machine;
-use super::{URAD_PER_RAD, calibration, nm, read};
+use super::{calibration, read};
 
 pub(super) fn run(arguments: &CalibrateApply) -> Result<ExitCode, CliError> {
     // Before anything is asked of the machine.
@@ -31,15 +30,11 @@ fn evidence(arguments: &CalibrateApply, made: &Made) -> Result<Evidence, CliErro
             let path = path.clone();
             CalibrateError::Table { path, source }
         })?;
-    let noise = Noise {
-        length: made.noise_nm / nm(1.0),
-        angle_rad: made.noise_urad / URAD_PER_RAD,
-        encoder_rad: Noise::ENCODER_RAD,
-    };
     let over = arguments.over.as_deref().map(calibration);
     Ok(Evidence {
-        instrument: table.instrument(noise),
+        instrument: table.instrument(made.noise()),
         visits: table.visits,
+        references: table.references,
         over: over.transpose()?,
     })
 }

@@ -35,6 +35,13 @@ pub(in crate::cli) enum CalibrateError {
     Apply(#[from] desk::calibrate::ApplyError),
     #[error(transparent)]
     Verify(#[from] desk::calibrate::VerifyError),
+    #[error("{}: no verification as `tripivot calibrate verify --json` tells it: {source}", path.display())]
+    Verified {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(transparent)]
+    Report(desk::calibrate::report::ReportError),
     /// The file is there, and was begun otherwise.
     #[error("{}: this is another measurement, begun as '{found}'; now it is '{wanted}'", path.display())]
     Begun {
@@ -63,6 +70,7 @@ impl CalibrateError {
                 | Self::Measure(_)
                 | Self::Apply(_)
                 | Self::Verify(_)
+                | Self::Report(_)
         )
     }
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use crate::attended::SimulatedMachine;
 use calibration::plan::Stop;
-use calibration::table::{Table, to_text};
+use calibration::table::{Table, note, to_text};
 use calibration::{Instrument, Kit, plan};
 use desk::calibrate::{MeasureError, Measured, Reader, Way, measure, serial, with_references};
 use desk::commission::{Attended, Machine};
@@ -20,7 +20,7 @@ use super::super::arguments::{CalibrateMeasure, CalibratedMachine};
 use super::super::error::CliError;
 use super::super::view::endpoint;
 use super::error::CalibrateError;
-use super::reader::{Asked, Simulated};
+use super::reader::{Asked, Simulated, TruePose};
 use super::{line, nm, noise, read};
 
 /// Begins the line that says what is measured.
@@ -111,11 +111,12 @@ pub(super) fn opened(
     if !stage.machine.is_simulated() {
         return Err(CalibrateError::NoReader.into());
     }
-    let radius_m = stage.machine.parameters()?.plant.track_radius_m;
+    let built = stage.machine.parameters()?;
+    let radius_m = built.plant.track_radius_m;
     let machine = simulated(stage)?;
     let reader = Simulated {
         instrument: Beside::set_up(instrument, radius_m, stage.seed).ok_or(CalibrateError::Ends)?,
-        true_pose: machine.true_pose(),
+        true_pose: TruePose::new(machine.true_pose(), &built.wiring),
     };
     Ok((Box::new(machine), Box::new(reader)))
 }
@@ -150,14 +151,14 @@ fn kept(path: &Path, begun: &str) -> Result<usize, CliError> {
 }
 
 /// The file, and what its rows are of.
-struct Kept {
+pub(super) struct Kept {
     file: File,
     instrument: Instrument,
 }
 
 impl Kept {
     /// Opened behind what it holds; begun if that is nothing.
-    fn open(
+    pub(super) fn open(
         path: &Path,
         begun: &str,
         instrument: &Instrument,
@@ -180,17 +181,13 @@ impl Kept {
     }
 
     /// A row, with what it is and when above it.
-    fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
+    pub(super) fn keep(&mut self, stops: &[Stop], measured: &Measured) -> io::Result<()> {
         let Measured { visit, clock_s, .. } = *measured;
         let radius_mm = Geometry::REFERENCE.radius_mm;
         let rows = to_text(&self.instrument, &[measured.visited], radius_mm);
         let row = rows.lines().nth(1).unwrap_or_default();
         let is_reference = visit > 0 && stops.get(visit) == stops.first();
-        let what = if is_reference { "reference" } else { "pose" };
-        let text = format!(
-            "# visit {}, {what}, {clock_s:.3} s of the controller's clock\n{row}\n",
-            visit + 1
-        );
+        let text = format!("{}\n{row}\n", note(visit, is_reference, clock_s));
         self.file.write_all(text.as_bytes())
     }
 }

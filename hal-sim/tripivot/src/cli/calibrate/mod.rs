@@ -1,11 +1,13 @@
 //! `tripivot calibrate`: what a built machine is off its drawing.
 
 mod apply;
+mod demo;
 pub(super) mod error;
 mod fit;
 mod measure;
 mod plan;
 mod reader;
+mod report;
 mod verify;
 
 use std::fs;
@@ -32,6 +34,8 @@ pub(super) fn run(command: &CalibrateCommand) -> Result<ExitCode, CliError> {
         CalibrateCommand::Fit(arguments) => fit::run(arguments),
         CalibrateCommand::Apply(arguments) => apply::run(arguments),
         CalibrateCommand::Verify(arguments) => verify::run(arguments),
+        CalibrateCommand::Report(arguments) => report::run(arguments),
+        CalibrateCommand::Demo(arguments) => demo::run(arguments),
         CalibrateCommand::Undo(arguments) => apply::undo(arguments),
     }
 }

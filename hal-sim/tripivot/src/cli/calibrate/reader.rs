@@ -1,6 +1,7 @@
 //! What reads the instrument: a command of the user's, or the simulated instrument beside a simulated machine.
 
 use std::cell::Cell;
+use std::f64::consts::TAU;
 use std::io::Write;
 use std::process::{Command, Stdio};
 use std::rc::Rc;
@@ -8,6 +9,7 @@ use std::rc::Rc;
 use calibration::plan::At;
 use calibration::{Instrument, Kit, Seen};
 use desk::calibrate::{Reader, Wanted};
+use hal_sim::machine::devices::WiringParameters;
 use hal_sim::machine::instruments::Beside;
 use kinematics::Geometry;
 
@@ -89,14 +91,49 @@ impl Asked {
 /// The simulated instrument, which sees the true pose.
 pub(super) struct Simulated {
     pub(super) instrument: Beside,
-    pub(super) true_pose: Rc<Cell<[f64; 3]>>,
+    pub(super) true_pose: TruePose,
+}
+
+/// The platform's true pose in the frames of its controller, in which somebody sets instruments up: what a controller that was commissioned
+/// calls pivot 1 is the ring that bridge 1 drives, and its guide lay along x in the jig.
+pub(super) struct TruePose {
+    in_m: Rc<Cell<[f64; 3]>>,
+    /// By how much the controller's frame of the platform is turned in the platform.
+    platform_rad: f64,
+    /// By how much its frame of the base is turned in the base; known from the first pose on.
+    base_rad: Cell<Option<f64>>,
+}
+
+impl TruePose {
+    pub(super) fn new(in_m: Rc<Cell<[f64; 3]>>, wiring: &WiringParameters) -> Self {
+        Self {
+            in_m,
+            platform_rad: TAU / 3.0 * wiring.ring_of_bridge(0) as f64,
+            base_rad: Cell::new(None),
+        }
+    }
+
+    /// m, m and rad, where the controller was sent to this theta, rad.
+    pub(super) fn get(&self, commanded_rad: f64) -> [f64; 3] {
+        /// Frames differ by whole ones of these.
+        const STEP_RAD: f64 = TAU / 12.0;
+        let [x, y, theta_rad] = self.in_m.get();
+        let base_rad = self.base_rad.get().unwrap_or_else(|| {
+            let off_rad = theta_rad + self.platform_rad - commanded_rad;
+            STEP_RAD * (off_rad / STEP_RAD).round()
+        });
+        self.base_rad.set(Some(base_rad));
+        let (sin, cos) = base_rad.sin_cos();
+        let theta_rad = theta_rad + self.platform_rad - base_rad;
+        [x * cos + y * sin, y * cos - x * sin, theta_rad]
+    }
 }
 
 impl Reader for Simulated {
     fn read(&mut self, wanted: &Wanted) -> Result<Seen, String> {
         (self
             .instrument
-            .read(wanted.at, self.true_pose.get(), wanted.visit))
+            .read(wanted.at, self.true_pose.get(wanted.pose[2]), wanted.visit))
         .ok_or_else(|| "the mark is not in the camera's picture".to_owned())
     }
 }

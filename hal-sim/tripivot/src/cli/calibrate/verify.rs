@@ -3,10 +3,8 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use calibration::judge::Errors;
 use calibration::{Instrument, Noise};
-use desk::calibrate::{AS_PREDICTED, Verdict, Verified, verify};
-use serde::Serialize;
+use desk::calibrate::{Told, Verdict, verify};
 
 use super::super::FAILED;
 use super::super::arguments::CalibrateVerify;
@@ -14,45 +12,23 @@ use super::super::error::CliError;
 use super::super::json;
 use super::error::CalibrateError;
 use super::measure::opened;
-use super::{BASE_M, URAD_PER_RAD, calibration, line, nm};
-use kinematics::Geometry;
-
-/// x and y, um, or theta, urad.
-#[derive(Serialize)]
-struct Kind {
-    seen: f64,
-    noise: f64,
-    of_stage: f64,
-    predicted: f64,
-    ratio: f64,
-    largest: f64,
-    largest_at_visit: usize,
-    both_sides_apart: f64,
-    as_drawn: f64,
-}
-
-/// What a verification is told as with `--json`.
-#[derive(Serialize)]
-struct Document {
-    kit: &'static str,
-    visits: usize,
-    xy_um: Option<Kind>,
-    theta_urad: Option<Kind>,
-    verdict: &'static str,
-}
+use super::{BASE_M, calibration, line, nm};
 
 pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     let calibration = calibration(&arguments.file)?;
     let made = &calibration.made;
-    let noise_m = arguments.noise.unwrap_or(made.noise_nm * 1e-9);
+    let told = made.noise();
     let noise = Noise {
-        length: noise_m * 1e9 / nm(1.0),
+        length: arguments
+            .noise
+            .map_or(told.length, |noise_m| noise_m * 1e9 / nm(1.0)),
         angle_rad: match (arguments.noise_theta, arguments.noise) {
             (Some(theta_rad), _) => theta_rad,
-            (None, Some(_)) => noise_m / BASE_M,
-            (None, None) => made.noise_urad / URAD_PER_RAD,
+            (None, Some(noise_m)) => noise_m / BASE_M,
+            (None, None) => told.angle_rad,
         },
-        encoder_rad: Noise::ENCODER_RAD,
+        // The machine's scatter is the same before any instrument.
+        ..told
     };
     let instrument = Instrument::new(arguments.kit.unwrap_or(made.kit), noise);
     let (mut machine, mut reader) =
@@ -65,11 +41,11 @@ pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
         arguments.poses,
     )
     .map_err(CalibrateError::Verify)?;
-    let document = document(&instrument, &verified);
+    let told = Told::new(&instrument, &verified);
     if arguments.json {
-        json::print(&document)?;
+        json::print(&told)?;
     } else {
-        (io::stdout().write_all(text(&document).as_bytes())).map_err(CliError::output)?;
+        (io::stdout().write_all(text(&told).as_bytes())).map_err(CliError::output)?;
     }
     Ok(match verified.verdict() {
         Verdict::Holds | Verdict::Better => ExitCode::SUCCESS,
@@ -77,38 +53,7 @@ pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     })
 }
 
-fn document(instrument: &Instrument, verified: &Verified) -> Document {
-    let um = Geometry::REFERENCE.radius_mm * 1e3;
-    let kind = |now: Option<Errors>, drawn: Option<Errors>, apart: f64, unit: f64| {
-        let (now, drawn) = now.zip(drawn)?;
-        Some(Kind {
-            seen: now.seen * unit,
-            noise: now.noise * unit,
-            of_stage: now.of_stage() * unit,
-            predicted: now.predicted_of_stage() * unit,
-            ratio: now.ratio(),
-            largest: now.largest * unit,
-            largest_at_visit: now.at + 1,
-            both_sides_apart: apart * unit,
-            as_drawn: drawn.seen * unit,
-        })
-    };
-    let Verified { now, drawn, sides } = verified;
-    Document {
-        kit: instrument.kit.name(),
-        visits: now.visits.len(),
-        xy_um: kind(now.places, drawn.places, sides[0], um),
-        theta_urad: kind(now.turns, drawn.turns, sides[1], URAD_PER_RAD),
-        verdict: match verified.verdict() {
-            Verdict::Holds => "as predicted",
-            Verdict::Better => "better than predicted",
-            Verdict::Worse => "worse than predicted",
-            Verdict::WorseThanDrawn => "worse than without it",
-        },
-    }
-}
-
-fn text(document: &Document) -> String {
+pub(super) fn text(document: &Told) -> String {
     let poses = document.visits / 2;
     let mut text = line(
         "verified",
@@ -127,7 +72,7 @@ fn text(document: &Document) -> String {
         text += &told(
             "",
             format!(
-                "{:.4} {unit} rms seen, {:.4} of it noise: {}, {:.4} predicted",
+                "{:.4} {unit} rms seen, {:.4} of it noise and scatter: {}, {:.4} predicted",
                 kind.seen,
                 kind.noise,
                 if kind.of_stage > 0.0 {
@@ -142,9 +87,7 @@ fn text(document: &Document) -> String {
             ", over predicted",
             format!(
                 "{:.3}, noise in both; from {} to {} is as predicted",
-                kind.ratio,
-                AS_PREDICTED.start(),
-                AS_PREDICTED.end()
+                kind.ratio, document.as_predicted[0], document.as_predicted[1]
             ),
         );
         text += &told(
@@ -157,7 +100,7 @@ fn text(document: &Document) -> String {
         text += &told(
             ", both sides",
             format!(
-                "{:.4} {unit} rms apart, {:.4} by noise alone",
+                "{:.4} {unit} rms apart, {:.4} by noise and scatter alone",
                 kind.both_sides_apart,
                 kind.noise * std::f64::consts::SQRT_2
             ),
@@ -167,7 +110,7 @@ fn text(document: &Document) -> String {
             format!("{:.3} {unit} rms without it", kind.as_drawn),
         );
     }
-    let verdict = match document.verdict {
+    let verdict = match &*document.verdict {
         "worse than predicted" | "worse than without it" => format!(
             "{}: another machine's, damaged, out of date, or the instrument is not what was said; `tripivot calibrate undo` takes it out of force",
             document.verdict
