@@ -101,8 +101,7 @@ impl Calibrated {
     }
 
     /// The pose in which the encoders read this; the servo goes on there. Of a machine that stands still it is the pose that was
-    /// followed up to the tick before. One that is moved by hand takes one more step of Newton's method, and the tick that takes
-    /// the command, in which nothing is driven yet, may be late by it.
+    /// followed up to the tick before. One that is moved by hand takes one more step of Newton's method.
     ///
     /// # Errors
     /// [`DirectError`]: no platform can stand so, or it is not known yet how.

@@ -448,10 +448,10 @@ fn slow(instructions_per_second: u64) -> (String, usize) {
     (told, outcome.resets.len())
 }
 
-/// Whichever is found first: that duties were late, or that what follows them has held up the next latch.
+/// At the lower rate duties are in time, but ticks and recorders leave next to nothing for the command side.
 #[test]
 fn a_tick_that_ends_late_too_often_is_a_fault_and_one_in_time_is_not_even_counted() {
-    let late = ["control loop late too often", "encoder "];
+    let late = ["control loop late too often"];
     for (rate, told_is) in [(78_000_000, &late[..]), (93_000_000, &["0 no fault"])] {
         let (told, resets) = slow(rate);
         println!("{rate}: {resets} resets, {told}");

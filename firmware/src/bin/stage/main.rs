@@ -317,6 +317,7 @@ mod app {
             local.trace_writer.observe(sample);
             let _ = local.sample_receiver.dequeue();
         }
+        crate::tick_timing::mark_recorded();
     }
 
     /// The command interface, the settings and the watchdog.

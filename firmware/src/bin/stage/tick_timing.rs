@@ -1,6 +1,8 @@
-//! What a tick costs and whether it comes and ends in time, by the core's cycle counter.
+//! What a tick costs, whether it comes and ends in time, and whether it leaves any for the command side, by the core's cycle
+//! counter.
 
 use crate::timeline::{DEADLINE_CYCLES, PERIOD_CYCLES};
+use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{DCB, DWT};
 
 // Told to who models the tick's cycles: symbols whose values are the numbers.
@@ -15,6 +17,20 @@ core::arch::global_asm!(
 
 /// More than this between two ticks, and one has been missed: one and a half periods.
 const MISSED_CYCLES: u32 = PERIOD_CYCLES * 3 / 2;
+/// Of a period, in the mean, for tick and recorders together. With more the command side, which answers, plans and feeds the watchdog,
+/// would come to a standstill while duties are still in time: the loop counts as late, and stops the stage before the watchdog does.
+const MOST_LOAD_CYCLES: u32 = PERIOD_CYCLES / 100 * 97;
+/// The mean is over so many ticks, a power of two: 3 ms.
+const LOAD_TICKS: u32 = 64;
+
+/// When the recorders were last done.
+static RECORDED: AtomicU32 = AtomicU32::new(0);
+
+/// The recorders are done, and the rest of the period is the command side's.
+#[inline]
+pub fn mark_recorded() {
+    RECORDED.store(DWT::cycle_count(), Ordering::Relaxed);
+}
 
 /// See the module.
 #[derive(Default)]
@@ -25,6 +41,8 @@ pub struct TickTiming {
     cycles: u32,
     /// How late it began, cycles after its event.
     delay: u32,
+    /// Cycles until the recorders were done, of [`LOAD_TICKS`] ticks, smoothed.
+    load: u32,
 }
 
 impl TickTiming {
@@ -35,8 +53,8 @@ impl TickTiming {
         Self::default()
     }
 
-    /// A tick begins, so many cycles after its event: what the last one cost, and whether its duty missed its period or
-    /// there should have been one more since.
+    /// A tick begins, so many cycles after its event: what the last one cost, and whether its duty missed its period, there
+    /// should have been one more since, or ticks leave no time for anything else.
     #[inline]
     pub fn begin(&mut self, delay: u32) -> (u32, bool) {
         let now = DWT::cycle_count();
@@ -44,9 +62,15 @@ impl TickTiming {
             .began
             .is_some_and(|began| now.wrapping_sub(began) > MISSED_CYCLES);
         let was_late = self.delay + self.cycles > DEADLINE_CYCLES;
+        if let Some(began) = self.began {
+            let busy = RECORDED.load(Ordering::Relaxed).wrapping_sub(began);
+            // Not done yet: it was done before that tick, an age ago.
+            self.load = self.load - self.load / LOAD_TICKS + busy.min(PERIOD_CYCLES);
+        }
+        let is_overloaded = self.load > MOST_LOAD_CYCLES * LOAD_TICKS;
         self.began = Some(now);
         self.delay = delay;
-        (self.cycles, missed || was_late)
+        (self.cycles, missed || was_late || is_overloaded)
     }
 
     /// The tick ends.
