@@ -1,8 +1,10 @@
 //! Margins that are predicted, against the loop as it is measured: the program's own servo before a simulated machine, a sine added to what
 //! an encoder reads, and what the following error makes of it.
 
-use commissioning::chain::{Chain, Load, Place};
-use commissioning::drive_model::Electrical;
+#[path = "machine/model.rs"]
+mod model;
+
+use commissioning::chain::Place;
 use commissioning::record::Timing;
 use commissioning::tuning::{
     Gains, Limits, Margins, PivotGains, Plant, margins, sensitivity, tune,
@@ -15,6 +17,7 @@ use hal_sim::machine::devices::StageParameters;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 use hal_sim::rig::with_payload_told;
+use model::model;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -25,47 +28,6 @@ const BINS: [usize; 24] = [
     7, 10, 14, 20, 27, 34, 41, 48, 55, 62, 70, 80, 92, 106, 122, 142, 166, 194, 226, 258, 290, 320,
     350, 390,
 ];
-
-/// A machine as the model has it: from the simulator's own numbers.
-fn model(stage: &StageParameters) -> (Chain, [Electrical; 3]) {
-    let plant = &stage.plant;
-    let payload = &plant.payload;
-    let square = plant.track_radius_m * plant.track_radius_m;
-    let moment = payload.mass_kg * payload.eccentricity_m * plant.track_radius_m;
-    let (sin, cos) = payload.direction_rad.sin_cos();
-    // Rigid guides: as stiff as makes no difference.
-    let guide = if plant.imperfections.guide_compliance {
-        1.0
-    } else {
-        1e3
-    };
-    let chain = Chain {
-        motor_inertia: plant.motor_inertia_kg_m2,
-        ring_inertia: plant.ring_inertia_kg_m2,
-        stiffness: plant.transmission_stiffness_n_m_rad,
-        damping: plant.transmission_damping_n_m_s_rad,
-        viscous: plant.ring_friction.viscous,
-        guide_stiffness: guide * square * plant.guide_stiffness_n_m,
-        guide_damping: square * plant.guide_damping_n_s_m,
-        along_stiffness: 0.0,
-        along_damping: 0.0,
-        load: Load {
-            mass: square * (plant.platform_mass_kg + payload.mass_kg),
-            inertia: plant.platform_inertia_kg_m2
-                + payload.inertia_kg_m2
-                + payload.mass_kg * payload.eccentricity_m.powi(2),
-            moment: [moment * cos, moment * sin],
-        },
-    };
-    let electrical = Electrical {
-        resistance_ohm: plant.resistance_ohm,
-        inductance_h: plant.inductance_h,
-        motor_constant: plant.ring_torque_constant_n_m_a(),
-        dead_time_v: 0.0,
-        deviations: [0.0; 4],
-    };
-    (chain, [electrical; 3])
-}
 
 fn gains_of(parameters: &Parameters) -> Gains {
     let servo = &parameters.servo;

@@ -97,6 +97,12 @@ impl SimulatedMachine {
         Rc::clone(&self.true_pose)
     }
 
+    /// What its controller has been told, or has found.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        self.rig.interpreter.parameters()
+    }
+
     /// The machine itself, which a controller does not see.
     pub fn host(&mut self) -> &mut Host {
         &mut self.rig.front

@@ -1,0 +1,264 @@
+//! What a commissioned machine came to, against its own numbers. Volts and amperes are those of the controller's meters: what these are off makes
+//! every torque as much larger, and is no error of the method.
+
+use crate::model::model;
+use commissioning::chain::{Chain, Place};
+use commissioning::drive_model::Electrical;
+use commissioning::record::Timing;
+use commissioning::tuning::{Gains, Margins, PivotGains, Plant, margins};
+use desk::commission::Done;
+use firmware::parameters::Parameters;
+use hal_sim::machine::devices::StageParameters;
+use std::cell::Cell;
+use std::rc::Rc;
+use tripivot::attended::EachTick;
+
+pub type Figures = Vec<(&'static str, f64)>;
+
+/// Places of the true plant at which loops are judged, track radii.
+pub const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.7, 0.0], [-0.35, 0.6], [-0.35, -0.6]];
+/// Resonances over this are beyond what any servo here reaches.
+const REACHED_HZ: f64 = 1_500.0;
+
+/// How warm the windings were when they were measured, K, by ring.
+#[derive(Default)]
+pub struct Warmth {
+    now: Rc<Cell<[f64; 3]>>,
+    noted: Cell<[f64; 3]>,
+}
+
+impl Warmth {
+    pub fn watch(&self) -> EachTick {
+        let now = Rc::clone(&self.now);
+        Box::new(move |host, _| now.set(host.stage.plant.windings_warmer_k()))
+    }
+
+    /// After a step.
+    pub fn note(&self, step: &str) {
+        if step == "identification" {
+            self.noted.set(self.now.get());
+        }
+    }
+}
+
+/// A number of a step; none where the step did not tell it.
+fn number(all: &[Done], step: &str, name: &str, unit: &str) -> f64 {
+    let numbers = all.iter().filter(|done| done.step.name == step);
+    let mut numbers = numbers.flat_map(|done| &done.found.numbers);
+    let found = numbers.find(|number| number.name == name && number.unit == unit);
+    found.map_or(f64::NAN, |number| number.value)
+}
+
+fn percent(found: f64, truth: f64) -> f64 {
+    100.0 * (found / truth - 1.0)
+}
+
+/// The largest, whatever its sign.
+fn worst(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(
+        0.0,
+        |most: f64, one| {
+            if one.abs() <= most.abs() { most } else { one }
+        },
+    )
+}
+
+pub fn figures(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
+    let mut figures = loops(all);
+    figures.extend(drives(machine, all, warmth));
+    figures.extend(mechanics(machine, all));
+    figures
+}
+
+fn loops(all: &[Done]) -> Figures {
+    let worst = |step: &str, name: &str| {
+        let at = |place: &str| number(all, step, &format!("{name} {place}"), "");
+        f64::max(at("in the middle"), at("at X 70 Y 0"))
+    };
+    let [safe, tuned] = ["response", "tuning"].map(|step| worst(step, "S(30 Hz)"));
+    vec![
+        ("ms safe", worst("response", "Ms")),
+        ("ms", worst("tuning", "Ms")),
+        ("s30 safe", safe),
+        ("s30", tuned),
+        ("s30 gain", tuned / safe),
+        (
+            "peak",
+            number(all, "verification", "largest following error", "urad"),
+        ),
+    ]
+}
+
+/// Ring and bridge of a pivot: pivot 1 is bridge 1's ring, the others follow it to the left.
+fn ring_and_bridge(machine: &StageParameters, pivot: usize) -> (usize, usize) {
+    let wiring = &machine.wiring;
+    let ring = (wiring.ring_of_bridge(0) + pivot) % 3;
+    (ring, usize::from(wiring.bridge_of_ring[ring]))
+}
+
+fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
+    let (plant, analog) = (&machine.plant, &machine.analog);
+    let constant = plant.ring_torque_constant_n_m_a() * analog.supply_gain;
+    let (chain, _) = model(machine);
+    let inertia = chain.inertia(&Place::centre())[(0, 0)] * torque(machine);
+    let pivots = |of: &dyn Fn(usize, f64, f64) -> f64| {
+        worst((0..3).map(|pivot| {
+            let (ring, bridge) = ring_and_bridge(machine, pivot);
+            let ohm = analog.supply_gain / analog.current_gain[bridge];
+            let warm = 1.0 + plant.winding.resistance_per_k * warmth.noted.get()[ring];
+            of(pivot + 1, ohm, warm)
+        }))
+    };
+    let of = |name: String, unit: &str| number(all, "identification", &name, unit);
+    let constant_of = |pivot| {
+        number(
+            all,
+            "friction",
+            &format!("motor of pivot {pivot}"),
+            "V s/rad",
+        )
+    };
+    let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
+    let of_friction = |name: &str, unit: &str| number(all, "friction", name, unit);
+    let coulomb = of_friction("Coulomb friction", "N m");
+    let viscous = of_friction("viscous friction", "N m s/rad");
+    vec![
+        (
+            "R J / K",
+            pivots(&|pivot, ohm, warm| {
+                let found = of(format!("pivot {pivot}: R J / K"), "V s^2/rad");
+                percent(
+                    found,
+                    ohm * warm * plant.resistance_ohm * inertia / constant,
+                )
+            }),
+        ),
+        (
+            "K",
+            pivots(&|pivot, _, _| percent(constant_of(pivot), constant)),
+        ),
+        (
+            "R",
+            pivots(&|pivot, ohm, _| {
+                let found = of(format!("winding of pivot {pivot}"), "ohm");
+                percent(found, ohm * plant.resistance_ohm)
+            }),
+        ),
+        (
+            "R warm",
+            pivots(&|pivot, ohm, warm| {
+                let found = of(format!("winding of pivot {pivot}"), "ohm");
+                percent(found, ohm * warm * plant.resistance_ohm)
+            }),
+        ),
+        (
+            "L",
+            pivots(&|pivot, ohm, _| {
+                let found = of(format!("winding of pivot {pivot}"), "mH");
+                percent(found, ohm * plant.inductance_h * 1e3)
+            }),
+        ),
+        ("friction", percent(coulomb, friction * torque(machine))),
+        (
+            "total",
+            percent(
+                coulomb + viscous,
+                (friction + plant.ring_friction.viscous) * torque(machine),
+            ),
+        ),
+    ]
+}
+
+/// What torques are by the meters, over what they are.
+fn torque(machine: &StageParameters) -> f64 {
+    let analog = &machine.analog;
+    analog.supply_gain * analog.current_gain.iter().sum::<f64>() / 3.0
+}
+
+fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
+    let (plant, (chain, _)) = (&machine.plant, model(machine));
+    let square = plant.track_radius_m * plant.track_radius_m;
+    let torque = torque(machine);
+    let of = |name: &str, unit: &str| number(all, "identification", name, unit);
+    let drive = of("inertia of a motor with its ring", "kg m^2");
+    let mass = of("mass of platform and load", "kg");
+    let inertia = of("inertia of platform and load", "kg m^2");
+    let true_drive = chain.motor_inertia + chain.ring_inertia;
+    let true_mass = chain.load.mass / square;
+    let found = Chain {
+        motor_inertia: drive,
+        ring_inertia: 0.0,
+        load: commissioning::chain::Load {
+            mass: mass * square,
+            inertia,
+            moment: chain.load.moment,
+        },
+        ..chain
+    };
+    let at_ring = |chain: &Chain| chain.inertia(&Place::centre())[(0, 0)];
+    let resonances = chain.resonances_hz(&Place::centre());
+    let off =
+        |(number, hz): (usize, &f64)| percent(of(&format!("resonance {}", number + 1), "Hz"), *hz);
+    let reached = resonances
+        .iter()
+        .enumerate()
+        .filter(|(_, hz)| **hz < REACHED_HZ);
+    vec![
+        ("ring", percent(at_ring(&found), at_ring(&chain) * torque)),
+        ("drive", percent(drive, true_drive * torque)),
+        ("mass", percent(mass, true_mass * torque)),
+        ("inertia", percent(inertia, chain.load.inertia * torque)),
+        ("ratio", percent(mass / drive, true_mass / true_drive)),
+        (
+            "resonance",
+            resonances
+                .iter()
+                .enumerate()
+                .map(off)
+                .next()
+                .unwrap_or(f64::NAN),
+        ),
+        ("resonances", worst(reached.map(off))),
+    ]
+}
+
+/// The machine's own plants where its loops are judged. Carriages slide: they hold nothing along their guides.
+pub fn plants(machine: &StageParameters) -> (Vec<Plant>, [Electrical; 3], Chain) {
+    let (chain, mut electrical) = model(machine);
+    let plant = &machine.plant;
+    for drive in &mut electrical {
+        drive.resistance_ohm *= 1.0 + plant.winding.resistance_per_k * plant.winding.start_k;
+    }
+    let places = PLACES.iter().filter_map(|[x, y]| Place::new(*x, *y));
+    let plants = places
+        .map(|place| Plant::from_model(&electrical, &chain, &place, &Timing::STAGE))
+        .collect();
+    (plants, electrical, chain)
+}
+
+/// What gains make of plants at the worst of them.
+pub fn at_worst(plants: &[Plant], gains: &Gains) -> Margins {
+    let all = plants
+        .iter()
+        .map(|plant| margins(plant, gains, Timing::STAGE.tick_s));
+    all.reduce(Margins::worse).expect("a plant")
+}
+
+/// A controller's gains.
+pub fn gains_of(parameters: &Parameters) -> Gains {
+    let servo = &parameters.servo;
+    Gains {
+        pivots: [0, 1, 2].map(|i| PivotGains {
+            gains: servo.gains[i],
+            filters: servo.filters[i],
+        }),
+        scheduled_inertia_kg_m2: servo.scheduled_inertia_kg_m2,
+    }
+}
+
+/// The controller's gains before the machine's own plant.
+pub fn gains(machine: &StageParameters, parameters: &Parameters) -> Figures {
+    let (plants, ..) = plants(machine);
+    let found = at_worst(&plants, &gains_of(parameters));
+    vec![("ms true", found.ms), ("s30 true", found.rejection)]
+}
