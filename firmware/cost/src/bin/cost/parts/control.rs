@@ -8,7 +8,9 @@ use core::hint::black_box;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
 use firmware::control::rest_mode::Stiffness;
-use firmware::control::servo::{LoopSetpoint, PivotServo, PivotSetpoint, carried_inertia};
+use firmware::control::servo::{
+    LoopSetpoint, PivotFeedback, PivotServo, PivotSetpoint, carried_inertia,
+};
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
 use firmware::parameters::{Harmonic, Lead, Notch, Parameters};
 use firmware_cost::random::Random;
@@ -120,7 +122,9 @@ fn servo(bench: &mut Bench, name: &'static str, config: &Config) {
             };
             let mut duty = [Duty(0); 3];
             for i in 0..3 {
-                duty[i] = servo[i].step(&config.servo.pivots[i], &pivots[i], &common);
+                let (setpoint, measured) = &pivots[i];
+                servo[i].feed_forward(&config.servo.pivots[i], setpoint);
+                duty[i] = servo[i].step(&config.servo.pivots[i], measured, &common);
                 if i == 0 {
                     servo[i].learn(&config.servo.pivots[i]);
                 }
@@ -131,14 +135,18 @@ fn servo(bench: &mut Bench, name: &'static str, config: &Config) {
     );
 }
 
-fn pivot(random: &mut Random) -> PivotSetpoint {
-    PivotSetpoint {
-        error: random.within(-3e4, 3e4) as i32,
+fn pivot(random: &mut Random) -> (PivotSetpoint, PivotFeedback) {
+    let error = random.within(-3e4, 3e4) as i32;
+    let setpoint = PivotSetpoint {
         rate: random.within(-10.0, 10.0) as f32,
         acceleration: random.within(-100.0, 100.0) as f32,
         platform_torque: random.within(-6.0, 6.0) as f32,
         angle: Angle::from_units(random.within(-2e9, 2e9) as i64),
+    };
+    let measured = PivotFeedback {
+        error,
         current_counts: random.within(-1_400.0, 1_400.0) as i16,
         added_volts: 0.0,
-    }
+    };
+    (setpoint, measured)
 }

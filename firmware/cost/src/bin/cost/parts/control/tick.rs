@@ -85,6 +85,7 @@ fn led(
         start: [AxisState::default(); 3],
         centre,
         records,
+        sent: 0,
         ground: Constraints {
             rotation_centre: centre.point(),
             ..*ground()
@@ -126,6 +127,8 @@ struct Control<'a> {
     start: [AxisState; 3],
     centre: RotationCentre,
     records: bool,
+    /// Commands sent.
+    sent: u32,
     ground: Constraints,
     ticks: u64,
 }
@@ -154,6 +157,7 @@ impl Control<'_> {
             // The queue is empty.
             let _ = self.panel.send(Command::Reference);
             let _ = self.panel.send(Command::Centre(self.centre));
+            self.sent = 2;
         } else if let Some(sample) = self.recorder.last.take() {
             if matches!(sample.mode, Mode::Holding | Mode::Moving) {
                 pivots = reached(&sample, random);
@@ -196,6 +200,10 @@ impl Control<'_> {
         let Some(snapshot) = self.panel.snapshot() else {
             return;
         };
+        // One is on its way yet.
+        if snapshot.commands != self.sent {
+            return;
+        }
         let from = sample.reference_point.position;
         let to = self.centre.from_platform(&position(random));
         let id = self.plan.id + 1;
@@ -218,6 +226,7 @@ impl Control<'_> {
             self.plan = plan.clone();
             // The tick has emptied the queue, or nearly.
             let _ = self.panel.send(Command::Move(plan));
+            self.sent += 1;
         }
     }
 }
