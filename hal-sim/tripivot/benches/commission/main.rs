@@ -86,7 +86,7 @@ fn commissioned(seed: u64) -> Row {
         questions: 0,
     };
     let done = run(&mut counted, &Chosen::all(), &mut |done| {
-        warmth.note(&done.step.name);
+        warmth.note(done.step.name);
     });
     let done = done.unwrap_or_else(|error| panic!("machine {seed}: {error}"));
     let refused = done.last().and_then(|last| {
