@@ -373,7 +373,7 @@ fn machines_with_a_defect_are_refused_where_it_shows() {
             "windings",
             "not within a factor of two",
         ),
-        ("gap", "plant.backlash_rad=0.0001", "gains", "swings by"),
+        ("gap", "plant.backlash_rad=0.00012", "gains", "swings by"),
     ] {
         let (output, folder) = commission(name, &["--unknown", "1", "--set", set]);
         let told = text(&output);
