@@ -2,8 +2,9 @@
 //! middle and far out; three tenths of that are used. At rest, where they are raised, friction damps what rings: with half of it, as the rule has
 //! it, machines that turn have an Ms of 3 to 6, and some oscillate.
 
+use super::hunting::unless_hunting;
 use crate::commission::bench::Bench;
-use crate::commission::found::{CommissionError, Failure, Finding, Found};
+use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::id;
 use crate::commission::id::AXES;
 use crate::commission::known::Known;
@@ -28,8 +29,6 @@ const KICK_V: f64 = 1.5;
 const KICK_MS: f64 = 5.0;
 /// How many times as large the current's change from tick to tick is where it rings, over that of the first share and the gains' part.
 const RINGS: f64 = 3.0;
-/// Swing of a stage that should be at rest: many times what encoders make up.
-const HUNTS_RAD: f64 = 10e-6;
 /// Least share that is good for anything.
 const LEAST_SHARE: f64 = 0.07;
 
@@ -125,37 +124,11 @@ pub(super) fn run(
     Ok(())
 }
 
+/// Goes there, and comes to rest.
 fn go_to(bench: &mut Bench<'_>, [x, y]: [f64; 2]) -> Result<(), CommissionError> {
     bench.ask(&format!("MOV X {x} Y {y}"))?;
-    match bench.wait_for_target(20.0) {
-        Err(CommissionError::Failed(failure)) => Err(hunting(bench, failure)?),
-        done => done,
-    }
-}
-
-/// Why the stage does not come to rest: a servo that hunts swings through a gap in its transmission, over and over.
-fn hunting(bench: &mut Bench<'_>, failure: Failure) -> Result<CommissionError, CommissionError> {
-    let (mut most_rad, mut at) = (0.0, 0);
-    for pivot in 0..AXES {
-        let angles = bench.record(pivot, TICKS, 1, None)?.signals.angle_rad;
-        let [low, high] =
-            [f64::min, f64::max].map(|of| angles.iter().copied().reduce(of).unwrap_or_default());
-        if high - low > most_rad {
-            (most_rad, at) = (high - low, pivot);
-        }
-    }
-    Ok(CommissionError::Failed(if most_rad < HUNTS_RAD {
-        failure
-    } else {
-        Failure::new(
-            format!(
-                "the stage does not come to rest: pivot {} swings by {:.0} urad",
-                at + 1,
-                most_rad * 1e6
-            ),
-            "a gap (backlash) between motor and ring: look at gear, coupling and their preload",
-        )
-    }))
+    let waited = bench.wait_for_target(20.0);
+    unless_hunting(bench, waited)
 }
 
 /// The largest share, of those tried up to a limit, at which nothing rings.

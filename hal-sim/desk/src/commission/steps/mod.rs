@@ -3,6 +3,7 @@
 mod friction;
 mod gains;
 mod hand;
+mod hunting;
 mod identification;
 mod keep;
 mod limits;

@@ -1,6 +1,7 @@
 //! The first closed loop: a turn and a square at a tenth of the speed.
 
 use super::gains;
+use super::hunting::unless_hunting;
 use crate::commission::bench::Bench;
 use crate::commission::found::{CommissionError, Finding, Found};
 use crate::commission::known::Known;
@@ -31,7 +32,8 @@ pub(super) fn run(
     let settled_s = bench.settle()?;
     let full = bench.number_of("VLS?")?;
     bench.ask(&format!("VLS {}", full * SPEED))?;
-    let error_rad = bench.follow(&MOVES, LONGEST_S)?;
+    let followed = bench.follow(&MOVES, LONGEST_S);
+    let error_rad = unless_hunting(bench, followed)?;
     bench.ask(&format!("VLS {full}"))?;
     found.push(Finding::told(
         "settled after the reference in",
