@@ -2,9 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{
-    Piece, Plan, PlanFollower, PlanStart, SetpointScale, Stale, Stop, plan_stop,
-};
+use firmware::motion::{Plan, PlanFollower, PlanStart, SetpointScale, Stale, Stop, plan_stop};
 use motion_bench::*;
 use proptest::prelude::*;
 
@@ -186,41 +184,4 @@ fn a_plan_without_a_way_is_over_at_once() {
         motion.advance();
     }
     assert_eq!((motion.is_moving(), motion.position()), (false, next.end));
-}
-
-/// Until the next tick the rest of it can wait: also where the first piece is over with the first tick.
-#[test]
-fn a_plan_can_be_taken_in_two_parts_with_a_tick_between() {
-    let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
-    let whole = line(from, to);
-    let mut split = whole.clone();
-    split.pieces.clear();
-    for (i, piece) in whole.pieces.iter().enumerate() {
-        let mut rest = *piece;
-        if i == 0 {
-            rest.ticks -= 1;
-            let first = Piece { ticks: 1, ..*piece };
-            split.pieces.push(first).expect("there is room");
-        }
-        split.pieces.push(rest).expect("there is room");
-    }
-    for plan in [whole, split] {
-        let mut motion = PlanFollower::default();
-        motion.rest_at(from);
-        assert_eq!(motion.accept_first(&plan), Ok(()));
-        motion.advance();
-        // Of one that is refused there is nothing to come.
-        assert_eq!(motion.accept_first(&plan), Err(Stale));
-        motion.accept_rest(&plan);
-        for tick in 1..=plan.ticks() {
-            let state = plan.state_after(&at_rest(from), tick);
-            assert_eq!(
-                motion.position(),
-                state.map(|axis| axis.rounded()),
-                "{tick}"
-            );
-            motion.advance();
-        }
-        assert!(!motion.is_moving());
-    }
 }

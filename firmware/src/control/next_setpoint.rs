@@ -14,21 +14,6 @@ use crate::iterative_learning::TrialTable;
 use crate::mode::Mode;
 use crate::motion::Setpoint;
 
-/// What the next tick is to follow.
-#[derive(Clone, Debug, Default)]
-pub(super) struct NextSetpoint {
-    /// Of the point that is moved.
-    pub point: Setpoint,
-    /// Of the platform's own centre.
-    pub platform: Setpoint,
-    /// Whether the plan goes on after it.
-    pub moving: bool,
-    /// Of the pivots, where the servo is on.
-    pub pivots: Option<PivotSetpoints>,
-    /// Whether that of the pivot that is inspected hardly moves.
-    pub slowly: bool,
-}
-
 impl State {
     /// One tick on: the setpoint that the next tick follows, and what a trial adds in it. One that can not be followed is
     /// a fault, and nothing drives.

@@ -1,4 +1,4 @@
-//! From the pose's setpoint to those of the three pivots.
+//! From the pose's setpoint to those of the three pivots, and what a tick is to follow.
 
 use super::config::Config;
 use super::servo::platform_torques;
@@ -35,6 +35,21 @@ impl PivotSetpoints {
             cosines: [1.0; 3],
         }
     }
+}
+
+/// What a tick is to follow, known before it begins: see [`next_setpoint`](super::next_setpoint).
+#[derive(Clone, Debug, Default)]
+pub(super) struct NextSetpoint {
+    /// Of the point that is moved.
+    pub point: Setpoint,
+    /// Of the platform's own centre.
+    pub platform: Setpoint,
+    /// Whether the plan goes on after it.
+    pub moving: bool,
+    /// Of the pivots, where the servo is on.
+    pub pivots: Option<PivotSetpoints>,
+    /// Whether that of the pivot that is inspected hardly moves.
+    pub slowly: bool,
 }
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism.

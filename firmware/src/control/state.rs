@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::excitation::ExcitationRun;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
-use super::next_setpoint::NextSetpoint;
+use super::pivot_setpoints::NextSetpoint;
 use super::rest_mode::RestMode;
 use super::servo::PivotServo;
 use super::settling::Settling;

@@ -1,8 +1,10 @@
 //! Calibration on the command line: a plan, a measurement by a simulated instrument at its poses, the fit, and what is refused.
 
+mod calibrate_command;
+
+use calibrate_command::{RADIUS_MM, calibrate, folder, is_done};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use calibration::file::Calibration;
 use calibration::frames::without_frames;
@@ -14,39 +16,15 @@ use hal_sim::machine::instruments::{commanded, survey, workshop};
 use hal_sim::random::Random;
 use serde_json::Value;
 
-const RADIUS_MM: f64 = 100.0;
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("calibrate-{name}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-fn tripivot(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_tripivot"))
-        .current_dir(folder)
-        .arg("calibrate")
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
 fn document(output: &Output) -> Value {
-    serde_json::from_str(&stdout(output)).unwrap()
+    serde_json::from_str(&is_done(output)).unwrap()
 }
 
 /// This exit code, and one line on standard error with these words in it.
 fn assert_refused(output: &Output, code: i32, words: &str) {
-    let error = String::from_utf8(output.stderr.clone()).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{error}");
+    calibrate_command::assert_refused(output, code, words);
+    let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(error.lines().count(), 1, "{error}");
-    assert!(error.contains(words), "'{words}' is not in: {error}");
 }
 
 /// Rows of numbers under a header.
@@ -85,7 +63,7 @@ fn spread(count: usize) -> Vec<Stop> {
 fn a_machine_is_planned_measured_and_fitted() {
     let folder = folder("whole");
     let plan = ["plan", "--kit", "xyt", "--noise", "50nm", "--poses", "200"];
-    let told = document(&tripivot(
+    let told = document(&calibrate(
         &folder,
         &[&plan[..], &["--out", "plan.csv", "--json"]].concat(),
     ));
@@ -122,7 +100,7 @@ fn a_machine_is_planned_measured_and_fitted() {
         "own.toml",
     ];
     let more = ["--serial", "bench 3", "--temperature", "20.4", "--json"];
-    let told = document(&tripivot(&folder, &[&fit[..], &more].concat()));
+    let told = document(&calibrate(&folder, &[&fit[..], &more].concat()));
     assert_eq!(told["outliers"], serde_json::json!([12]));
     assert_eq!(told["chi2_is_doubtful"], false, "{told}");
     let text = fs::read_to_string(folder.join("own.toml")).unwrap();
@@ -144,7 +122,7 @@ fn a_machine_is_planned_measured_and_fitted() {
         "{left_nm} {expected_nm}"
     );
     // In words.
-    let text = stdout(&tripivot(&folder, &fit));
+    let text = is_done(&calibrate(&folder, &fit));
     assert!(
         text.contains("xyt, 200 poses, without those of lines 12\n"),
         "{text}"
@@ -155,7 +133,7 @@ fn a_machine_is_planned_measured_and_fitted() {
 fn a_plan_says_what_an_instrument_cannot_tell() {
     let folder = folder("freedoms");
     let plan = ["plan", "--noise", "0.5um", "--poses", "40", "--kit"];
-    let text = stdout(&tripivot(
+    let text = is_done(&calibrate(
         &folder,
         &[&plan[..], &["camera", "--out", "p.csv"]].concat(),
     ));
@@ -179,7 +157,7 @@ fn a_plan_says_what_an_instrument_cannot_tell() {
             "{row:?}"
         );
     }
-    let text = stdout(&tripivot(&folder, &[&plan[..], &["theta"]].concat()));
+    let text = is_done(&calibrate(&folder, &[&plan[..], &["theta"]].concat()));
     assert!(
         text.contains("more directions of the machine's numbers"),
         "{text}"
@@ -194,7 +172,7 @@ fn wrong_files_and_options_are_refused() {
     let line = |at: usize| good.lines().nth(at).unwrap();
     let fit = |text: &str| {
         fs::write(folder.join("m.csv"), text).unwrap();
-        tripivot(
+        calibrate(
             &folder,
             &["fit", "m.csv", "--noise", "50nm", "--out", "c.toml"],
         )
@@ -236,8 +214,8 @@ fn wrong_files_and_options_are_refused() {
         assert!(!folder.join("c.toml").exists(), "{text}");
     }
     let none = ["fit", "none.csv", "--noise", "50nm", "--out", "c.toml"];
-    assert_refused(&tripivot(&folder, &none), 2, "cannot read none.csv: ");
-    let plan = |arguments: &[&str]| tripivot(&folder, &[&["plan"][..], arguments].concat());
+    assert_refused(&calibrate(&folder, &none), 2, "cannot read none.csv: ");
+    let plan = |arguments: &[&str]| calibrate(&folder, &[&["plan"][..], arguments].concat());
     let kit = plan(&["--kit", "sextant", "--noise", "1nm", "--poses", "20"]);
     assert_refused(&kit, 2, "there are xyt, xy, theta, camera, camera2, ends");
     for noise in ["50", "0nm", "50urad", "nm", "NaNnm", "2mm"] {

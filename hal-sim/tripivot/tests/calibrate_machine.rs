@@ -1,9 +1,12 @@
 //! Calibration of a simulated machine over its command line: measured, interrupted, fitted, given to its controller, and judged by
 //! true poses.
 
+mod calibrate_command;
+
+use calibrate_command::{RADIUS_MM, assert_refused, calibrate, folder, is_done};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use calibration::file::Calibration;
 use calibration::frames::{Pair, without_frames};
@@ -18,7 +21,6 @@ use hal_sim::machine::file::from_text;
 use hal_sim::machine::instruments::{EncoderErrors, QuasiStatic, commanded, survey, workshop};
 use hal_sim::random::Random;
 
-const RADIUS_MM: f64 = 100.0;
 /// A machine with errors of its geometry and its encoders alone.
 const BUILT: [&str; 6] = [
     "--set",
@@ -29,35 +31,8 @@ const BUILT: [&str; 6] = [
     "plant.imperfections.encoder_harmonics=true",
 ];
 
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("calibrate-machine-{name}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-fn calibrate(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_tripivot"))
-        .current_dir(folder)
-        .arg("calibrate")
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
 fn on_machine(folder: &Path, arguments: &[&str]) -> Output {
     calibrate(folder, &[arguments, &BUILT].concat())
-}
-
-fn is_done(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn assert_refused(output: &Output, code: i32, words: &str) {
-    let error = String::from_utf8(output.stderr.clone()).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{error}");
-    assert!(error.contains(words), "'{words}' is not in: {error}");
 }
 
 fn truth() -> QuasiStatic {
@@ -136,7 +111,7 @@ fn fit(folder: &Path, measured: &str, serial: &str, out: &str) {
 
 #[test]
 fn a_measurement_that_was_interrupted_is_what_it_would_have_been() {
-    let folder = folder("resumed");
+    let folder = folder("machine-resumed");
     let measure = |out: &str, poses: &str| {
         let arguments = [
             "measure",
@@ -227,7 +202,7 @@ fn a_measurement_that_was_interrupted_is_what_it_would_have_been() {
 
 #[test]
 fn an_unknown_plate_calibrates_a_machine() {
-    let folder = folder("plate");
+    let folder = folder("machine-plate");
     let measure = [
         "measure", "--kit", "camera2", "--noise", "50nm", "--poses", "200",
     ];
@@ -243,7 +218,7 @@ fn an_unknown_plate_calibrates_a_machine() {
 
 #[test]
 fn a_reader_that_reads_nothing_is_named() {
-    let folder = folder("reader");
+    let folder = folder("machine-reader");
     let measure = |reader: &str| {
         let arguments = ["measure", "--kit", "xy", "--noise", "50nm", "--poses", "12"];
         on_machine(
@@ -303,7 +278,7 @@ fn with_numbers(folder: &Path, name: &str, calibration: &Calibration, machine: &
 
 #[test]
 fn wrong_calibrations_are_not_applied_and_those_in_force_are_found() {
-    let folder = folder("wrong");
+    let folder = folder("machine-wrong");
     let own = fitted(&folder, "own", &truth());
     let [first, second, third] = own.machine();
     let mut others = fitted(&folder, "others", &workshop::machine(2)).machine();

@@ -1,8 +1,10 @@
 //! The report of a calibration, what `apply` refuses by the measurement itself, and the whole of it on an unknown machine.
 
+mod calibrate_command;
+
+use calibrate_command::{RADIUS_MM, assert_refused, calibrate, folder, is_done};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use calibration::plan::Stop;
 use calibration::table::{note, to_text};
@@ -11,35 +13,7 @@ use desk::calibrate::with_references;
 use hal_sim::machine::instruments::{survey, workshop};
 use hal_sim::random::Random;
 
-const RADIUS_MM: f64 = 100.0;
 const NM: f64 = RADIUS_MM * 1e6;
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("calibrate-report-{name}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-fn calibrate(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_tripivot"))
-        .current_dir(folder)
-        .arg("calibrate")
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn is_done(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn assert_refused(output: &Output, code: i32, words: &str) {
-    let error = String::from_utf8(output.stderr.clone()).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{error}");
-    assert!(error.contains(words), "'{words}' is not in: {error}");
-}
 
 /// What an interferometer reads of a machine at rest, a pose every 0.6 s, and what something does to each reading.
 fn measured(folder: &Path, name: &str, seed: u64, spoil: impl Fn(usize, f64, &mut Visit)) {
@@ -82,7 +56,7 @@ fn spoil_x(measured: &mut Visit, off_nm: f64) {
 
 #[test]
 fn a_report_tells_all_of_it_and_of_this_calibration_alone() {
-    let folder = folder("page");
+    let folder = folder("report-page");
     measured(&folder, "own", 3, |_, _, _| ());
     measured(&folder, "others", 4, |_, _, _| ());
     let told = fit(&folder, "own");
@@ -125,7 +99,7 @@ fn a_report_tells_all_of_it_and_of_this_calibration_alone() {
 
 #[test]
 fn what_drifted_and_what_does_not_hold_is_not_applied() {
-    let folder = folder("apply");
+    let folder = folder("report-apply");
     // 0.6 um in two minutes, as a machine does that becomes warmer by some tenths of a K.
     measured(&folder, "drifted", 3, |_, share, visit| {
         spoil_x(visit, 600.0 * share)
@@ -168,7 +142,7 @@ fn what_drifted_and_what_does_not_hold_is_not_applied() {
 #[test]
 #[cfg_attr(debug_assertions, ignore = "takes minutes unless optimised")]
 fn an_unknown_machine_calibrates_itself() {
-    let folder = folder("demo");
+    let folder = folder("report-demo");
     let told = is_done(&calibrate(
         &folder,
         &["demo", "--poses", "200", "--out", "out"],

@@ -3,14 +3,13 @@
 use super::axis_state::{AxisState, TickIncrement};
 use super::fault_stop::{FaultStop, TimeScaling};
 use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
-use super::{Plan, PlanStart, Position, same};
+use super::{Pieces, Plan, PlanStart, Position, same};
 use core::borrow::Borrow;
 use kinematics::{Acceleration, Twist};
 
 /// The motion of the setpoint: at rest, or following a plan.
 ///
-/// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number. Most
-/// of it can be copied later than it is taken, before the next tick.
+/// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
 #[derive(Clone, Debug, Default)]
 pub struct PlanFollower {
     axes: [AxisState; 3],
@@ -19,8 +18,6 @@ pub struct PlanFollower {
     slots: [Plan; 2],
     /// Slot of the plan under way, or of the last one.
     current: usize,
-    /// Slot of the plan of which the first pieces have been copied and not yet the others.
-    kept: Option<usize>,
     moving: bool,
     /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
     splice: Option<u64>,
@@ -78,14 +75,6 @@ impl PlanFollower {
     /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
     pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
         let plan = plan.borrow();
-        self.accept_first(plan)?;
-        self.accept_rest(plan);
-        Ok(())
-    }
-
-    /// Takes as much of a plan as one [`advance`](Self::advance) needs. Before the next one,
-    /// [`accept_rest`](Self::accept_rest) with the same plan.
-    pub fn accept_first(&mut self, plan: &Plan) -> Result<(), Stale> {
         match plan.start {
             PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
                 self.keep(plan);
@@ -191,24 +180,13 @@ impl PlanFollower {
         each!(i => self.axes[i].rounded())
     }
 
-    /// Copies a plan into the free slot: of its pieces those that one tick can come to.
+    /// Copies a plan into the free slot.
     fn keep(&mut self, plan: &Plan) {
-        let free = (self.current + 1) & 1;
-        let slot = &mut self.slots[free];
+        let slot = &mut self.slots[(self.current + 1) & 1];
         slot.id = plan.id;
-        slot.pieces.clear();
-        copy(plan, slot, PIECES_OF_A_TICK);
         slot.nudge = plan.nudge;
         slot.end = plan.end;
-        self.kept = Some(free);
-    }
-
-    /// Copies what [`accept_first`](Self::accept_first) has left of the plan that it has taken; nothing where it has not.
-    #[inline]
-    pub fn accept_rest(&mut self, plan: &Plan) {
-        if let Some(slot) = self.kept.take() {
-            copy(plan, &mut self.slots[slot & 1], plan.pieces.len());
-        }
+        copy(&plan.pieces, &mut slot.pieces);
     }
 
     /// Starts the plan in the other slot.
@@ -230,14 +208,10 @@ impl PlanFollower {
     }
 }
 
-/// A tick enters one piece more than the one that it begins with, at most.
-const PIECES_OF_A_TICK: usize = 2;
-
-/// Adds to the pieces of a slot those of a plan that are not there yet, up to so many.
+/// In a function of its own, which the image's linker finds.
 #[inline(never)]
-fn copy(plan: &Plan, slot: &mut Plan, most: usize) {
-    while slot.pieces.len() < most
-        && let Some(piece) = plan.pieces.get(slot.pieces.len())
-        && slot.pieces.push(*piece).is_ok()
-    {}
+fn copy(pieces: &Pieces, slot: &mut Pieces) {
+    slot.clear();
+    // As long as it is.
+    let _ = slot.extend_from_slice(pieces);
 }

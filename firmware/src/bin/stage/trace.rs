@@ -75,31 +75,31 @@ impl TickObserver for TraceWriter {
     }
 }
 
-/// Puts the symbol `stage_tick_end` here, and no instruction: where a bench stops counting a tick's cost, its duties written.
-// A numbered label, which the lint asks for, is no symbol. No `nomem`: the tick's stores stay in front of the label.
+/// Puts a symbol here, and no instruction.
+// A numbered label, which the lint asks for, is no symbol. No `nomem`: the stores before it stay in front of the label.
+macro_rules! mark {
+    ($symbol:literal) => {
+        // SAFETY: a label does nothing. Were it compiled in two places, the assembler would refuse the second.
+        unsafe {
+            core::arch::asm!(
+                concat!(".global ", $symbol),
+                concat!($symbol, ":"),
+                options(nostack, preserves_flags)
+            );
+        }
+    };
+}
+
+/// Where a bench stops counting a tick's cost, its duties written.
 #[allow(named_asm_labels)]
 #[inline(always)]
 pub fn mark_end_of_tick() {
-    // SAFETY: a label does nothing. Were the call compiled in two places, the assembler would refuse the second.
-    unsafe {
-        core::arch::asm!(
-            ".global stage_tick_end",
-            "stage_tick_end:",
-            options(nostack, preserves_flags)
-        );
-    }
+    mark!("stage_tick_end");
 }
 
-/// The same at the end of all that a tick does.
+/// Where all that a tick does has ended.
 #[allow(named_asm_labels)]
 #[inline(always)]
 pub fn mark_end_of_handler() {
-    // SAFETY: as above.
-    unsafe {
-        core::arch::asm!(
-            ".global stage_handler_end",
-            "stage_handler_end:",
-            options(nostack, preserves_flags)
-        );
-    }
+    mark!("stage_handler_end");
 }
