@@ -78,7 +78,7 @@ impl Course {
             Command::Target(platform) => {
                 let to = RotationCentre::new(constraints.rotation_centre)?.from_platform(&platform);
                 if moving {
-                    plan_retarget(id, &self.plan, &self.from, at, to, constraints, Effort::All).ok()
+                    plan_retarget(id, &self.plan, &self.from, at, to, constraints, Effort::ALL).ok()
                 } else {
                     plan_line(id, here, to, constraints).ok()
                 }

@@ -128,7 +128,7 @@ fn in_motion_the_point_stays() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
     let mut motion = PlanFollower::default();
     motion.rest_at(from);
-    motion.accept(line(from, to)).expect("at rest");
+    motion.accept(&line(from, to)).expect("at rest");
     for _ in 0..10 {
         motion.advance();
     }

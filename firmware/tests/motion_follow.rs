@@ -12,7 +12,7 @@ fn started(plan: &Plan) -> PlanFollower {
     };
     let mut motion = PlanFollower::default();
     motion.rest_at(from);
-    assert_eq!(motion.accept(plan.clone()), Ok(()));
+    assert_eq!(motion.accept(plan), Ok(()));
     motion
 }
 
@@ -80,7 +80,7 @@ proptest! {
         for _ in 0..at.saturating_sub(ahead) {
             motion.advance();
         }
-        prop_assert_eq!(motion.accept(stop.clone()), Ok(()));
+        prop_assert_eq!(motion.accept(&stop), Ok(()));
         let seam = plan.state_after(&at_rest(from), at);
         for tick in at.saturating_sub(ahead) + 1..=at + stop.ticks() {
             motion.advance();
@@ -104,8 +104,8 @@ fn plans_that_do_not_start_where_the_motion_is_are_stale() {
     let splice = |tick| splice(tick).expect("far from the end");
     let mut motion = PlanFollower::default();
     motion.rest_at(to);
-    assert_eq!(motion.accept(plan.clone()), Err(Stale), "starts elsewhere");
-    assert_eq!(motion.accept(splice(100)), Err(Stale), "nothing to leave");
+    assert_eq!(motion.accept(&plan), Err(Stale), "starts elsewhere");
+    assert_eq!(motion.accept(&splice(100)), Err(Stale), "nothing to leave");
     assert!(!motion.is_moving() && motion.position() == to);
 
     let mut motion = started(&plan);
@@ -119,10 +119,10 @@ fn plans_that_do_not_start_where_the_motion_is_are_stale() {
         },
         ..splice(200)
     };
-    assert_eq!(motion.accept(other), Err(Stale), "leaves another plan");
-    assert_eq!(motion.accept(splice(99)), Err(Stale), "its tick is past");
+    assert_eq!(motion.accept(&other), Err(Stale), "leaves another plan");
+    assert_eq!(motion.accept(&splice(99)), Err(Stale), "its tick is past");
     assert_eq!(
-        motion.accept(line(motion.position(), from)),
+        motion.accept(&line(motion.position(), from)),
         Err(Stale),
         "not at rest"
     );
@@ -147,7 +147,7 @@ fn the_tick_of_a_splice_may_be_this_one() {
     for _ in 0..100 {
         motion.advance();
     }
-    assert_eq!(motion.accept(stop.clone()), Ok(()));
+    assert_eq!(motion.accept(&stop), Ok(()));
     for _ in 0..stop.ticks() {
         assert!(motion.is_moving());
         motion.advance();
@@ -162,9 +162,9 @@ fn a_later_stop_replaces_an_accepted_one() {
     let plan = line(from, at(60.0, 5.0, 0.2));
     let stop = |at, how| plan_stop(8, &plan, &at_rest(from), at, &CONSTRAINTS, how).unwrap();
     let mut motion = started(&plan);
-    assert_eq!(motion.accept(stop(5_000, Stop::Smooth)), Ok(()));
+    assert_eq!(motion.accept(&stop(5_000, Stop::Smooth)), Ok(()));
     let urgent = stop(3_000, Stop::Urgent);
-    assert_eq!(motion.accept(urgent.clone()), Ok(()));
+    assert_eq!(motion.accept(&urgent), Ok(()));
     for _ in 0..3_000 + urgent.ticks() {
         motion.advance();
     }
@@ -179,7 +179,7 @@ fn a_plan_without_a_way_is_over_at_once() {
     assert_eq!((motion.is_moving(), motion.position()), (false, here));
     // And the next is taken as usual.
     let next = line(here, at(0.0, 0.0, 0.0));
-    assert_eq!(motion.accept(next.clone()), Ok(()));
+    assert_eq!(motion.accept(&next), Ok(()));
     for _ in 0..next.ticks() {
         motion.advance();
     }

@@ -65,7 +65,7 @@ fn new_targets_in_motion_beside_the_reference() {
                 at,
                 other,
                 &constraints,
-                Effort::All,
+                Effort::ALL,
             ) else {
                 stops += 1;
                 continue;

@@ -2,6 +2,7 @@
 
 mod motion_bench;
 
+use firmware::motion::plan::axis_state::TickIncrement;
 use firmware::motion::{
     AxisState, Constraints, Effort, Plan, PlanFollower, Position, RetargetError, Stop,
     plan_retarget, plan_stop,
@@ -17,7 +18,7 @@ fn retarget(
     at: u64,
     to: Position,
 ) -> Result<Plan, RetargetError> {
-    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS, Effort::All)
+    plan_retarget(of.id + 1, of, from, at, to, &CONSTRAINTS, Effort::ALL)
 }
 
 /// A line and further targets, each with the part of the motion before after which it comes.
@@ -129,7 +130,7 @@ fn the_tick_follows_a_tour_without_a_step() {
         let jerk = next.pieces[0].jerk;
         let mut one = start;
         for i in 0..3 {
-            one[i].advance(jerk[i], next.nudge[i]);
+            one[i].advance(&TickIncrement::new(jerk[i], next.nudge[i]));
         }
         assert_eq!(next.state_after(&start, 1), one);
         plan = next;
@@ -230,7 +231,7 @@ fn near_the_rim_and_the_bounds_it_needs_a_stop() {
                 bounds,
                 ..CONSTRAINTS
             },
-            Effort::All,
+            Effort::ALL,
         )
     };
     assert!(plan_within(30.0).is_ok());

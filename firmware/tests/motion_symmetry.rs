@@ -57,7 +57,7 @@ proptest! {
         prop_assert_eq!(rest_of.state_after(&start, at - since), state);
         let other = RotationCentre::new(constraints.rotation_centre).unwrap().from_platform(&other);
         let both = [(&plan, at_rest(from), at), (&rest_of, start, at - since)];
-        let [one, shifted] = both.map(|(plan, start, at)| plan_retarget(8, plan, &start, at, other, &constraints, Effort::All).map(unshifted));
+        let [one, shifted] = both.map(|(plan, start, at)| plan_retarget(8, plan, &start, at, other, &constraints, Effort::ALL).map(unshifted));
         prop_assert_eq!(one, shifted);
         for how in [Stop::Smooth, Stop::Urgent] {
             let [one, shifted] = both.map(|(plan, start, at)| plan_stop(8, plan, &start, at, &constraints, how).map(unshifted));
@@ -98,7 +98,7 @@ proptest! {
             let on = |[x, y, theta]: Position| [x, y, theta + (turns << 32)];
             let plan = plan_line(7, on(from), on(to), &constraints).expect("without bounds");
             let at = (part * plan.ticks() as f64) as u64;
-            let next = plan_retarget(8, &plan, &at_rest(on(from)), at, on(other), &constraints, Effort::All);
+            let next = plan_retarget(8, &plan, &at_rest(on(from)), at, on(other), &constraints, Effort::ALL);
             (plan.pieces, next.map(|next| (next.pieces, next.nudge)))
         });
         prop_assert_eq!(one, turned);
@@ -185,7 +185,7 @@ impl Plans {
             at,
             other,
             constraints,
-            Effort::All,
+            Effort::ALL,
         );
         Some(Self { line, at, next })
     }

@@ -120,7 +120,7 @@ impl Moving {
             line.at,
             to,
             ground(),
-            Effort::All,
+            Effort::ALL,
         ) {
             Ok(plan) => Self {
                 start: line.state(),

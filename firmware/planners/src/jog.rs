@@ -167,18 +167,22 @@ impl<'a> JogRequest<'a> {
         Ok((radius, self.limits.scaled(part, 1.0)))
     }
 
-    /// Seconds of steady motion until theta meets its bounds.
-    fn time_to_theta_bound(&self, theta: &AxisState, wanted: i64) -> f32 {
-        let [low, high] = self.constraints.bounds[2];
-        let now = theta.rounded();
-        let (way, velocity) = match wanted {
-            0 => return f32::INFINITY,
-            1.. => (high.min(MAX_TURNS).saturating_sub(now), wanted),
-            _ => (now.saturating_sub(low.max(-MAX_TURNS)), -wanted),
-        };
-        let units = (1_i64 << SUB_BITS) as f32;
-        i64_to_f32_fast(way.max(0)) * (1.0 - 5.0 * f32::EPSILON)
-            / (i64_to_f32_fast(velocity) / units * self.hz)
+    /// Seconds until steady motion with these rates of the axes meets a bound.
+    fn time_to_bounds(&self, axes: &[AxisState; 3], rates: &[i64; 3]) -> f32 {
+        const PER_UNIT: f32 = 1.0 / (1_i64 << SUB_BITS) as f32;
+        let mut seconds = f32::INFINITY;
+        for ((axis, &rate), [low, high]) in axes.iter().zip(rates).zip(self.constraints.bounds) {
+            let now = axis.rounded();
+            let way = match rate {
+                0 => continue,
+                1.. => high.min(MAX_TURNS).saturating_sub(now),
+                _ => now.saturating_sub(low.max(-MAX_TURNS)),
+            };
+            let way = i64_to_f32_fast(way) * (1.0 - 5.0 * f32::EPSILON);
+            let per_second = i64_to_f32_fast(rate).abs() * PER_UNIT * self.hz;
+            seconds = seconds.fmin((way / per_second).fmax(0.0));
+        }
+        seconds
     }
 
     /// The steady motion at `velocity` from a position.
@@ -258,10 +262,7 @@ impl Jog {
             (&self.steady, 0.0)
         };
         let edge = request.steady(from, &target).time_to_edge(self.radius);
-        let steady = request.steady(&self.steady, &target);
-        let seconds = (edge - done)
-            .fmin(steady.time_to_bounds(&request.constraints.bounds))
-            .fmin(request.time_to_theta_bound(&self.steady[2], self.wanted[2]));
+        let seconds = (edge - done).fmin(request.time_to_bounds(&self.steady, &self.wanted));
         if seconds < self.brake_s {
             return Err(seconds + self.ramp_s);
         }
@@ -276,12 +277,8 @@ impl Jog {
             0 => AxisState::default(),
             _ => self.steady[i],
         });
-        let hold = Piece {
-            ticks: hold,
-            jerk: [0; 3],
-        };
         let brake = velocity_pieces(&axes, &[0; 3], self.brake);
-        for piece in [hold].into_iter().chain(brake) {
+        for piece in [Piece::coast(hold)].into_iter().chain(brake) {
             // Nine of many.
             let _ = push_piece(&mut plan.pieces, piece);
         }

@@ -1,4 +1,4 @@
-//! A steady motion, and how far it can go: until the platform's centre meets the edge, or the moved point its bounds.
+//! A steady motion, and how far it can go until the platform's centre meets the edge.
 //!
 //! The square of the centre's distance from the track's is followed: it grows no faster than a parabola of its value,
 //! its slope and the most that its second derivative can be, whose crossing with the edge's square is known. Where the
@@ -6,10 +6,9 @@
 //! last.
 
 use kinematics::Angle;
-use motion::constraints::Bounds;
-use motion::plan::axis_state::{PER_POSITION_UNIT, POSITION_UNITS};
+use motion::plan::axis_state::POSITION_UNITS;
 use motion::tolerances::JOG_RADII;
-use number::float::{FloatMinMax, hypot, i64_to_f32_fast, truncate};
+use number::float::{FloatMinMax, hypot, truncate};
 use number::{sin_cos_f32, sqrt_f32};
 
 /// A steady motion: the moved point at `point` (track radii) and `theta` (2^-32 turns), its velocity per second and
@@ -44,7 +43,9 @@ impl SteadyMotion {
             let point = self.point_after(seconds);
             // From here on every orientation is inside, as long as the point is in a smaller disk.
             if hypot(point[0], point[1]) + arm <= radius {
-                return seconds + self.straight(&point, radius - arm);
+                let ([x, y], [v, w], inner) = (point, self.velocity, radius - arm);
+                return seconds
+                    + crossing(x * x + y * y - inner * inner, x * v + y * w, v * v + w * w);
             }
             let (square, half_rate) = self.square(seconds);
             let step = crossing(square - radius * radius, half_rate, second_derivative);
@@ -54,34 +55,6 @@ impl SteadyMotion {
             }
         }
         seconds
-    }
-
-    /// Seconds until the moved point meets its bounds.
-    pub fn time_to_bounds(&self, bounds: &Bounds) -> f32 {
-        let mut seconds = f32::INFINITY;
-        for ((bounds, &point), &velocity) in bounds.iter().zip(&self.point).zip(&self.velocity) {
-            let [low, high] = bounds.map(|units| i64_to_f32_fast(units) * PER_POSITION_UNIT);
-            let way = if velocity > 0.0 {
-                high - JOG_RADII - point
-            } else {
-                point - low - JOG_RADII
-            };
-            if velocity != 0.0 {
-                seconds = seconds.fmin((way / velocity.abs()).fmax(0.0));
-            }
-        }
-        seconds
-    }
-
-    /// Seconds until something at `from` that moves as the point does is `radius` out.
-    #[inline(never)]
-    fn straight(&self, from: &[f32; 2], radius: f32) -> f32 {
-        let [x, y] = self.velocity;
-        crossing(
-            from[0] * from[0] + from[1] * from[1] - radius * radius,
-            from[0] * x + from[1] * y,
-            x * x + y * y,
-        )
     }
 
     /// How far the moved point lies from the platform's centre.

@@ -118,7 +118,7 @@ impl Commander {
         {
             return self.send_plan(stop, None, queues);
         }
-        match under_way.retargeted(goal, id, at, &constraints, Effort::First) {
+        match under_way.retargeted(goal, id, at, &constraints, Effort::FIRST) {
             Ok(sent_plan) => {
                 self.send_plan(sent_plan, Some(goal), queues)?;
                 self.pending = if is_target {
@@ -159,7 +159,7 @@ impl Commander {
         };
         let at = at + lead;
         let left = under_way.plan.ticks().saturating_sub(at);
-        let way = under_way.retargeted(goal, id, at, &constraints, Effort::All);
+        let way = under_way.retargeted(goal, id, at, &constraints, Effort::ALL);
         let way = way.ok().filter(|way| {
             !is_under_way || way.plan.ticks().saturating_add(left / WORTH_TAKING) < left
         });

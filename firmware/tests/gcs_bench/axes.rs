@@ -3,6 +3,7 @@
 
 #![allow(dead_code)] // Each test file uses its part.
 
+use firmware::motion::plan::axis_state::TickIncrement;
 use firmware::motion::{AxisState, Plan, PlanFollower, PlanStart};
 
 /// A plan, and the axes at its first tick.
@@ -62,6 +63,6 @@ fn advance(axes: &mut [AxisState; 3], plan: &Plan, tick: u64) {
     });
     let (_, piece) = ends.find(|(end, _)| tick < *end).expect("a piece");
     for (i, axis) in axes.iter_mut().enumerate() {
-        axis.advance(piece.jerk[i], plan.nudge[i]);
+        axis.advance(&TickIncrement::new(piece.jerk[i], plan.nudge[i]));
     }
 }

@@ -1,6 +1,7 @@
 //! States of a plan against exact kinematics: workspace, limits and pivots, in double precision.
 
 use super::{AXIS_UNIT, CONSTRAINTS, UNIT, corners};
+use firmware::motion::plan::axis_state::TickIncrement;
 use firmware::motion::{AxisState, Constraints, Plan};
 use kinematics::{Acceleration, Pose, Twist, inverse, pivot_motion};
 use std::f64::consts::TAU;
@@ -170,7 +171,7 @@ impl Worst {
                     if skipped > 0 && tick == most / 2 {
                         *axis = axis.after(skipped, piece.jerk[i], plan.nudge[i]);
                     }
-                    axis.advance(piece.jerk[i], plan.nudge[i]);
+                    axis.advance(&TickIncrement::new(piece.jerk[i], plan.nudge[i]));
                 }
                 self.look(&axes, constraints);
             }

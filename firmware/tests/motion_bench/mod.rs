@@ -16,6 +16,7 @@ pub mod streaming;
 mod proptest_settings;
 pub use proptest_settings::settings;
 
+use firmware::motion::plan::axis_state::TickIncrement;
 use firmware::motion::{AxisState, Constraints, Limits, Plan, Position, plan_line};
 use firmware::parameters::Parameters;
 use kinematics::Geometry;
@@ -75,7 +76,7 @@ pub fn states(plan: &Plan, start: [AxisState; 3]) -> Vec<[AxisState; 3]> {
     for piece in &plan.pieces {
         for _ in 0..piece.ticks {
             for (i, axis) in axes.iter_mut().enumerate() {
-                axis.advance(piece.jerk[i], plan.nudge[i]);
+                axis.advance(&TickIncrement::new(piece.jerk[i], plan.nudge[i]));
             }
             all.push(axes);
         }

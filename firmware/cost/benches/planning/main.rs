@@ -181,7 +181,7 @@ fn under_way(random: &mut Random) -> (PlanFollower, Trajectory<3>) {
         let (plan, from): (Plan, _) = now.begun_at_rest();
         let mut motion = PlanFollower::default();
         motion.rest_at(from);
-        if plan.ticks() > u64::from(TICKS) && planned.is_ok() && motion.accept(plan).is_ok() {
+        if plan.ticks() > u64::from(TICKS) && planned.is_ok() && motion.accept(&plan).is_ok() {
             return (motion, trajectory);
         }
     }
@@ -211,7 +211,7 @@ fn retargeted(now: &Moving, to: Position) -> bool {
         now.at,
         to,
         ground(),
-        Effort::First,
+        Effort::FIRST,
     )
     .is_ok()
 }

@@ -75,7 +75,7 @@ pub fn retargeted(
     let stop = stopped(of, at, constraints);
     let lead = *LEAD_TICKS;
     let id = of.plan.id + 1;
-    match plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::First) {
+    match plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::FIRST) {
         Ok(plan) => {
             let first = Motion {
                 plan,
@@ -110,7 +110,7 @@ pub fn retargeted(
 fn soonest(of: &Motion, at: u64, to: Position, constraints: &Constraints) -> Option<Motion> {
     let id = of.plan.id + 1;
     Some(Motion {
-        plan: plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::All).ok()?,
+        plan: plan_retarget(id, &of.plan, &of.from, at, to, constraints, Effort::ALL).ok()?,
         from: of.state_after(at),
     })
 }

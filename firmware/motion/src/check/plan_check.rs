@@ -145,12 +145,10 @@ impl PlanCheck {
                             done += ticks;
                             longer
                         }
-                        Err((broken, shorter)) => {
-                            if shorter == 0.0 || ticks <= SHORTEST || *budget == 0 {
-                                return Err(broken);
-                            }
+                        Err((_, shorter)) if shorter > 0.0 && ticks > SHORTEST && *budget > 0 => {
                             shorter
                         }
+                        Err((broken, _)) => return Err(broken),
                     };
                 ticks = (truncate(ticks_to_f32(ticks) * change) as u64).max(SHORTEST);
             }
@@ -250,11 +248,8 @@ impl PlanCheck {
         let limits = &self.motion_limits;
         self.within(sizes.v, &limits.speed, Violation::Speed)?;
         self.within(sizes.a, &limits.acceleration, Violation::Acceleration)?;
-        if furthest <= self.radius + WORKSPACE_RADII {
-            Ok(())
-        } else {
-            Err(Violation::Disk(furthest))
-        }
+        let is_inside = furthest <= self.radius + WORKSPACE_RADII;
+        is_inside.then_some(()).ok_or(Violation::Disk(furthest))
     }
 
     /// Whether translation and rotation keep to a limit.
@@ -264,11 +259,8 @@ impl PlanCheck {
         limit: &Speeds,
         broken: Violation,
     ) -> Result<(), Violation> {
-        if part(linear, angular, limit) <= self.slack {
-            Ok(())
-        } else {
-            Err(broken)
-        }
+        let is_kept = part(linear, angular, limit) <= self.slack;
+        is_kept.then_some(()).ok_or(broken)
     }
 }
 

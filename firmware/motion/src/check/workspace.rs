@@ -52,10 +52,10 @@ pub fn check_target(target: &Position, constraints: &Constraints) -> Result<(), 
     check_disk(target, constraints)?;
     let inside =
         |i: usize| (constraints.bounds[i][0]..=constraints.bounds[i][1]).contains(&target[i]);
-    if let Some(axis) = (0..3).find(|&i| !inside(i)) {
-        return Err(Refusal::OutOfBounds { axis });
+    match (0..3).find(|&i| !inside(i)) {
+        Some(axis) => Err(Refusal::OutOfBounds { axis }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 #[inline(never)]

@@ -39,7 +39,8 @@ pub struct TickIncrement {
 }
 
 impl TickIncrement {
-    /// Of a jerk and a nudge as [`AxisState::advance`] takes them.
+    /// Of a constant `jerk`, a multiple of [`JERK_STEP`]; `nudge` is added to the position besides, see
+    /// [`Plan::nudge`](crate::Plan::nudge).
     #[inline]
     pub fn new(jerk: i64, nudge: i64) -> Self {
         let sixth = (jerk >> 1).wrapping_mul(INVERSE_OF_3);
@@ -60,16 +61,9 @@ impl AxisState {
         }
     }
 
-    /// The state one tick later under a constant `jerk`, a multiple of [`JERK_STEP`]. `nudge` is added to the position
-    /// besides; see [`Plan::nudge`](crate::Plan::nudge).
-    #[inline]
-    pub fn advance(&mut self, jerk: i64, nudge: i64) {
-        self.advance_by(&TickIncrement::new(jerk, nudge));
-    }
-
     /// The state one tick later.
     #[inline]
-    pub fn advance_by(&mut self, increment: &TickIncrement) {
+    pub fn advance(&mut self, increment: &TickIncrement) {
         // Both are even, so that the shifts are the halves.
         let step = (self.velocity)
             .wrapping_add(self.acceleration >> 1)
@@ -119,11 +113,8 @@ impl AxisState {
     /// velocity does not count.
     #[inline(never)]
     pub fn rest_position(&self, ticks: u64, nudge: i64) -> i64 {
-        let rest = Self {
-            position: self.position,
-            ..Self::default()
-        };
-        rest.after(ticks, 0, nudge).rounded()
+        let way = i128::from(nudge) * i128::from(ticks);
+        (self.position.wrapping_add(way) >> SUB_BITS) as i64
     }
 
     /// Position in 2^-32 track radii or turns, rounded down.
@@ -165,7 +156,7 @@ mod tests {
                     axis,
                     "{start:?} {ticks} {jerk}"
                 );
-                axis.advance(jerk, nudge);
+                axis.advance(&TickIncrement::new(jerk, nudge));
             }
         }
     }

@@ -100,8 +100,7 @@ impl CubicSegment {
     pub fn sin_cos(&self, way: f32) -> (f32, f32) {
         const UNITS_A_RADIAN: f32 = POSITION_UNITS / TAU;
         let theta = i64::from(self.theta).wrapping_add(truncate(way * UNITS_A_RADIAN));
-        let (sin, cos) = sin_cos_f32(Angle::from_units(theta));
-        (sin, cos)
+        sin_cos_f32(Angle::from_units(theta))
     }
 }
 

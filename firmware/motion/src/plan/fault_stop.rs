@@ -9,7 +9,6 @@
 use super::Position;
 use super::axis_state::AxisState;
 use super::setpoint::{ACCELERATION_CUT, Setpoint, VELOCITY_CUT};
-use kinematics::{Acceleration, Twist};
 
 /// 2^-32 turns or track radii in what a velocity and an acceleration are cut to.
 const VELOCITY_UNIT: f32 = 1.0 / (1 << (40 - VELOCITY_CUT)) as f32;
@@ -78,23 +77,12 @@ impl TimeScaling {
         // Of the plan within its tick.
         let tick = self.part / rate_hz;
         let (twist, acceleration) = (&plan.twist, &plan.acceleration);
-        let x = twist.x + acceleration.x * tick;
-        let y = twist.y + acceleration.y * tick;
-        let theta = twist.theta + acceleration.theta * tick;
+        let a = [acceleration.x, acceleration.y, acceleration.theta];
+        let v = [twist.x, twist.y, twist.theta];
+        let v = each!(i => v[i] + a[i] * tick);
         let square = rate * rate;
-        Setpoint {
-            position: self.position(axes),
-            twist: Twist {
-                x: x * rate,
-                y: y * rate,
-                theta: theta * rate,
-            },
-            acceleration: Acceleration {
-                x: acceleration.x * square + x * rate_change,
-                y: acceleration.y * square + y * rate_change,
-                theta: acceleration.theta * square + theta * rate_change,
-            },
-        }
+        let slowed = each!(i => a[i] * square + v[i] * rate_change);
+        Setpoint::new(self.position(axes), each!(i => v[i] * rate), slowed)
     }
 
     /// The plan's position within its tick.

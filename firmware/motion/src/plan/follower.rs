@@ -4,8 +4,6 @@ use super::axis_state::{AxisState, TickIncrement};
 use super::fault_stop::{FaultStop, TimeScaling};
 use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
 use super::{Pieces, Plan, PlanStart, Position, same};
-use core::borrow::Borrow;
-use kinematics::{Acceleration, Twist};
 
 /// The motion of the setpoint: at rest, or following a plan.
 ///
@@ -73,8 +71,7 @@ impl PlanFollower {
     }
 
     /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
-    pub fn accept(&mut self, plan: impl Borrow<Plan>) -> Result<(), Stale> {
-        let plan = plan.borrow();
+    pub fn accept(&mut self, plan: &Plan) -> Result<(), Stale> {
         match plan.start {
             PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
                 self.keep(plan);
@@ -103,7 +100,7 @@ impl PlanFollower {
         // None are left where a plan has no pieces.
         if self.left > 0 {
             for (axis, increment) in self.axes.iter_mut().zip(&self.increments) {
-                axis.advance_by(increment);
+                axis.advance(increment);
             }
             self.done += 1;
             self.left -= 1;
@@ -131,21 +128,10 @@ impl PlanFollower {
     #[inline]
     pub fn setpoint(&self, scale: &SetpointScale) -> Setpoint {
         let axes = &self.axes;
-        let velocity = each!(i => (axes[i].velocity >> VELOCITY_CUT) as i32 as f32);
-        let acceleration = each!(i => (axes[i].acceleration >> ACCELERATION_CUT) as i32 as f32);
-        Setpoint {
-            position: self.position(),
-            twist: Twist {
-                x: velocity[0] * scale.velocity,
-                y: velocity[1] * scale.velocity,
-                theta: velocity[2] * scale.turn_velocity,
-            },
-            acceleration: Acceleration {
-                x: acceleration[0] * scale.acceleration,
-                y: acceleration[1] * scale.acceleration,
-                theta: acceleration[2] * scale.turn_acceleration,
-            },
-        }
+        let velocity =
+            each!(i => (axes[i].velocity >> VELOCITY_CUT) as i32 as f32 * scale.velocity[i / 2]);
+        let acceleration = each!(i => (axes[i].acceleration >> ACCELERATION_CUT) as i32 as f32 * scale.acceleration[i / 2]);
+        Setpoint::new(self.position(), velocity, acceleration)
     }
 
     /// A fault's stop begins at the setpoint of this tick.

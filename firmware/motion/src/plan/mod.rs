@@ -44,6 +44,12 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// So many ticks without a jerk.
+    pub const fn coast(ticks: u64) -> Self {
+        let jerk = [0; 3];
+        Self { ticks, jerk }
+    }
+
     /// Takes the axes on by `ticks` of this piece, with a plan's nudge.
     pub fn advance(&self, axes: &mut [AxisState; 3], ticks: u64, nudge: &[i64; 3]) {
         for (axis, (jerk, nudge)) in axes.iter_mut().zip(self.jerk.iter().zip(nudge)) {
@@ -171,12 +177,8 @@ pub fn nudge_to(end: &[AxisState; 3], to: &Position, ticks: u64) -> Option<[i64;
 /// there is room for.
 pub fn write_sum(first: &[Piece], second: &[Piece], delay: u64, pieces: &mut Pieces) -> Option<()> {
     pieces.clear();
-    let wait = Piece {
-        ticks: delay,
-        jerk: [0; 3],
-    };
     let (mut first, mut second) = (first.iter(), second.iter());
-    let (mut a, mut b) = (first.next().copied(), Some(wait));
+    let (mut a, mut b) = (first.next().copied(), Some(Piece::coast(delay)));
     loop {
         let (ticks, jerk) = match (a, b) {
             (Some(a), Some(b)) => (a.ticks.min(b.ticks), each!(i => a.jerk[i] + b.jerk[i])),

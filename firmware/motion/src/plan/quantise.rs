@@ -22,10 +22,7 @@ pub fn velocity_pieces(
     wanted: &[i64; 3],
     [n1, n2, n3]: [u64; 3],
 ) -> [Piece; 4] {
-    let mut pieces = [n1, n2, n3, 1].map(|ticks| Piece {
-        ticks,
-        jerk: [0; 3],
-    });
+    let mut pieces = [n1, n2, n3, 1].map(Piece::coast);
     for (i, (axis, wanted)) in state.iter().zip(wanted).enumerate() {
         if axis.velocity == *wanted && axis.acceleration == 0 {
             continue;
@@ -122,13 +119,7 @@ impl PathProfile {
     /// Writes pieces and nudge of a plan from `from` to its end; `None` where a number would be too large.
     pub fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
         for segment in &self.segments {
-            let ticks = segment.ticks;
-            plan.pieces
-                .push(Piece {
-                    ticks,
-                    jerk: [0; 3],
-                })
-                .ok()?;
+            plan.pieces.push(Piece::coast(segment.ticks)).ok()?;
         }
         let duration = self.ticks().max(1);
         let moments = self.moments(duration);

@@ -27,13 +27,28 @@ pub struct Setpoint {
     pub acceleration: Acceleration<f32>,
 }
 
+impl Setpoint {
+    /// Of vectors of x, y and theta.
+    #[inline]
+    pub(super) fn new(position: Position, v: [f32; 3], a: [f32; 3]) -> Self {
+        let [x, y, theta] = v;
+        let twist = Twist { x, y, theta };
+        let [x, y, theta] = a;
+        let acceleration = Acceleration { x, y, theta };
+        Self {
+            position,
+            twist,
+            acceleration,
+        }
+    }
+}
+
 /// Factors from the integers of [`AxisState`](super::axis_state::AxisState) to physical rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetpointScale {
-    pub(super) velocity: f32,
-    pub(super) turn_velocity: f32,
-    pub(super) acceleration: f32,
-    pub(super) turn_acceleration: f32,
+    /// Of x and y, and of theta.
+    pub(super) velocity: [f32; 2],
+    pub(super) acceleration: [f32; 2],
     pub(super) rate_hz: f32,
 }
 
@@ -48,13 +63,10 @@ impl SetpointScale {
     /// For `rate_hz` ticks a second.
     pub fn new(rate_hz: f64) -> Self {
         let unit = |cut: u32| libm::exp2(f64::from(cut) - 72.0);
-        let velocity = unit(VELOCITY_CUT) * rate_hz;
-        let acceleration = unit(ACCELERATION_CUT) * rate_hz * rate_hz;
+        let scale = |unit: f64| [unit as f32, (unit * core::f64::consts::TAU) as f32];
         Self {
-            velocity: velocity as f32,
-            turn_velocity: (velocity * core::f64::consts::TAU) as f32,
-            acceleration: acceleration as f32,
-            turn_acceleration: (acceleration * core::f64::consts::TAU) as f32,
+            velocity: scale(unit(VELOCITY_CUT) * rate_hz),
+            acceleration: scale(unit(ACCELERATION_CUT) * rate_hz * rate_hz),
             rate_hz: rate_hz as f32,
         }
     }
@@ -105,27 +117,18 @@ impl RotationCentre {
         if *self == Self::PLATFORM {
             return *point;
         }
-        let Setpoint {
-            position: [x, y, theta],
-            twist,
-            acceleration,
-        } = *point;
-        let Arm { units, radii } = self.arm(theta);
-        let [a, b] = radii;
-        let turning = twist.theta * twist.theta;
-        Setpoint {
-            position: [x.wrapping_sub(units[0]), y.wrapping_sub(units[1]), theta],
-            twist: Twist {
-                x: twist.x + twist.theta * b,
-                y: twist.y - twist.theta * a,
-                theta: twist.theta,
-            },
-            acceleration: Acceleration {
-                x: acceleration.x + (acceleration.theta * b + turning * a),
-                y: acceleration.y - (acceleration.theta * a - turning * b),
-                theta: acceleration.theta,
-            },
-        }
+        let mut platform = *point;
+        let Arm { units, radii } = self.arm(point.position[2]);
+        platform.position[0] = point.position[0].wrapping_sub(units[0]);
+        platform.position[1] = point.position[1].wrapping_sub(units[1]);
+        let ([a, b], turn, turn_acceleration) =
+            (radii, point.twist.theta, point.acceleration.theta);
+        let inward = turn * turn;
+        platform.twist.x += turn * b;
+        platform.twist.y -= turn * a;
+        platform.acceleration.x += turn_acceleration * b + inward * a;
+        platform.acceleration.y -= turn_acceleration * a - inward * b;
+        platform
     }
 
     /// R(theta) p.

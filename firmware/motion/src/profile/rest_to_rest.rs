@@ -34,13 +34,8 @@ impl RestToRestProfile {
     /// The shortest profile over a path parameter of 1 within `limits`, at `hz` ticks a second; `None` when a limit is
     /// not a positive number or the move would last longer than 2^52 ticks.
     pub fn new(limits: &PathLimits, hz: f32) -> Option<Self> {
-        let PathLimits {
-            rate,
-            acceleration,
-            jerk,
-        } = *limits;
         // NaN is not over zero either.
-        if !(rate > 0.0 && acceleration > 0.0 && jerk > 0.0) {
+        if !(limits.rate > 0.0 && limits.acceleration > 0.0 && limits.jerk > 0.0) {
             return None;
         }
         let [b1, b2, b3] = shortest(limits);
@@ -110,11 +105,7 @@ impl RestToRestProfile {
 
 /// Lengths of the shortest profile, s.
 pub fn shortest(limits: &PathLimits) -> [f32; 3] {
-    let PathLimits {
-        rate,
-        acceleration,
-        jerk,
-    } = *limits;
+    let (rate, acceleration, jerk) = (limits.rate, limits.acceleration, limits.jerk);
     // Reaching full speed: with full acceleration, or by jerk alone.
     let b1 = (acceleration / jerk).fmin(sqrt_f32(rate / jerk));
     let b2 = (rate / acceleration).fmax(b1);

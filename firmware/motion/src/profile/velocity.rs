@@ -40,8 +40,8 @@ pub struct VelocityProfile {
     acceleration: [f32; 3],
     /// Of translation and of rotation, 1/s.
     jerk: [f32; 2],
-    /// How much more of it the first segment may have.
-    first_jerk: f32,
+    /// How much more of it the first segment may have: 1 but for a motion that others shape, with more jerk than the limit.
+    pub first_jerk: f32,
 }
 
 impl VelocityProfile {
@@ -58,14 +58,6 @@ impl VelocityProfile {
             acceleration: each!(i => from.a[i] * over_each[i]),
             jerk: [limits.jerk.linear * over[0], limits.jerk.angular * over[1]],
             first_jerk: 1.0,
-        }
-    }
-
-    /// With so many times the jerk in the first segment: for a motion that others shape, with more jerk than the limit.
-    pub fn with_first_jerk(self, factor: f32) -> Self {
-        Self {
-            first_jerk: factor,
-            ..self
         }
     }
 

@@ -17,7 +17,6 @@
 
 use super::rounded_ramps::{JerkRamp, JerkRamps, write_ramps};
 use super::topp::Corners;
-use motion::constraints::PathLimits;
 use motion::plan::quantise::PathProfile;
 use motion::tolerances::WHOLE_DURATION;
 use number::float::{FloatMinMax, ceil_i32};
@@ -25,19 +24,18 @@ use number::float::{FloatMinMax, ceil_i32};
 /// Longest duration in ticks, 105 s at 20 kHz: the roundings of the axes' jerks do not yet show in the line.
 const LONGEST: i32 = 1 << 21;
 
-/// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more). `None` where it
-/// would last too long.
+/// Writes the path profile along `corners`, with everything `slower` than it is there (1 or more) and so much jerk. `None`
+/// where it would last too long.
 #[inline(never)]
 pub(super) fn write_path_profile(
     corners: &Corners,
     slower: f32,
-    limits: &PathLimits,
+    jerk: f32,
     hz: f32,
     profile: &mut PathProfile,
 ) -> Option<()> {
     let mut ramps = corner_ramps(corners, slower, hz)?;
-    let most = limits.jerk / (hz * hz * hz);
-    widen(&mut ramps, most);
+    widen(&mut ramps, jerk / (hz * hz * hz));
     write_ramps(&mut ramps, profile)
 }
 
@@ -90,6 +88,7 @@ fn widen(ramps: &mut JerkRamps, most: f32) {
 mod tests {
     use crate::line::jerk_ramps::*;
     use crate::line::topp::Corner;
+    use motion::constraints::PathLimits;
 
     const HZ: f32 = 20_000.0;
     const LIMITS: PathLimits = PathLimits {
@@ -106,7 +105,7 @@ mod tests {
 
     fn profiled(corners: &Corners, slower: f32) -> Option<PathProfile> {
         let mut profiled = PathProfile::default();
-        write_path_profile(corners, slower, &LIMITS, HZ, &mut profiled).map(|()| profiled)
+        write_path_profile(corners, slower, LIMITS.jerk, HZ, &mut profiled).map(|()| profiled)
     }
 
     /// Speed (per second) in the middle of the way, the largest jerk, and the duration in seconds.

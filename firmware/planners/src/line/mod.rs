@@ -124,30 +124,18 @@ impl<'a> LinePlanner<'a> {
         let mut corners = Corners::new();
         fit_segments_below(&z, grid.intervals(), self.limits.acceleration, &mut corners)?;
         remove_close_corners(&mut corners, &self.limits);
-        write_path_profile(
-            &corners,
-            ROUNDING_MARGIN,
-            &self.limits,
-            self.hz,
-            path_profile,
-        )?;
+        let write = |slower: f32, profile: &mut PathProfile| {
+            let jerk = self.limits.jerk / (slower * slower * slower);
+            let slower = ROUNDING_MARGIN * slower;
+            write_path_profile(&corners, slower, jerk, self.hz, profile)
+        };
+        write(1.0, path_profile)?;
         let excess = self.excess(path_profile, grid);
         if excess <= 1.0 {
             return Some(());
         }
         // With the jerk of the same motion played slower it is just that, and needs no second look.
-        let slower = excess * ROUNDING_MARGIN;
-        let limits = PathLimits {
-            jerk: self.limits.jerk / (slower * slower * slower),
-            ..self.limits
-        };
-        write_path_profile(
-            &corners,
-            ROUNDING_MARGIN * slower,
-            &limits,
-            self.hz,
-            path_profile,
-        )
+        write(excess * ROUNDING_MARGIN, path_profile)
     }
 
     /// Whether the worst that the profile can ask of the pivots at the places furthest out keeps their limits.
@@ -181,13 +169,7 @@ impl<'a> LinePlanner<'a> {
             acceleration = acceleration.fmax(now.acceleration.abs());
         }
         let worst = worst.fmax(acceleration / self.limits.acceleration);
-        let jerk = jerk / self.limits.jerk;
-        let worst = sqrt_f32(worst);
-        if jerk > 1.0 {
-            worst.fmax(cbrt_f32(jerk))
-        } else {
-            worst
-        }
+        sqrt_f32(worst).fmax(cbrt_f32(jerk / self.limits.jerk))
     }
 }
 

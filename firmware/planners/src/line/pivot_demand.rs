@@ -59,18 +59,11 @@ impl DemandGrid {
     /// Lays out the places of a line.
     pub fn fill(&mut self, path: &Path, pivot_rate: f32, pivot_acceleration: f32) {
         let square = path.turn * path.turn + path.length * path.length;
-        let intervals = if path.spans_many_turns() || square < FEW {
-            MOST / 2
-        } else {
-            MOST
-        };
+        let many = path.spans_many_turns();
+        let intervals = if many || square < FEW { MOST / 2 } else { MOST };
         let spacing = 1.0 / intervals as f32;
-        let kept = if path.spans_many_turns() {
-            PIVOT_MARGIN
-        } else {
-            PIVOT_MARGIN + PIVOT_MARGIN_PER_SQUARE * square * (spacing * spacing)
-        };
-        let granted = 1.0 - kept;
+        let bent = if many { 0.0 } else { square };
+        let granted = 1.0 - (PIVOT_MARGIN + PIVOT_MARGIN_PER_SQUARE * bent * (spacing * spacing));
         let over_rate = 1.0 / (pivot_rate * granted);
         let over_acceleration = 1.0 / (pivot_acceleration * granted);
         let least = 1.0 / self.limits.rate;

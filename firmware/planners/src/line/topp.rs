@@ -27,16 +27,13 @@ pub(super) const GRID_POINTS: usize = 65;
 /// z at every place.
 pub(super) type SquaredSpeeds = [f32; GRID_POINTS];
 
-/// A line that bounds s'' over z: `offset + slope z`.
+/// A line that bounds s'' over z: its offset and its slope.
 #[derive(Clone, Copy)]
-struct LinearBound {
-    offset: f32,
-    slope: f32,
-}
+struct LinearBound(f32, f32);
 
 impl LinearBound {
     fn at(&self, z: f32) -> f32 {
-        self.offset + self.slope * z
+        self.0 + self.1 * z
     }
 }
 
@@ -106,19 +103,11 @@ impl Node {
 
     /// The upper bound that counts at z, or the lower one, with a `sign` of -1.
     fn bound(&self, z: f32, sign: f32) -> LinearBound {
-        let mut best = LinearBound {
-            offset: sign * self.acceleration,
-            slope: 0.0,
-        };
-        let mut value = self.acceleration;
+        let mut best = LinearBound(sign * self.acceleration, 0.0);
         for (width, slope) in self.widths.iter().zip(&self.slopes) {
-            let other = width + slope * z * sign;
-            if other < value {
-                value = other;
-                best = LinearBound {
-                    offset: sign * width,
-                    slope: *slope,
-                };
+            let other = LinearBound(sign * width, *slope);
+            if sign * other.at(z) < sign * best.at(z) {
+                best = other;
             }
         }
         best
@@ -128,10 +117,7 @@ impl Node {
     /// upper bound is not below the highest lower one. Newton's method from above: exact after as many rounds as there
     /// are lines on the way.
     fn largest(&self, most: f32, next: f32, half: f32) -> f32 {
-        let onwards = LinearBound {
-            offset: next * half,
-            slope: -half,
-        };
+        let onwards = LinearBound(next * half, -half);
         let mut z = most;
         // It ends, since z only falls; a count of rounds would be written out six times over.
         loop {
@@ -145,7 +131,7 @@ impl Node {
             if low.at(z) <= high.at(z) {
                 break;
             }
-            let meeting = (high.offset - low.offset) / (low.slope - high.slope);
+            let meeting = (high.0 - low.0) / (low.1 - high.1);
             // Parallel within rounding.
             if !(meeting >= 0.0 && meeting < z) {
                 break;
@@ -261,13 +247,8 @@ fn lay_segments(
         }
         start = (start + high * (to - from) as f32).fmax(0.0);
         from = to;
-        let corner = Corner {
-            s: from as f32 * spacing,
-            rate: sqrt_f32(start),
-        };
-        if corners.push(corner).is_err() {
-            return Err(from);
-        }
+        let (s, rate) = (from as f32 * spacing, sqrt_f32(start));
+        corners.push(Corner { s, rate }).map_err(|_| from)?;
     }
     // At the end z is 0, and so is the speed but for roundings.
     if let Some(corner) = corners.last_mut() {

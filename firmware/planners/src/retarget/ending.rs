@@ -86,9 +86,7 @@ impl<'a> Leaving<'a> {
             return Some(());
         }
         ended.of = None;
-        let Ended {
-            pieces, corners, ..
-        } = ended;
+        let (pieces, corners) = (&mut ended.pieces, &mut ended.corners);
         pieces.clear();
         match ending {
             Ending::Followed => pieces_after(&self.of.pieces, self.at)

@@ -56,15 +56,7 @@ const fn stop(acceleration: f32, jerk: f32) -> Ending {
 
 /// How many of the ways are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effort {
-    /// So few that the stage is soon on its way.
-    First,
-    /// All.
-    All,
-}
-
-/// What an effort comes to.
-struct Search {
+pub struct Effort {
     /// How many of the endings, and of the shares of each.
     endings: usize,
     shares: usize,
@@ -75,21 +67,24 @@ struct Search {
     intervals: usize,
 }
 
-const FIRST: Search = Search {
-    endings: 2,
-    shares: 1,
-    halvings: 2,
-    checks: 1,
-    intervals: 5,
-};
-
-const ALL: Search = Search {
-    endings: ENDINGS.len(),
-    shares: 3,
-    halvings: 5,
-    checks: 4,
-    intervals: 60,
-};
+impl Effort {
+    /// So few that the stage is soon on its way.
+    pub const FIRST: Self = Self {
+        endings: 2,
+        shares: 1,
+        halvings: 2,
+        checks: 1,
+        intervals: 5,
+    };
+    /// All.
+    pub const ALL: Self = Self {
+        endings: ENDINGS.len(),
+        shares: 3,
+        halvings: 5,
+        checks: 4,
+        intervals: 60,
+    };
+}
 
 /// Plans the way to rest at `to` that leaves plan `of`, which started from `from`, at its tick `at`.
 ///
@@ -106,10 +101,6 @@ pub fn plan_retarget(
     constraints: &Constraints,
     effort: Effort,
 ) -> Result<Plan, RetargetError> {
-    let search = match effort {
-        Effort::First => &FIRST,
-        Effort::All => &ALL,
-    };
     check_target(&to, constraints).map_err(RetargetError::Refused)?;
     if !constraints.limits.all_positive() {
         return Err(RetargetError::Refused(Refusal::InvalidLimits));
@@ -122,12 +113,12 @@ pub fn plan_retarget(
         return Err(RetargetError::NeedsStop);
     }
     let mut ended = Ended::default();
-    let mut way = soonest(&leaving, search, &mut ended).ok_or(RetargetError::NeedsStop)?;
+    let mut way = soonest(&leaving, &effort, &mut ended).ok_or(RetargetError::NeedsStop)?;
     (leaving.write(way.ending, &mut ended)).ok_or(RetargetError::NeedsStop)?;
     let mut plan = Plan::new(id, of.left_at(at), to);
     let plan_check = PlanCheck::new(constraints, &leaving.state);
-    let mut budget = search.intervals;
-    for left in (0..search.checks).rev() {
+    let mut budget = effort.intervals;
+    for left in (0..effort.checks).rev() {
         (way.write(&ended, &to, &mut plan.pieces)).ok_or(RetargetError::NeedsStop)?;
         match plan_check.check(&plan.pieces, &leaving.state, &mut budget) {
             Ok(()) => {
@@ -138,7 +129,9 @@ pub fn plan_retarget(
             Err(Violation::Pivots) => {
                 let [rate, acceleration] = plan_check.pivot_parts(&plan.pieces, &leaving.state);
                 let over = rate.fmax(sqrt_f32(acceleration)) * SLOWER_FOR_PIVOTS;
-                way.slow(over.clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER));
+                let slower = over.clamp(SLOWER_FOR_PIVOTS, MOST_SLOWER);
+                // One that would take longer than can be counted stays as it is.
+                way.line = (way.line.and_then(|line| line.slowed(slower))).or(way.line);
             }
             Err(_) if way.delay < ended.ticks => way.delay_more(ended.ticks),
             Err(_) => break,
@@ -170,12 +163,6 @@ impl Way {
         };
     }
 
-    /// A slower line; one that would take longer than can be counted stays as it is.
-    fn slow(&mut self, slower: f32) {
-        let slowed = self.line.and_then(|line| line.slowed(slower));
-        self.line = slowed.or(self.line);
-    }
-
     /// Writes its pieces; `None` where there are too many.
     #[inline(never)]
     fn write(&self, ended: &Ended, to: &Position, pieces: &mut Pieces) -> Option<()> {
@@ -191,14 +178,14 @@ impl Way {
 const MOST_SLOWER: f32 = 1.3;
 
 /// The soonest of the ways.
-fn soonest(leaving: &Leaving<'_>, search: &Search, ended: &mut Ended) -> Option<Way> {
-    let overlap = Overlap::new(&leaving.limits, leaving.hz, search.halvings);
+fn soonest(leaving: &Leaving<'_>, effort: &Effort, ended: &mut Ended) -> Option<Way> {
+    let overlap = Overlap::new(&leaving.limits, leaving.hz, effort.halvings);
     let mut best: Option<Way> = None;
-    for (ending, shares) in ENDINGS.into_iter().take(search.endings) {
+    for (ending, shares) in ENDINGS.into_iter().take(effort.endings) {
         if leaving.write(ending, ended).is_none() || leaving.is_over(ended) {
             continue;
         }
-        for &share in shares.iter().take(search.shares) {
+        for &share in shares.iter().take(effort.shares) {
             let soonest = best.as_ref().map_or(u64::MAX, |best| best.ticks);
             best = way(leaving, &overlap, ended, ending, share, soonest).or(best);
         }

@@ -51,15 +51,10 @@ pub(super) struct CurvePoint {
 pub(super) fn curve_point(window: &[Position; WINDOW], axis: usize, f: f32) -> CurvePoint {
     let origin = window[2][axis];
     let sample = |k: usize| window[k][axis].wrapping_sub(origin) as f32;
-    let s = [
-        sample(0),
-        sample(1),
-        sample(2),
-        sample(3),
-        sample(4),
-        sample(5),
-    ];
-    let control = |k: usize| s[k] - (s[k + 1] - 2.0 * s[k] + s[k - 1]) * (1.0 / 6.0);
+    let control = |k: usize| {
+        let s = sample(k);
+        s - (sample(k + 1) - 2.0 * s + sample(k - 1)) * (1.0 / 6.0)
+    };
     let (c0, c1, c2, c3) = (control(1), control(2), control(3), control(4));
     let a = c1 + (c0 - 2.0 * c1 + c2) * (1.0 / 6.0);
     let b = (c2 - c0) * 0.5;

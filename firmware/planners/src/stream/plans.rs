@@ -52,10 +52,7 @@ impl Stream {
             plan.end = end.map(|axis| axis.rounded());
             if plan.ticks() == splice {
                 // At rest there is nothing to stop; but a plan that is over can not be left.
-                let _ = plan.pieces.push(Piece {
-                    ticks: 1,
-                    jerk: [0; 3],
-                });
+                let _ = plan.pieces.push(Piece::coast(1));
             }
         }
         Ok((plan, from, SentPlan { id, splice, state }))
@@ -101,10 +98,7 @@ impl Stream {
 
     /// The pieces from a state to where the curve is now.
     fn pieces(&self, state: &[AxisState; 3]) -> [Piece; 3] {
-        let mut pieces = self.knot.ticks.map(|ticks| Piece {
-            ticks,
-            jerk: [0; 3],
-        });
+        let mut pieces = self.knot.ticks.map(Piece::coast);
         const ONE: f32 = (1_u64 << PART_BITS) as f32;
         let window = [0, 1, 2, 3, 4, 5].map(|k| self.target(k));
         let (part, rate) = (self.part as f32 / ONE, self.rate as f32 / ONE);
@@ -178,10 +172,9 @@ fn final_stop(
     let mut part = 1.0;
     for _ in 0..ATTEMPTS {
         let limits = constraints.motion_limits().scaled(part, 1.0);
-        let ticks = VelocityProfile::new(&motion, &[0.0; 3], &limits)
-            .with_first_jerk(JERK_TOLERANCE)
-            .ticks(hz);
-        let pieces = velocity_pieces(state, &[0; 3], ticks);
+        let mut profile = VelocityProfile::new(&motion, &[0.0; 3], &limits);
+        profile.first_jerk = JERK_TOLERANCE;
+        let pieces = velocity_pieces(state, &[0; 3], profile.ticks(hz));
         match plan_check.check(&pieces, state, &mut { BUDGET }) {
             Ok(()) => return Ok(pieces),
             Err(Violation::Speed) => return Err(Refusal::Velocity),

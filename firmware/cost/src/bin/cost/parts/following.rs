@@ -51,5 +51,5 @@ fn begin_one_of_short_pieces(motion: &mut PlanFollower, random: &mut Random) {
     }
     motion.rest_at(from);
     // It starts where the motion rests, so it is taken.
-    let _ = motion.accept(plan);
+    let _ = motion.accept(&plan);
 }

@@ -20,8 +20,8 @@ pub fn run(bench: &mut Bench) {
         |_, plan| of_plan(plan.as_ref().ok()),
     );
     for (name, effort) in [
-        ("motion: new target in motion, first way", Effort::First),
-        ("motion: new target in motion, soonest way", Effort::All),
+        ("motion: new target in motion, first way", Effort::FIRST),
+        ("motion: new target in motion, soonest way", Effort::ALL),
     ] {
         bench.part(
             name,

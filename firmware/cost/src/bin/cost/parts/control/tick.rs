@@ -215,7 +215,7 @@ impl Control<'_> {
             }
             Mode::Moving if snapshot.plan == self.plan.id && random.once_in(RETARGETS) => {
                 let (plan, at) = (&self.plan, snapshot.plan_tick + AHEAD);
-                let next = plan_retarget(id, plan, &self.start, at, to, &self.ground, Effort::All);
+                let next = plan_retarget(id, plan, &self.start, at, to, &self.ground, Effort::ALL);
                 next.ok()
                     .map(|next| (next, plan.state_after(&self.start, at)))
             }
