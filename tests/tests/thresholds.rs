@@ -260,3 +260,22 @@ fn a_following_error_is_found_at_its_limit() {
         assert!(bench.outputs.awake);
     }
 }
+
+/// Torques to and fro 40 times a second: at rest they can be nothing but a loop that oscillates, in motion they may be the
+/// motion's.
+#[test]
+fn an_oscillation_counts_for_more_while_the_setpoint_hardly_moves() {
+    let shaken = |deg_s: Option<f64>| {
+        let limits = [(OSCILLATION, 1.0)];
+        let mut bench =
+            deg_s.map_or_else(|| Bench::holding(&limits), |w| Bench::turning(&limits, w));
+        for k in 0..40 {
+            bench.push(if k % 2 == 0 { 2.0 } else { -2.0 });
+            bench.run(250);
+        }
+        bench.fault_kind()
+    };
+    assert_eq!(shaken(None), Some(FaultKind::Oscillation));
+    assert_eq!(shaken(Some(0.5)), Some(FaultKind::Oscillation));
+    assert_eq!(shaken(Some(60.0)), None);
+}
