@@ -197,7 +197,7 @@ fn a_target_outside_is_refused_with_the_reason() {
         matches!(
             result,
             Err(RetargetError::Refused(
-                firmware::motion::Refusal::OutsideDisk { .. }
+                firmware::motion::Refusal::OutsideDisk
             ))
         ),
         "{result:?}"

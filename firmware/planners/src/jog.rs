@@ -93,7 +93,6 @@ struct JogRequest<'a> {
     constraints: &'a Constraints,
     hz: f32,
     pivot_bound: PivotBound,
-    usable: f32,
     /// Wanted, 2^-72 units a tick.
     velocity: [i64; 3],
     limits: MotionLimits,
@@ -118,7 +117,6 @@ impl<'a> JogRequest<'a> {
             constraints,
             hz: limits.rate_hz as f32,
             pivot_bound: PivotBound::new(constraints),
-            usable: constraints.usable_radius as f32,
             velocity: [x * per_mm, y * per_mm, turning * per_deg].map(truncate_f64),
             limits: constraints.motion_limits(),
         })
@@ -133,26 +131,20 @@ impl<'a> JogRequest<'a> {
     ) -> Result<(f32, MotionLimits), RetargetError> {
         let pivot_bound = &self.pivot_bound;
         let speeds = Speeds::of(target);
-        let most = pivot_bound
-            .max_radius(speeds, self.usable)
-            .ok_or(RetargetError::Refused(Refusal::PivotRate {
-                radius_mm: 0.0,
-            }))?;
+        let usable = self.constraints.usable_radius as f32;
+        let too_fast = |radius_mm| RetargetError::Refused(Refusal::PivotRate { radius_mm });
+        let most = (pivot_bound.max_radius(speeds, usable)).ok_or(too_fast(0.0))?;
         let [x, y] = self.steady(state, &[0.0; 3]).platform(0.0);
         let out = hypot(x, y);
         if out > most + JOG_RADII {
-            let radius_mm = f64::from(most) * self.constraints.geometry.radius_mm;
-            return Err(RetargetError::Refused(Refusal::PivotRate { radius_mm }));
+            let mm = self.constraints.geometry.radius_mm;
+            return Err(too_fast(f64::from(most) * mm));
         }
-        let travels =
-            |speeds: Speeds| speeds.linear > 0.0 || speeds.angular * pivot_bound.arm > 0.0;
         let MotionState { v, a, .. } = now;
         let (speed, acceleration) = (Speeds::of(v), Speeds::of(a));
-        let radius = if travels(speeds) || travels(speed) || travels(acceleration) {
-            most
-        } else {
-            out
-        };
+        let any = speeds.max(speed).max(acceleration);
+        let travels = any.linear > 0.0 || any.angular * pivot_bound.arm > 0.0;
+        let radius = if travels { most } else { out };
         // An acceleration under way adds to the velocity while it is released: straight from the one to this.
         let jerk = self.limits.jerk;
         let release_s =

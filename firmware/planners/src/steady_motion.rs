@@ -31,7 +31,8 @@ impl SteadyMotion {
     /// Seconds until the platform's centre meets the edge of the disk of `radius`; infinite when it never does.
     pub fn time_to_edge(&self, radius: f32) -> f32 {
         let radius = radius - JOG_RADII;
-        let arm = self.arm();
+        // How far the moved point lies from the platform's centre.
+        let arm = hypot(self.centre[0], self.centre[1]);
         if self.turning == 0.0 || arm == 0.0 {
             let ([x, y], (square, half_rate)) = (self.velocity, self.square(0.0));
             return crossing(square - radius * radius, half_rate, x * x + y * y);
@@ -55,11 +56,6 @@ impl SteadyMotion {
             }
         }
         seconds
-    }
-
-    /// How far the moved point lies from the platform's centre.
-    fn arm(&self) -> f32 {
-        hypot(self.centre[0], self.centre[1])
     }
 
     /// The square of the distance of the platform's centre from the track's, and half of its rate.
@@ -193,7 +189,7 @@ mod tests {
             }
             let [x, y] = steady.platform(reach);
             let [point_x, point_y] = steady.point_after(reach);
-            let inner = hypot(point_x, point_y) + steady.arm();
+            let inner = hypot(point_x, point_y) + hypot(centre[0], centre[1]);
             ended +=
                 usize::from(inner > 0.8 - 1e-4 && inner < 0.8 + 1e-4 || hypot(x, y) > 0.8 - 1e-4);
         }

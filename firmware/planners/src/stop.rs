@@ -84,7 +84,7 @@ pub fn plan_stop(
                 apart = true;
                 plan_check = PlanCheck::for_stop(constraints, state, apart);
             }
-            Err(Violation::Disk(_) | Violation::Bounds(_)) => {
+            Err(Violation::Disk | Violation::Bounds(_)) => {
                 (acceleration, jerk) = (acceleration * 1.3, urgent_jerk);
             }
             Err(Violation::Pivots) => {

@@ -100,7 +100,7 @@ impl fmt::Display for CommandError {
             Self::VelocityOutOfRange { axis: Some(axis) } => {
                 write!(f, "the velocity of axis {} is out of range", axis.letter())
             }
-            Self::Refused(refusal) => refusal.fmt(f),
+            Self::Refused(refusal) => f.write_str(refusal_words(refusal)),
             Self::Frame(error) => error.fmt(f),
             Self::Wave(error) => error.fmt(f),
             Self::Busy => f.write_str("a command is on its way"),
@@ -141,3 +141,20 @@ impl fmt::Display for CommandError {
 }
 
 impl core::error::Error for CommandError {}
+
+const fn refusal_words(refusal: &Refusal) -> &'static str {
+    match refusal {
+        Refusal::OutsideDisk => "the target is outside the usable disk",
+        Refusal::LeavesDisk => "the platform centre would leave the usable disk on its way",
+        Refusal::OutOfBounds { .. } => "the target is outside the bounds of an axis",
+        Refusal::TooManyTurns => "more turns than can be counted",
+        Refusal::InvalidLimits => "the limits of speed, acceleration and jerk allow no motion",
+        Refusal::Velocity => "the velocity is over the limits of speed",
+        Refusal::PivotRate { .. } => "the pivots can not follow this velocity so far out",
+        Refusal::Acceleration => "the acceleration asked for is over its limit",
+        Refusal::Jerk => "the jerk asked for is far over its limit",
+        Refusal::Pivots => "asks more of the pivots than their rate or acceleration allows",
+        Refusal::NoRoomToStop => "there would be no room to stop after it",
+        Refusal::NoRoom => "no way left in that direction",
+    }
+}

@@ -27,7 +27,7 @@ pub fn print(case: &Case) {
         None => println!("rsruckig finds nothing"),
     }
     match case.retargeted() {
-        Err(no) => println!("ours: refused, {no}"),
+        Err(no) => println!("ours: refused, {no:?}"),
         Ok(way) => {
             println!("ours: {} ticks", way.ticks(case.at));
             for step in &way.steps {

@@ -9,8 +9,8 @@ use number::float::{FloatMinMax, hypot};
 /// What a plan breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Violation {
-    /// The disk, with the platform's centre so far from the track's.
-    Disk(f32),
+    /// The disk, with the platform's centre.
+    Disk,
     /// The bounds of an axis.
     Bounds(usize),
     /// The limit of speed.

@@ -249,7 +249,7 @@ impl PlanCheck {
         self.within(sizes.v, &limits.speed, Violation::Speed)?;
         self.within(sizes.a, &limits.acceleration, Violation::Acceleration)?;
         let is_inside = furthest <= self.radius + WORKSPACE_RADII;
-        is_inside.then_some(()).ok_or(Violation::Disk(furthest))
+        is_inside.then_some(()).ok_or(Violation::Disk)
     }
 
     /// Whether translation and rotation keep to a limit.

@@ -74,10 +74,7 @@ fn check_disk(target: &Position, constraints: &Constraints) -> Result<(), Refusa
     let most = constraints.usable_radius + rim;
     let square = x * x + y * y;
     if square > most * most {
-        return Err(Refusal::OutsideDisk {
-            radius_mm: libm::sqrt(square) * constraints.geometry.radius_mm,
-            usable_mm: constraints.usable_radius * constraints.geometry.radius_mm,
-        });
+        return Err(Refusal::OutsideDisk);
     }
     Ok(())
 }

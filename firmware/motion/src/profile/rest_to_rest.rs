@@ -77,11 +77,6 @@ impl RestToRestProfile {
         ]
     }
 
-    /// Jerk times this is the way: b1 b2 b3.
-    pub fn volume(&self) -> i128 {
-        i128::from(self.jerk * self.ramp) * i128::from(self.travel)
-    }
-
     /// Writes pieces and nudge of a plan from `from` to its end.
     pub fn write_plan(&self, plan: &mut Plan, from: &Position) -> Option<()> {
         let mut path_profile = PathProfile::default();
@@ -98,7 +93,9 @@ impl RestToRestProfile {
                 let _ = path_profile.segments.push(JerkSegment { ticks, jerk });
             }
         }
-        path_profile.six_times_distance = 6 * self.volume();
+        // Jerk times b1 b2 b3 is the way.
+        let volume = i128::from(self.jerk * self.ramp) * i128::from(self.travel);
+        path_profile.six_times_distance = 6 * volume;
         path_profile.bits = 0;
     }
 }

@@ -48,10 +48,8 @@ impl VelocityProfile {
     /// From a state to a velocity, track radii and rad per second.
     #[inline(never)]
     pub fn new(from: &MotionState, wanted: &[f32; 3], limits: &MotionLimits) -> Self {
-        let over = [
-            1.0 / limits.acceleration.linear,
-            1.0 / limits.acceleration.angular,
-        ];
+        let limit = limits.acceleration;
+        let over = [1.0 / limit.linear, 1.0 / limit.angular];
         let over_each = [over[0], over[0], over[1]];
         Self {
             change: each!(i => (wanted[i] - from.v[i]) * over_each[i]),
@@ -97,11 +95,8 @@ impl VelocityProfile {
         let size = size(&w);
         if size <= 0.0 {
             // Nothing is to be gained, or releasing the acceleration gains it exactly.
-            return [
-                self.jerk_time_s(&self.acceleration) / self.first_jerk,
-                0.0,
-                0.0,
-            ];
+            let release_s = self.jerk_time_s(&self.acceleration) / self.first_jerk;
+            return [release_s, 0.0, 0.0];
         }
         let back = self.jerk_time_s(&w) / size;
         let peak = (sqrt_f32(half * half + 2.0 * size * back) - half) / back;

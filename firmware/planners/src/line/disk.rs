@@ -8,7 +8,6 @@
 
 use super::path::Path;
 use crate::steady_motion::SteadyMotion;
-use core::f32::consts::TAU;
 use motion::check::workspace::check_target;
 use motion::constraints::Constraints;
 use motion::plan::Position;
@@ -16,9 +15,6 @@ use motion::refusal::Refusal;
 use motion::tolerances::{JOG_RADII, LINE_SQUARED_RADII};
 use number::float::FloatMinMax;
 use number::sqrt_f32;
-
-/// Places looked at for how far a line gets that leaves the disk.
-const SAMPLES: usize = 48;
 
 /// Whether the straight line between two positions can be moved along: the same answer as that of
 /// [`plan_line`](crate::plan_line).
@@ -51,23 +47,5 @@ pub fn check_line(
     let limit = there.square(0.0).0.fmax(usable * usable) + LINE_SQUARED_RADII;
     let limit = sqrt_f32(limit) + JOG_RADII;
     let (first, last) = (there.time_to_edge(limit), 1.0 - back.time_to_edge(limit));
-    if first >= last {
-        return Ok(());
-    }
-    let (mut radius, mut fraction) = (0.0, first);
-    // In a turn every orientation is met.
-    let step = (last - first).fmin(TAU / path.turn.abs()) / SAMPLES as f32;
-    for k in 0..=SAMPLES {
-        let s = first + step * k as f32;
-        let distance = sqrt_f32(there.square(s).0);
-        if distance > radius {
-            (radius, fraction) = (distance, s);
-        }
-    }
-    let mm = constraints.geometry.radius_mm;
-    Err(Refusal::LeavesDisk {
-        radius_mm: f64::from(radius) * mm,
-        usable_mm: constraints.usable_radius * mm,
-        fraction: f64::from(fraction),
-    })
+    (first >= last).then_some(()).ok_or(Refusal::LeavesDisk)
 }

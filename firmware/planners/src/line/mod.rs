@@ -81,9 +81,6 @@ struct LinePlanner<'a> {
     hz: f32,
 }
 
-/// Instants of a segment at which a motion is checked, besides those at the places it passes.
-const SAMPLES: u32 = 1;
-
 impl<'a> LinePlanner<'a> {
     fn new(path: &'a Path, constraints: &Constraints) -> Self {
         let limits = &constraints.limits;
@@ -126,8 +123,7 @@ impl<'a> LinePlanner<'a> {
         remove_close_corners(&mut corners, &self.limits);
         let write = |slower: f32, profile: &mut PathProfile| {
             let jerk = self.limits.jerk / (slower * slower * slower);
-            let slower = ROUNDING_MARGIN * slower;
-            write_path_profile(&corners, slower, jerk, self.hz, profile)
+            write_path_profile(&corners, ROUNDING_MARGIN * slower, jerk, self.hz, profile)
         };
         write(1.0, path_profile)?;
         let excess = self.excess(path_profile, grid);
@@ -159,7 +155,8 @@ impl<'a> LinePlanner<'a> {
             let push = segment.jerk as f32 * unit;
             jerk = jerk.fmax(push.abs());
             let way = now.after(seconds, push).s - now.s;
-            let steps = SAMPLES + (way.abs() * places) as u32;
+            // Each place that it passes, and an instant besides.
+            let steps = 1 + (way.abs() * places) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);

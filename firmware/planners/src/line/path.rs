@@ -66,8 +66,7 @@ impl Path {
         let turn_units = to[2].wrapping_sub(from[2]);
         let [x, y] = constraints.centre();
         // n_i of the platform's own axes: its guides point at -30, 90 and 210 deg.
-        let half = 0.5;
-        let wide = f32::SIN_60;
+        let (half, wide) = (0.5, f32::SIN_60);
         Self {
             from: both!(i => i64_to_f32_fast(from[i]) * PER_POSITION_UNIT),
             displacement,

@@ -50,7 +50,7 @@ pub(super) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
     let mut nodes: Vec<Node, GRID_POINTS> = Vec::new();
     let steepest = double * grid.limits.acceleration;
     let mut next = 0.0;
-    for (place, z) in grid.points().iter().zip(z.iter_mut()).take(n).rev() {
+    for (place, z) in grid.places.iter().zip(z.iter_mut()).take(n).rev() {
         let most = 1.0 / (place.rate * place.rate);
         next = if place.pivot_limits_inactive {
             most.fmin(next + steepest)
@@ -64,7 +64,7 @@ pub(super) fn velocity_limit_squared(grid: &DemandGrid, z: &mut SquaredSpeeds) {
     }
     let mut now = 0.0;
     z[0] = now;
-    for (place, z) in grid.points().iter().zip(z.iter_mut().skip(1)).take(n) {
+    for (place, z) in grid.places.iter().zip(z.iter_mut().skip(1)).take(n) {
         let up = if place.pivot_limits_inactive {
             steepest
         } else {

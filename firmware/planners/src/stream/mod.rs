@@ -115,6 +115,7 @@ const BEFORE: usize = WINDOW - 1;
 
 /// Fraction bits of a place between two targets.
 const PART_BITS: u32 = 48;
+const ONE: f32 = (1_u64 << PART_BITS) as f32;
 
 /// A clock of the sender's own: how much faster the curve is passed for a target too many, as a share; how much at
 /// most; and over how many plans the number of targets is averaged.
@@ -274,7 +275,6 @@ impl Stream {
         if self.clock == Clock::Own || self.announced {
             return;
         }
-        const ONE: f32 = (1_u64 << PART_BITS) as f32;
         let ahead = self.targets.len() as f32
             + (ticks as f32 * self.rate as f32 - self.part as f32) / ONE
             - (BEFORE + self.targets_to_start()) as f32;

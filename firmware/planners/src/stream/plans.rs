@@ -5,7 +5,7 @@
 //! released slowly would end over the limit of speed. Where a pivot is asked for too much, the stop is softer.
 
 use super::curve::curve_point;
-use super::{PART_BITS, SentPlan, Stream};
+use super::{ONE, PART_BITS, SentPlan, Stream};
 use motion::check::{BUDGET, PlanCheck, Violation};
 use motion::constraints::Constraints;
 use motion::plan::axis_state::{AxisState, SUB_BITS};
@@ -38,8 +38,7 @@ impl Stream {
         };
         let mut plan = Plan::new(id, start, rest);
         let plan_check = PlanCheck::for_stream(constraints);
-        let state = (self.knots(&mut plan, from, &plan_check))
-            .map_err(|violation| refusal(violation, constraints))?;
+        let state = (self.knots(&mut plan, from, &plan_check)).map_err(refusal)?;
         let splice = plan.ticks();
         if self.complete {
             plan.end = self.target(2);
@@ -99,7 +98,6 @@ impl Stream {
     /// The pieces from a state to where the curve is now.
     fn pieces(&self, state: &[AxisState; 3]) -> [Piece; 3] {
         let mut pieces = self.knot.ticks.map(Piece::coast);
-        const ONE: f32 = (1_u64 << PART_BITS) as f32;
         let window = [0, 1, 2, 3, 4, 5].map(|k| self.target(k));
         let (part, rate) = (self.part as f32 / ONE, self.rate as f32 / ONE);
         for (i, axis) in state.iter().enumerate() {
@@ -142,13 +140,9 @@ const FINE_BITS: u32 = 20;
 const FINE: f32 = (1_u32 << FINE_BITS) as f32;
 
 /// Why targets are refused that break this.
-fn refusal(violation: Violation, constraints: &Constraints) -> Refusal {
-    let mm = constraints.geometry.radius_mm;
+fn refusal(violation: Violation) -> Refusal {
     match violation {
-        Violation::Disk(radius) => Refusal::OutsideDisk {
-            radius_mm: f64::from(radius) * mm,
-            usable_mm: constraints.usable_radius * mm,
-        },
+        Violation::Disk => Refusal::OutsideDisk,
         Violation::Bounds(axis) => Refusal::OutOfBounds { axis },
         Violation::Speed => Refusal::Velocity,
         Violation::Acceleration => Refusal::Acceleration,
