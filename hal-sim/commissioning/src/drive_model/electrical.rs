@@ -2,8 +2,11 @@
 //!
 //! At every bin of every period, excited or not, `U = R I + j w L I + j w K Phi + d F`: linear in resistance, inductance, motor constant
 //! and the voltage that the bridge's dead time takes. F is the spectrum of the current's sign, which the record gives (1 from the knee on,
-//! less in proportion below). At excited bins F is like I, and d could not be told from R; what the dead time makes of a current that crosses zero
-//! is in all the others.
+//! less in proportion below; [`super::dead_time`]). At excited bins F is like I, and d could not be told from R; what the dead time makes of a
+//! current that crosses zero is in all the others.
+//!
+//! Only records in which the drive itself was excited are used. In the others its current is what friction and the other drives leave it, at most
+//! bins less than the sensor's noise, which makes I and F come out larger than they are: d is then too small, and R too large.
 //!
 //! The back-EMF is the motor's and the encoder is the ring's. Between them is the transmission, which winds up by the torque that it passes on:
 //! `pm = (z p + K i) / (z + Jm s^2)`. So the mechanics, once found, go in; bins at which the motor swings on the spring by itself are left out.
@@ -12,6 +15,7 @@
 //! bins. That part is computed with the winding as found, and taken away.
 
 use super::DriveError;
+use super::dead_time::{Lost, lost};
 use crate::chain::Chain;
 use crate::frequency_response::{Run, hold};
 use crate::record::{Signals, Timing};
@@ -74,7 +78,7 @@ pub struct Besides<'a> {
 }
 
 impl Equations {
-    /// Of pivot `pivot` (0 to 2) from all runs. `knee_a`: current from which the whole dead time counts.
+    /// Of pivot `pivot` (0 to 2) from all runs in which it was excited. `knee_a`: current from which the whole dead time counts.
     ///
     /// # Errors
     /// [`DriveError::NotRecorded`].
@@ -86,7 +90,7 @@ impl Equations {
     ) -> Result<Self, DriveError> {
         let mut rows = Vec::new();
         for run in runs {
-            for record in run.experiments.iter().flatten() {
+            for record in &run.experiments[pivot] {
                 add_rows(&record.pivots[pivot], run, timing, knee_a, &mut rows);
             }
         }
@@ -137,21 +141,13 @@ fn add_rows(signals: &Signals, run: &Run, timing: &Timing, knee_a: f64, rows: &m
     let Some(ticks) = signals.ticks() else { return };
     let bin_hz = 1.0 / (run.period_ticks as f64 * timing.tick_s);
     let bins = BAND_HZ.map(|hz| (hz / bin_hz).ceil() as usize);
-    let lost: Vec<f64> = signals
-        .current_a
-        .iter()
-        .map(|current| (current / knee_a).clamp(-1.0, 1.0))
-        .collect();
+    let Lost { shares, per_row } = lost(&signals.current_a, run.ticks_per_row, knee_a);
     let mut from = 0;
     while from + period <= ticks {
         let part = from..from + period;
-        let [volts, current, angle, lost] = [
-            &signals.volts,
-            &signals.current_a,
-            &signals.angle_rad,
-            &lost,
-        ]
-        .map(|all| spectrum(&all[part.clone()]));
+        let [volts, current, angle] = [&signals.volts, &signals.current_a, &signals.angle_rad]
+            .map(|all| spectrum(&all[part.clone()]));
+        let lost = spectrum(&shares[per_row * part.start..per_row * part.end]);
         for bin in bins[0]..bins[1].min(period / 2) {
             let hz = bin as f64 * bin_hz;
             let sampled = |offset_s: f64| Complex::cis(-TAU * hz * offset_s);

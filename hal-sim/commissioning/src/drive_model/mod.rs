@@ -3,8 +3,10 @@
 //! | file | idea |
 //! |---|---|
 //! | `electrical` | winding, motor constant and dead time of each drive, from what is recorded of it alone |
+//! | `dead_time` | what of it counts, from the current, between the rows too |
 //! | `mechanical` | inertias, springs and dampers, from the responses of the angles to the currents |
 
+mod dead_time;
 mod electrical;
 mod mechanical;
 
