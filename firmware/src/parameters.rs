@@ -251,15 +251,15 @@ pub struct EncoderMounting {
     pub reversed: bool,
 }
 
-/// Sines of the error within a period of an encoder's scale.
-pub const SUBDIVISION_HARMONICS: usize = 4;
+/// Sines of the error within a period of an encoder's scale. For a fourth the settings that a sector of the flash holds have no room.
+pub const SUBDIVISION_HARMONICS: usize = 3;
 
 /// The error that an encoder makes within each period of its scale (sub-divisional or interpolation error).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Subdivision {
     /// Periods of the scale in a turn; 0: not known, nothing is corrected.
     pub periods: u32,
-    /// One, two, three and four sines in a period.
+    /// One, two and three sines in a period.
     pub harmonics: [SubdivisionHarmonic; SUBDIVISION_HARMONICS],
 }
 

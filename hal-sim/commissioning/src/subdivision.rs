@@ -9,7 +9,7 @@ use core::f64::consts::TAU;
 use firmware::parameters::SUBDIVISION_HARMONICS;
 use nalgebra::Complex;
 
-/// One, two, three and four sines in a period: `sum |c_k| sin(k phase + arg c_k)`, rad.
+/// One, two and three sines in a period: `sum |c_k| sin(k phase + arg c_k)`, rad.
 pub type Harmonics = [Complex<f64>; SUBDIVISION_HARMONICS];
 
 /// Fewest periods of the scale that the readings have to go over: the window takes four of a slower disturbance's own.

@@ -8,7 +8,7 @@ const PERIODS: u32 = 15_708;
 const ROWS: usize = 5_400;
 const TICK_S: f64 = 50e-6;
 /// Amplitude, rad, and phase, rad, of each harmonic.
-const TRUTH: [[f64; 2]; 4] = [[0.8e-6, 0.7], [0.2e-6, -2.0], [0.1e-6, 3.0], [0.05e-6, 1.5]];
+const TRUTH: [[f64; 2]; 3] = [[0.8e-6, 0.7], [0.2e-6, -2.0], [0.1e-6, 3.0]];
 
 fn error_rad(reading_rad: f64) -> f64 {
     let phase = (reading_rad / TAU).rem_euclid(1.0) * f64::from(PERIODS) * TAU;

@@ -164,6 +164,4 @@ pub(super) const SUBDIVISION: &[OfPivot] = &[
     of_pivot(SUBDIVISION_GROUP, 0x5450_0E04, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[1].phase_deg)),
     of_pivot(SUBDIVISION_GROUP, 0x5450_0E05, "amplitude of an encoder's error with 3 sines in a period of its scale, 0 for none", "rad", [0.0, 1e-5], at!(subdivision[Subdivision] harmonics[2].amplitude_rad)),
     of_pivot(SUBDIVISION_GROUP, 0x5450_0E06, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[2].phase_deg)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E07, "amplitude of an encoder's error with 4 sines in a period of its scale, 0 for none", "rad", [0.0, 1e-5], at!(subdivision[Subdivision] harmonics[3].amplitude_rad)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E08, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[3].phase_deg)),
 ];

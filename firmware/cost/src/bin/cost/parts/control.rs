@@ -33,7 +33,7 @@ pub fn run(bench: &mut Bench) {
         harmonics: [SubdivisionHarmonic {
             amplitude_rad: 0.4e-6,
             phase_deg: 30.0,
-        }; 4],
+        }; 3],
     });
     decoding(
         bench,
