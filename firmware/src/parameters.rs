@@ -266,10 +266,10 @@ pub struct Subdivision {
 /// A sine of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SubdivisionHarmonic {
-    /// By which the encoder reads too much, in the direction in which it counts.
-    pub amplitude_rad: f64,
-    /// Phase at reading 0, of a sine.
-    pub phase_deg: f64,
+    /// By which the encoder reads too much, in the direction in which it counts. In whole numbers, which take the least of the memory.
+    pub amplitude_nrad: u16,
+    /// Phase at reading 0, of a sine, tenths of a degree.
+    pub phase_tenths_deg: i16,
 }
 
 /// When the stage counts as settled.
@@ -394,8 +394,8 @@ impl Subdivision {
     pub const NONE: Self = Self {
         periods: 0,
         harmonics: [SubdivisionHarmonic {
-            amplitude_rad: 0.0,
-            phase_deg: 0.0,
+            amplitude_nrad: 0,
+            phase_tenths_deg: 0,
         }; SUBDIVISION_HARMONICS],
     };
 }

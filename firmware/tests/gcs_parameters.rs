@@ -120,7 +120,7 @@ fn what_does_not_go_together_is_refused() {
         "1 0x54500200 20 1 0x54500100 2000",
         "1 0x54500200 20 1 0x54500101 50000",
         // Readings that would fall while the angle rises.
-        "1 0x54500E00 100000 1 0x54500E01 0.00001",
+        "1 0x54500E00 100000 1 0x54500E01 10000",
         // At fault while settled, while braking, at the nominal supply.
         "1 0x54500500 0.00002 1 0x54500400 1000",
         "1 0x54500503 1000 1 0x54500107 2000",
@@ -189,10 +189,10 @@ fn the_tick_is_told_what_to_take_from_readings_before_the_next_line() {
     bench.tick.log.clear();
     for (line, told) in [
         (
-            "SPA 1 0x54500E00 15708 1 0x54500E11 8e-7",
+            "SPA 1 0x54500E00 15708 1 0x54500E11 800",
             &["subdivide"][..],
         ),
-        ("SPA 1 0x54500E11 8e-7", &[]),
+        ("SPA 1 0x54500E11 800", &[]),
         (
             "SPA 1 0x54500E11 0 1 0x54500300 250",
             &["configure", "subdivide"],

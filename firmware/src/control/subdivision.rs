@@ -30,17 +30,20 @@ impl SubdivisionTable {
     /// Derives the table; none where no amplitude is set.
     pub fn new(subdivision: &Subdivision) -> Self {
         let mut table = Self::default();
-        if (subdivision.harmonics.iter()).all(|harmonic| harmonic.amplitude_rad == 0.0) {
+        if (subdivision.harmonics.iter()).all(|harmonic| harmonic.amplitude_nrad == 0) {
             return table;
         }
         table.periods = subdivision.periods;
         for (entry, place) in table.entries.iter_mut().zip(0_u32..) {
             let mut units = 0.0;
             for (k, harmonic) in (1_u32..).zip(&subdivision.harmonics) {
-                let start = libm::rint(harmonic.phase_deg / 360.0 * 4_294_967_296.0) as i64;
+                let start =
+                    libm::rint(f64::from(harmonic.phase_tenths_deg) / 3_600.0 * 4_294_967_296.0)
+                        as i64;
                 let turned = (k * place) << (u32::BITS - ENTRY_BITS);
                 let (sin, _) = Fixed::sin_cos(Angle::from_units(start + i64::from(turned)));
-                units += harmonic.amplitude_rad * UNITS_PER_RAD * f64::from(sin.to_f32());
+                let amplitude = f64::from(harmonic.amplitude_nrad) * 1e-9 * UNITS_PER_RAD;
+                units += amplitude * f64::from(sin.to_f32());
             }
             *entry = libm::rint(units) as i16;
         }
@@ -78,16 +81,16 @@ mod tests {
         (1_i32..)
             .zip(&subdivision.harmonics)
             .map(|(k, harmonic)| {
-                let turns = f64::from(k) * periods + harmonic.phase_deg / 360.0;
-                harmonic.amplitude_rad * (TAU * turns.fract()).sin()
+                let turns = f64::from(k) * periods + f64::from(harmonic.phase_tenths_deg) / 3_600.0;
+                f64::from(harmonic.amplitude_nrad) * 1e-9 * (TAU * turns.fract()).sin()
             })
             .sum()
     }
 
     fn harmonics(rad_deg: [[f64; 2]; 3]) -> [SubdivisionHarmonic; 3] {
         rad_deg.map(|[amplitude_rad, phase_deg]| SubdivisionHarmonic {
-            amplitude_rad,
-            phase_deg,
+            amplitude_nrad: (amplitude_rad * 1e9).round() as u16,
+            phase_tenths_deg: (phase_deg * 10.0) as i16,
         })
     }
 
@@ -108,7 +111,9 @@ mod tests {
             let table = SubdivisionTable::new(&subdivision);
             let left: f64 = (1_i32..)
                 .zip(&subdivision.harmonics)
-                .map(|(k, one)| one.amplitude_rad * (TAU / 64.0 * f64::from(k)).powi(2) / 2.0)
+                .map(|(k, one)| {
+                    f64::from(one.amplitude_nrad) * 1e-9 * (TAU / 64.0 * f64::from(k)).powi(2) / 2.0
+                })
                 .sum();
             let mut worst_rad = 0.0_f64;
             for i in 0..200_000_u32 {

@@ -71,7 +71,9 @@ impl Parameters {
         self.subdivision.iter().all(|subdivision| {
             let slope: f64 = (1_u32..)
                 .zip(&subdivision.harmonics)
-                .map(|(k, one)| f64::from(k * subdivision.periods) * one.amplitude_rad)
+                .map(|(k, one)| {
+                    f64::from(k * subdivision.periods) * f64::from(one.amplitude_nrad) * 1e-9
+                })
                 .sum();
             slope < MAX_SUBDIVISION_SLOPE
         })

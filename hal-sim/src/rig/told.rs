@@ -121,8 +121,9 @@ pub fn with_subdivision_told(parameters: &Parameters, stage: &StageParameters) -
             (u64::from(encoder.zero_counts) * u64::from(periods)) % u64::from(COUNTS_PER_TURN);
         subdivision.periods = periods;
         subdivision.harmonics[0] = SubdivisionHarmonic {
-            amplitude_rad: encoder.subdivisional_error_rad,
-            phase_deg: -360.0 * counts as f64 / f64::from(COUNTS_PER_TURN),
+            amplitude_nrad: (encoder.subdivisional_error_rad * 1e9).round() as u16,
+            phase_tenths_deg: (-3_600.0 * counts as f64 / f64::from(COUNTS_PER_TURN)).round()
+                as i16,
         };
     }
     told

@@ -148,20 +148,27 @@ pub(super) const LEARNT: &[OfPivot] = &[
     of_pivot(LEARNT_GROUP, 0x5450_0B03, "what the motor constant at the ring is more than the model has it, by the measured current", "V s/rad", [-50.0, 50.0], at!(learnt[Learnt] motor_constant_v_s_rad)),
 ];
 
+/// The same of a whole number.
+macro_rules! whole {
+    ($number:ty: $list:ident [$owner:ty] $($field:tt)+) => {
+        (
+            |p, pivot| p.$list.get(pivot).map_or(0.0, |of_pivot: &$owner| f64::from(of_pivot.$($field)+)),
+            |p, pivot, value| {
+                if let Some(of_pivot) = p.$list.get_mut(pivot) {
+                    of_pivot.$($field)+ = value as $number;
+                }
+            },
+        )
+    };
+}
+
 #[rustfmt::skip]
 pub(super) const SUBDIVISION: &[OfPivot] = &[
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E00, "periods of an encoder's scale in a turn, 0 for unknown", "", [0.0, 100_000.0], (
-        |p, pivot| p.subdivision.get(pivot).map_or(0.0, |of_pivot| f64::from(of_pivot.periods)),
-        |p, pivot, value| {
-            if let Some(of_pivot) = p.subdivision.get_mut(pivot) {
-                of_pivot.periods = value as u32;
-            }
-        },
-    )).whole(),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E01, "amplitude of an encoder's error with 1 sine in a period of its scale, 0 for none", "rad", [0.0, 1e-5], at!(subdivision[Subdivision] harmonics[0].amplitude_rad)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E02, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[0].phase_deg)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E03, "amplitude of an encoder's error with 2 sines in a period of its scale, 0 for none", "rad", [0.0, 1e-5], at!(subdivision[Subdivision] harmonics[1].amplitude_rad)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E04, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[1].phase_deg)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E05, "amplitude of an encoder's error with 3 sines in a period of its scale, 0 for none", "rad", [0.0, 1e-5], at!(subdivision[Subdivision] harmonics[2].amplitude_rad)),
-    of_pivot(SUBDIVISION_GROUP, 0x5450_0E06, "phase of that error at reading 0, of a sine", "deg", [-360.0, 360.0], at!(subdivision[Subdivision] harmonics[2].phase_deg)),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E00, "periods of an encoder's scale in a turn, 0 for unknown", "", [0.0, 100_000.0], whole!(u32: subdivision[Subdivision] periods)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E01, "amplitude of an encoder's error with 1 sine in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[0].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E02, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[0].phase_tenths_deg)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E03, "amplitude of an encoder's error with 2 sines in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[1].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E04, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[1].phase_tenths_deg)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E05, "amplitude of an encoder's error with 3 sines in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[2].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E06, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[2].phase_tenths_deg)).whole(),
 ];

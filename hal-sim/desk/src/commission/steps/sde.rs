@@ -97,7 +97,11 @@ fn correct(
         bench.set(&[(first, f64::from(periods[pivot]))])?;
         for (id, harmonic) in (first + 1..).step_by(2).zip(harmonics) {
             let (amplitude_rad, phase_rad) = harmonic.to_polar();
-            bench.set(&[(id, amplitude_rad), (id + 1, phase_rad.to_degrees())])?;
+            let phase_tenths_deg = (10.0 * phase_rad.to_degrees()).round();
+            bench.set(&[
+                (id, (amplitude_rad * 1e9).round()),
+                (id + 1, phase_tenths_deg),
+            ])?;
         }
     }
     bench.hold()

@@ -31,8 +31,8 @@ pub fn run(bench: &mut Bench) {
     let corrected = SubdivisionTable::new(&Subdivision {
         periods: 15_708,
         harmonics: [SubdivisionHarmonic {
-            amplitude_rad: 0.4e-6,
-            phase_deg: 30.0,
+            amplitude_nrad: 400,
+            phase_tenths_deg: 300,
         }; 3],
     });
     decoding(
