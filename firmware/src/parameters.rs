@@ -38,6 +38,8 @@ pub struct Parameters {
     pub learnt: [Learnt; 3],
     /// Encoders, pivot by pivot.
     pub encoders: [EncoderMounting; 3],
+    /// What their readings are off by within each period of their scales, pivot by pivot.
+    pub subdivision: [Subdivision; 3],
     /// When the stage counts as settled.
     pub window: SettlingWindow,
     /// Thresholds of the faults.
@@ -249,6 +251,27 @@ pub struct EncoderMounting {
     pub reversed: bool,
 }
 
+/// Sines of the error within a period of an encoder's scale. For a fourth the settings that a sector of the flash holds have no room.
+pub const SUBDIVISION_HARMONICS: usize = 3;
+
+/// The error that an encoder makes within each period of its scale (sub-divisional or interpolation error).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subdivision {
+    /// Periods of the scale in a turn; 0: not known, nothing is corrected.
+    pub periods: u32,
+    /// One, two and three sines in a period.
+    pub harmonics: [SubdivisionHarmonic; SUBDIVISION_HARMONICS],
+}
+
+/// A sine of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SubdivisionHarmonic {
+    /// By which the encoder reads too much, in the direction in which it counts. In whole numbers, which take the least of the memory.
+    pub amplitude_nrad: u16,
+    /// Phase at reading 0, of a sine, tenths of a degree.
+    pub phase_tenths_deg: i16,
+}
+
 /// When the stage counts as settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SettlingWindow {
@@ -366,6 +389,17 @@ impl Ripple {
     };
 }
 
+impl Subdivision {
+    /// Nothing is corrected.
+    pub const NONE: Self = Self {
+        periods: 0,
+        harmonics: [SubdivisionHarmonic {
+            amplitude_nrad: 0,
+            phase_tenths_deg: 0,
+        }; SUBDIVISION_HARMONICS],
+    };
+}
+
 impl Parameters {
     /// The reference stage, commissioned.
     pub const REFERENCE: Self = Self {
@@ -441,6 +475,7 @@ impl Parameters {
                 reversed: false,
             },
         ],
+        subdivision: [Subdivision::NONE; 3],
         window: SettlingWindow {
             counts: 2.0,
             dwell_s: 2e-3,

@@ -1,5 +1,6 @@
 //! Frames to angles: what is believed, what is bridged, what makes an encoder unusable and why.
 
+use firmware::control::SubdivisionTable;
 use firmware::control::encoder::{Encoder, EncoderConfig};
 use firmware::drivers::biss::RawFrame;
 use firmware::fault::FaultKind;
@@ -39,6 +40,7 @@ fn garbled(counts: u32) -> RawFrame {
 struct Ring {
     encoder: Encoder,
     config: EncoderConfig,
+    subdivision: SubdivisionTable,
     counts: u32,
     /// Counts a tick.
     rate: i32,
@@ -49,6 +51,7 @@ impl Ring {
         Self {
             encoder: Encoder::default(),
             config: EncoderConfig::new(&setup, &SUPERVISION, PERIOD_S),
+            subdivision: SubdivisionTable::default(),
             counts: setup.zero_counts,
             rate,
         }
@@ -72,7 +75,7 @@ impl Ring {
     }
 
     fn take(&mut self, frame: RawFrame) {
-        self.encoder.update(&self.config, &frame);
+        (self.encoder).update(&self.config, &self.subdivision, &frame);
     }
 
     /// A tick in which the ring goes on and the encoder sends what `send` makes of its counts.

@@ -119,6 +119,8 @@ fn what_does_not_go_together_is_refused() {
         // More track radii or turns a second than the tick's numbers hold.
         "1 0x54500200 20 1 0x54500100 2000",
         "1 0x54500200 20 1 0x54500101 50000",
+        // Readings that would fall while the angle rises.
+        "1 0x54500E00 100000 1 0x54500E01 10000",
         // At fault while settled, while braking, at the nominal supply.
         "1 0x54500500 0.00002 1 0x54500400 1000",
         "1 0x54500503 1000 1 0x54500107 2000",
@@ -179,6 +181,29 @@ fn limits_of_motion_over_the_rating_need_level_1_once() {
     assert_eq!(bench.error_after("SPA 1 0x54500100 100"), "0");
     assert_eq!(bench.error_after("SPA 1 0x54500100 250"), "0");
     assert_eq!(bench.error_after("SPA 1 0x54500100 251"), "17");
+}
+
+#[test]
+fn the_tick_is_told_what_to_take_from_readings_before_the_next_line() {
+    let mut bench = advanced_and_off();
+    bench.tick.log.clear();
+    for (line, told) in [
+        (
+            "SPA 1 0x54500E00 15708 1 0x54500E11 800",
+            &["subdivide"][..],
+        ),
+        ("SPA 1 0x54500E11 800", &[]),
+        (
+            "SPA 1 0x54500E11 0 1 0x54500300 250",
+            &["configure", "subdivide"],
+        ),
+        ("SPA 1 0x54500300 260", &["configure"]),
+    ] {
+        assert_eq!(bench.say(&format!("{line}\nSVO X 0\n")), "");
+        let log = core::mem::take(&mut bench.tick.log);
+        let before: Vec<_> = log.into_iter().take_while(|one| *one != "off").collect();
+        assert_eq!(before, told, "{line}");
+    }
 }
 
 #[test]

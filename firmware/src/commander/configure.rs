@@ -5,6 +5,7 @@ use super::error::CommandError;
 use super::in_flight::InFlight;
 use super::reach::ReachMargins;
 use super::state::Commander;
+use crate::control::SubdivisionTable;
 use crate::control::config::Config;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits};
@@ -36,10 +37,36 @@ impl Commander {
         let soft = soft.ok_or(CommandError::SoftLimitsInvalid)?;
         let config = Config::new(wanted);
         if config != Config::new(now) {
+            // The encoders' tables follow when it is counted, before the next line.
             self.send(Command::Configure(config), InFlight::Configure, queues)?;
+        } else {
+            self.send_due_subdivision(wanted, queues)?;
         }
         self.soft_limits = soft;
         self.use_parameters(wanted);
+        Ok(())
+    }
+
+    /// Tells the tick what to take from the encoders' readings, where it does not know that yet and the servo is off.
+    ///
+    /// # Errors
+    /// [`CommandError::Busy`] when the tick can not be told.
+    // In a frame of its own: a command has the length of a plan.
+    #[inline(never)]
+    pub(crate) fn send_due_subdivision(
+        &mut self,
+        parameters: &Parameters,
+        queues: &mut CommandQueues<'_>,
+    ) -> Result<(), CommandError> {
+        let mode = self.current_snapshot().map(|snapshot| snapshot.mode);
+        if self.subdivision == parameters.subdivision
+            || !matches!(mode, Some(Mode::Off | Mode::Fault))
+        {
+            return Ok(());
+        }
+        let tables = (parameters.subdivision.each_ref()).map(SubdivisionTable::new);
+        self.send(Command::Subdivide(tables), InFlight::Other, queues)?;
+        self.subdivision = parameters.subdivision;
         Ok(())
     }
 

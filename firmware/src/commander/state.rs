@@ -17,7 +17,7 @@ use crate::fault::{Fault, FaultKind};
 use crate::iterative_learning::Tables;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits, Position};
-use crate::parameters::{Parameters, Targets};
+use crate::parameters::{Parameters, Subdivision, Targets};
 use crate::queues::{Command, CommandQueues, Snapshot};
 
 /// Time between streamed targets at first, ms.
@@ -52,6 +52,8 @@ pub struct Commander {
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) calibrating: KeptCalibration,
+    /// What the tick takes from the encoders' readings.
+    pub(super) subdivision: [Subdivision; 3],
     pub(super) frames: FrameTree,
     /// What targets mean, with the frames in force.
     pub(super) active_frames: ActiveFrames,
@@ -111,6 +113,7 @@ impl Commander {
             stop_seen: false,
             cycle_ms: DEFAULT_CYCLE_MS,
             calibrating: KeptCalibration::default(),
+            subdivision: [Subdivision::NONE; 3],
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,
             snapshot: None,

@@ -3,6 +3,7 @@
 use super::calibrated::CalibrationInForce;
 use super::config::Config;
 use super::excitation::Excitation;
+use super::subdivision::SubdivisionTable;
 use crate::motion::{Plan, RotationCentre};
 
 /// What the command side asks of the tick.
@@ -24,6 +25,9 @@ pub enum Command {
     Configure(Config),
     /// The machine is as this calibration has it from now on. Refused but with the servo off.
     Calibrate(CalibrationInForce),
+    /// Take this from the encoders' readings from now on. Refused but with the servo off. Not among the constants: with the tables
+    /// those would be longer than a plan.
+    Subdivide([SubdivisionTable; 3]),
     /// Put a known voltage on a motor: alone with the servo off, else besides what the servo asks for.
     Excite(Excitation),
     /// End that.

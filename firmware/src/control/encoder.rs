@@ -1,5 +1,6 @@
 //! From encoder frames to a multi-turn pivot angle: which frame is believed, what bridges one that is not.
 
+use super::subdivision::SubdivisionTable;
 use crate::drivers::biss::{
     CheckedFrame, FrameError, POSITION_BITS, RawFrame, check_frame, decode,
 };
@@ -50,10 +51,10 @@ impl EncoderConfig {
             >> ALIGN_SHIFT
     }
 
-    /// The fraction of a turn that a reading means, 2^-32 turns.
+    /// The fraction of a turn that a reading means, 2^-32 turns, without the error within a period of the scale.
     #[inline]
-    fn fraction(&self, counts: u32) -> u32 {
-        (counts << ALIGN_SHIFT)
+    fn fraction(&self, subdivision: &SubdivisionTable, counts: u32) -> u32 {
+        (subdivision.corrected(counts << ALIGN_SHIFT))
             .wrapping_sub(self.zero)
             .wrapping_mul(self.direction as u32)
     }
@@ -113,14 +114,19 @@ impl Encoder {
     /// the pivot turns. A frame that is not believed is never used: the angle goes on by the last step, up to
     /// [`EncoderConfig`]'s count of them in a row.
     #[inline]
-    pub fn update(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+    pub fn update(
+        &mut self,
+        config: &EncoderConfig,
+        subdivision: &SubdivisionTable,
+        frame: &RawFrame,
+    ) {
         if let (true, Some(counts)) = (
             self.fast_path,
             check_frame(frame)
                 .ok()
                 .and_then(CheckedFrame::plain_position),
         ) {
-            let fraction = config.fraction(counts);
+            let fraction = config.fraction(subdivision, counts);
             let (moved, innovation) = self.moved(fraction);
             if innovation <= config.max_step_change && !self.is_frozen(fraction) {
                 self.count_repeats(fraction);
@@ -129,17 +135,22 @@ impl Encoder {
                 return;
             }
         }
-        self.update_checked(config, frame);
+        self.update_checked(config, subdivision, frame);
     }
 
     /// Takes a frame of any kind.
     #[cold]
     #[inline(never)]
-    fn update_checked(&mut self, config: &EncoderConfig, frame: &RawFrame) {
+    fn update_checked(
+        &mut self,
+        config: &EncoderConfig,
+        subdivision: &SubdivisionTable,
+        frame: &RawFrame,
+    ) {
         match decode(frame) {
             Ok(reading) => {
                 self.warning = reading.warning;
-                let fraction = config.fraction(reading.counts);
+                let fraction = config.fraction(subdivision, reading.counts);
                 if self.is_frozen(fraction) {
                     self.bridge_missing(config, FaultKind::EncoderFrozen);
                 } else {

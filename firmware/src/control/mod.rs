@@ -8,6 +8,7 @@
 //! | `units` | counts of the converter and units of an angle |
 //! | `wiring` | from connectors to pivots, and back |
 //! | `encoder` | frames to a multi-turn angle: which frame is believed, what bridges one that is not |
+//! | `subdivision` | the error within each period of an encoder's scale, taken from its readings |
 //! | `referencing` | turns for theta and the pivots from single-turn encoders |
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `next_setpoint` | the setpoint of the next tick, computed after the duties of this one |
@@ -50,6 +51,7 @@ pub mod servo;
 mod settling;
 mod snapshot;
 mod state;
+mod subdivision;
 mod supervisor;
 mod tick;
 mod tick_queues;
@@ -62,6 +64,7 @@ pub use command::Command;
 pub use observers::TickObservers;
 pub use snapshot::{SNAPSHOT_SLOTS, ServoReport, Snapshot};
 pub use state::{Inputs, Outputs, State};
+pub use subdivision::SubdivisionTable;
 pub use supervisor::{Event, MODES, Outcome, TRANSITIONS};
 pub use tick::{tick, tick_and_drive};
 pub use tick_queues::TickQueues;

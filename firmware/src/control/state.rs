@@ -11,6 +11,7 @@ use super::pivot_setpoints::NextSetpoint;
 use super::rest_mode::RestMode;
 use super::servo::PivotServo;
 use super::settling::Settling;
+use super::subdivision::SubdivisionTable;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
 use crate::fault::{Fault, FaultKind};
@@ -61,6 +62,8 @@ pub struct State {
     /// The pivot that has lost its encoder, until the fault is acknowledged.
     pub(super) lost_pivot: Option<usize>,
     pub(super) referenced: bool,
+    /// What is taken from the encoders' readings.
+    pub(super) subdivision: [SubdivisionTable; 3],
     pub(super) encoders: [Encoder; 3],
     pub(super) calibrated: Calibrated,
     pub(super) motion: PlanFollower,

@@ -6,6 +6,7 @@ use super::inspection::{INSPECTION_PERIOD_TICKS, Inspection, SNAPSHOT_SLOT};
 use super::rest_mode::Stiffness;
 use super::servo::{LoopSetpoint, PivotFeedback};
 use super::state::{Inputs, Outputs, State};
+use super::subdivision::SubdivisionTable;
 use super::tick_queues::TickQueues;
 use crate::drivers::biss::RawFrame;
 use crate::drivers::bridge::Duty;
@@ -64,7 +65,7 @@ pub fn tick_and_drive<'a>(
         sorted = (config.wiring).of_pivots(&inputs.frames, &inputs.current_counts);
         (&sorted.0, &sorted.1)
     };
-    let mut pivots = decode(config, &mut state.encoders, frames);
+    let mut pivots = decode(config, &state.subdivision, &mut state.encoders, frames);
     // An average: the supply feeds every duty, and one count of the ADC is 0.03 % of it.
     let supply = f32::from(inputs.supply_counts);
     if state.supply == 0.0 {
@@ -161,9 +162,14 @@ pub fn tick_and_drive<'a>(
 
 /// Encoder frames to pivot angles.
 #[inline(never)]
-fn decode(config: &Config, encoders: &mut [Encoder; 3], frames: &[RawFrame; 3]) -> [Angle; 3] {
+fn decode(
+    config: &Config,
+    subdivision: &[SubdivisionTable; 3],
+    encoders: &mut [Encoder; 3],
+    frames: &[RawFrame; 3],
+) -> [Angle; 3] {
     for i in 0..3 {
-        encoders[i].update(&config.encoders[i], &frames[i]);
+        encoders[i].update(&config.encoders[i], &subdivision[i], &frames[i]);
     }
     encoders.each_ref().map(Encoder::angle)
 }

@@ -78,6 +78,8 @@ impl Interpreter {
         self.commander.set_debugged(may_be_halted);
         self.revert_if_refused();
         self.commander.send_due_calibration(queues);
+        // With no room in the queue, the next time.
+        let _ = (self.commander).send_due_subdivision(&self.parameters, queues);
         self.commander.advance_pending(queues);
         self.keep_learnt(queues);
         self.watch_heartbeat(queues);

@@ -14,18 +14,22 @@ const MAX_RATE_1_S: f64 = 35.0;
 const MAX_ACCELERATION_1_S2: f64 = 2_700.0;
 /// Shortest silence of the host that can be noticed, ms: what an operating system keeps with ease.
 pub(crate) const MIN_HOST_SILENCE_MS: f64 = 10.0;
+/// Largest share of a motion that an encoder's error within the periods of its scale may add to it or take away: real ones are a few
+/// hundredths.
+const MAX_SUBDIVISION_SLOPE: f64 = 0.5;
 /// The encoder's resolution, 2^-26 turns.
 const COUNT_RAD: f64 = core::f64::consts::TAU / 67_108_864.0;
 
 impl Parameters {
     /// Whether they make a stage that can be controlled: that the disk is not empty, that the tick's numbers hold every
-    /// rate, that no threshold contradicts another, that no connector is two pivots', and that a record has a point from its trigger on. Says nothing of
+    /// rate, that no threshold contradicts another, that encoders are not corrected beyond reason, that no connector is two pivots', and that a record has a point from its trigger on. Says nothing of
     /// each parameter's own range.
     pub fn are_sound(&self) -> bool {
         self.has_disk()
             && self.rates_fit()
             && self.thresholds_agree()
             && self.connectors_differ()
+            && self.readings_rise()
             && self.recorder.before < self.recorder.points
     }
 
@@ -60,6 +64,19 @@ impl Parameters {
         [encoder_order, bridge_order]
             .iter()
             .all(|digits| ConnectorOrder::from_digits(f64::from(*digits)).is_some())
+    }
+
+    /// Whether what is taken from the encoders' readings leaves them rising with the angle.
+    fn readings_rise(&self) -> bool {
+        self.subdivision.iter().all(|subdivision| {
+            let slope: f64 = (1_u32..)
+                .zip(&subdivision.harmonics)
+                .map(|(k, one)| {
+                    f64::from(k * subdivision.periods) * f64::from(one.amplitude_nrad) * 1e-9
+                })
+                .sum();
+            slope < MAX_SUBDIVISION_SLOPE
+        })
     }
 
     fn thresholds_agree(&self) -> bool {

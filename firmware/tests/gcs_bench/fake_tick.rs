@@ -171,6 +171,7 @@ impl<'q> FakeTick<'q> {
                 self.log.push("configure");
                 self.config = config;
             }
+            Command::Subdivide(_) => self.log.push("subdivide"),
             Command::Excite(_) | Command::EndExcitation | Command::Calibrate(_) => {}
             Command::Acknowledge => {
                 self.log.push("acknowledge");

@@ -8,6 +8,7 @@
 //! | [`mod@winding`] | resistance and inductance from pulses at rest; opens, shorts, polarity |
 //! | [`mod@frequency_response`] | responses of all pivots to all drives, in open or closed loop, with their deviations |
 //! | [`mod@friction`] | friction and motor constants from steady rates both ways |
+//! | [`mod@subdivision`] | errors of the encoders within the periods of their scales, from a steady rate |
 //! | [`mod@drive_model`] | windings, inertias, springs and dampers from the responses |
 //! | [`mod@closed_loop`] | plant and sensitivity as they were measured with the servo on |
 //! | [`chain`] | the machine as it answers to small motions: motors, rings, platform, springs between |
@@ -37,6 +38,7 @@ mod least_squares;
 pub mod platform;
 pub mod record;
 mod spectrum;
+pub mod subdivision;
 pub mod tuning;
 pub mod winding;
 
@@ -45,4 +47,5 @@ pub use frequency_response::frequency_response;
 pub use friction::friction;
 pub use platform::platform;
 pub use record::{Record, Signals, Timing};
+pub use subdivision::subdivision;
 pub use winding::winding;

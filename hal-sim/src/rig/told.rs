@@ -1,9 +1,9 @@
 //! A controller that is told of the machine before it: the true numbers in place of the model's, each of them something that `SPA` sets.
 
-use crate::machine::devices::StageParameters;
+use crate::machine::devices::{COUNTS_PER_TURN, StageParameters};
 use crate::machine::plant::PlantParameters;
 use firmware::control::servo::{ServoConfig, carried_inertia, pivot_limits};
-use firmware::parameters::{Harmonic, Notch, Parameters};
+use firmware::parameters::{Harmonic, Notch, Parameters, SubdivisionHarmonic};
 use std::fmt;
 
 /// What a controller is told of the machine before it.
@@ -103,6 +103,27 @@ pub fn with_ripple_told(parameters: &Parameters, stage: &StageParameters) -> Par
             periods: plant.ripple_periods_per_motor_turn * plant.gear_ratio,
             amplitude_n_m: plant.ripple_n_m,
             phase_deg: 0.0,
+        };
+    }
+    told
+}
+
+/// The same with the errors of the encoders within the periods of their scales.
+#[must_use]
+pub fn with_subdivision_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let both = told.subdivision.iter_mut().zip(&stage.encoders);
+    for (subdivision, encoder) in both {
+        let periods = encoder.scale_periods_per_turn;
+        // The sine rises through zero where the ring's angle is zero, whichever way the encoder counts. Whole turns of the phase are
+        // taken away in whole numbers.
+        let counts =
+            (u64::from(encoder.zero_counts) * u64::from(periods)) % u64::from(COUNTS_PER_TURN);
+        subdivision.periods = periods;
+        subdivision.harmonics[0] = SubdivisionHarmonic {
+            amplitude_nrad: (encoder.subdivisional_error_rad * 1e9).round() as u16,
+            phase_tenths_deg: (-3_600.0 * counts as f64 / f64::from(COUNTS_PER_TURN)).round()
+                as i16,
         };
     }
     told

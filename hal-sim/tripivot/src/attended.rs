@@ -39,6 +39,8 @@ pub struct SimulatedMachine {
     answers: Vec<u8>,
     /// Ticks since the person has begun to turn the platform, and where its theta was.
     turning: Option<(u32, f64)>,
+    /// What the encoders' data sheet says.
+    scale_periods: u32,
     each_tick: Option<EachTick>,
     /// Where the platform truly is, m, m and rad, for instruments.
     true_pose: Rc<Cell<[f64; 3]>>,
@@ -84,6 +86,7 @@ impl SimulatedMachine {
             session: Session::new(),
             answers: Vec::new(),
             turning: None,
+            scale_periods: stage.encoders[0].scale_periods_per_turn,
             each_tick,
             true_pose: Rc::default(),
         };
@@ -190,6 +193,10 @@ impl Machine for SimulatedMachine {
             }
         }
         Ok(())
+    }
+
+    fn scale_periods(&self) -> Option<u32> {
+        Some(self.scale_periods)
     }
 }
 

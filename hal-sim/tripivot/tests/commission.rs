@@ -83,6 +83,7 @@ fn brings_up(seed: u64) {
     assert_eq!(output.status.code(), Some(0), "{told}");
     finds_the_wires(&machine, &told);
     finds_the_motors(&machine, &told, MOST_CONSTANT_ERROR);
+    finds_errors_within_periods(&machine, &told);
     finds_what_is_moved(&machine, &told);
     finds_gains(&told);
     ends_in_time(&told);
@@ -144,6 +145,24 @@ fn finds_the_motors(machine: &StageParameters, told: &str, most: f64) {
     }
     let friction = plant.ring_friction.coulomb + plant.motor_friction.coulomb;
     assert!(error(told, "mean of three", friction).abs() < MOST_FRICTION_ERROR);
+}
+
+/// What the encoders' sines are, urad, and what is left of them: the worst of the machines tried here, and a tenth more.
+fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
+    let wiring = machine.wiring;
+    let first = (0..3).find(|ring| wiring.bridge_of_ring[*ring] == 0);
+    for pivot in 0..3 {
+        let encoder = &machine.encoders[(first.expect("one") + pivot) % 3];
+        let name = format!(
+            "error of encoder {} within a period of its scale",
+            pivot + 1
+        );
+        let truth_urad = encoder.subdivisional_error_rad * 1e6;
+        let off = error(told, &name, truth_urad);
+        let left_urad = numbers(told, &name).nth(1).expect("what is left");
+        println!("{left_urad} urad left");
+        assert!(off.abs() < 0.05 && left_urad < 0.03, "{told}");
+    }
 }
 
 /// Rate and acceleration of a pivot in force: what the machine's true numbers allow, and no more than before.
@@ -396,7 +415,9 @@ fn the_steps_are_listed_without_a_machine() {
     let (output, folder) = commission("list", &["--list"]);
     let told = text(&output);
     assert_eq!(output.status.code(), Some(0));
-    for step in ["wiring", "hand", "nudges", "windings", "zeros", "keep"] {
+    for step in [
+        "wiring", "hand", "nudges", "windings", "zeros", "sde", "keep",
+    ] {
         assert!(told.lines().any(|line| line.starts_with(step)), "{told}");
     }
     assert!(!folder.exists());

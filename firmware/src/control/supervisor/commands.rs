@@ -56,6 +56,7 @@ impl State {
                 let _ = self.motion.set_centre(*centre);
             }
             Command::Calibrate(wanted) => self.calibrated.set(wanted),
+            Command::Subdivide(tables) => self.subdivision = *tables,
             // The servo is on already, or goes off, which is all there is to it.
             Command::Servo(false) | Command::EndExcitation => {
                 self.excitation.end(ExcitationEnd::Stopped);
@@ -96,6 +97,7 @@ impl State {
             Command::Centre(_)
             | Command::Configure(_)
             | Command::Calibrate(_)
+            | Command::Subdivide(_)
             | Command::EndExcitation => false,
         }
     }
@@ -205,7 +207,7 @@ fn event_of(config: &Config, command: &Command) -> Event {
             }
         }
         // What the readings mean is another pose.
-        Command::Calibrate(_) => Event::Mounting,
+        Command::Calibrate(_) | Command::Subdivide(_) => Event::Mounting,
         Command::Excite(_) => Event::Excite,
         Command::EndExcitation => Event::EndExcitation,
         Command::Acknowledge => Event::Acknowledge,

@@ -38,7 +38,7 @@ const VERSION_WITHOUT_MOVES: u16 = 2;
 const CHUNK_BYTES: usize = 64;
 
 /// Bytes that the longest settings take in the flash, without a calibration: a sector must have them. What macros and tables that fill
-/// their memories leave of a sector is 300 bytes too few for a calibration, of 647: that is refused then as too long.
+/// their memories leave of a sector is too little for a calibration, of 647: that is refused then as too long.
 pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
 /// Bytes of the longest contents.
 const MAX_CONTENTS_BYTES: usize =

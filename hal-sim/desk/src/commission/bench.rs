@@ -71,6 +71,11 @@ impl<'a> Bench<'a> {
         Ok(self.machine.ask(line)?.unwrap_or_default())
     }
 
+    /// See [`Machine::scale_periods`].
+    pub fn scale_periods(&self) -> Option<u32> {
+        self.machine.scale_periods()
+    }
+
     pub fn delay(&mut self, seconds: f64) -> Answered<()> {
         self.machine.delay(seconds)
     }

@@ -11,7 +11,7 @@ use super::steps::settle_widely;
 /// Steps that need more of those before them than the controller's parameters hold.
 const NOT_FIRST: [&str; 4] = ["hand", "nudges", "response", "tuning"];
 /// Before it the servo is off, and nothing may be commissioned; after it a servo holds the stage.
-const FIRST_SERVO: &str = "gains";
+const FIRST_SERVO: &str = "sde";
 /// What ends all of them.
 const LAST: &str = "keep";
 

@@ -8,6 +8,8 @@ pub const ENCODER_REVERSED: u32 = 0x5450_0610;
 pub const ENCODER_ORDER: u32 = 0x5450_0620;
 pub const BRIDGE_ORDER: u32 = 0x5450_0630;
 pub const MOTOR_REVERSED: u32 = 0x5450_0640;
+/// Of the scale of pivot 1's encoder; behind it amplitude and phase of each harmonic.
+pub const SCALE_PERIODS: u32 = 0x5450_0E10;
 pub const POSITION_GAIN: u32 = 0x5450_0300;
 pub const VELOCITY_GAIN: u32 = 0x5450_0301;
 pub const INTEGRAL_GAIN: u32 = 0x5450_0302;

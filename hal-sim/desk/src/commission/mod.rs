@@ -61,6 +61,10 @@ pub trait Machine {
     /// # Errors
     /// When nobody is there.
     fn request(&mut self, task: Task) -> Result<(), RecordError>;
+    /// Periods of the encoders' scale in a turn, as their data sheet has them; `None` where nobody has looked.
+    fn scale_periods(&self) -> Option<u32> {
+        None
+    }
 }
 
 /// What only a person can do.
@@ -181,6 +185,7 @@ fn given_up(bench: &mut Bench<'_>, mut failure: Failure) -> Result<Failure, Reco
 /// A controller that runs, with somebody who reads standard error and presses Enter.
 pub struct Attended {
     desk: Desk,
+    scale_periods: Option<u32>,
     wait_for_enter: fn() -> std::io::Result<()>,
     tell: fn(&str),
 }
@@ -195,9 +200,17 @@ impl Attended {
     ) -> Result<Self, RecordError> {
         Ok(Self {
             desk: Desk::open(endpoint)?,
+            scale_periods: None,
             wait_for_enter,
             tell,
         })
+    }
+
+    /// The same with the periods of the encoders' scale in a turn, where they are known.
+    #[must_use]
+    pub fn with_scale_periods(mut self, scale_periods: Option<u32>) -> Self {
+        self.scale_periods = scale_periods;
+        self
     }
 }
 
@@ -220,5 +233,9 @@ impl Machine for Attended {
             })?;
         }
         Ok(())
+    }
+
+    fn scale_periods(&self) -> Option<u32> {
+        self.scale_periods
     }
 }

@@ -30,7 +30,7 @@ pub struct EncoderParameters {
     pub eccentricity_phase_rad: f64,
     /// Cosine and sine of two to twelve times the ring's angle in its error, rad.
     pub harmonics_rad: [[f64; 2]; 11],
-    /// Amplitude of its error within a period of the scale, rad.
+    /// Amplitude of its error within a period of the scale, rad: of a sine of the scale's place under the head.
     pub subdivisional_error_rad: f64,
     /// Periods of the scale in a turn.
     pub scale_periods_per_turn: u32,
@@ -206,8 +206,9 @@ impl Encoder {
             error_rad += harmonics(&parameters.harmonics_rad, angle_rad);
         }
         if on.subdivisional_error {
+            // By the lines that its head sees: a scale that is off its centre, or has its lines not where they belong, shows others.
             let periods = f64::from(parameters.scale_periods_per_turn);
-            let (sin, _) = <f64 as Scalar>::sin_cos(angle_rad * periods);
+            let (sin, _) = <f64 as Scalar>::sin_cos((angle_rad + error_rad) * periods);
             error_rad += parameters.subdivisional_error_rad * sin;
         }
         error_rad

@@ -72,6 +72,10 @@ impl Machine for Counted {
         self.questions += 1;
         self.machine.request(task)
     }
+
+    fn scale_periods(&self) -> Option<u32> {
+        self.machine.scale_periods()
+    }
 }
 
 fn commissioned(seed: u64) -> Row {

@@ -108,11 +108,14 @@ fn open(on: &Commissioned) -> Result<Box<dyn Machine>, CliError> {
         let flash = SettingsFlash::open(&on.out.join(SETTINGS))?;
         return Ok(Box::new(SimulatedMachine::new(&stage, flash)));
     }
-    Ok(Box::new(Attended::open(
-        &endpoint(&on.controller)?,
-        |text| eprintln!("{text}"),
-        || io::stdin().read_line(&mut String::new()).map(|_| ()),
-    )?))
+    Ok(Box::new(
+        Attended::open(
+            &endpoint(&on.controller)?,
+            |text| eprintln!("{text}"),
+            || io::stdin().read_line(&mut String::new()).map(|_| ()),
+        )?
+        .with_scale_periods(on.scale_periods),
+    ))
 }
 
 fn conditions(on: &Commissioned, machine: &mut dyn Machine) -> Result<Conditions, CliError> {

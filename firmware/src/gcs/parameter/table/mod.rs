@@ -13,7 +13,7 @@ use crate::drivers::power_stage::MOST_MEASURED_A;
 use crate::gcs::request::MAX_DELAY_MS;
 use crate::motion::TurnDirection;
 use crate::recorder::RECORDER_WORDS;
-use pivots::{DRIVES, GAINS, LEARNT, RIPPLE, of_pivots};
+use pivots::{DRIVES, GAINS, LEARNT, RIPPLE, SUBDIVISION, of_pivots};
 
 /// What the parameters of a group share.
 #[derive(Clone, Copy)]
@@ -37,6 +37,7 @@ const RECORDER: Group = group("recorder", 0, When::AtRest);
 const DRIVE: Group = group("drive", 1, When::AtRest);
 const RIPPLE_GROUP: Group = group("ripple", 1, When::AtRest);
 const LEARNT_GROUP: Group = group("learnt", 1, When::AtRest);
+const SUBDIVISION_GROUP: Group = group("subdivision", 1, When::ServoOff);
 
 const fn group(name: &'static str, level: u8, when: When) -> Group {
     Group { name, level, when }
@@ -137,12 +138,13 @@ pub static PARAMETERS: &[Parameter] = &join::<COUNT>(&[
     POWER,
     &of_pivots::<{ 4 * RIPPLE.len() }>(RIPPLE),
     &of_pivots::<{ 4 * LEARNT.len() }>(LEARNT),
+    &of_pivots::<{ 4 * SUBDIVISION.len() }>(SUBDIVISION),
 ]);
 
 const COUNT: usize = COMMON.len()
     + AFTER_GAINS.len()
     + POWER.len()
-    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len() + LEARNT.len());
+    + 4 * (GAINS.len() + DRIVES.len() + RIPPLE.len() + LEARNT.len() + SUBDIVISION.len());
 
 /// Lists one after the other.
 const fn join<const N: usize>(lists: &[&[Parameter]]) -> [Parameter; N] {

@@ -1,12 +1,13 @@
 //! Parameters that each pivot has of its own. One identifier means all three, and one each means one: the second digit from the right.
 
 use super::super::descriptor::{GetOfPivot, Kind, Parameter, SetOfPivot, ValueSource};
-use super::{DRIVE, Group, LEARNT_GROUP, RIPPLE_GROUP, SERVO};
-use crate::parameters::{Drive, FeedbackFilters, Gains, Learnt, Ripple};
+use super::{DRIVE, Group, LEARNT_GROUP, RIPPLE_GROUP, SERVO, SUBDIVISION_GROUP};
+use crate::parameters::{Drive, FeedbackFilters, Gains, Learnt, Ripple, Subdivision};
 
 /// What a pivot has.
 pub(super) struct OfPivot {
     group: Group,
+    kind: Kind,
     id: u32,
     text: &'static str,
     unit: &'static str,
@@ -42,7 +43,7 @@ impl OfPivot {
         };
         Parameter {
             id,
-            kind: Kind::Float,
+            kind: self.kind,
             ..self
                 .group
                 .float(id, self.text, self.unit, self.range, source)
@@ -60,12 +61,23 @@ const fn of_pivot(
 ) -> OfPivot {
     OfPivot {
         group,
+        kind: Kind::Float,
         id,
         text,
         unit,
         range,
         get,
         set,
+    }
+}
+
+impl OfPivot {
+    /// A whole number.
+    const fn whole(self) -> Self {
+        Self {
+            kind: Kind::Int,
+            ..self
+        }
     }
 }
 
@@ -134,4 +146,29 @@ pub(super) const LEARNT: &[OfPivot] = &[
     of_pivot(LEARNT_GROUP, 0x5450_0B01, "learnt voltage for the torque, besides the model's", "V/(N m)", [-20.0, 20.0], at!(learnt[Learnt] torque_v_n_m)),
     of_pivot(LEARNT_GROUP, 0x5450_0B02, "learnt voltage against friction, besides the model's", "V", [-30.0, 30.0], at!(learnt[Learnt] friction_v)),
     of_pivot(LEARNT_GROUP, 0x5450_0B03, "what the motor constant at the ring is more than the model has it, by the measured current", "V s/rad", [-50.0, 50.0], at!(learnt[Learnt] motor_constant_v_s_rad)),
+];
+
+/// The same of a whole number.
+macro_rules! whole {
+    ($number:ty: $list:ident [$owner:ty] $($field:tt)+) => {
+        (
+            |p, pivot| p.$list.get(pivot).map_or(0.0, |of_pivot: &$owner| f64::from(of_pivot.$($field)+)),
+            |p, pivot, value| {
+                if let Some(of_pivot) = p.$list.get_mut(pivot) {
+                    of_pivot.$($field)+ = value as $number;
+                }
+            },
+        )
+    };
+}
+
+#[rustfmt::skip]
+pub(super) const SUBDIVISION: &[OfPivot] = &[
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E00, "periods of an encoder's scale in a turn, 0 for unknown", "", [0.0, 100_000.0], whole!(u32: subdivision[Subdivision] periods)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E01, "amplitude of an encoder's error with 1 sine in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[0].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E02, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[0].phase_tenths_deg)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E03, "amplitude of an encoder's error with 2 sines in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[1].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E04, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[1].phase_tenths_deg)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E05, "amplitude of an encoder's error with 3 sines in a period of its scale, 0 for none", "nrad", [0.0, 10_000.0], whole!(u16: subdivision[Subdivision] harmonics[2].amplitude_nrad)).whole(),
+    of_pivot(SUBDIVISION_GROUP, 0x5450_0E06, "phase of that error at reading 0, of a sine", "0.1 deg", [-3_600.0, 3_600.0], whole!(i16: subdivision[Subdivision] harmonics[2].phase_tenths_deg)).whole(),
 ];

@@ -11,6 +11,7 @@ mod nudges;
 mod reference;
 mod response;
 mod ring_servo;
+mod sde;
 mod tuning;
 mod verification;
 mod windings;
@@ -56,6 +57,11 @@ pub static STEPS: &[Step] = &[
         name: "reference",
         about: "the first closed loop: a slow turn and a slow square",
         run: reference::run,
+    },
+    Step {
+        name: "sde",
+        about: "a slow turn: the error of each encoder within a period of its scale is taken from its readings, where the scale is known",
+        run: sde::run,
     },
     Step {
         name: "gains",

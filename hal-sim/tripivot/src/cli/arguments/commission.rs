@@ -40,6 +40,10 @@ pub(in super::super) struct Commissioned {
     /// controller was told before (before.txt); of a simulated machine for its controller's settings, too.
     #[arg(long, value_name = "DIR", default_value = "tripivot-commission")]
     pub(in super::super) out: PathBuf,
+    /// Periods of the encoders' scale in a turn, as their data sheet has them (lines of an optical scale), for the step `sde`; without it those
+    /// that the controller has been told (0x54500E00). A simulated machine has its data sheet.
+    #[arg(long, value_name = "PERIODS", value_parser = whole(1..=100_000))]
+    pub(in super::super) scale_periods: Option<u32>,
     /// Temperature of the air, deg C, for the report.
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true, value_parser = within(-50.0..=100.0))]
     pub(in super::super) temperature: Option<f64>,

@@ -5,6 +5,7 @@ mod tick;
 
 use crate::bench::{Bench, no_result};
 use core::hint::black_box;
+use firmware::control::SubdivisionTable;
 use firmware::control::config::Config;
 use firmware::control::encoder::Encoder;
 use firmware::control::rest_mode::Stiffness;
@@ -12,7 +13,7 @@ use firmware::control::servo::{
     LoopSetpoint, PivotFeedback, PivotServo, PivotSetpoint, carried_inertia,
 };
 use firmware::drivers::{biss::RawFrame, bridge::Duty};
-use firmware::parameters::{Harmonic, Lead, Notch, Parameters};
+use firmware::parameters::{Harmonic, Lead, Notch, Parameters, Subdivision, SubdivisionHarmonic};
 use firmware_cost::random::Random;
 use frames::frames;
 use kinematics::Angle;
@@ -25,7 +26,21 @@ const SUPPLY_COUNTS: u16 = 2979;
 pub fn run(bench: &mut Bench) {
     let config = Config::new(&Parameters::REFERENCE);
     let config = black_box(&config);
-    decoding(bench, config);
+    let none = SubdivisionTable::default();
+    decoding(bench, config, "encoder decoding, three", &none);
+    let corrected = SubdivisionTable::new(&Subdivision {
+        periods: 15_708,
+        harmonics: [SubdivisionHarmonic {
+            amplitude_nrad: 400,
+            phase_tenths_deg: 300,
+        }; 3],
+    });
+    decoding(
+        bench,
+        config,
+        "encoder decoding, three, corrected",
+        &corrected,
+    );
     servo(bench, "servo, three", config);
     servo(bench, "servo, three, notches, lead, ripple", &shaped());
     scheduled(bench, config);
@@ -70,16 +85,16 @@ fn scheduled(bench: &mut Bench, config: &Config) {
     );
 }
 
-fn decoding(bench: &mut Bench, config: &Config) {
+fn decoding(bench: &mut Bench, config: &Config, title: &'static str, table: &SubdivisionTable) {
     let mut memory = ([Encoder::default(); 3], Rings::default());
     bench.part_with(
-        "encoder decoding, three",
+        title,
         Bench::SHORT,
         &mut memory,
         |(_, rings), random| rings.turned(random),
         |(encoders, _), frames| {
             for (i, encoder) in encoders.iter_mut().enumerate() {
-                encoder.update(&config.encoders[i], &frames[i]);
+                encoder.update(&config.encoders[i], table, &frames[i]);
             }
             encoders.each_ref().map(Encoder::angle)
         },
