@@ -75,7 +75,7 @@ impl Ring {
     }
 
     fn take(&mut self, frame: RawFrame) {
-        (self.encoder).update(&self.config, &self.subdivision, &frame);
+        (self.encoder).update(&self.config, Some(&self.subdivision), &frame);
     }
 
     /// A tick in which the ring goes on and the encoder sends what `send` makes of its counts.

@@ -53,8 +53,9 @@ impl EncoderConfig {
 
     /// The fraction of a turn that a reading means, 2^-32 turns, without the error within a period of the scale.
     #[inline]
-    fn fraction(&self, subdivision: &SubdivisionTable, counts: u32) -> u32 {
-        (subdivision.corrected(counts << ALIGN_SHIFT))
+    fn fraction(&self, subdivision: Option<&SubdivisionTable>, counts: u32) -> u32 {
+        let reading = counts << ALIGN_SHIFT;
+        (subdivision.map_or(reading, |table| table.corrected(reading)))
             .wrapping_sub(self.zero)
             .wrapping_mul(self.direction as u32)
     }
@@ -117,7 +118,7 @@ impl Encoder {
     pub fn update(
         &mut self,
         config: &EncoderConfig,
-        subdivision: &SubdivisionTable,
+        subdivision: Option<&SubdivisionTable>,
         frame: &RawFrame,
     ) {
         if let (true, Some(counts)) = (
@@ -144,7 +145,7 @@ impl Encoder {
     fn update_checked(
         &mut self,
         config: &EncoderConfig,
-        subdivision: &SubdivisionTable,
+        subdivision: Option<&SubdivisionTable>,
         frame: &RawFrame,
     ) {
         match decode(frame) {

@@ -63,7 +63,7 @@ pub struct State {
     pub(super) lost_pivot: Option<usize>,
     pub(super) referenced: bool,
     /// What is taken from the encoders' readings.
-    pub(super) subdivision: [SubdivisionTable; 3],
+    pub(super) subdivision: Option<[SubdivisionTable; 3]>,
     pub(super) encoders: [Encoder; 3],
     pub(super) calibrated: Calibrated,
     pub(super) motion: PlanFollower,

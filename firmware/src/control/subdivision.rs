@@ -6,7 +6,7 @@
 
 use crate::control::units::UNITS_PER_RAD;
 use crate::number::Fixed;
-use crate::parameters::Subdivision;
+use crate::parameters::{Subdivision, SubdivisionHarmonic};
 use kinematics::{Angle, Scalar};
 
 /// Binary places of an entry's number.
@@ -30,7 +30,8 @@ impl SubdivisionTable {
     /// Derives the table; none where no amplitude is set.
     pub fn new(subdivision: &Subdivision) -> Self {
         let mut table = Self::default();
-        if (subdivision.harmonics.iter()).all(|harmonic| harmonic.amplitude_nrad == 0) {
+        let none = |harmonic: &SubdivisionHarmonic| harmonic.amplitude_nrad == 0;
+        if subdivision.periods == 0 || subdivision.harmonics.iter().all(none) {
             return table;
         }
         table.periods = subdivision.periods;
@@ -50,12 +51,14 @@ impl SubdivisionTable {
         table
     }
 
+    /// Whether anything is taken away.
+    pub fn takes(&self) -> bool {
+        self.periods != 0
+    }
+
     /// A reading without the error; readings are 2^-32 turns.
     #[inline]
     pub fn corrected(&self, reading: u32) -> u32 {
-        if self.periods == 0 {
-            return reading;
-        }
         let phase = reading.wrapping_mul(self.periods);
         let place = (phase >> (u32::BITS - ENTRY_BITS)) as usize;
         let way = (phase << ENTRY_BITS) >> (u32::BITS - WAY_BITS);
@@ -70,7 +73,6 @@ impl SubdivisionTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::SubdivisionHarmonic;
     use core::f64::consts::TAU;
 
     const UNIT_RAD: f64 = TAU / 4_294_967_296.0;

@@ -164,12 +164,22 @@ pub fn tick_and_drive<'a>(
 #[inline(never)]
 fn decode(
     config: &Config,
-    subdivision: &[SubdivisionTable; 3],
+    subdivision: &Option<[SubdivisionTable; 3]>,
     encoders: &mut [Encoder; 3],
     frames: &[RawFrame; 3],
 ) -> [Angle; 3] {
-    for i in 0..3 {
-        encoders[i].update(&config.encoders[i], &subdivision[i], &frames[i]);
+    // Written out for both: with tables decoding takes a half more, and most machines have none.
+    match subdivision {
+        None => {
+            for i in 0..3 {
+                encoders[i].update(&config.encoders[i], None, &frames[i]);
+            }
+        }
+        Some(tables) => {
+            for i in 0..3 {
+                encoders[i].update(&config.encoders[i], Some(&tables[i]), &frames[i]);
+            }
+        }
     }
     encoders.each_ref().map(Encoder::angle)
 }

@@ -7,6 +7,7 @@ use crate::control::encoder::Encoder;
 use crate::control::excitation::{Excitation, ExcitationEnd};
 use crate::control::referencing;
 use crate::control::state::State;
+use crate::control::subdivision::SubdivisionTable;
 use crate::fault::Fault;
 use crate::mode::Mode;
 use crate::motion::Position;
@@ -56,7 +57,10 @@ impl State {
                 let _ = self.motion.set_centre(*centre);
             }
             Command::Calibrate(wanted) => self.calibrated.set(wanted),
-            Command::Subdivide(tables) => self.subdivision = *tables,
+            Command::Subdivide(tables) => {
+                let takes = tables.iter().any(SubdivisionTable::takes);
+                self.subdivision = takes.then_some(*tables);
+            }
             // The servo is on already, or goes off, which is all there is to it.
             Command::Servo(false) | Command::EndExcitation => {
                 self.excitation.end(ExcitationEnd::Stopped);
