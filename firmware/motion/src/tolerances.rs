@@ -4,15 +4,26 @@
 //! | where | speed, acceleration, jerk | pivots | workspace |
 //! |---|---|---|---|
 //! | a plan in the check | [`PLAN_SLACK`] | [`PLAN_SLACK`] | [`WORKSPACE_RADII`] |
+//! | a state that is left | [`STATE_SLACK`] | | |
 //! | delays that are tried before it | [`OVERLAP`] | | |
 //! | a streamed target | [`STREAM_SLACK`], [`JERK_TOLERANCE`] | [`STREAM_SLACK`] | [`WORKSPACE_RADII`] |
 //! | a line from rest | [`ROUNDING_MARGIN`] kept back | [`PIVOT_MARGIN`] kept back | [`LINE_SQUARED_RADII`] |
 //! | a stop | | [`PIVOT_PART_FOR_BRAKING`] | [`WORKSPACE_RADII`] |
-//! | a jog | | | [`JOG_RADII`] |
+//! | a jog | | | [`JOG_RADII`], [`JOG_WAY`] |
 //! | a target | | | [`TARGET_RADII`], [`TARGET_RADII_OFF_CENTRE`] |
 
 /// A plan in the check: the roundings of single precision from one piece to the next.
 pub const PLAN_SLACK: f32 = 1.0 + 1e-4;
+
+/// A state out of which a new motion begins: as much again, since it may come of a plan that had all of the first.
+pub const STATE_SLACK: f32 = 1.0 + 2e-4;
+
+/// 2^-32 track radii or turns by which the pieces of a new target's motion may miss it, for its nudge to make up: what floats leave
+/// of a way of four, 0.1 um on the reference stage.
+pub const TARGET_UNITS: u64 = 1 << 12;
+
+/// Slopes of a line's squared speed that differ by less than this part of the steepest are the same but for roundings.
+pub const SAME_SLOPE: f32 = 1e-5;
 
 /// Delays of an overlap, before the check: half of what that grants.
 pub const OVERLAP: f32 = 1.0 + 5e-5;
@@ -61,6 +72,9 @@ pub const LINE_SQUARED_RADII: f32 = 1e-6;
 /// Track radii by which a jog may begin outside of the disk in which it can go on, and end before that disk's edge: 0.2 um
 /// on the reference stage, the roundings of a bisection.
 pub const JOG_RADII: f32 = 2e-6;
+
+/// What a jog uses of the way to a bound: the roundings of five operations in single precision.
+pub const JOG_WAY: f32 = 1.0 - 5.0 * f32::EPSILON;
 
 /// Track radii by which a target may be over the rim itself: its coordinates are rounded to 2^-32.
 pub const TARGET_RADII: f64 = 1e-9;

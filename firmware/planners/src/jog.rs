@@ -28,7 +28,7 @@ use motion::plan::quantise::{velocity_pieces, write_velocity_pieces};
 use motion::plan::{Piece, Pieces, Plan, PlanStart, push_piece, state_after_pieces};
 use motion::profile::velocity::VelocityProfile;
 use motion::refusal::{Refusal, RetargetError};
-use motion::tolerances::JOG_RADII;
+use motion::tolerances::{JOG_RADII, JOG_WAY};
 use number::float::{FloatMinMax, hypot, i64_to_f32_fast, ticks_to_f32, truncate, truncate_f64};
 
 /// Plans the way to `velocity` (mm/s, mm/s and deg/s of x, y and theta), and on with it, from `state`, which is where
@@ -170,7 +170,7 @@ impl<'a> JogRequest<'a> {
                 1.. => high.min(MAX_TURNS).saturating_sub(now),
                 _ => now.saturating_sub(low.max(-MAX_TURNS)),
             };
-            let way = i64_to_f32_fast(way) * (1.0 - 5.0 * f32::EPSILON);
+            let way = i64_to_f32_fast(way) * JOG_WAY;
             let per_second = i64_to_f32_fast(rate).abs() * PER_UNIT * self.hz;
             seconds = seconds.fmin((way / per_second).fmax(0.0));
         }

@@ -45,8 +45,7 @@ pub fn plan_stop(
     stop: Stop,
 ) -> Option<Plan> {
     let whole = of.ticks();
-    let last = of.pieces.last().map_or(0, |piece| piece.ticks);
-    if at + last >= whole {
+    if at + of.pieces.last().map_or(0, |piece| piece.ticks) >= whole {
         return None;
     }
     let state = &of.state_after(axes, at);

@@ -6,7 +6,7 @@ use crate::constraints::{Bounds, Constraints, MotionLimits, Speeds};
 use crate::plan::Piece;
 use crate::plan::axis_state::AxisState;
 use crate::plan::cubic_segment::{CubicSegment, MotionState};
-use crate::tolerances::{JERK_TOLERANCE, PLAN_SLACK, STREAM_SLACK, WORKSPACE_RADII};
+use crate::tolerances::{JERK_TOLERANCE, PLAN_SLACK, STATE_SLACK, STREAM_SLACK, WORKSPACE_RADII};
 use number::float::{FloatMinMax, hypot, ticks_to_f32, truncate};
 use number::sqrt_f32;
 
@@ -291,6 +291,5 @@ fn part(linear: f32, angular: f32, limit: &Speeds) -> f32 {
 
 /// Whether speeds or accelerations are over a limit of ordinary motion by more than what is granted.
 pub fn is_over(value: Speeds, limit: Speeds) -> bool {
-    const MORE: f32 = 1.0 + 2.0 * (PLAN_SLACK - 1.0);
-    part(value.linear, value.angular, &limit) > MORE
+    part(value.linear, value.angular, &limit) > STATE_SLACK
 }

@@ -145,7 +145,6 @@ impl<'a> LinePlanner<'a> {
 
     /// The largest excess of a motion over its limits (see [`DemandGrid::excess`]), jerk included.
     fn excess(&self, path_profile: &PathProfile, grid: &DemandGrid) -> f32 {
-        let places = grid.intervals() as f32;
         let unit = path_profile.unit() * self.hz * self.hz * self.hz;
         let mut now = PathState::default();
         let mut worst = 0.0_f32;
@@ -156,7 +155,7 @@ impl<'a> LinePlanner<'a> {
             jerk = jerk.fmax(push.abs());
             let way = now.after(seconds, push).s - now.s;
             // Each place that it passes, and an instant besides.
-            let steps = 1 + (way.abs() * places) as u32;
+            let steps = 1 + (way.abs() * grid.intervals() as f32) as u32;
             let step = seconds / steps as f32;
             for _ in 0..steps {
                 now = now.after(step, push);

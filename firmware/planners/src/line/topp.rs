@@ -18,6 +18,7 @@
 use super::pivot_demand::{DemandGrid, GridPoint};
 use heapless::Vec;
 use motion::constraints::PathLimits;
+use motion::tolerances::SAME_SLOPE;
 use number::float::FloatMinMax;
 use number::sqrt_f32;
 
@@ -162,9 +163,6 @@ const MOST: f32 = 0.3;
 const STEP: f32 = 1.35;
 const STEP_MORE: f32 = 0.015;
 
-/// Slopes that differ by less than this part of the steepest are the same but for roundings.
-const ALIKE: f32 = 1e-5;
-
 /// Writes the corners of segments under `z`, of which there are `intervals` and one, whose slopes stand for
 /// accelerations up to `acceleration`. `None` where it takes too many segments.
 pub(super) fn fit_segments_below(
@@ -239,7 +237,7 @@ fn lay_segments(
             let over = 1.0 / steps;
             let highest = high.fmin((z[to + 1] - start) * over);
             let lowest = low.fmax((z[to + 1] * share - start) * over);
-            if lowest > highest + steepest * ALIKE {
+            if lowest > highest + steepest * SAME_SLOPE {
                 break;
             }
             (low, high) = (lowest.fmin(highest), highest);

@@ -35,7 +35,7 @@ use motion::plan::axis_state::AxisState;
 use motion::plan::{Pieces, Plan, PlanStart, Position, nudge_to, state_after_pieces, write_sum};
 use motion::profile::rest_to_rest::RestToRestProfile;
 use motion::refusal::{Refusal, RetargetError};
-use motion::tolerances::SLOWER_FOR_PIVOTS;
+use motion::tolerances::{SLOWER_FOR_PIVOTS, TARGET_UNITS};
 use number::float::{FloatMinMax, hypot, ticks_to_f32};
 use number::sqrt_f32;
 use overlap::{Corner, Corners, Overlap};
@@ -247,15 +247,11 @@ fn line_corners(line: &RestToRestProfile, way: &[f32; 3], hz: f32) -> Corners {
     corners
 }
 
-/// 2^-32 track radii or turns by which pieces may miss a target: what floats leave of a way of four, 0.1 um on the
-/// reference stage.
-const NEAR: u64 = 1 << 12;
-
 /// Gives a plan the nudge that leads it to its end exactly; `None` where its pieces lead elsewhere.
 fn close(plan: &mut Plan, leaving: &Leaving<'_>) -> Option<()> {
     let end = state_after_pieces(&leaving.state, &plan.pieces, &[0; 3]);
     // The nudge is not held against any limit: it is for roundings only.
-    let is_near = |i: usize| end[i].rounded().abs_diff(plan.end[i]) < NEAR;
+    let is_near = |i: usize| end[i].rounded().abs_diff(plan.end[i]) < TARGET_UNITS;
     if !(0..3).all(is_near) {
         return None;
     }
