@@ -333,6 +333,20 @@ fn what_was_learnt_is_told_kept_and_what_the_tick_starts_with() {
     assert_eq!(Config::new(bench.bench.panel().parameters()), before);
 }
 
+/// The tick tells of the servos one after the other: what was told of one before counts no more.
+#[test]
+fn what_is_set_of_it_is_kept_as_it_was_set() {
+    let mut bench = start();
+    tell_of_servos(&mut bench, 0.125);
+    bench.bench.tick.now.servo.pivot = 0;
+    bench.bench.run(2);
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500B33 -0.25\nWPA 100";
+    assert_eq!(bench.error_after(lines), "0");
+    let mut bench = bench.restart();
+    assert_eq!(value(&mut bench, "0x54500B33"), -0.25);
+}
+
 /// Parameter 0x5450030B: the servo going off is enough, where it has changed by more than nothing much.
 #[test]
 fn what_was_learnt_is_kept_by_itself_where_that_is_asked_for() {

@@ -70,6 +70,11 @@ impl Commander {
         Ok(())
     }
 
+    /// Whether the tick has not counted the parameters yet that were sent last.
+    pub const fn is_configuring(&self) -> bool {
+        matches!(self.in_flight, Some(InFlight::Configure))
+    }
+
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);

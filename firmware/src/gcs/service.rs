@@ -64,11 +64,13 @@ impl Interpreter {
         if let Some(snapshot) = queues.snapshot() {
             self.events.update(&snapshot);
             self.statistics.update(&snapshot);
-            self.servo_reports.update(&snapshot);
             if let Some(retained_memory) = queues.retained_memory {
                 retained_memory.keep_motor_heat(&snapshot.motor_heat);
             }
+            let report = snapshot.servo;
             self.commander.update(snapshot);
+            let is_configuring = self.commander.is_configuring();
+            self.servo_reports.update(report, is_configuring);
         }
         if let Some(retained_memory) = queues.retained_memory {
             self.events.retain(retained_memory);

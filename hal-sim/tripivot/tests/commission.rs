@@ -147,7 +147,8 @@ fn finds_the_motors(machine: &StageParameters, told: &str, most: f64) {
     assert!(error(told, "mean of three", friction).abs() < MOST_FRICTION_ERROR);
 }
 
-/// What the encoders' sines are, urad, and what is left of them: the worst of the machines tried here, and a tenth more.
+/// What the encoders' sines are as first seen, of which the servo makes some hundredths more, and what is left of them, urad: the worst of the
+/// machines tried here, and a tenth more.
 fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
     let wiring = machine.wiring;
     let first = (0..3).find(|ring| wiring.bridge_of_ring[*ring] == 0);
@@ -161,7 +162,7 @@ fn finds_errors_within_periods(machine: &StageParameters, told: &str) {
         let off = error(told, &name, truth_urad);
         let left_urad = numbers(told, &name).nth(1).expect("what is left");
         println!("{left_urad} urad left");
-        assert!(off.abs() < 0.05 && left_urad < 0.03, "{told}");
+        assert!(off.abs() < 0.087 && left_urad < 0.01, "{told}");
     }
 }
 

@@ -75,6 +75,9 @@ impl Interpreter {
         if wanted.recorder != self.parameters.recorder {
             self.recorder_state.rearm(&queues.recorder);
         }
+        if wanted.learnt != self.parameters.learnt {
+            self.servo_reports.outdate();
+        }
         self.rated_limits = highest(&self.rated_limits, &wanted.limits);
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
         self.note_looseness();
