@@ -31,7 +31,7 @@ pub use calibrated::{built_stage, calibration_told};
 pub use conditions::run_conditions;
 pub use disturbances::Disturbances;
 pub use told::{
-    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_fitted, with_inertia_scheduled,
-    with_machine_told, with_motion_fitted, with_payload_told, with_ripple_told,
-    with_subdivision_told,
+    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_firmer, with_gains_fitted,
+    with_inertia_scheduled, with_machine_told, with_motion_fitted, with_payload_told,
+    with_ripple_told, with_subdivision_told,
 };
