@@ -47,6 +47,7 @@ impl Commander {
             // Who asked has been told that it was accepted, long since.
             Err(error) => {
                 self.pending = self.pending.stop().map_or(Pending::Nothing, Pending::Stop);
+                self.approach.target = None;
                 self.target_is_rest = true;
                 self.report_late(error);
             }
