@@ -8,7 +8,7 @@ use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::control::wiring::WiringConfig;
-use crate::drivers::power_stage::BUS;
+use crate::drivers::power_stage::{BRIDGE, BUS};
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
@@ -88,6 +88,13 @@ pub struct SupervisionConfig {
 }
 
 impl SupervisionConfig {
+    /// Ticks that the bridges are given to wake up.
+    #[inline]
+    pub(super) fn wake_ticks(&self) -> u32 {
+        // One more: the first may begin anywhere in it.
+        (BRIDGE.wake_grace_s as f32 * self.rate_hz) as u32 + 1
+    }
+
     /// Whether the supply is neither too low nor too high.
     #[inline]
     pub(super) const fn has_good_supply(&self, counts: u16) -> bool {

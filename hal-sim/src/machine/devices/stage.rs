@@ -237,13 +237,13 @@ impl Stage {
         self.bus.as_ref()
     }
 
-    /// Which bridges have switched themselves off.
+    /// Which bridges pull their fault pins: those that have switched themselves off, or wake up.
     #[must_use]
-    pub fn tripped(&self) -> [bool; AXES] {
+    pub fn pulled_fault_pins(&self) -> [bool; AXES] {
         let Some(protection) = &self.protection else {
             return [false; AXES];
         };
-        [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].is_tripped())
+        [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].pulls_fault_pin())
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
