@@ -22,7 +22,8 @@ use crate::motion::PlanFollower;
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Frames of the three encoders, all latched at the same instant.
+    /// Frames of the three encoders, latched one right after the other
+    /// ([`LATCH_OFFSET_S`](crate::drivers::latch::LATCH_OFFSET_S)).
     pub frames: [RawFrame; 3],
     /// Fault pins of the bridges (true: fault).
     pub bridge_fault: [bool; 3],

@@ -182,7 +182,7 @@ fn decode(
             }
         }
     }
-    encoders.each_ref().map(Encoder::angle)
+    [0, 1, 2].map(|i| encoders[i].angle_at_first_latch(&config.encoders[i]))
 }
 
 /// Of the measured supply, from one tick to the next: half a millisecond, in which the bus answers to a load, and over which the noise of
