@@ -20,6 +20,8 @@ const SIDES: [[f64; 3]; 6] = [
     [0.0, 0.0, 3.0],
     [0.0, 0.0, -3.0],
 ];
+/// What an approach may take, ms.
+const MOST_MS: f64 = 12.0;
 const AVERAGED_TICKS: usize = 2_000;
 
 /// 1 N over 50 N/um, and nothing else that hides it.
@@ -89,6 +91,28 @@ fn from_one_side_motion_is_not_lost() {
     );
     assert!(from_any_side_m > 10e-9);
     assert!(from_one_side_m < 0.2 * from_any_side_m);
+}
+
+/// Longer than straight to the target, ms, in the mean of all targets.
+#[test]
+fn it_takes_its_time() {
+    let mut bench = referenced();
+    let mut taken_ms = |line: &str| {
+        assert_eq!(bench.error_after(line), "0");
+        let mut ticks = 0;
+        for [x, y, w] in TARGETS {
+            let from = bench.sample().tick;
+            assert_eq!(bench.error_after(&format!("MOV X {x} Y {y} W {w}")), "0");
+            bench.settle();
+            ticks += bench.sample().tick - from;
+        }
+        ticks as f64 / (TARGETS.len() as f64 * 20.0)
+    };
+    // From the last target to the first each time.
+    taken_ms("APP 0");
+    let (straight_ms, beside_ms) = (taken_ms("APP 0"), taken_ms("APP 30"));
+    println!("straight {straight_ms:.0} ms, from beside {beside_ms:.0} ms");
+    assert!((1.0..=MOST_MS).contains(&(beside_ms - straight_ms)));
 }
 
 /// It is no part of a motion that is stopped, or followed by another one, on the way to where the last way begins.
