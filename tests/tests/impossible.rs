@@ -192,7 +192,7 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
         for _ in 0..100 {
             let outputs = host.tick(&mut tick_queues, &mut ());
             let largest = outputs.duty.iter().map(|duty| duty.0.abs()).max();
-            assert!(largest <= Some(51), "{largest:?}");
+            assert!(largest <= Some(57), "{largest:?}");
             last = commands
                 .snapshot()
                 .map(|now| (now.mode, outputs.awake))
