@@ -27,6 +27,8 @@ const AT_START: Pose<Fixed> = Pose {
 };
 /// Ticks before the encoders are referenced: they take some to be ready.
 const REFERENCED: u64 = 10;
+/// And when its bridges are awake: no command is taken before.
+const AWAKE: u64 = 60;
 /// A tick in so many is given a new target while a plan is under way, or has a frame missing.
 const RETARGETS: u64 = 500;
 const MISSES: u64 = 300;
@@ -156,13 +158,17 @@ impl Control<'_> {
         if self.ticks == REFERENCED {
             // The queue is empty.
             let _ = self.panel.send(Command::Reference);
+            self.sent = 1;
+        } else if self.ticks == AWAKE {
             let _ = self.panel.send(Command::Centre(self.centre));
             self.sent = 2;
         } else if let Some(sample) = self.recorder.last.take() {
             if matches!(sample.mode, Mode::Holding | Mode::Moving) {
                 pivots = reached(&sample, random);
             }
-            self.lead(&sample, random);
+            if self.ticks > AWAKE {
+                self.lead(&sample, random);
+            }
         }
         let mut frames = frames(&pivots);
         if self.ticks > REFERENCED && random.once_in(MISSES) {
