@@ -167,7 +167,7 @@ pub const SECTIONS: &[Section] = &[
         title: "The demonstration on machines that the controller is told of",
         group: Group::Motion,
         about: "As the controller comes; told the machine's numbers by parameters; told its motors' ripple besides; both also with firmer \
-                gains: velocity gain by a tenth, integral gain 500 times that a second in place of 350.",
+                gains: a tenth more velocity gain, and an integral gain of 500 1/s times that in place of 350.",
         command: "cargo bench -p hal-sim --bench told",
         short: None,
         kind: Kind::Deterministic,
@@ -443,7 +443,7 @@ pub const SECTIONS: &[Section] = &[
                 [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
                 `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2 % off \
                 `llvm-mca`'s, both with one cycle for each load and store: ARM's table has more. No tick, with all that it does after its \
-                duties, may be longer than a period.",
+                duties, may be longer than a period: those with a calibration and all that shapes a loop are, and are not to grow.",
         command: "cargo chip-cycles",
         short: Some("cargo chip-cycles --ticks 100"),
         kind: Kind::Compiled,
