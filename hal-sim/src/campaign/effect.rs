@@ -18,6 +18,8 @@ use std::collections::VecDeque;
 
 /// Bridged frames that are told.
 const OFTEN: u64 = 12;
+/// Ticks for which bridges that begin to drive are given time to wake up: 2 ms, and the one in which they began.
+const WAKE_TICKS: u64 = 41;
 /// Ticks in a row in which a low supply is one.
 const LOW_SUPPLY_TICKS: u64 = 4;
 /// Ticks of one reading, after which it is asked whether there should have been others.
@@ -63,7 +65,7 @@ pub enum Effect {
     AtOnce,
     /// One bad frame more than are bridged.
     BadFrames,
-    /// The first tick in which it drives.
+    /// The first tick in which it drives bridges that have had their time to wake up: before, their pins mean nothing.
     Driven,
     /// A low supply, seen often enough, and one that noise may take for that.
     LowSupply,
@@ -280,7 +282,7 @@ impl<'a> Effects<'a> {
             }
             Effect::AtOnce => tick >= first,
             Effect::BadFrames => tick >= first + bridged,
-            Effect::Driven => tick >= first && self.driven > 0,
+            Effect::Driven => tick >= first && self.driven > WAKE_TICKS,
             Effect::LowSupply => self.low[0] >= LOW_SUPPLY_TICKS,
             Effect::NearlyLowSupply => self.low[1] > 0,
             Effect::HighSupply => self.high[0] >= LOW_SUPPLY_TICKS,
