@@ -450,7 +450,7 @@ impl Parameters {
             keeps_learnt: false,
             latency_s: 72e-6,
             rest: RestMode {
-                stiffness: 0.13,
+                stiffness: 0.1,
                 delay_s: 0.05,
                 wake_counts: 6.0,
             },

@@ -2,15 +2,19 @@
 
 mod flash_bench;
 
+use firmware::calibration::MachineCalibration;
 use firmware::control::ServoReport;
 use firmware::control::config::Config;
 use firmware::control::servo::Learnt;
 use firmware::fault::FaultKind;
+use firmware::gcs::STORED_BYTES;
 use flash_bench::gcs_bench::Bench;
 use flash_bench::{Flash, KeptBench};
 
 /// As on the chip.
 const SECTOR: usize = 16 << 10;
+/// Whatever is stored, there is room for all of it.
+const _: () = assert!(STORED_BYTES <= SECTOR);
 const SPEED: &str = "0x54500100";
 const WINDOW: &str = "0x54500400";
 
@@ -130,6 +134,54 @@ fn a_flash_full_of_macros_is_kept() {
     );
     let mut bench = bench.restart();
     assert_eq!(bench.say("MAC? macro_number_07\n"), before);
+    assert_eq!(bench.say("MAC FREE?\n"), free);
+}
+
+/// A calibration is stored however full the memory of macros is.
+#[test]
+fn macros_leave_room_for_a_calibration() {
+    let mut bench = start();
+    for number in 0..16 {
+        let line = format!("VAR A {number:028}\n");
+        let name = format!("macro_number_{number:02}");
+        assert_eq!(
+            bench.error_after(&format!("MAC BEG {name}\n{}MAC END", line.repeat(13))),
+            "0"
+        );
+    }
+    assert_eq!(bench.say("MAC DEL macro_number_00\n"), "");
+    let free: usize = bench.say("MAC FREE?\n").trim().parse().expect("a number");
+    let lines = "VAR A 1\n".repeat(free / "VAR A 1\n".len());
+    assert_eq!(
+        bench.error_after(&format!("MAC BEG more\n{lines}MAC END")),
+        "0"
+    );
+    let free = bench.say("MAC FREE?\n");
+    assert!(
+        free.trim().parse::<usize>().is_ok_and(|free| free < 8),
+        "{free}"
+    );
+    let serial = bench.say("SSN?\n").trim().to_owned();
+    let calibration = MachineCalibration {
+        serial: serial.as_str().try_into().expect("a short text"),
+        date: "2026-11-25".try_into().expect("a short text"),
+        temperature_c: Some(20.0),
+        numbers: [[1e-6; 48]; 3],
+        is_on: true,
+    };
+    let mut lines = format!("CCL 1 ADVANCED\nCAL BEG {serial} 2026-11-25 20\n");
+    for (pivot, first) in (1..=3).flat_map(|pivot| (0..6).map(move |part| (pivot, 8 * part + 1))) {
+        lines += &format!("CAL SET {pivot} {first}{}\n", " 1e-6".repeat(8));
+    }
+    assert_eq!(bench.error_after(lines.trim_end()), "0");
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    bench.bench.run(4_000);
+    let end = format!("CAL END {}", calibration.checksum());
+    assert_eq!(bench.error_after(&end), "0");
+    let told = bench.say("CAL?\n");
+    assert!(told.starts_with("STATE=ON"), "{told}");
+    let mut bench = bench.restart();
+    assert_eq!(bench.say("CAL?\n"), told);
     assert_eq!(bench.say("MAC FREE?\n"), free);
 }
 

@@ -67,13 +67,14 @@ fn help() {
          207=learnt of the rate of pivot, besides the model's, V s/rad \n\
          208=learnt of the torque of pivot, besides the model's, V/(N m) \n\
          209=learnt of friction of pivot, besides the model's, V \n\
+         210=real position without the calibration of axis, mm or deg \n\
          #TriggerOptions \n\
          0=none; STE triggers whatever is set here \n\
          1=every command that moves \n\
          2=next command that moves, 0 afterwards \n\
          4=at once \n\
-         100=signal of the table rises to <value>; not options 2, 3 of axes \n\
-         101=signal of the table falls below <value>; not options 2, 3 of axes \n\
+         100=signal of the table rises to <value>; not options 2, 3, 210 of axes \n\
+         101=signal of the table falls below <value>; not options 2, 3, 210 of axes \n\
          102=fault \n\
          #Parameters to be set with SPA \n\
          0x16000201=points of a record \n\

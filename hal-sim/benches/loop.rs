@@ -4,6 +4,10 @@
 //! what the following error makes of it is the sensitivity S, and the loop is L = 1 / S - 1: a property of the simulated machine
 //! and the program, without any equation of the plant. Crossover is the highest frequency at which |L| is 1, Ms the largest |S|.
 //! A push is a torque of 1 N m on a ring of a stage at rest, with the full loop and after rest mode.
+//!
+//! Then Ms of each pivot over the disk, with and without a load. The body couples the three loops: what a sine on one encoder makes of all
+//! three errors is a column of a matrix, whose largest singular value is what the worst combination of the three encoders' sines is raised
+//! by. The diagonal alone would miss a combination that no single pivot shows.
 
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::{Lead, Notch, Parameters};
@@ -13,8 +17,10 @@ use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::External;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{with_inertia_scheduled, with_payload_told};
+use hal_sim::rig::{with_gains_firmer, with_inertia_scheduled, with_payload_told};
 use std::f64::consts::TAU;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const RATE_HZ: f64 = 20_000.0;
 const UNIT: f64 = 4_294_967_296.0;
@@ -22,18 +28,53 @@ const UNITS_PER_LSB: f64 = 64.0;
 const LSB_RAD: f64 = TAU / 67_108_864.0;
 /// Amplitude of the sine, rad.
 const SINE_RAD: f64 = 2e-6;
-/// Ticks before and while a sine is measured: whole periods of it, at least these.
-const SETTLE_TICKS: u64 = 2_000;
-const SINE_TICKS: f64 = 4_000.0;
+/// The largest radius at which the reference motion works.
+const RIM_MM: f64 = 76.0;
+/// Places on the rim.
+const RIM_PLACES: u32 = 5;
+
+/// Frequencies that are measured one after the other.
+struct Sweep {
+    from_hz: f64,
+    to_hz: f64,
+    /// From one to the next.
+    ratio: f64,
+    /// Ticks before and while a sine is measured: whole periods of it, at least these.
+    settle_ticks: u64,
+    sine_ticks: f64,
+}
+
+/// All that a loop does. Meanwhile the stage turns by 150 deg.
+const WIDE: Sweep = Sweep {
+    from_hz: 20.0,
+    to_hz: 3_000.0,
+    ratio: 1.04,
+    settle_ticks: 2_000,
+    sine_ticks: 4_000.0,
+};
+/// Where |S| is largest, while the stage turns by 25 deg: what the guides' directions are is nearly the same all the time.
+const AROUND_MS: Sweep = Sweep {
+    from_hz: 80.0,
+    to_hz: 1_600.0,
+    ratio: 1.08,
+    settle_ticks: 1_000,
+    sine_ticks: 2_000.0,
+};
 
 /// A machine, where it stands, and its loop.
+#[derive(Clone, Copy)]
 struct Case {
     words: &'static str,
     payload_kg: f64,
-    x_mm: f64,
+    place_mm: [f64; 2],
     resonance_hz: f64,
     tuning: Tuning,
 }
+
+/// A complex number.
+type Complex = [f64; 2];
+/// S at a frequency: what a sine on the encoder of the second index makes of the error of the first.
+type Matrix = [[Complex; 3]; 3];
 
 #[derive(Clone, Copy)]
 struct Gains {
@@ -59,6 +100,8 @@ enum Tuning {
     Reference,
     /// Faster, with a notch at the resonance, a lead over the winding's corner, and gains scheduled by the inertia.
     Shaped(Gains),
+    /// Told of the machine, scheduled, and firmer: what the told table is of.
+    Firmer,
     /// For a soft transmission: half the velocity gain, and a notch.
     Soft,
 }
@@ -67,35 +110,30 @@ fn main() {
     let case = |words, payload_kg, x_mm, resonance_hz, tuning| Case {
         words,
         payload_kg,
-        x_mm,
+        place_mm: [x_mm, 0.0],
         resonance_hz,
         tuning,
     };
+    let reference = Tuning::Reference;
     let cases = [
-        case("as it comes, centre", 0.0, 0.0, 1_500.0, Tuning::Reference),
-        case(
-            "as it comes, 76 mm out",
-            0.0,
-            76.0,
-            1_500.0,
-            Tuning::Reference,
-        ),
+        case("as it comes, centre", 0.0, 0.0, 1_500.0, reference),
+        case("as it comes, 76 mm out", 0.0, RIM_MM, 1_500.0, reference),
         case(
             "as it comes, 5 kg told, centre",
             5.0,
             0.0,
             1_500.0,
-            Tuning::Reference,
+            reference,
         ),
         case(
             "as it comes, 5 kg told, 76 mm out",
             5.0,
-            76.0,
+            RIM_MM,
             1_500.0,
-            Tuning::Reference,
+            reference,
         ),
         case("shaped, centre", 0.0, 0.0, 1_500.0, SHAPED),
-        case("shaped, 76 mm out", 0.0, 76.0, 1_500.0, SHAPED),
+        case("shaped, 76 mm out", 0.0, RIM_MM, 1_500.0, SHAPED),
         case(
             "shaped, 5 kg told, centre",
             5.0,
@@ -106,7 +144,7 @@ fn main() {
         case(
             "shaped, 5 kg told, 76 mm out",
             5.0,
-            76.0,
+            RIM_MM,
             1_500.0,
             SHAPED_FOR_LOAD,
         ),
@@ -122,9 +160,147 @@ fn main() {
         "| loop | crossover of pivot 1, Hz | Ms at, Hz | S at 30 Hz | push of 1 N m, LSB, back within ms | the same in rest mode |"
     );
     println!("|---|---|---|---|---|---|");
-    for case in &cases {
-        case.print();
+    for row in of_all(&cases, Case::row) {
+        println!("{row}");
     }
+    println!();
+    print_over_the_disk();
+}
+
+/// Ms of each pivot, place by place, and the worst of each loop.
+fn print_over_the_disk() {
+    let loops = [
+        ("as it comes", 0.0, Tuning::Reference),
+        ("as it comes, 5 kg told", 5.0, Tuning::Reference),
+        ("told, firmer", 0.0, Tuning::Firmer),
+        ("told, firmer, 5 kg", 5.0, Tuning::Firmer),
+        ("shaped", 0.0, SHAPED),
+        ("shaped, 5 kg told", 5.0, SHAPED_FOR_LOAD),
+    ];
+    let rim = (0..RIM_PLACES).map(|k| 360.0 / f64::from(RIM_PLACES) * f64::from(k));
+    let places: Vec<Option<f64>> = std::iter::once(None).chain(rim.map(Some)).collect();
+    let cases: Vec<Case> = (loops.iter())
+        .flat_map(|&(words, payload_kg, tuning)| {
+            places.iter().map(move |place| Case {
+                words,
+                payload_kg,
+                place_mm: place.map_or([0.0; 2], |angle_deg| {
+                    let (sin, cos) = angle_deg.to_radians().sin_cos();
+                    [RIM_MM * cos, RIM_MM * sin]
+                }),
+                resonance_hz: 1_500.0,
+                tuning,
+            })
+        })
+        .collect();
+    let peaks = of_all(&cases, Case::peaks);
+    println!(
+        "| loop | place | Ms of pivot 1 at, Hz | of pivot 2 | of pivot 3 | all three encoders together |"
+    );
+    println!("|---|---|---|---|---|---|");
+    let told = |peak: &Peak| format!("{:.2} at {:.0}", peak.size, peak.hz);
+    let word = |place: &Option<f64>| {
+        place.map_or("centre".to_owned(), |angle_deg| {
+            format!("{RIM_MM} mm out at {angle_deg} deg")
+        })
+    };
+    for (case, (place, peaks)) in cases.iter().zip(places.iter().cycle().zip(&peaks)) {
+        let peaks = peaks.each_ref().map(told).join(" | ");
+        println!("| {} | {} | {peaks} |", case.words, word(place));
+    }
+    println!();
+    for (of, (words, ..)) in peaks.chunks(places.len()).zip(loops) {
+        let largest = |whose: std::ops::Range<usize>| {
+            let of_places = of.iter().zip(&places);
+            of_places
+                .flat_map(|(peaks, place)| {
+                    (peaks.iter().enumerate())
+                        .filter(|(i, _)| whose.contains(i))
+                        .map(move |(i, peak)| (i, peak, place))
+                })
+                .max_by(|a, b| a.1.size.total_cmp(&b.1.size))
+                .expect("there are places")
+        };
+        let (pivot, one, place) = largest(0..3);
+        let (_, all, all_place) = largest(3..4);
+        println!(
+            "{words}: worst of a pivot {}, pivot {}, {}; of all together {}, {}",
+            told(one),
+            pivot + 1,
+            word(place),
+            told(all),
+            word(all_place)
+        );
+    }
+}
+
+/// What is asked of each, by as many threads as there are cores.
+fn of_all<T: Sync, R: Send>(cases: &[T], ask: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let answers = Mutex::new(Vec::new());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some((i, case)) = {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    cases.get(i).map(|case| (i, case))
+                } {
+                    let answer = ask(case);
+                    (answers.lock().expect("no thread has failed")).push((i, answer));
+                }
+            });
+        }
+    });
+    let mut answers = answers.into_inner().expect("no thread has failed");
+    answers.sort_by_key(|(i, _)| *i);
+    answers.into_iter().map(|(_, answer)| answer).collect()
+}
+
+/// The largest value, and at which frequency it is.
+#[derive(Clone, Copy, Default)]
+struct Peak {
+    hz: f64,
+    size: f64,
+}
+
+impl Peak {
+    fn of(values: impl Iterator<Item = (f64, f64)>) -> Self {
+        values
+            .map(|(hz, size)| Self { hz, size })
+            .max_by(|a, b| a.size.total_cmp(&b.size))
+            .unwrap_or_default()
+    }
+}
+
+/// The largest singular value: the root of the largest eigenvalue of S^H S, by its powers.
+fn largest_singular_value(matrix: &Matrix) -> f64 {
+    // No eigenvector of these three would be at a right angle to that but by chance.
+    let mut vector: [Complex; 3] = [[1.0, 0.3], [-0.7, 0.2], [0.4, -0.9]];
+    let mut square = 0.0;
+    for _ in 0..200 {
+        let mut image = [[0.0; 2]; 3];
+        for (row, image) in matrix.iter().zip(&mut image) {
+            for ([a, b], [c, d]) in row.iter().zip(&vector) {
+                image[0] += a * c - b * d;
+                image[1] += a * d + b * c;
+            }
+        }
+        let mut back = [[0.0; 2]; 3];
+        for (row, [c, d]) in matrix.iter().zip(&image) {
+            for ([a, b], back) in row.iter().zip(&mut back) {
+                back[0] += a * c + b * d;
+                back[1] += a * d - b * c;
+            }
+        }
+        let size = |vector: &[Complex; 3]| {
+            (vector.iter().map(|[re, im]| re * re + im * im).sum::<f64>()).sqrt()
+        };
+        square = size(&back) / size(&vector);
+        let length = size(&back);
+        vector = back.map(|value| value.map(|part| part / length));
+    }
+    square.sqrt()
 }
 
 impl Case {
@@ -144,6 +320,9 @@ impl Case {
         // The sine is none of its own.
         parameters.supervision.oscillation_v = 120.0;
         parameters = with_payload_told(&parameters, &stage);
+        if matches!(self.tuning, Tuning::Firmer) {
+            parameters = with_gains_firmer(&parameters);
+        }
         let servo = &mut parameters.servo;
         // With what the platform weighs at a ring, from nothing to all of it and a load, the resonance is between 0.9 and 1.15 times
         // what it is for the slowest mode in the centre.
@@ -155,7 +334,7 @@ impl Case {
         let notches = [notch(0.95), notch(1.12)];
         for (gains, filters) in servo.gains.iter_mut().zip(&mut servo.filters) {
             match self.tuning {
-                Tuning::Reference => {}
+                Tuning::Reference | Tuning::Firmer => {}
                 Tuning::Shaped(shaped) => {
                     gains.velocity_v_s_rad = shaped.velocity_v_s_rad;
                     gains.position_1_s = shaped.position_1_s;
@@ -174,49 +353,68 @@ impl Case {
                 }
             }
         }
-        if matches!(self.tuning, Tuning::Shaped(_)) {
+        if matches!(self.tuning, Tuning::Shaped(_) | Tuning::Firmer) {
             parameters = with_inertia_scheduled(&parameters);
         }
         (stage, parameters)
     }
 
-    fn print(&self) {
+    fn row(&self) -> String {
         let (stage, mut parameters) = self.parameters();
-        let sensitivities = self.sensitivities(&stage, &parameters);
+        let sensitivities: Vec<(f64, Complex)> = (self.columns(&stage, &parameters, 0, &WIDE))
+            .into_iter()
+            .map(|(hz, [own, ..])| (hz, own))
+            .collect();
         let crossover_hz = (sensitivities.iter().rev())
             .find(|(_, [re, im])| {
                 // |L| = |1 - S| / |S|.
                 (1.0 - re).hypot(*im) >= re.hypot(*im)
             })
             .map_or(f64::NAN, |(hz, _)| *hz);
-        let (worst_hz, most) = (sensitivities.iter())
-            .map(|(hz, [re, im])| (*hz, re.hypot(*im)))
-            .fold(
-                (0.0, 0.0),
-                |worst, one| if one.1 > worst.1 { one } else { worst },
-            );
+        let most = Peak::of((sensitivities.iter()).map(|(hz, [re, im])| (*hz, re.hypot(*im))));
         let low = sensitivities
             .iter()
             .find(|(hz, _)| *hz >= 30.0)
             .map_or(f64::NAN, |(_, [re, im])| re.hypot(*im));
-        let rested = push(&stage, &parameters, self.x_mm);
+        let rested = push(&stage, &parameters, self.place_mm);
         parameters.servo.rest.stiffness = 1.0;
-        let full = push(&stage, &parameters, self.x_mm);
-        println!(
-            "| {} | {crossover_hz:.0} | {most:.2} at {worst_hz:.0} | {low:.3} | {full} | {rested} |",
-            self.words
-        );
+        let full = push(&stage, &parameters, self.place_mm);
+        format!(
+            "| {} | {crossover_hz:.0} | {:.2} at {:.0} | {low:.3} | {full} | {rested} |",
+            self.words, most.size, most.hz
+        )
     }
 
-    /// S of pivot 1, frequency by frequency.
-    fn sensitivities(
+    /// Ms of each pivot, and the largest singular value.
+    fn peaks(&self) -> [Peak; 4] {
+        let (stage, parameters) = self.parameters();
+        let columns = [0, 1, 2].map(|pivot| self.columns(&stage, &parameters, pivot, &AROUND_MS));
+        let own = [0, 1, 2].map(|pivot: usize| {
+            Peak::of(columns[pivot].iter().map(|(hz, column)| {
+                let [re, im] = column[pivot];
+                (*hz, re.hypot(im))
+            }))
+        });
+        let matrices = (0..columns[0].len()).map(|k| {
+            let matrix = [0, 1, 2]
+                .map(|row: usize| [0, 1, 2].map(|column: usize| columns[column][k].1[row]));
+            (columns[0][k].0, largest_singular_value(&matrix))
+        });
+        let [first, second, third] = own;
+        [first, second, third, Peak::of(matrices)]
+    }
+
+    /// What a sine on a pivot's encoder makes of all errors, frequency by frequency.
+    fn columns(
         &self,
         stage: &StageParameters,
         parameters: &Parameters,
-    ) -> Vec<(f64, [f64; 2])> {
+        pivot: usize,
+        sweep: &Sweep,
+    ) -> Vec<(f64, [Complex; 3])> {
         let mut queues = Queues::new();
         let (mut tick_queues, mut commands) = queues.split();
-        let mut bench = Bench::at(stage, parameters, self.x_mm, &mut tick_queues);
+        let mut bench = Bench::at(stage, parameters, self.place_mm, &mut tick_queues);
         let from = bench.referenced(&mut commands);
         let to = [
             from[0],
@@ -227,17 +425,18 @@ impl Case {
         let plan = plan_line(1, from, to, &constraints).expect("in place");
         assert!(commands.send(Command::Move(plan)).is_ok(), "room");
         bench.run(20_000);
-        let mut sensitivities = Vec::new();
-        let mut hz = 20.0;
-        while hz < 3_000.0 {
+        let mut columns = Vec::new();
+        let mut hz = sweep.from_hz;
+        while hz < sweep.to_hz {
             // Whole periods.
-            let periods = (SINE_TICKS * hz / RATE_HZ).ceil();
+            let periods = (sweep.sine_ticks * hz / RATE_HZ).ceil();
             let ticks = (periods * RATE_HZ / hz).round();
             let exact_hz = periods * RATE_HZ / ticks;
-            sensitivities.push((exact_hz, bench.sensitivity(exact_hz, ticks as u64)));
-            hz *= 1.04;
+            let column = bench.column(pivot, exact_hz, sweep.settle_ticks, ticks as u64);
+            columns.push((exact_hz, column));
+            hz *= sweep.ratio;
         }
-        sensitivities
+        columns
     }
 }
 
@@ -251,11 +450,11 @@ impl<'a, 'q> Bench<'a, 'q> {
     fn at(
         stage: &StageParameters,
         parameters: &Parameters,
-        x_mm: f64,
+        [x_mm, y_mm]: [f64; 2],
         queues: &'a mut TickQueues<'q>,
     ) -> Self {
         let mut host = Host::new(stage, parameters);
-        host.stage.set_pose_at_rest([x_mm * 1e-3, 0.0, 0.0]);
+        (host.stage).set_pose_at_rest([x_mm * 1e-3, y_mm * 1e-3, 0.0]);
         Self {
             host,
             record: TickRecord::default(),
@@ -286,39 +485,42 @@ impl<'a, 'q> Bench<'a, 'q> {
             .position
     }
 
-    /// Following error of pivot 1, LSB.
-    fn error_lsb(&self) -> f64 {
+    /// Following error of a pivot, LSB.
+    fn error_lsb(&self, pivot: usize) -> f64 {
         let sample = self.record.sample.as_ref().expect("a tick has run");
-        (sample.pivots[0] - sample.pivot_setpoints[0]).units() as f64 / UNITS_PER_LSB
+        (sample.pivots[pivot] - sample.pivot_setpoints[pivot]).units() as f64 / UNITS_PER_LSB
     }
 
-    fn sensitivity(&mut self, hz: f64, ticks: u64) -> [f64; 2] {
-        let mut sums = [0.0; 2];
-        for tick in 0..SETTLE_TICKS + ticks {
+    fn column(&mut self, pivot: usize, hz: f64, settle_ticks: u64, ticks: u64) -> [Complex; 3] {
+        let mut sums = [[0.0; 2]; 3];
+        for tick in 0..settle_ticks + ticks {
             // What is set now is latched later in this period and read by the next tick.
             let phase = TAU * hz * tick as f64 / RATE_HZ;
-            self.host.stage.encoders[0].set_offset(SINE_RAD * phase.sin());
-            let error = self.error_lsb() * LSB_RAD;
-            if tick >= SETTLE_TICKS {
-                // Read in this tick's sample: what was set a tick ago.
-                let read = TAU * hz * (tick - 1) as f64 / RATE_HZ;
-                // The sample shown is the tick's before, so its offset was set two ticks ago.
-                let shown = read - TAU * hz / RATE_HZ;
-                sums[0] += error * shown.sin();
-                sums[1] += error * shown.cos();
+            self.host.stage.encoders[pivot].set_offset(SINE_RAD * phase.sin());
+            if let Some(measured) = tick.checked_sub(settle_ticks) {
+                // Read in this tick's sample: what was set a tick ago. The sample shown is the tick's before, so its offset was set two
+                // ticks ago.
+                let shown = phase - 2.0 * TAU * hz / RATE_HZ;
+                // Ripple is near, and no whole number of its periods: rising and falling weights keep it out.
+                let weight = 1.0 - (TAU * measured as f64 / ticks as f64).cos();
+                for (i, [sine, cosine]) in sums.iter_mut().enumerate() {
+                    let error = weight * self.error_lsb(i) * LSB_RAD;
+                    *sine += error * shown.sin();
+                    *cosine += error * shown.cos();
+                }
             }
             self.tick();
         }
-        self.host.stage.encoders[0].set_offset(0.0);
-        sums.map(|sum| sum * 2.0 / ticks as f64 / SINE_RAD)
+        self.host.stage.encoders[pivot].set_offset(0.0);
+        sums.map(|sum| sum.map(|sum| sum * 2.0 / ticks as f64 / SINE_RAD))
     }
 }
 
 /// Peak and the time after which the error stays within 2.5 LSB, of the mean over a millisecond.
-fn push(stage: &StageParameters, parameters: &Parameters, x_mm: f64) -> String {
+fn push(stage: &StageParameters, parameters: &Parameters, place_mm: [f64; 2]) -> String {
     let mut queues = Queues::new();
     let (mut tick_queues, mut commands) = queues.split();
-    let mut bench = Bench::at(stage, parameters, x_mm, &mut tick_queues);
+    let mut bench = Bench::at(stage, parameters, place_mm, &mut tick_queues);
     bench.referenced(&mut commands);
     bench.run(60_000);
     bench.host.stage.plant.set_external(External {
@@ -329,7 +531,7 @@ fn push(stage: &StageParameters, parameters: &Parameters, x_mm: f64) -> String {
     let mut last = std::collections::VecDeque::from([0.0; 20]);
     for tick in 1..=6_000 {
         bench.tick();
-        let error = bench.error_lsb();
+        let error = bench.error_lsb(0);
         peak = peak.max(error.abs());
         last.pop_front();
         last.push_back(error);

@@ -1,14 +1,14 @@
 //! What the controller reaches once it is told the machine's numbers, as a table: `cargo bench -p hal-sim --bench told`.
 //!
 //! The demonstration on machines that are off the controller's model: as the controller comes; told the drives', the platform's and
-//! the payload's true numbers, with velocity and integral gain scaled by R / Kt and scheduled by the inertia; and told the motors'
-//! ripple besides. All of it is what `SPA` can set.
+//! the payload's true numbers, with velocity and integral gain scaled by R / Kt and scheduled by the inertia; the same with firmer
+//! gains; and told the motors' ripple besides. All of it is what `SPA` can set.
 
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::{SettingsFlash, StageParameters};
-use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, run_machine, stage_parameters};
 use hal_sim::rig::script::Script;
+use hal_sim::rig::{Told, with_gains_firmer};
 
 fn main() {
     println!(
@@ -31,10 +31,21 @@ fn main() {
         };
         let stage = stage_parameters(&options);
         let as_it_comes = controller_parameters(&options);
-        for told in [Told::Nothing, Told::Machine, Told::MachineAndRipple] {
-            let parameters = told.parameters(&as_it_comes, &stage);
+        for (told, is_firmer) in [
+            (Told::Nothing, false),
+            (Told::Machine, false),
+            (Told::Machine, true),
+            (Told::MachineAndRipple, false),
+            (Told::MachineAndRipple, true),
+        ] {
+            let mut parameters = told.parameters(&as_it_comes, &stage);
+            let mut words = told.to_string();
+            if is_firmer {
+                parameters = with_gains_firmer(&parameters);
+                words += ", firmer gains";
+            }
             let figures = demonstration(&parameters, &stage, &options);
-            println!("| {mismatch_percent} % off | {payload_kg} | {told} | {figures} |");
+            println!("| {mismatch_percent} % off | {payload_kg} | {words} | {figures} |");
         }
     }
 }

@@ -5,8 +5,31 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Today in UTC, as in 2026-11-23.
 #[must_use]
 pub fn today() -> String {
+    date(day_of_today())
+}
+
+/// Days since a date in that form; `None` where it is none, or is to come.
+#[must_use]
+pub fn age_days(text: &str) -> Option<u64> {
+    let mut parts = text.split('-').map(str::parse::<u64>);
+    let (Some(Ok(year)), Some(Ok(month)), Some(Ok(of_month)), None) =
+        (parts.next(), parts.next(), parts.next(), parts.next())
+    else {
+        return None;
+    };
+    if !(1970..=9999).contains(&year) {
+        return None;
+    }
+    // A date is that of one day, at most two from where months of 30.6 days put it.
+    let near = (year - 1970) * 1461 / 4 + month.checked_sub(1)? * 306 / 10 + of_month;
+    let written = format!("{year}-{month:02}-{of_month:02}");
+    let day = (near.saturating_sub(4)..near + 4).find(|&day| date(day) == written)?;
+    day_of_today().checked_sub(day)
+}
+
+fn day_of_today() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    date(since.unwrap_or_default().as_secs() / 86_400)
+    since.unwrap_or_default().as_secs() / 86_400
 }
 
 /// Year, month and day of a day since 1970-01-01 (H. Hinnant, "chrono-compatible low-level date algorithms").
@@ -25,7 +48,7 @@ fn date(day: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::date;
+    use super::{age_days, date, day_of_today, today};
 
     #[test]
     fn days_have_their_dates() {
@@ -38,6 +61,26 @@ mod tests {
             (20_454, "2026-01-01"),
         ] {
             assert_eq!(date(day), text);
+        }
+    }
+
+    #[test]
+    fn the_age_of_a_date_is_in_days() {
+        assert_eq!(age_days(&today()), Some(0));
+        for back in 0..=day_of_today() {
+            assert_eq!(age_days(&date(day_of_today() - back)), Some(back));
+        }
+        let tomorrow = date(day_of_today() + 1);
+        for none in [
+            &*tomorrow,
+            "",
+            "2026",
+            "2026-02-30",
+            "2026-00-01",
+            "2026-1-1-1",
+            "last week",
+        ] {
+            assert_eq!(age_days(none), None, "{none}");
         }
     }
 }

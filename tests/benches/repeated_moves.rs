@@ -1,25 +1,40 @@
 //! What iterative learning leaves of the following error, as a table: `cargo bench -p tests --bench repeated_moves`.
 //!
-//! Random moves of 1 mm and more from the middle of the disk, theta with them, each to its target and back six times, with a table from
-//! the first time on. The first trial is the one without. An error is the root mean square over the pivots and the ticks of the move and of
-//! 5 ms after it.
+//! Random moves of 1 mm and more from the middle of the disk, theta with them, each to its target and back: six times without a table,
+//! which tells how far the same move is from itself, then six times with a table from the first time on. The first trial is the one
+//! without. An error is the root mean square over the pivots and the ticks of the move and of 5 ms after it.
+//! `TRIALS=1` prints every one of them.
 
 use hal_sim::random::Random;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tests::Bench;
 
 const MOVES: usize = 40;
 const TRIALS: usize = 6;
 /// Ticks after a motion that count as well.
 const AFTER: u32 = 100;
+const TITLES: [&str; 8] = [
+    "machine",
+    "load, kg",
+    "told",
+    "first trial, LSB rms: median / 90 % / worst",
+    "after five trials: median / 90 % / worst",
+    "at most 1 LSB",
+    "worst trial over the first",
+    "the same without a table",
+];
+
+/// Errors of a move, time by time: without a table and with one.
+struct Repeats {
+    without: Vec<f64>,
+    with: Vec<f64>,
+}
 
 fn main() {
-    println!(
-        "| machine | load, kg | told | first trial, LSB rms: median / 90 % / worst | after five trials: median / 90 % / worst | at most 1 LSB | worst trial over the first |"
-    );
-    println!("|---|---|---|---|---|---|---|");
-    for (mismatch_percent, payload_kg, told) in [
+    let cases = [
         (0.0, 0.0, Told::Nothing),
         (20.0, 0.0, Told::Nothing),
         (-20.0, 0.0, Told::Nothing),
@@ -29,40 +44,70 @@ fn main() {
         (20.0, 0.0, Told::MachineAndRipple),
         (-20.0, 0.0, Told::MachineAndRipple),
         (35.0, 5.0, Told::MachineAndRipple),
-    ] {
-        let options = RunOptions {
-            mismatch_percent,
-            payload_kg,
-            ..RunOptions::default()
-        };
-        let stage = stage_parameters(&options);
-        let parameters = told.parameters(&controller_parameters(&options), &stage);
-        let mut bench = Bench::told(&stage, &parameters);
-        assert_eq!(bench.error_after("FRF"), "0");
-        bench.settle();
-        let mut random = Random::new(20_261_123);
-        let moves: Vec<Vec<f64>> = (0..MOVES)
-            .map(|number| errors(&mut bench, number, &mut random))
-            .collect();
-        let first = sorted(moves.iter().map(|errors| errors[0]));
-        let last = sorted(moves.iter().map(|errors| errors[TRIALS - 1]));
-        let good = last.iter().filter(|error| **error <= 1.0).count();
-        let worst = moves.iter().flat_map(|errors| {
-            let first = errors[0];
-            errors[1..].iter().map(move |error| error / first)
-        });
-        println!(
-            "| {mismatch_percent} % off | {payload_kg} | {told} | {} | {} | {:.0} % | {:.2} |",
-            spread(&first),
-            spread(&last),
-            good as f64 / MOVES as f64 * 100.0,
-            worst.fold(0.0, f64::max)
-        );
+    ];
+    let only = std::env::var("ONLY").map(|only| only.parse::<usize>().expect("a row's number"));
+    let cases = match only {
+        Ok(only) => vec![cases[only]],
+        Err(_) => cases.to_vec(),
+    };
+    let next = AtomicUsize::new(0);
+    let rows = Mutex::new(vec![String::new(); cases.len()]);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some((i, case)) = {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    cases.get(i).map(|case| (i, case))
+                } {
+                    let row = row(*case);
+                    rows.lock().expect("no thread has failed")[i] = row;
+                }
+            });
+        }
+    });
+    println!("| {} |", TITLES.join(" | "));
+    println!("|{}", "---|".repeat(TITLES.len()));
+    for row in rows.into_inner().expect("no thread has failed") {
+        println!("{row}");
     }
 }
 
-/// A random move's errors, trial by trial.
-fn errors(bench: &mut Bench, number: usize, random: &mut Random) -> Vec<f64> {
+fn row((mismatch_percent, payload_kg, told): (f64, f64, Told)) -> String {
+    let options = RunOptions {
+        mismatch_percent,
+        payload_kg,
+        ..RunOptions::default()
+    };
+    let stage = stage_parameters(&options);
+    let parameters = told.parameters(&controller_parameters(&options), &stage);
+    let mut bench = Bench::told(&stage, &parameters);
+    assert_eq!(bench.error_after("FRF"), "0");
+    bench.settle();
+    let mut random = Random::new(20_261_123);
+    let moves: Vec<Repeats> = (0..MOVES)
+        .map(|number| repeats(&mut bench, number, &mut random))
+        .collect();
+    if std::env::var_os("TRIALS").is_some() {
+        for repeats in &moves {
+            println!("{:.2?} {:.2?}", repeats.without, repeats.with);
+        }
+    }
+    let first = sorted(moves.iter().map(|repeats| repeats.with[0]));
+    let last = sorted(moves.iter().map(|repeats| repeats.with[TRIALS - 1]));
+    let good = last.iter().filter(|error| **error <= 1.0).count();
+    format!(
+        "| {mismatch_percent} % off | {payload_kg} | {told} | {} | {} | {:.0} % | {:.2} | {:.2} |",
+        spread(&first),
+        spread(&last),
+        good as f64 / MOVES as f64 * 100.0,
+        worst(moves.iter().map(|repeats| &repeats.with)),
+        worst(moves.iter().map(|repeats| &repeats.without)),
+    )
+}
+
+/// A random move's errors.
+fn repeats(bench: &mut Bench, number: usize, random: &mut Random) -> Repeats {
     let way_mm = 10_f64.powf(random.between(0.0, 1.85));
     let (sin, cos) = random.between(0.0, core::f64::consts::TAU).sin_cos();
     let [x, y, turn] = [
@@ -71,40 +116,43 @@ fn errors(bench: &mut Bench, number: usize, random: &mut Random) -> Vec<f64> {
         way_mm * random.between(-1.8, 1.8),
     ];
     let line = format!("MOV X {x:.4} Y {y:.4} W {turn:.4}\n");
-    let back = |bench: &mut Bench| {
-        bench.say("MOV X 0 Y 0 W 0\n");
-        bench.settle();
-    };
-    // From where the first trial starts as the others do: after the way back.
-    back(bench);
-    bench.say(&line);
-    bench.settle();
-    back(bench);
+    // From where the first one starts as the others do: after the way back.
+    there_and_back(bench, &line);
+    let without = (0..TRIALS).map(|_| there_and_back(bench, &line)).collect();
     assert_eq!(bench.error_after(&format!("ILC LEARN M{number}")), "0");
-    let errors = (0..TRIALS).map(|_| {
-        bench.send(&line);
-        let (mut sum, mut count, mut after) = (0.0, 0.0, 0);
-        let mut last = bench.sample().pivot_setpoints;
-        let mut has_started = false;
-        while after < AFTER {
-            bench.tick();
-            for counts in bench.following_errors() {
-                sum += counts * counts;
-                count += 1.0;
-            }
-            let setpoints = bench.sample().pivot_setpoints;
-            let moves = setpoints != last;
-            last = setpoints;
-            has_started |= moves;
-            after = if moves || !has_started { 0 } else { after + 1 };
-        }
-        bench.settle();
-        back(bench);
-        (sum / count).sqrt()
-    });
-    let errors: Vec<f64> = errors.collect();
+    let with = (0..TRIALS).map(|_| there_and_back(bench, &line)).collect();
     assert_eq!(bench.error_after("ILC FORGET"), "0");
-    errors
+    Repeats { without, with }
+}
+
+/// The error of the way there.
+fn there_and_back(bench: &mut Bench, line: &str) -> f64 {
+    bench.send(line);
+    let (mut sum, mut count, mut after) = (0.0, 0.0, 0);
+    let mut last = bench.sample().pivot_setpoints;
+    let mut has_started = false;
+    while after < AFTER {
+        bench.tick();
+        for counts in bench.following_errors() {
+            sum += counts * counts;
+            count += 1.0;
+        }
+        let setpoints = bench.sample().pivot_setpoints;
+        let moves = setpoints != last;
+        last = setpoints;
+        has_started |= moves;
+        after = if moves || !has_started { 0 } else { after + 1 };
+    }
+    bench.settle();
+    bench.say("MOV X 0 Y 0 W 0\n");
+    bench.settle();
+    (sum / count).sqrt()
+}
+
+/// The largest error over the first one of its move.
+fn worst<'a>(moves: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+    let over = moves.flat_map(|errors| errors[1..].iter().map(move |error| error / errors[0]));
+    over.fold(0.0, f64::max)
 }
 
 fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {

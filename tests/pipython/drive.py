@@ -92,8 +92,8 @@ class Drive(Programs):
 
     def test_every_command_that_is_listed_is_known_to_the_client(self):
         # `WAV` has a function for each of its types.
-        own = {"CAL", "CMS", "EXC", "FLC", "HBT", "ILC", "JRC", "JTM", "LST", "OWN", "RCV", "WAC", "WAV"}
-        own |= {"qCAL", "qCMS", "qEVT", "qEXC", "qFLR", "qFLT", "qHBT", "qILC", "qJTM", "qMON", "qOWN", "qRCV", "qTST"}
+        own = {"APP", "CAL", "CMS", "EXC", "FLC", "HBT", "ILC", "JRC", "JTM", "LST", "OWN", "RCV", "TMP", "WAC", "WAV"}
+        own |= {"qAPP", "qCAL", "qCMS", "qEVT", "qEXC", "qFLR", "qFLT", "qHBT", "qILC", "qJTM", "qMON", "qOWN", "qRCV", "qTMP", "qTST"}
         missing = [name for name in self.stage.funcs if not hasattr(self.stage, name)]
         self.assertEqual(set(missing), own)
 

@@ -3,8 +3,10 @@
 
 use desk::calibrate::lines;
 use firmware::calibration::MachineCalibration;
+use firmware::control::CalibrationInForce;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::rig::{built_stage, calibration_told};
+use kinematics::Geometry;
 use tests::Bench;
 use tests::calibrated::nothing_off;
 
@@ -209,4 +211,140 @@ fn it_is_kept_over_a_restart_and_counts_from_the_start() {
     bench.settle();
     assert_eq!(bench.say("POS?\n"), bench.say("CAL POS?\n"));
     assert!(worst_miss(&mut bench)[0] > 50e-6);
+}
+
+/// What tables of accuracy command a machine by is what the tick does, to the bit.
+#[test]
+fn held_encoders_are_those_of_the_tick() {
+    let stage = built_stage(&StageParameters::REFERENCE);
+    for calibration in [calibration_told(&stage), nothing_off()] {
+        let mut bench = referenced(&stage, Some(&calibration));
+        let (of_tick, margins) = calibration.for_tick(&Geometry::REFERENCE).unwrap();
+        let in_force = CalibrationInForce {
+            is_on: !of_tick.are_zero(),
+            calibration: of_tick,
+            margins,
+        };
+        for [x, y, w] in TARGETS {
+            assert_eq!(bench.error_after(&format!("MOV X {x} Y {y} W {w}")), "0");
+            bench.settle();
+            let sample = bench.sample();
+            let held = in_force.held_encoders(&sample.setpoint.position);
+            assert_eq!(held, Some(sample.pivot_setpoints), "{x} {y} {w}");
+        }
+    }
+}
+
+/// All lengths of a machine that is warmer by some K.
+fn grown(stage: &StageParameters, times: f64) -> StageParameters {
+    let mut stage = *stage;
+    stage.plant.track_radius_m *= times;
+    for pivot in &mut stage.plant.pivots {
+        pivot.radius_error_m *= times;
+        pivot.guide_offset_m *= times;
+        pivot.ring_centre_m = pivot.ring_centre_m.map(|m| m * times);
+        pivot.runout_m = pivot.runout_m.map(|pair| pair.map(|m| m * times));
+        pivot.straightness_m = pivot.straightness_m.map(|m| m * times);
+    }
+    stage
+}
+
+/// 12 ppm per K and 4 K: 3.8 um on the rim, none of it left where the temperature is told.
+#[test]
+fn a_warm_machine_is_where_it_was_sent() {
+    let stage = built_stage(&StageParameters::REFERENCE);
+    let calibration = calibration_told(&stage);
+    let mut bench = referenced(&grown(&stage, 1.0 + 4.0 * 12e-6), Some(&calibration));
+    let untold = worst_miss(&mut bench);
+    assert!((3.7e-6..4.0e-6).contains(&untold[0]), "{untold:?}");
+    assert_eq!(
+        bench.say("TMP?\n"),
+        "TEMPERATURE=UNKNOWN \nGROWTH=0 \nSTATE=UNKNOWN\n"
+    );
+    let before = bench.sample().pivot_setpoints;
+    assert_eq!(bench.error_after("TMP 24.5 12"), "0");
+    assert_eq!(
+        bench.say("TMP?\n"),
+        "TEMPERATURE=24.5 \nGROWTH=12 \nOVER=4.000 \nSTATE=OFF\n"
+    );
+    bench.run(1_000);
+    assert_eq!(bench.sample().pivot_setpoints, before);
+    let told = worst_miss(&mut bench);
+    assert!(told[0] < 1.33e-9 && told[1] < 1.14e-8, "{told:?}");
+    // What is recorded is in the same lengths as what is told.
+    let [told_mm, target_mm] = ["POS? Y", "MOV? Y"].map(|query| bench.value(query));
+    assert!((told_mm - target_mm).abs() < 1e-5, "{told_mm} {target_mm}");
+    let events = bench.say("EVT?\n");
+    let warning = "4.0 K over the temperature of the calibration";
+    assert!(events.contains(warning), "{events}");
+    // The growth stays; within 2 K there is nothing to warn of.
+    assert_eq!(bench.error_after("TMP 22"), "0");
+    assert!(
+        bench
+            .say("TMP?\n")
+            .ends_with("GROWTH=12 \nOVER=1.500 \nSTATE=CALIBRATED\n")
+    );
+    let events = bench.say("EVT?\n");
+    assert!(
+        events.contains("at the temperature of the calibration again"),
+        "{events}"
+    );
+}
+
+#[test]
+fn what_is_no_temperature_is_refused() {
+    let stage = built_stage(&StageParameters::REFERENCE);
+    let mut bench = referenced(&stage, Some(&calibration_told(&stage)));
+    for (line, error) in [
+        ("TMP -51", "17"),
+        ("TMP 101", "17"),
+        ("TMP 20 51", "17"),
+        ("TMP 20 -1", "17"),
+        ("TMP", "24"),
+        ("TMP 20 12 3", "24"),
+    ] {
+        assert_eq!(bench.error_after(line), error, "{line}");
+    }
+    assert!(bench.say("TMP?\n").starts_with("TEMPERATURE=UNKNOWN"));
+    // Not on the way, where half of it would be in other lengths.
+    bench.send("MOV X 50\n");
+    bench.run(400);
+    assert_eq!(bench.error_after("TMP 24 12"), "53");
+    bench.settle();
+    // Nor while a point beside the platform's centre is moved, which the tick knows in track radii. Without growth it is the same point.
+    assert_eq!(bench.error_after("SPI R 10 S 5"), "0");
+    bench.run(100);
+    assert_eq!(bench.error_after("TMP 24"), "0");
+    assert_eq!(bench.error_after("TMP 24 12"), "34");
+    assert!(bench.say("TMP?\n").contains("GROWTH=0 "));
+}
+
+/// The measured pose by the drawing beside that of the built machine, in one record.
+#[test]
+fn both_poses_are_recorded() {
+    let stage = built_stage(&StageParameters::REFERENCE);
+    let mut bench = referenced(&stage, Some(&calibration_told(&stage)));
+    assert_eq!(bench.error_after("MOV X 30 Y -20 W 100"), "0");
+    bench.settle();
+    let setup = "DRC 1 X 2 2 X 210 3 Y 210 4 W 210 5 0 0 6 0 0 7 0 0 8 0 0";
+    assert_eq!(bench.error_after(setup), "0");
+    assert_eq!(bench.error_after("DRT 0 4 0"), "0");
+    bench.run(4_000);
+    let record = bench.say("DRR? 1 1 1 2 3 4\n");
+    let row = record.lines().last().expect("a row");
+    let row: Vec<f64> = (row.split_whitespace())
+        .map(|number| number.parse().expect("a number"))
+        .collect();
+    assert!((row[0] - row[1]).abs() > 1e-3, "{row:?}");
+    assert!((row[0] - bench.value("POS? X")).abs() < 1e-5);
+    let drawn = bench.say("CAL POS?\n");
+    for (i, letter) in [(1, "X="), (2, "Y="), (3, "W=")] {
+        let line = drawn.lines().find(|line| line.starts_with(letter));
+        let value: f64 = line.unwrap()[2..].trim().parse().unwrap();
+        assert!(
+            (row[i] - value).abs() < 1e-4,
+            "{letter}: {} {value}",
+            row[i]
+        );
+    }
 }

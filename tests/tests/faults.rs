@@ -160,6 +160,8 @@ fn a_bridge_that_pulls_its_fault_pin() {
         let mut bench = moving();
         bench.rig.front.bridges[axis].set_fault(true);
         bench.tick();
+        assert_eq!(bench.fault(), None, "one tick is none");
+        bench.tick();
         let fault = bench.fault().expect("a fault");
         assert_eq!(
             (fault.kind, fault.pivot),
@@ -180,7 +182,7 @@ fn a_bridge_that_pulls_its_fault_pin() {
 fn a_stage_that_slides_after_a_fault_is_told_as_moving() {
     let mut bench = moving();
     bench.rig.front.bridges[0].set_fault(true);
-    bench.tick();
+    bench.run(2);
     bench.rig.front.bridges[0].set_fault(false);
     let speed = |bench: &Bench| {
         let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();

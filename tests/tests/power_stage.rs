@@ -1,5 +1,7 @@
 //! Bus, brake resistor, bridges with limits, and the limit of the motors' currents.
 
+use firmware::drivers::bridge::Duty;
+use firmware::drivers::power_stage::BRIDGE;
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use hal_sim::machine::devices::StageParameters;
@@ -82,7 +84,7 @@ fn an_emergency_stop_at_full_speed_is_braked_to_its_end() {
     let most_a = most_current(&mut bench, 2_000);
     let (highest_v, _) = bus(&bench);
     println!("{most_a:.1} A, {highest_v:.1} V");
-    assert_eq!(bench.rig.front.stage.tripped(), [false; 3]);
+    assert_eq!(bench.rig.front.stage.pulled_fault_pins(), [false; 3]);
     // 6.28 rad/s of 2.4 V s/rad are 15.1 V over 2.1 ohm.
     assert!((5.5..7.2).contains(&most_a) && highest_v < 50.0);
     let rates = bench.rig.front.stage.plant.pivot_rates_rad_s();
@@ -123,7 +125,7 @@ fn a_current_that_no_bridge_bears_trips_it() {
         let mut bench = turning(stage, 360.0);
         bench.rig.front.emergency_stop = true;
         bench.run(200);
-        bench.rig.front.stage.tripped()
+        bench.rig.front.stage.pulled_fault_pins()
     };
     assert_eq!(tripped(&stage), [false; 3]);
     // The smaller part, which this stage once had.
@@ -149,4 +151,77 @@ fn a_supply_that_is_too_high_is_told_before_the_resistor_burns() {
     twin.run(40_000);
     assert_eq!(twin.fault(), None);
     assert!(bus(&twin).1 == 0.0);
+}
+
+/// A machine whose bridges take so long to wake up, and pull their fault pins until then.
+fn waking(wake_s: f64) -> StageParameters {
+    let mut stage = machine();
+    stage.bridge.wake_s = wake_s;
+    stage
+}
+
+/// Parts pull their fault pins while they wake up: that is no fault, nothing is driven into them, and no integral collects what they
+/// could not give. Half as long again as the part's table has it is forgiven.
+#[test]
+fn bridges_that_wake_up_are_waited_for() {
+    for wake_s in [BRIDGE.wake_s, 1.5 * BRIDGE.wake_s] {
+        for start in ["FRF", "SVO X 1"] {
+            let mut bench = Bench::new(&waking(wake_s));
+            assert_eq!(bench.error_after("FRF"), "0");
+            bench.settle();
+            assert_eq!(bench.error_after("SVO X 0"), "0");
+            bench.run(100);
+            bench.send(&format!("{start}\n"));
+            bench.run_until("awake", |bench| bench.outputs.awake);
+            let mut pulled = 0;
+            while bench.rig.front.stage.pulled_fault_pins() != [false; 3] {
+                pulled += 1;
+                assert_eq!((bench.fault(), bench.mode()), (None, Mode::Holding));
+                assert_eq!(bench.outputs.duty, [Duty(0); 3], "tick {pulled}");
+                bench.tick();
+            }
+            assert!(f64::from(pulled) * 50e-6 > 0.9 * wake_s, "{pulled} ticks");
+            bench.settle();
+            assert_eq!((bench.fault(), bench.mode()), (None, Mode::Holding));
+        }
+    }
+}
+
+/// The twins: bridges that do not wake up in their time, and one that has a fault as soon as it is awake.
+#[test]
+fn a_bridge_that_does_not_wake_up_is_a_fault() {
+    let mut bench = Bench::new(&waking(5e-3));
+    bench.send("FRF\n");
+    bench.run_until("awake", |bench| bench.outputs.awake);
+    let begun = bench.sample().tick;
+    bench.run_until("a fault", |bench| bench.fault().is_some());
+    let waited = bench.sample().tick - begun;
+    assert_eq!(bench.fault_kind(), Some(FaultKind::BridgeFault));
+    assert!(
+        !bench.outputs.awake && (40..=44).contains(&waited),
+        "{waited}"
+    );
+
+    let mut bench = Bench::new(&waking(BRIDGE.wake_s));
+    bench.rig.front.bridges[2].set_fault(true);
+    bench.send("FRF\n");
+    bench.run_until("a fault", |bench| bench.fault().is_some());
+    let fault = bench.fault().expect("a fault");
+    assert_eq!((fault.kind, fault.pivot), (FaultKind::BridgeFault, Some(2)));
+}
+
+/// A spike on a fault pin that one tick happens to see is none; two in a row are.
+#[test]
+fn a_fault_pin_is_believed_in_its_second_tick() {
+    for (ticks, is_fault) in [(1, false), (2, true)] {
+        let mut bench = turning(&machine(), 60.0);
+        for _ in 0..3 {
+            bench.rig.front.bridges[1].set_fault(true);
+            bench.run(ticks);
+            bench.rig.front.bridges[1].set_fault(false);
+            bench.run(1);
+        }
+        let kind = is_fault.then_some(FaultKind::BridgeFault);
+        assert_eq!(bench.fault_kind(), kind);
+    }
 }

@@ -71,6 +71,22 @@ fn a_stage_at_rest_does_not_hunt() {
     }
 }
 
+/// The gap of a light machine with strong motors, in which they float: with a share of the gains of 0.115 it loses its target.
+#[test]
+fn a_stage_with_much_backlash_comes_to_rest_and_stays_there() {
+    for mismatch_percent in [-10.0, -30.0] {
+        let mut stage = machine(mismatch_percent, 30e-9);
+        stage.plant.backlash_rad = 2e-6;
+        let mut bench = ready(&stage, &[]);
+        assert_eq!(bench.error_after("MOV X 20 Y -10 W 36"), "0");
+        bench.run(30_000);
+        for _ in 0..500 {
+            bench.run(200);
+            assert_eq!(bench.value("ONT? X"), 1.0, "{mismatch_percent} %");
+        }
+    }
+}
+
 /// 200 nrad are 2.1 counts rms, and the window is two.
 #[test]
 fn on_target_is_not_lost_in_noise_that_is_larger_than_the_window() {
@@ -86,7 +102,7 @@ fn on_target_is_not_lost_in_noise_that_is_larger_than_the_window() {
 #[test]
 fn a_push_brings_the_full_loop_back() {
     let mut peaks = Vec::new();
-    for stiffness in [0.13, 1.0] {
+    for stiffness in [0.1, 1.0] {
         let mut bench = ready(&machine(0.0, 30e-9), &[(REST, stiffness)]);
         bench.run(60_000);
         bench.forget_errors();

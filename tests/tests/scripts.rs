@@ -10,7 +10,7 @@ fn place(text: &str) -> (usize, usize, u16) {
     match Script::parse("bad.gcs", text) {
         Err(ScriptError::Line {
             line, column, code, ..
-        }) => (line, column, code.number()),
+        }) => (line, column, code.expect("a command").number()),
         other => panic!("{text:?}: {other:?}"),
     }
 }
@@ -79,4 +79,25 @@ fn a_refused_line_ends_the_run() {
     let fault = outcome.fault.expect("refused");
     assert_eq!(fault, "far.gcs:2: MOV X 81: refused with GCS error 7");
     assert!(outcome.run.moves.is_empty());
+}
+
+/// A push and a shake move the platform by what a stage of this weight yields, and only while they last.
+#[test]
+fn a_script_pushes_and_shakes_the_stage() {
+    let worst_nm = |disturbance: &str| {
+        let text = format!("FRF\nDEL 500\n{disturbance}\nDEL 100\n");
+        let script = Script::parse("push", &text).expect("good");
+        let outcome = run(&script, &RunOptions::default());
+        assert_eq!(outcome.fault, None, "{disturbance}");
+        (outcome.run.trace.rows().iter())
+            .filter(|row| row.time_s > 0.5)
+            .map(|row| row.true_error[0].hypot(row.true_error[1]) * 1e6)
+            .fold(0.0, f64::max)
+    };
+    let undisturbed = worst_nm("");
+    // 10 N on some 8 kg for 5 ms, and a tenth of it as the floor's acceleration.
+    let pushed = worst_nm("! PUSH X 10 N 5 MS");
+    let shaken = worst_nm("! SHAKE X 1 M/S2 20 HZ 50 MS");
+    println!("{undisturbed} {pushed} {shaken} nm");
+    assert!(pushed > 20.0 * undisturbed && shaken > 20.0 * undisturbed);
 }

@@ -18,6 +18,8 @@ use hal_sim::machine::devices::{EncoderFault, StageParameters};
 
 /// Ticks in which a command is taken and told.
 const SOON: u32 = 4;
+/// Ticks in which bridges wake up, and commands wait.
+const WAKING: u32 = 41;
 /// Ticks of any of the motions here.
 const LONG: u32 = 20_000;
 
@@ -85,8 +87,12 @@ impl Run {
     }
 
     fn command(&mut self, command: Command) {
+        let slept = self.now.mode == Mode::Off;
         self.commands.send(command).expect("room");
         self.ticks(SOON);
+        if slept && self.now.mode != Mode::Off {
+            self.ticks(WAKING);
+        }
     }
 
     /// A line of 60 mm from where it stands.

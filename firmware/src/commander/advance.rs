@@ -24,6 +24,7 @@ impl Commander {
         self.switch_off_at_rest(queues);
         self.advance_end_of_excitation(queues);
         self.advance_streaming(queues);
+        self.begin_last_way();
         let result = match (self.mode(), &self.pending) {
             (Mode::Moving, &(Pending::Stop(stop) | Pending::StopThenGoal(stop, _))) => {
                 self.send_stop(stop, queues);
@@ -46,6 +47,7 @@ impl Commander {
             // Who asked has been told that it was accepted, long since.
             Err(error) => {
                 self.pending = self.pending.stop().map_or(Pending::Nothing, Pending::Stop);
+                self.approach.target = None;
                 self.target_is_rest = true;
                 self.report_late(error);
             }
@@ -68,10 +70,22 @@ impl Commander {
             (Mode::Moving, None) => self.retarget(goal, queues),
             _ => Ok(()),
         };
-        if result.is_err() {
-            self.pending = before;
+        match result {
+            Ok(()) => self.approach.target = None,
+            Err(_) => self.pending = before,
         }
         result
+    }
+
+    /// The stage rests where its last way to a target begins: that comes next.
+    fn begin_last_way(&mut self) {
+        if matches!(
+            (self.mode(), &self.pending),
+            (Mode::Holding, Pending::Nothing)
+        ) && let Some(target) = self.approach.target.take()
+        {
+            self.pending = Pending::Goal(Goal::Position(target));
+        }
     }
 
     /// Sends the motion from rest; nothing is sent when there is none to be made.

@@ -23,7 +23,8 @@ impl Commander {
     ///
     /// # Errors
     /// [`CommandError::ServoOn`], [`CommandError::InMotion`]; [`CommandError::CalibrationBeyondLimits`];
-    /// [`CommandError::Busy`] when the tick cannot be told.
+    /// [`CommandError::RadiusWithToolFrame`], where its temperature makes the track another size; [`CommandError::Busy`] when the tick cannot
+    /// be told.
     pub fn calibrate(
         &mut self,
         wanted: Option<MachineCalibration>,
@@ -38,15 +39,21 @@ impl Commander {
                 return Err(CommandError::InMotion);
             }
         }
+        self.check_calibrated_growth(wanted.as_ref())?;
         self.send_calibration(wanted.as_ref(), queues)?;
-        self.calibrating.keep(wanted);
+        self.keep_calibration(wanted);
         Ok(())
     }
 
     /// The calibration that was kept over a restart.
     pub fn restore_calibration(&mut self, kept: Option<MachineCalibration>) {
         self.calibrating.is_due = kept.as_ref().is_some_and(|kept| kept.is_on);
-        self.calibrating.keep(kept);
+        self.keep_calibration(kept);
+    }
+
+    fn keep_calibration(&mut self, wanted: Option<MachineCalibration>) {
+        self.calibrating.keep(wanted);
+        self.grow_track();
     }
 
     /// Tells the tick of one that was kept, as soon as that can be told anything: before any line does.
@@ -60,7 +67,7 @@ impl Commander {
         let kept = self.calibrating.kept.take();
         if let Err(error) = self.calibrate(kept.clone(), queues) {
             // It is there, and does not count.
-            self.calibrating.keep(kept.map(|kept| MachineCalibration {
+            self.keep_calibration(kept.map(|kept| MachineCalibration {
                 is_on: false,
                 ..kept
             }));

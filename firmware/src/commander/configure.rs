@@ -78,6 +78,8 @@ impl Commander {
     /// Plans with these from now on.
     pub fn use_parameters(&mut self, parameters: &Parameters) {
         self.base_constraints = Constraints::new(self.base_constraints.limits, parameters.geometry);
+        self.drawn_radius_mm = parameters.geometry.radius_mm;
+        self.grow_track();
         self.targets = parameters.targets;
         self.commissioned = parameters.commissioned;
         self.stop_test_needed = parameters.supervision.stop_test_needed;

@@ -32,6 +32,7 @@
 //! | `sent_plan` | a plan that was sent, with what it takes to leave it |
 //! | `repeated_moves` | the tables of iterative learning, and the moves that they are of |
 //! | `moves` | moves, stops, faults, soft limits |
+//! | `approach` | arriving from one side |
 //! | `servo_switch` | the servo on and off |
 //! | `rest`, `rest_watch` | whether the stage rests, by what the encoders measure |
 //! | `jog` | constant velocities |
@@ -39,6 +40,8 @@
 //! | `referencing`, `reach` | referencing; whether the stage can be where the encoders show it |
 //! | `recovery` | the way back of a stage that was found out of its reach |
 //! | `configure` | other parameters |
+//! | `calibration`, `kept_calibration` | what the machine is off the drawing |
+//! | `temperature` | how long lengths are |
 //! | `excitation` | known voltages on a motor |
 //! | `velocities` | of the whole and of single axes |
 //! | `constraints` | what plans keep to now |
@@ -59,6 +62,7 @@ pub mod wave;
 pub(crate) mod coordinates;
 
 mod advance;
+mod approach;
 mod calibration;
 mod configure;
 mod constraints;
@@ -86,9 +90,11 @@ mod soft_limits;
 mod state;
 mod stream_source;
 mod streaming;
+mod temperature;
 mod velocities;
 mod wave_changes;
 
+pub use approach::MOST_APPROACH_UM;
 pub use error::CommandError;
 pub use lamps::Lamps;
 pub use quantity::Quantity;

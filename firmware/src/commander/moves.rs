@@ -87,7 +87,9 @@ impl Commander {
         if self.targets.streamed {
             return self.stream(target, to);
         }
-        self.request_goal(Goal::Position(to), queues)?;
+        let first = self.approach_from(&to)?;
+        self.request_goal(Goal::Position(first), queues)?;
+        self.approach.target = (first != to).then_some(to);
         for axis in Axis::ALL {
             if axis.component().is_some_and(|i| from[i] != to[i]) {
                 self.moving_axes.insert(axis);
@@ -130,6 +132,7 @@ impl Commander {
         if self.mode() != Mode::Moving && !self.is_motion_pending() {
             return;
         }
+        self.approach.target = None;
         self.jog_velocities = [0.0; 6];
         self.target_is_rest = true;
         self.pending.request_stop(stop);

@@ -239,7 +239,9 @@ impl Commander {
 
     /// A motion is pending or in flight that the snapshot does not show yet.
     pub const fn is_motion_pending(&self) -> bool {
-        self.pending.is_motion() || matches!(self.in_flight, Some(InFlight::Plan(..)))
+        self.pending.is_motion()
+            || self.approach.target.is_some()
+            || matches!(self.in_flight, Some(InFlight::Plan(..)))
     }
 }
 

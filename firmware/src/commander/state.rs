@@ -1,5 +1,6 @@
 //! What is known of the stage and asked of it, and how snapshots change it.
 
+use super::approach::Approach;
 use super::axis::{AxisSet, AxisValues, Coordinates};
 use super::coordinates::coordinates;
 use super::error::CommandError;
@@ -12,6 +13,7 @@ use super::recovery::Recovery;
 use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
+use super::temperature::Temperature;
 use super::wave::Waveforms;
 use crate::fault::{Fault, FaultKind};
 use crate::iterative_learning::Tables;
@@ -52,6 +54,10 @@ pub struct Commander {
     /// Time between streamed targets, ms.
     pub(super) cycle_ms: f64,
     pub(super) calibrating: KeptCalibration,
+    pub(super) temperature: Temperature,
+    pub(super) approach: Approach,
+    /// The track's radius as the parameter says; that of `base_constraints` is what it is at the machine's temperature.
+    pub(super) drawn_radius_mm: f64,
     /// What the tick takes from the encoders' readings.
     pub(super) subdivision: [Subdivision; 3],
     pub(super) frames: FrameTree,
@@ -113,6 +119,9 @@ impl Commander {
             stop_seen: false,
             cycle_ms: DEFAULT_CYCLE_MS,
             calibrating: KeptCalibration::default(),
+            temperature: Temperature::default(),
+            approach: Approach::default(),
+            drawn_radius_mm: parameters.geometry.radius_mm,
             subdivision: [Subdivision::NONE; 3],
             frames: FrameTree::new(),
             active_frames: ActiveFrames::BASE,
@@ -293,6 +302,7 @@ impl Commander {
                 self.sent_plan = None;
                 self.next_plan = None;
                 self.pending = Pending::Nothing;
+                self.approach.target = None;
                 self.jog_velocities = [0.0; 6];
                 self.target_is_rest = true;
             }

@@ -1,13 +1,14 @@
 //! Kinematics of a calibrated machine in the tick: see [`crate::calibration`].
 
 use super::config::Config;
-use super::pivot_setpoints::PivotSetpoints;
+use super::pivot_setpoints::{PivotSetpoints, pose};
 use super::servo::platform_torques;
 use crate::calibration::{Calibration, CalibrationMargins, IDEAL};
+use crate::motion::Position;
 use crate::number::Fixed;
 use kinematics::{
     Acceleration, Angle, CorrectedInverse, Corrections, Curves, DirectError, Line, Pose, Series,
-    Tangents, Twist, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes,
+    Tangents, Twist, corrected_inverse, corrected_pivot_motion, direct, in_platform_axes, inverse,
     missing_rad, newton_step,
 };
 
@@ -59,6 +60,26 @@ impl CalibrationInForce {
         calibration: IDEAL,
         margins: CalibrationMargins::NONE,
     };
+
+    /// What the tick has the encoders read while it holds a position, in its own arithmetic; `None` where no pose of the mechanism is.
+    /// Whoever judges a calibration by true poses commands the machine so.
+    pub fn held_encoders(&self, position: &Position) -> Option<[Angle; 3]> {
+        /// Each pivot's curves are looked up that often: at first from wherever they were, then from the reading itself.
+        const LOOKS: usize = 3;
+        let pose = pose(position)?;
+        if !self.is_on {
+            return Some(inverse(&pose).ok()?.pivots);
+        }
+        let mut calibrated = Calibrated::default();
+        calibrated.set(self);
+        for _ in 0..LOOKS {
+            for slot in 0..3 {
+                let at = corrected_inverse(&pose, &calibrated.near).ok()?;
+                calibrated.look_up_at(slot, &at.encoders, &at.guides.map(|guide| guide.rho()));
+            }
+        }
+        Some(corrected_inverse(&pose, &calibrated.near).ok()?.encoders)
+    }
 }
 
 impl Default for Calibrated {

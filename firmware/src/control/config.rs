@@ -8,7 +8,8 @@ use crate::control::rest_mode::{RestModeConfig, UNITS_PER_COUNT};
 use crate::control::servo::ServoConfig;
 use crate::control::units::{CURRENT_A_PER_COUNT, SUPPLY_V_PER_COUNT, UNITS_PER_RAD};
 use crate::control::wiring::WiringConfig;
-use crate::drivers::power_stage::BUS;
+use crate::drivers::latch::LATCH_OFFSET_S;
+use crate::drivers::power_stage::{BRIDGE, BUS};
 use crate::motion::{FaultStop, SetpointScale};
 use crate::parameters::Parameters;
 
@@ -88,6 +89,13 @@ pub struct SupervisionConfig {
 }
 
 impl SupervisionConfig {
+    /// Ticks that the bridges are given to wake up.
+    #[inline]
+    pub(super) fn wake_ticks(&self) -> u32 {
+        // One more: the first may begin anywhere in it.
+        (BRIDGE.wake_grace_s as f32 * self.rate_hz) as u32 + 1
+    }
+
     /// Whether the supply is neither too low nor too high.
     #[inline]
     pub(super) const fn has_good_supply(&self, counts: u16) -> bool {
@@ -108,12 +116,15 @@ impl Config {
         let reach = geometry.usable_radius() + supervision.disk_margin_mm / geometry.radius_mm;
         let bearable = supervision.motor_current_a / CURRENT_A_PER_COUNT;
         let fastest = parameters.limits.pivot_rate_rad_s * supervision.overspeed_factor;
+        let wiring = WiringConfig::new(&parameters.wiring);
+        let latch_offsets_s = wiring.of_encoders(&LATCH_OFFSET_S);
         Self {
             commissioned: parameters.commissioned,
-            wiring: WiringConfig::new(&parameters.wiring),
-            encoders: parameters
-                .encoders
-                .map(|setup| EncoderConfig::new(&setup, supervision, period_s)),
+            wiring,
+            encoders: [0, 1, 2].map(|pivot| {
+                EncoderConfig::new(&parameters.encoders[pivot], supervision, period_s)
+                    .latched_later(latch_offsets_s[pivot], period_s)
+            }),
             scale: SetpointScale::new(rate_hz),
             steps: PositionSteps::new(geometry.radius_mm),
             servo: ServoConfig::new(parameters),

@@ -15,12 +15,18 @@ const ALIGN_SHIFT: u32 = 32 - POSITION_BITS;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
     zero: u32,
-    /// 1, or -1 where the encoder counts against the pivot's direction.
-    direction: i32,
-    max_bridged_frames: u8,
     /// Largest believable change of the step from tick to tick, 2^-32 turns.
     max_step_change: u32,
+    /// How much later than the first port it latches, 2^-23 ticks.
+    latch_offset: i16,
+    /// 1, or -1 where the encoder counts against the pivot's direction.
+    direction: i8,
+    max_bridged_frames: u8,
 }
+
+/// Parts of a tick of [`EncoderConfig`]'s offset, and what is missing to a step's 32 bits.
+const OFFSETS_PER_TICK: f64 = 8_388_608.0;
+const OFFSET_SHIFT: u32 = 32 - 23;
 
 impl EncoderConfig {
     /// For a tick of `period_s`.
@@ -28,6 +34,7 @@ impl EncoderConfig {
         let radians = supervision.plausible_acceleration_rad_s2 * period_s * period_s;
         Self {
             zero: setup.zero_counts << ALIGN_SHIFT,
+            latch_offset: 0,
             direction: if setup.reversed { -1 } else { 1 },
             max_bridged_frames: supervision.bridged_frames,
             max_step_change: (radians / core::f64::consts::TAU * 4_294_967_296.0) as u32,
@@ -36,6 +43,15 @@ impl EncoderConfig {
 }
 
 impl EncoderConfig {
+    /// The same at a port that latches so much later than the first one; up to 1/256 of a tick.
+    #[must_use]
+    pub fn latched_later(self, offset_s: f64, period_s: f64) -> Self {
+        Self {
+            latch_offset: libm::rint(offset_s / period_s * OFFSETS_PER_TICK) as i16,
+            ..self
+        }
+    }
+
     /// Whether a reading means the same angle to both.
     pub fn has_same_mounting(&self, other: &Self) -> bool {
         self.zero == other.zero && self.direction == other.direction
@@ -45,7 +61,7 @@ impl EncoderConfig {
     pub fn ideal_counts_at(&self, angle: Angle) -> u32 {
         // To the nearest count.
         (angle.fraction())
-            .wrapping_mul(self.direction as u32)
+            .wrapping_mul(i32::from(self.direction) as u32)
             .wrapping_add(self.zero)
             .wrapping_add(1 << (ALIGN_SHIFT - 1))
             >> ALIGN_SHIFT
@@ -57,7 +73,7 @@ impl EncoderConfig {
         let reading = counts << ALIGN_SHIFT;
         (subdivision.map_or(reading, |table| table.corrected(reading)))
             .wrapping_sub(self.zero)
-            .wrapping_mul(self.direction as u32)
+            .wrapping_mul(i32::from(self.direction) as u32)
     }
 }
 
@@ -281,10 +297,19 @@ impl Encoder {
         self.step
     }
 
-    /// The pivot's angle.
+    /// The pivot's angle when the encoder latched.
     #[inline]
     pub fn angle(&self) -> Angle {
         self.angle
+    }
+
+    /// The pivot's angle when the first port's encoder latched: all three of the same instant. The step is the rate, and a count of its
+    /// noise comes to a thousandth of one.
+    #[inline]
+    pub fn angle_at_first_latch(&self, config: &EncoderConfig) -> Angle {
+        let offset = i32::from(config.latch_offset) << OFFSET_SHIFT;
+        let moved = (i64::from(self.step) * i64::from(offset)) >> 32;
+        Angle::from_units(self.angle.units().wrapping_sub(moved))
     }
 
     /// Frames that have been bridged so far, wrapping.

@@ -33,6 +33,10 @@ impl State {
             self.raise_guard_fault(config, broken);
             return [Duty(0); 3];
         }
+        if self.waking_ticks != 0 {
+            self.waking_ticks -= 1;
+            return [Duty(0); 3];
+        }
         let next = self.excitation.next_volts(pivots, current_counts);
         let (Some((pivot, volts)), Some(request)) = (next, self.excitation.request()) else {
             return [Duty(0); 3];

@@ -1,23 +1,27 @@
 //! Rest mode: with the setpoint at rest the loop becomes slower, and with a push or a motion it is the full one again.
 //!
 //! At full stiffness the loop answers the noise of the encoders, and hunts: friction lets go in time, the motor then floats in the gap of
-//! its transmission with a third of the inertia that the gains are for. A loop that is seven times as slow does neither. Velocity
-//! gain and position gain fall to the share s, and the rate of the integral to between s, with which all rates of the loop have the
-//! proportions that they have at full stiffness, and sqrt(s). The faster one keeps up with the creep of the friction, which shows as an
-//! error that stays; but in a gap of 2 urad it hunts, which shows as none. So it is the faster one as long as an error stays; and where
-//! none does, the gains fall a little further, for a motor that no torque holds to one side of its gap.
+//! its transmission with a third of the inertia that the gains are for. A loop that is ten times as slow does neither. Velocity
+//! gain and position gain fall to the share s, and the rate of the integral to 2 s.
+//!
+//! Friction goes on letting go for minutes, and the integral has to take the motor's torque along. It lags by what it is slow: the
+//! stage walks by some 50 nrad of theta. So its rate rises to the full one as long as an error stays. Where none does, rate and gains
+//! fall a little further: with the full rate the loop would hunt in a gap of 2 urad, where no torque holds the motor to one side.
+//! The rate rises from its low end: on its way down from the full one it would hunt at once.
 //! Everything changes over many ticks: no step in duty.
 
 use crate::parameters::Parameters;
 
-/// Time constants with which the loop becomes slower, and its integral slower and faster.
+/// Time constants with which the loop becomes slower, and, once it is slow, slower and faster by the errors that stay.
 const SOFTENING_S: f64 = 0.2;
-const SLACKENING_S: f64 = 1.0;
-const QUICKENING_S: f64 = 0.2;
+const SLACKENING_S: f64 = 0.2;
+const QUICKENING_S: f64 = 0.5;
 /// What is left of the gains at rest where no error lasts.
 const SLACK: f64 = 0.6;
+/// Share of the integral's rate at rest where no error lasts, over that of the gains.
+const REST_INTEGRAL: f64 = 2.0;
 /// Error that lasts for about this time, encoder counts.
-const LASTING_COUNTS: f64 = 0.3;
+const LASTING_COUNTS: f64 = 0.15;
 const LASTING_S: f64 = 0.2;
 /// Time in which it is the full one again.
 const STIFFENING_S: f64 = 5e-4;
@@ -45,9 +49,9 @@ pub struct RestModeConfig {
     slack_stiffness: f32,
     softening: f32,
     integral_softening: f32,
-    /// Share of the integral's rate where an error lasts, how the rate gets there and away from there in a tick, and what an error
-    /// is that lasts.
-    fast_integral_rate: f32,
+    /// Share of the integral's rate where no error lasts.
+    rest_integral_rate: f32,
+    /// What becomes of the shares in a tick where an error lasts, and where none does; and what an error is that lasts.
     quickening: f32,
     slackening: f32,
     lasting_sum: f32,
@@ -76,7 +80,7 @@ impl RestModeConfig {
             },
             softening: decay(SOFTENING_S),
             integral_softening: decay(2.0 * SOFTENING_S),
-            fast_integral_rate: libm::sqrt(rest.stiffness) as f32,
+            rest_integral_rate: (REST_INTEGRAL * rest.stiffness).min(1.0) as f32,
             quickening: 1.0 / decay(QUICKENING_S),
             slackening: decay(SLACKENING_S),
             lasting_sum: (LASTING_COUNTS * UNITS_PER_COUNT * mean_ticks as f64) as f32,
@@ -160,23 +164,22 @@ impl RestMode {
             gains,
             integral_rate,
         } = &mut self.stiffness;
-        *gains = if *gains > config.stiffness {
-            larger(*gains * config.softening, config.stiffness)
+        if *gains > config.stiffness {
+            *gains = larger(*gains * config.softening, config.stiffness);
+            *integral_rate = larger(
+                *integral_rate * config.integral_softening,
+                config.rest_integral_rate,
+            );
         } else if lasts {
-            smaller(*gains * config.quickening, config.stiffness)
+            *gains = smaller(*gains * config.quickening, config.stiffness);
+            *integral_rate = smaller(*integral_rate * config.quickening, 1.0);
         } else {
-            larger(*gains * config.slackening, config.slack_stiffness)
-        };
-        *integral_rate = if *integral_rate > config.fast_integral_rate {
-            *integral_rate * config.integral_softening
-        } else if lasts {
-            smaller(
-                *integral_rate * config.quickening,
-                config.fast_integral_rate,
-            )
-        } else {
-            larger(*integral_rate * config.slackening, config.stiffness)
-        };
+            *gains = larger(*gains * config.slackening, config.slack_stiffness);
+            *integral_rate = larger(
+                *integral_rate * config.slackening,
+                config.rest_integral_rate,
+            );
+        }
     }
 
     fn stiffen(&mut self, config: &RestModeConfig) {
@@ -253,7 +256,7 @@ mod tests {
             // Slowly: a thousandth of the full gains in a tick.
             assert!(step < 1e-3, "{step}");
             let mut last = state.stiffness;
-            assert!(last.gains < 0.14 && last.integral_rate < 0.4, "{last:?}");
+            assert!(last.gains < 0.11 && last.integral_rate < 0.21, "{last:?}");
             let ticks = (1..).take(1_000).find(|_| {
                 let now = update(&mut state, &config, moving, counts);
                 assert!(now.gains - last.gains < 0.101 && now.gains >= last.gains);
@@ -275,6 +278,24 @@ mod tests {
                 parameters.servo.rest.wake_counts - 1.0,
             );
         }
-        assert!(state.stiffness.gains < 0.14);
+        assert!(state.stiffness.gains < 0.11);
+    }
+
+    /// While friction lets go and the integral lags behind it, its rate is the full one, though the gains stay low; without an
+    /// error it is not, and does not get there on its way down from the full loop either.
+    #[test]
+    fn an_error_that_lasts_brings_the_rate_of_the_integral_back() {
+        let parameters = Parameters::REFERENCE;
+        let config = RestModeConfig::new(&parameters, MEAN_TICKS);
+        let low = (REST_INTEGRAL * parameters.servo.rest.stiffness) as f32;
+        let (mut state, _) = rested(&config);
+        assert_eq!(state.stiffness.integral_rate, low);
+        for (counts, rate) in [(0.2, 1.0), (0.1, low), (-0.2, 1.0), (0.0, low)] {
+            for _ in 0..4 * TICKS_A_SECOND {
+                let now = update(&mut state, &config, false, counts);
+                assert!(now.gains <= parameters.servo.rest.stiffness as f32);
+            }
+            assert_eq!(state.stiffness.integral_rate, rate, "{counts}");
+        }
     }
 }

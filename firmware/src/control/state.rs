@@ -22,7 +22,8 @@ use crate::motion::PlanFollower;
 /// What the hardware gives a tick.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Frames of the three encoders, all latched at the same instant.
+    /// Frames of the three encoders, latched one right after the other
+    /// ([`LATCH_OFFSET_S`](crate::drivers::latch::LATCH_OFFSET_S)).
     pub frames: [RawFrame; 3],
     /// Fault pins of the bridges (true: fault).
     pub bridge_fault: [bool; 3],
@@ -85,6 +86,10 @@ pub struct State {
     pub(super) lateness: u32,
     /// Ticks in a row with a supply that is too low, or too high.
     pub(super) bad_supply_ticks: u8,
+    /// Ticks left of those in which the bridges wake up: no duty, nothing collected, and commands wait.
+    pub(super) waking_ticks: u32,
+    /// Fault pins in the tick before, while the bridges are awake (index: pivot).
+    pub(super) bridge_faults: [bool; 3],
     pub(super) brake_resistor: BrakeResistor,
     /// Square of how far out the setpoint may be, track radii.
     pub(super) max_radius_squared: f32,

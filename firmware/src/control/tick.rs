@@ -109,8 +109,9 @@ pub fn tick_and_drive<'a>(
         state.record_trial(config, queues.trial, &pivots);
         state.learn(config, slot);
     }
-    // Taken below, by this tick.
-    let commanded = queues.commands.ready();
+    // Taken below, by this tick. While the bridges wake up it waits: whatever it asks for, nothing could drive yet.
+    let takes = state.waking_ticks == 0;
+    let commanded = takes && queues.commands.ready();
     if state.calibrated.is_on {
         if let Some(wanted) = &state.next.pivots {
             (state.calibrated).look_up_at(slot, &wanted.angles, &wanted.lengths);
@@ -149,7 +150,7 @@ pub fn tick_and_drive<'a>(
     }
     state.last_mode_and_commands = now;
     // Handled where it lies: a plan is too long to be moved twice.
-    if let Some(command) = queues.commands.peek() {
+    if takes && let Some(command) = queues.commands.peek() {
         state.commands = state.commands.wrapping_add(1);
         state.handle_command(config, command, &pivots);
         let _ = queues.commands.dequeue();
@@ -181,7 +182,7 @@ fn decode(
             }
         }
     }
-    encoders.each_ref().map(Encoder::angle)
+    [0, 1, 2].map(|i| encoders[i].angle_at_first_latch(&config.encoders[i]))
 }
 
 /// Of the measured supply, from one tick to the next: half a millisecond, in which the bus answers to a load, and over which the noise of
@@ -204,6 +205,9 @@ impl State {
             *pivot = *target;
         }
         let (errors, worst) = self.following_errors(config, pivots, target)?;
+        if self.waking_ticks != 0 {
+            return Some(self.wait_for_bridges(&errors));
+        }
         let moving = self.next.moving;
         (self.settling).update(&config.limits, &errors, worst, moving);
         let sums = self.settling.error_sums();
@@ -240,6 +244,16 @@ impl State {
             }
         }
         Some(duty)
+    }
+
+    /// A tick in which the bridges wake up: no duty, and nothing is collected, settled or learnt from what no motor could follow.
+    #[cold]
+    fn wait_for_bridges(&mut self, errors: &[i32; 3]) -> [Duty; 3] {
+        self.waking_ticks -= 1;
+        for (servo, error) in self.servo.iter_mut().zip(errors) {
+            servo.stand_by(*error);
+        }
+        [Duty(0); 3]
     }
 
     /// The servo that is inspected in this tick learns, for those to come.

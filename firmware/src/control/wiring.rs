@@ -62,6 +62,11 @@ impl WiringConfig {
         )
     }
 
+    /// What the encoders' ports have, pivot by pivot.
+    pub fn of_encoders<T: Copy>(&self, of_ports: &[T; 3]) -> [T; 3] {
+        self.encoders.of_pivots(of_ports)
+    }
+
     /// The pivots' bridges' fault pins.
     pub fn bridge_faults(&self, of_bridges: &[bool; 3]) -> [bool; 3] {
         self.bridges.of_pivots(of_bridges)

@@ -14,15 +14,18 @@ pub struct BridgePart {
     pub trip_a: f64,
     /// Resistance of the two switches that carry the current, hot, ohm.
     pub resistance_ohm: f64,
-    /// Time from its sleep pin to its first pulse, s.
+    /// Time from its sleep pin to its first pulse, s. Until then it may pull its fault pin.
     pub wake_s: f64,
+    /// How long the controller waits for that: it gives no duty, and does not look at the fault pin, s.
+    pub wake_grace_s: f64,
 }
 
 /// One DRV8262 (DDV package) for each motor, as a single bridge: both of its bridges in parallel, phase and enable.
 ///
 /// Supply, absolute maximum, trip (32 A as a single bridge, 16 A as each of two) and resistance (104 mohm of one bridge at 150 deg C, two in
 /// parallel) are those of data sheet SLVSFV5C as a library of parts quotes it with its pages; its own text was not at hand. The time
-/// to wake is assumed.
+/// to wake is assumed. The grace is twice as long: data sheets give the time to wake without a tolerance over temperature and supply,
+/// or as a typical value, and its charge pump starts from nothing. Nobody feels 2 ms at servo on.
 pub const BRIDGE: BridgePart = BridgePart {
     name: "DRV8262",
     supply_v: [4.5, 60.0],
@@ -30,6 +33,7 @@ pub const BRIDGE: BridgePart = BridgePart {
     trip_a: 32.0,
     resistance_ohm: 0.052,
     wake_s: 1e-3,
+    wake_grace_s: 2e-3,
 };
 
 /// A shunt in series with a motor and its amplifier: it sees the current in every state of the bridge, with its sign.
@@ -129,6 +133,8 @@ const _: () = {
     assert!(highest_supply_v < BUS.resistor_off_v && BUS.resistor_off_v < BUS.resistor_on_v);
     assert!(BUS.resistor_on_v < BUS.too_high_v && BUS.too_high_v < BRIDGE.supply_v[1]);
     assert!(BRIDGE.supply_v[1] < BRIDGE.absolute_supply_v);
+    // It drives, and its fault pin means a fault, before the controller counts on either.
+    assert!(BRIDGE.wake_grace_s >= 1.5 * BRIDGE.wake_s);
     // The converter still sees what is too high.
     assert!(BUS.too_high_v < 0.95 * ADC_REFERENCE_V * BUS.divider);
     // The bridge bears a motor that is shorted at its largest speed, and one that is held under full voltage.

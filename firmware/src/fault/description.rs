@@ -53,7 +53,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::BridgeFault,
-        detection: "a bridge pulls its fault pin; every tick while driven",
+        detection: "a bridge pulls its fault pin in two ticks in a row; every tick while driven, but for the first 2 ms after its sleep pin went high: until a bridge is awake its pin means nothing",
         thresholds: &[],
         reason: "over-current or over-temperature: braking would send the motor's current through the same switches, and the sleep pin is what resets them",
     },

@@ -7,7 +7,7 @@ use super::request::Action;
 use super::request::MAX_DELAY_MS;
 use super::session::{Awaited, Session, Wait};
 use crate::commander::axis::{Axis, AxisValues};
-use crate::commander::{CommandError, Quantity, SoftLimitChange};
+use crate::commander::{CommandError, MOST_APPROACH_UM, Quantity, SoftLimitChange};
 use crate::motion::Stop;
 use crate::queues::CommandQueues;
 
@@ -74,6 +74,13 @@ impl Interpreter {
             }
             Action::Recall(addresses) => self.recall(&addresses, queues),
             Action::Level(level, password) => Self::set_level(session, level, password),
+            Action::Approach(um) => {
+                if !(0.0..=MOST_APPROACH_UM).contains(&um) {
+                    return Err(ErrorCode::OutOfRange);
+                }
+                self.commander.set_approach(um);
+                Ok(())
+            }
             Action::Velocity(mm_s) => Ok(self.commander.set_velocity(mm_s)?),
             Action::Stop => self.stop_by_command(Event::Stop, session, queues),
             // Whichever axes are named: the axes of a line cannot stop apart.

@@ -53,6 +53,8 @@ pub struct Interpreter {
     pub(super) ownership: Ownership,
     pub(super) recovery_owner: RecoveryOwner,
     pub(super) gathered_calibration: Option<GatheredCalibration>,
+    /// The machine is told to be further from the temperature of its calibration than that holds for.
+    pub(super) is_off_calibrated_temperature: bool,
     pub(super) wants_restart: bool,
     /// What `TST?` asks, where there is one.
     pub(super) board: Option<&'static dyn Board>,
@@ -85,6 +87,7 @@ impl Interpreter {
             ownership: Ownership::default(),
             recovery_owner: RecoveryOwner::default(),
             gathered_calibration: None,
+            is_off_calibrated_temperature: false,
             wants_restart: false,
             board: None,
             macros: Macros::default(),

@@ -52,6 +52,7 @@ impl Interpreter {
                 let ms = own.unwrap_or(self.parameters.supervision.host_silence_ms);
                 one_line(out, format_args!("{ms}"))
             }
+            Query::Approach => one_line(out, format_args!("{}", self.commander.approach_um())),
             Query::JogTime => one_line(out, format_args!("{}", session.jog_time_ms.unwrap_or(0.0))),
             Query::Ownership => self.reply_ownership(session, out),
             Query::Recovery => one_line(
@@ -63,6 +64,7 @@ impl Interpreter {
             Query::Events => self.reply_events(out),
             Query::Statistics => self.reply_statistics(out),
             Query::Calibration => self.reply_calibration(out),
+            Query::Temperature => self.reply_temperature(out),
             Query::PositionAsDrawn => self.reply_position_as_drawn(out),
             Query::Excitation => self.reply_excitation(out),
             Query::RepeatedMoves => self.reply_repeated_moves(out),

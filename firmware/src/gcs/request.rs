@@ -106,6 +106,10 @@ pub enum Query {
     Calibration,
     /// `CAL POS?`
     PositionAsDrawn,
+    /// `TMP?`
+    Temperature,
+    /// `APP?`: um.
+    Approach,
     /// `#4`
     Status,
     /// `#5`
@@ -152,7 +156,7 @@ pub enum Action {
     Wave(WaveChange),
     /// Tables of moves that are repeated.
     Repeat(LearnAction),
-    /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`.
+    /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`, `TMP`.
     Calibrate(CalibrationAction),
     /// A known voltage on a motor.
     Excite(ExcitationRequest),
@@ -172,6 +176,8 @@ pub enum Action {
     Recall(Addresses),
     /// `CCL`: level, and whether the password is right.
     Level(f64, bool),
+    /// `APP`, um.
+    Approach(f64),
     /// `VLS`, mm/s.
     Velocity(f64),
     /// `STP`, `#24`: stop at the highest deceleration, and every script with it.

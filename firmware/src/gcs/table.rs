@@ -57,6 +57,16 @@ pub(super) static COMMANDS: &[Entry] = &[
         variables::add,
         "<variable> <number> <number> set variable to the sum",
     ),
+    entry(
+        "APP",
+        Syntax::Number(Action::Approach),
+        "<um> arrive at targets from one side, each carriage moving by so much",
+    ),
+    ask(
+        "APP?",
+        Query::Approach,
+        "get by how much carriages move on the last way to a target",
+    ),
     own(
         "CAL BEG",
         calibration::begin,
@@ -520,6 +530,16 @@ pub(super) static COMMANDS: &[Entry] = &[
     ),
     read("SVO?", Quantity::Servo, "[{<axis>}] get servo mode"),
     read("TMN?", Quantity::Lowest, "[{<axis>}] get lowest position"),
+    own(
+        "TMP",
+        calibration::temperature,
+        "<C> [<ppm/K>] tell the machine's temperature, and how much it grows",
+    ),
+    ask(
+        "TMP?",
+        Query::Temperature,
+        "get what is told of the machine's temperature",
+    ),
     read("TMX?", Quantity::Highest, "[{<axis>}] get highest position"),
     own("TNR?", recorder::count, "get number of record tables"),
     ask("TPC?", Query::PiezoChannels, "get number of piezo channels"),

@@ -1,5 +1,6 @@
 //! A client that runs a script over the command interface, as any client would: a line, then `ERR?`, then the next line.
 
+use crate::disturbance::Disturbance;
 use crate::script::{Line, Script};
 
 /// Runs a script. The same on the host, where bytes go straight to the interpreter, and on the emulated chip, where they go
@@ -26,10 +27,12 @@ struct Pending {
 }
 
 /// What has become of a line.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// A line was carried out; its answer, if it asked for one.
     Done(Line, Option<String>),
+    /// A disturbance begins: whoever has the stage carries it out.
+    Disturbed(Disturbance),
     /// A line was refused with this error.
     Refused(Line, String),
     /// A `WAC` has waited for a minute in which nothing moved: what it waits for will not come.
@@ -111,6 +114,9 @@ impl Client {
             return (Vec::new(), Some(Event::Finished));
         };
         self.next += 1;
+        if let Some(disturbance) = line.disturbance {
+            return (Vec::new(), Some(Event::Disturbed(disturbance)));
+        }
         let mut bytes = match line.single_byte() {
             Some(byte) => vec![byte],
             None => line.text.clone().into_bytes(),

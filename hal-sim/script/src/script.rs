@@ -4,22 +4,26 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use drawing::read_text;
-use firmware::gcs::{ErrorCode, ParseError, parse};
+use firmware::gcs::{ErrorCode, parse};
+
+use crate::disturbance::{self, Disturbance};
 
 /// Longest script.
 const LONGEST_BYTES: u64 = 16 << 20;
 
-/// A line to be sent.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A line to be sent, or a disturbance.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Its number in the file, from 1.
     pub number: usize,
     /// Its text, without comment and surrounding space.
     pub text: String,
+    /// What it does to a simulated stage in place of being sent.
+    pub disturbance: Option<Disturbance>,
 }
 
 /// A checked script.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Script {
     /// What it is called, in headings and errors.
     pub name: String,
@@ -47,8 +51,8 @@ pub enum ScriptError {
         column: usize,
         /// What was expected there.
         expected: &'static str,
-        /// The error number that a controller would answer.
-        code: ErrorCode,
+        /// The error number that a controller would answer; none for a disturbance.
+        code: Option<ErrorCode>,
     },
 }
 
@@ -64,11 +68,13 @@ impl fmt::Display for ScriptError {
                 column,
                 expected,
                 code,
-            } => write!(
-                f,
-                "{name}:{line}:{column}: expected {expected} (GCS error {})",
-                code.number()
-            ),
+            } => {
+                write!(f, "{name}:{line}:{column}: expected {expected}")?;
+                match code {
+                    Some(code) => write!(f, " (GCS error {})", code.number()),
+                    None => Ok(()),
+                }
+            }
         }
     }
 }
@@ -76,6 +82,12 @@ impl fmt::Display for ScriptError {
 impl std::error::Error for ScriptError {}
 
 impl Script {
+    /// Its first line that is a disturbance, which no controller can be sent.
+    #[must_use]
+    pub fn first_disturbance(&self) -> Option<&Line> {
+        (self.lines.iter()).find(|line| line.disturbance.is_some())
+    }
+
     /// The built-in demonstration.
     ///
     /// # Errors
@@ -99,7 +111,8 @@ impl Script {
         Self::parse(&path.display().to_string(), &text)
     }
 
-    /// Checks a text. `# ` at the start of a line is a comment; elsewhere `#` belongs to commands like `#5`.
+    /// Checks a text. `# ` at the start of a line is a comment; elsewhere `#` belongs to commands like `#5`. A line that begins with
+    /// `!` is a [`Disturbance`].
     ///
     /// # Errors
     /// The first line that is no command.
@@ -111,7 +124,7 @@ impl Script {
                 continue;
             }
             let number = index + 1;
-            check(text).map_err(|error| ScriptError::Line {
+            let disturbance = check(text).map_err(|error| ScriptError::Line {
                 name: name.to_owned(),
                 line: number,
                 column: raw.len() - raw.trim_start().len() + error.column,
@@ -121,6 +134,7 @@ impl Script {
             lines.push(Line {
                 number,
                 text: text.to_owned(),
+                disturbance,
             });
         }
         Ok(Self {
@@ -173,10 +187,35 @@ fn single_byte(text: &str) -> Option<u8> {
     SINGLE_BYTES.contains(&byte).then_some(byte)
 }
 
-fn check(text: &str) -> Result<(), ParseError> {
-    match single_byte(text) {
-        Some(_) => Ok(()),
-        None => parse(text.as_bytes()).map(|_| ()),
+/// What is wrong with a line.
+struct LineError {
+    /// From 1.
+    column: usize,
+    expected: &'static str,
+    code: Option<ErrorCode>,
+}
+
+fn check(text: &str) -> Result<Option<Disturbance>, LineError> {
+    if text.starts_with(disturbance::MARK) {
+        return match disturbance::parse(text) {
+            Ok(disturbance) => Ok(Some(disturbance)),
+            Err(error) => Err(LineError {
+                column: error.offset + 1,
+                expected: error.expected,
+                code: None,
+            }),
+        };
+    }
+    if single_byte(text).is_some() {
+        return Ok(None);
+    }
+    match parse(text.as_bytes()) {
+        Ok(_) => Ok(None),
+        Err(error) => Err(LineError {
+            column: error.column,
+            expected: error.expected,
+            code: Some(error.code),
+        }),
     }
 }
 
@@ -187,6 +226,14 @@ mod tests {
     #[test]
     fn the_demonstration_is_a_script() {
         assert!(Script::demonstration().unwrap().lines.len() > 50);
+    }
+
+    #[test]
+    fn a_disturbance_is_a_line_that_a_stage_is_not_sent() {
+        let script = Script::parse("push", "FRF\n! PUSH X 5 N 20 MS\n").unwrap();
+        assert!(script.lines[0].disturbance.is_none() && script.lines[1].disturbance.is_some());
+        let error = Script::parse("push", "FRF\n  ! PUSH X 5 KG 20 MS\n").unwrap_err();
+        assert_eq!(error.to_string(), "push:2:14: expected N");
     }
 
     #[test]

@@ -169,8 +169,8 @@ impl Host {
             .drivers
             .each_mut()
             .map(|driver| driver.reports_fault().unwrap_or(true));
-        let tripped = self.stage.tripped();
-        let bridge_fault = [0, 1, 2].map(|axis| bridge_fault[axis] || tripped[axis]);
+        let pulled = self.stage.pulled_fault_pins();
+        let bridge_fault = [0, 1, 2].map(|axis| bridge_fault[axis] || pulled[axis]);
         let (currents, supply_counts) = self.stage.analog();
         Inputs {
             frames,

@@ -6,6 +6,7 @@
 //! | [`run`] | a script, from its first line to the report |
 //! | [`sensitivity`] | what each imperfection of the machine decides |
 //! | `conditions` | what a run is made under |
+//! | `disturbances` | what a script's pushes and shakes do to the machine |
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
 //! | `calibrated` | a stage as it was built, and its true calibration |
@@ -16,6 +17,7 @@
 mod assembly;
 mod calibrated;
 mod conditions;
+mod disturbances;
 pub mod exercise;
 pub mod observer;
 pub mod run;
@@ -27,8 +29,9 @@ pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use calibrated::{built_stage, calibration_told};
 pub use conditions::run_conditions;
+pub use disturbances::Disturbances;
 pub use told::{
-    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_fitted, with_inertia_scheduled,
-    with_machine_told, with_motion_fitted, with_payload_told, with_ripple_told,
-    with_subdivision_told,
+    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_firmer, with_gains_fitted,
+    with_inertia_scheduled, with_machine_told, with_motion_fitted, with_payload_told,
+    with_ripple_told, with_subdivision_told,
 };

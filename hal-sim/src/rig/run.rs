@@ -7,7 +7,7 @@ use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
-use super::{ControllerMemory, Rig};
+use super::{ControllerMemory, Disturbances, Rig};
 use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::machine::plant::{FrictionParameters, Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
@@ -182,11 +182,15 @@ pub fn run_machine(
     let mut observer = Observer::new(rig.interpreter.parameters(), options.every);
     let mut record = TickRecord::default();
     let mut wire = Wire::default();
+    let mut disturbances = Disturbances::default();
     let mut answers = Vec::new();
     let mut ticks = 0;
     let progress = Progress::new(script.lines.len() as u64, options.quiet);
     let fault = loop {
         let pose = rig.front.stage.latched_pose();
+        let stage = &mut rig.front.stage;
+        let period_s = stage.period_s();
+        disturbances.act(&mut stage.plant, period_s);
         rig.tick(&mut record);
         ticks += 1;
         let mut moving = false;
@@ -214,6 +218,7 @@ pub fn run_machine(
                 break Some(format!("{at}: refused with GCS error {error}"));
             }
             Some(Event::Stuck(line)) => break Some(stuck_text(script, &line)),
+            Some(Event::Disturbed(disturbance)) => disturbances.begin(disturbance),
             Some(Event::Finished) => break None,
             _ => {}
         }

@@ -8,9 +8,6 @@ use kinematics::Angle;
 /// Ticks for which the motors brake at the end: 20 ms, in which a ring comes to rest from any rate that the guards let it have.
 const BRAKING_TICKS: u32 = 400;
 
-/// Ticks that the bridges are given to wake up, with no duty: 2 ms, twice what they take.
-const WAKING_TICKS: u32 = 40;
-
 /// Why an excitation has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExcitationEnd {
@@ -60,8 +57,6 @@ pub struct ExcitationRun {
     report: ExcitationReport,
     /// What it adds to the servos' voltages, with the servo on.
     pub(in crate::control) added_volts: [f32; 3],
-    /// Ticks left of those in which the bridges wake up.
-    waking_ticks: u32,
     /// Ticks of braking left.
     braking_ticks: u32,
     /// Where servos are to have the pivots, or where these were at the start.
@@ -75,7 +70,6 @@ impl ExcitationRun {
         *self = Self {
             request: Some(request.clone()),
             setpoints: *pivots,
-            waking_ticks: WAKING_TICKS,
             ..Self::default()
         };
     }
@@ -126,16 +120,12 @@ impl ExcitationRun {
         }
     }
 
-    /// Goes a tick on with the servo off: volts of the pivot that is excited; none while the bridges wake up, or when it has ended.
+    /// Goes a tick on with the servo off: volts of the pivot that is excited; none when it has ended.
     pub(in crate::control) fn next_volts(
         &mut self,
         pivots: &[Angle; 3],
         current_counts: &[i16; 3],
     ) -> Option<(usize, f32)> {
-        if self.waking_ticks > 0 {
-            self.waking_ticks -= 1;
-            return None;
-        }
         if let Some((end, pivot, value)) = self.reached(pivots, current_counts) {
             self.finish(end, pivot, value);
         }

@@ -86,6 +86,11 @@ impl PivotServo {
         };
     }
 
+    /// A tick without a step: the error that the next one goes on from. What else it remembers is held.
+    pub fn stand_by(&mut self, error: i32) {
+        self.last_error = error as f32;
+    }
+
     /// From here on the setpoint is given as what is measured: feedforward and what was learnt drive alone.
     pub fn run_open_loop(&mut self) {
         self.last_error = 0.0;

@@ -34,7 +34,11 @@ impl State {
             Outcome::If(mode) => {
                 let done = self.try_apply(config, command, pivots);
                 if done {
+                    let slept = !self.bridges_awake();
                     self.mode = mode;
+                    if slept && self.bridges_awake() {
+                        self.waking_ticks = config.limits.wake_ticks();
+                    }
                 }
                 done
             }

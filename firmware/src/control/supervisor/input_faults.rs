@@ -17,7 +17,9 @@ impl State {
     pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
         let [one, two, three] = inputs.bridge_fault;
         let reported = inputs.emergency_stop | inputs.late | one | two | three;
-        let pending = self.lateness | u32::from(self.bad_supply_ticks);
+        let [first, second, third] = self.bridge_faults;
+        let seen = first | second | third;
+        let pending = self.lateness | u32::from(self.bad_supply_ticks) | u32::from(seen);
         let is_well = (self.encoders.iter()).all(|encoder| encoder.unusable().is_none());
         let is_fed = config.limits.has_good_supply(inputs.supply_counts);
         if reported || pending != 0 || !is_well || !is_fed || self.mode == Mode::Fault {
@@ -39,6 +41,8 @@ impl State {
         self.check_lateness(config, inputs.late);
         if self.is_driven() {
             self.check_power(config, inputs);
+        } else {
+            self.bridge_faults = [false; 3];
         }
         if self.referenced || matches!(self.mode, Mode::Stopping | Mode::Exciting) {
             self.check_encoders();
@@ -59,12 +63,7 @@ impl State {
     }
 
     fn check_power(&mut self, config: &Config, inputs: &Inputs) {
-        let faults = config.wiring.bridge_faults(&inputs.bridge_fault);
-        for (i, reported) in faults.into_iter().enumerate() {
-            if reported {
-                self.raise_fault(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
-            }
-        }
+        self.check_bridges(config, inputs);
         let (counts, limits) = (inputs.supply_counts, &config.limits);
         if limits.has_good_supply(counts) {
             self.bad_supply_ticks = 0;
@@ -80,6 +79,21 @@ impl State {
             };
             let volts = |counts: u16| f32::from(counts) * SUPPLY_V_PER_COUNT as f32;
             self.raise_fault(kind, None, volts(counts), volts(limit));
+        }
+    }
+
+    /// A fault pin is believed in its second tick in a row: a spike on an open-drain line next to 40 kHz is no fault, and a bridge
+    /// that has switched itself off stays so. While the bridges wake up their pins mean nothing.
+    fn check_bridges(&mut self, config: &Config, inputs: &Inputs) {
+        if self.waking_ticks != 0 {
+            return;
+        }
+        let faults = config.wiring.bridge_faults(&inputs.bridge_fault);
+        let before = core::mem::replace(&mut self.bridge_faults, faults);
+        for (i, (now, before)) in faults.into_iter().zip(before).enumerate() {
+            if now && before {
+                self.raise_fault(FaultKind::BridgeFault, Some(i), 0.0, 0.0);
+            }
         }
     }
 

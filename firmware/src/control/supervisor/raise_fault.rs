@@ -63,6 +63,7 @@ impl State {
             self.motion.begin_fault_stop();
         }
         self.excitation.end(ExcitationEnd::Fault);
+        self.waking_ticks = 0;
         self.mode = mode;
         self.coasts = reaction == Reaction::Coast;
         self.settling.start();

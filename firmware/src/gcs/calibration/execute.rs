@@ -3,6 +3,7 @@
 use super::request::CalibrationAction;
 use crate::calibration::{CalibrationText, MachineCalibration};
 use crate::gcs::error::ErrorCode;
+use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::session::Session;
 use crate::gcs::text::Text;
@@ -14,6 +15,13 @@ const LEVEL: u8 = 1;
 /// All numbers of a pivot, a bit each.
 const ALL_GIVEN: u64 = (1 << COEFFICIENTS) - 1;
 
+/// Temperatures of a machine that anybody means, deg C.
+const TEMPERATURES_C: core::ops::RangeInclusive<f64> = -50.0..=100.0;
+/// And how much it can grow, ppm per K: plastics do not, as far as a nanometre counts.
+const GROWTHS_PPM_PER_K: core::ops::RangeInclusive<f64> = 0.0..=50.0;
+/// Further off than that, K, a calibration is not what was measured: parts of other materials bend what they are screwed to.
+pub(super) const CALIBRATED_WITHIN_K: f64 = 2.0;
+
 /// What has been given since `CAL BEG`.
 pub(in crate::gcs) struct GatheredCalibration {
     machine: MachineCalibration,
@@ -22,7 +30,7 @@ pub(in crate::gcs) struct GatheredCalibration {
 }
 
 impl Interpreter {
-    /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`.
+    /// `CAL BEG`, `CAL SET`, `CAL END`, `CAL ON`, `CAL OFF`, `CAL DEL`, `TMP`.
     // In a frame of its own: calibrations that are copied there are not on the stack while a line is planned.
     #[inline(never)]
     pub(in crate::gcs) fn change_calibration(
@@ -31,6 +39,10 @@ impl Interpreter {
         session: &Session,
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
+        // The temperature is no calibration: it is told again and again, and forgotten with the next start.
+        if let CalibrationAction::Temperature(celsius, growth_ppm_per_k) = *action {
+            return self.set_temperature(celsius, growth_ppm_per_k);
+        }
         if session.level < LEVEL {
             return Err(ErrorCode::LevelTooLow);
         }
@@ -50,6 +62,32 @@ impl Interpreter {
             CalibrationAction::End(checksum) => self.end_calibration(*checksum, queues),
             CalibrationAction::Switch(on) => self.switch_calibration(*on, queues),
             CalibrationAction::Forget => self.use_calibration(None, queues),
+            CalibrationAction::Temperature(..) => Ok(()),
+        }
+    }
+
+    fn set_temperature(
+        &mut self,
+        celsius: f64,
+        growth_ppm_per_k: Option<f64>,
+    ) -> Result<(), ErrorCode> {
+        let is_growth = growth_ppm_per_k.is_none_or(|ppm| GROWTHS_PPM_PER_K.contains(&ppm));
+        if !TEMPERATURES_C.contains(&celsius) || !is_growth {
+            return Err(ErrorCode::OutOfRange);
+        }
+        self.commander.set_temperature(celsius, growth_ppm_per_k)?;
+        self.watch_temperature();
+        Ok(())
+    }
+
+    /// Tells when the machine leaves the temperature at which it was calibrated, and when it is back.
+    fn watch_temperature(&mut self) {
+        let over_k = self.commander.over_calibrated_k();
+        let is_off = over_k.is_some_and(|over_k| over_k.abs() > CALIBRATED_WITHIN_K);
+        if is_off != self.is_off_calibrated_temperature {
+            self.is_off_calibrated_temperature = is_off;
+            let event = Event::CalibratedTemperature(is_off, over_k.unwrap_or_default() as f32);
+            self.events.add(self.commander.tick(), event);
         }
     }
 
@@ -134,6 +172,7 @@ impl Interpreter {
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), ErrorCode> {
         self.commander.calibrate(machine, queues)?;
+        self.watch_temperature();
         self.persistence.mark_changed();
         Ok(())
     }

@@ -54,6 +54,17 @@ pub(in crate::gcs) fn end(scanner: &mut Scanner<'_>) -> Parsed {
     act(CalibrationAction::End(checksum as u32))
 }
 
+/// `TMP`: deg C, and perhaps ppm per K.
+pub(in crate::gcs) fn temperature(scanner: &mut Scanner<'_>) -> Parsed {
+    let celsius = number(scanner.next())?;
+    let growth_ppm_per_k = if scanner.is_at_end() {
+        None
+    } else {
+        Some(number(scanner.next())?)
+    };
+    act(CalibrationAction::Temperature(celsius, growth_ppm_per_k))
+}
+
 fn act(action: CalibrationAction) -> Parsed {
     Ok(Request::Act(Action::Calibrate(action)))
 }

@@ -27,4 +27,6 @@ pub enum CalibrationAction {
     Switch(bool),
     /// `CAL DEL`
     Forget,
+    /// `TMP`: the machine's temperature, deg C, and perhaps how much it grows, ppm per K.
+    Temperature(f64, Option<f64>),
 }

@@ -65,6 +65,8 @@ pub(in crate::gcs) enum Event {
     Recovered,
     /// It was given up on the way, or refused; the servo is off.
     RecoveryGivenUp,
+    /// The machine is so many K warmer than when it was calibrated: more than it holds for, or no more.
+    CalibratedTemperature(bool, f32),
     /// A value is stored that this firmware does not allow; it is not in force.
     UnusableParameter(u32, f64),
     /// So many parameters are stored that this firmware does not know.
@@ -122,6 +124,12 @@ impl fmt::Display for Event {
                 write!(f, "recovery from X {x:.1} Y {y:.1} W {w:.1}")
             }
             Self::Recovered => f.write_str("recovered: in reach, held"),
+            Self::CalibratedTemperature(true, over_k) => {
+                write!(f, "{over_k:.1} K over the temperature of the calibration")
+            }
+            Self::CalibratedTemperature(false, _) => {
+                f.write_str("at the temperature of the calibration again, or without one")
+            }
             Self::RecoveryGivenUp => f.write_str("recovery has ended on its way, servo off"),
             Self::ServoBeforeReference => {
                 f.write_str("servo asked for before the reference: it stays off until FRF")

@@ -6,15 +6,17 @@ use crate::gcs::error::ErrorCode;
 use crate::gcs::text::Name;
 use heapless::Vec;
 
-/// Bytes for the text of all macros, a line's LF included.
-pub const MACRO_BYTES: usize = 8192;
+/// Bytes for the text of all macros, a line's LF included: what a sector of the flash has besides parameters, tables and a calibration.
+pub const MACRO_BYTES: usize = 7544;
+/// Older firmware stored as many: they are taken, and with less text there can be new ones.
+const MOST_STORED_BYTES: usize = 8192;
 /// Macros that can be stored.
 pub const MAX_MACROS: usize = 16;
 
 /// See the module. Stretches lie behind one another in no order; what is being recorded comes last.
 #[derive(Default)]
 pub(super) struct MacroTexts {
-    text: Vec<u8, MACRO_BYTES>,
+    text: Vec<u8, MOST_STORED_BYTES>,
     macros: [Option<TextRange>; MAX_MACROS],
 }
 
@@ -28,7 +30,7 @@ struct TextRange {
 impl MacroTexts {
     /// Bytes left.
     pub fn free(&self) -> usize {
-        MACRO_BYTES - self.text.len()
+        MACRO_BYTES.saturating_sub(self.text.len())
     }
 
     /// Names of all macros.
@@ -139,4 +141,26 @@ impl MacroTexts {
 pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split_inclusive(|&byte| byte == b'\n')
         .map(|line| line.strip_suffix(b"\n").unwrap_or(line))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_STORED_BYTES, MacroTexts};
+    use crate::gcs::text::Name;
+
+    /// As many as there could be before there was room for a calibration: they are taken, and nothing new besides.
+    #[test]
+    fn what_older_firmware_has_stored_is_taken() {
+        let mut texts = MacroTexts::default();
+        let line = b"VAR A 1\n";
+        for _ in 0..MOST_STORED_BYTES / line.len() {
+            assert!(texts.extend(line));
+        }
+        let name = Name::new(b"old").expect("a short name");
+        assert_eq!(texts.commit(name), Ok(()));
+        assert_eq!(texts.free(), 0);
+        assert!(!texts.append(b"VAR A 1"));
+        texts.remove(0);
+        assert!(texts.append(b"VAR A 1"));
+    }
 }

@@ -15,7 +15,7 @@
 
 use super::names::{read_name, write_name};
 use super::state::{KeptParameters, MAX_UNUSABLE, UnusableValues};
-use super::stored_calibration;
+use super::stored_calibration::{self, CALIBRATION_BYTES};
 use super::stored_moves::{self, MOVES_BYTES};
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
@@ -37,12 +37,16 @@ const VERSION_WITHOUT_MOVES: u16 = 2;
 /// Bytes of a macro read at a time.
 const CHUNK_BYTES: usize = 64;
 
-/// Bytes that the longest settings take in the flash, without a calibration: a sector must have them. What macros and tables that fill
-/// their memories leave of a sector is too little for a calibration, of 647: that is refused then as too long.
+/// Bytes that the longest settings take in the flash: a sector must have them. Macros of older firmware, which had more room for them, can
+/// leave too little for a calibration: that is refused then as too long.
 pub const STORED_BYTES: usize = envelope_bytes(MAX_CONTENTS_BYTES as u32) as usize;
 /// Bytes of the longest contents.
-const MAX_CONTENTS_BYTES: usize =
-    5 + MOST_SETTINGS * 12 + MAX_MACROS * (3 + NAME_BYTES) + MACRO_BYTES + MOVES_BYTES;
+const MAX_CONTENTS_BYTES: usize = 5
+    + MOST_SETTINGS * 12
+    + MAX_MACROS * (3 + NAME_BYTES)
+    + MACRO_BYTES
+    + MOVES_BYTES
+    + CALIBRATION_BYTES;
 /// Parameters that can be stored, and stored values that are no such ones.
 const MOST_SETTINGS: usize = {
     let (mut count, mut i) = (MAX_UNUSABLE, 0);

@@ -13,6 +13,10 @@ use crate::settings_store::{Reader, Sink};
 use embedded_storage::nor_flash::NorFlash;
 use kinematics::COEFFICIENTS;
 
+/// Bytes of the longest.
+pub(super) const CALIBRATION_BYTES: usize =
+    1 + 2 * (1 + CALIBRATION_TEXT_BYTES) + 4 + 3 * COEFFICIENTS * 4;
+
 pub(super) fn write<S: Sink>(
     calibration: &MachineCalibration,
     sink: &mut S,

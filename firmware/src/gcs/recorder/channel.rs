@@ -37,6 +37,8 @@ pub(super) enum Signal {
     Word(RawSignal),
     /// Of the measured pose, which is worked out from the measured pivots here: that is too dear for the tick.
     Measured(u8),
+    /// The same by the drawing, whatever the calibration says.
+    MeasuredAsDrawn(u8),
     /// Measured pose minus its setpoint.
     Error(u8),
     /// Time since the trigger, which the row tells.
@@ -95,6 +97,10 @@ pub(super) const OPTIONS: &[RecordOption] = &[
     option(207, "learnt of the rate", " of pivot, besides the model's, V s/rad", |source| of_pivot(source, RawSignal::LearntRate)),
     option(208, "learnt of the torque", " of pivot, besides the model's, V/(N m)", |source| of_pivot(source, RawSignal::LearntTorque)),
     option(209, "learnt of friction", " of pivot, besides the model's, V", |source| of_pivot(source, RawSignal::LearntFriction)),
+    option(210, "real position without the calibration", " of axis, mm or deg", |source| match source {
+        SignalSource::Axis(axis) => Some(of_axis(axis, Signal::MeasuredAsDrawn)),
+        _ => None,
+    }),
 ];
 
 const fn option(
@@ -212,7 +218,7 @@ impl Channel {
         let (own, pivots) = match self.signal {
             Signal::Zero | Signal::Time => (None, false),
             Signal::Word(word) => (Some(word), false),
-            Signal::Measured(_) => (None, true),
+            Signal::Measured(_) | Signal::MeasuredAsDrawn(_) => (None, true),
             Signal::Error(i) => (Some(setpoint(i)), true),
         };
         let pivots = PIVOTS.into_iter().filter(move |_| pivots);
@@ -225,7 +231,7 @@ impl Channel {
             _ => deg,
         };
         match self.option {
-            1..=3 => of_axis("mm", "deg"),
+            1..=3 | 210 => of_axis("mm", "deg"),
             8 => "s",
             70 => of_axis("mm/s", "deg/s"),
             71 => of_axis("mm/s^2", "deg/s^2"),

@@ -8,9 +8,8 @@
 //! error: a client counts the rows.
 
 use super::channel::Channel;
-use super::scales::RecordRow;
+use super::scales::{MachineNow, RecordRow};
 use super::state::Record;
-use crate::calibration::MachineCalibration;
 use crate::recorder::{Cursor, RECORDER_TABLES, RecorderReader};
 use core::fmt::{self, Write as _};
 use heapless::String;
@@ -40,7 +39,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
-        built: Option<&MachineCalibration>,
+        machine: &MachineNow<'_>,
     ) -> String<MAX_LINE_BYTES> {
         let mut line = String::new();
         // The longest line fits; a longer one would be cut short, and counted all the same.
@@ -49,7 +48,7 @@ impl RecordReadout {
             let _ = line.write_str(" \n");
             self.header_lines_written += 1;
         } else {
-            let _ = self.row_line(record, recorder, built, &mut line);
+            let _ = self.row_line(record, recorder, machine, &mut line);
             self.left -= 1;
             let _ = line.write_str(if self.left == 0 { "\n" } else { " \n" });
         }
@@ -86,7 +85,7 @@ impl RecordReadout {
         &mut self,
         record: Option<&Record>,
         recorder: &RecorderReader<'_>,
-        built: Option<&MachineCalibration>,
+        machine: &MachineNow<'_>,
         line: &mut String<MAX_LINE_BYTES>,
     ) -> fmt::Result {
         let mut row = record.map(|record| RecordRow {
@@ -95,8 +94,9 @@ impl RecordReadout {
             scales: &record.scales,
             row: self.row,
             every: record.setup.every,
-            built,
+            machine,
             pose: None,
+            drawn_pose: None,
         });
         self.row += 1;
         for (place, channel) in self.columns.iter().flatten().enumerate() {

@@ -4,6 +4,7 @@ use super::fault_record_readout::FaultRecordReadout;
 use super::readout::{LINES_PER_SERVICE, MAX_LINE_BYTES, RecordReadout};
 use super::replies;
 use super::request::{RecordQuery, TableList};
+use super::scales::MachineNow;
 use super::state::RecorderState;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
@@ -59,6 +60,10 @@ impl Interpreter {
         let Some(readout) = &mut session.readout else {
             return Ok(false);
         };
+        let machine = MachineNow {
+            built: self.commander.built(),
+            growth: self.commander.growth(),
+        };
         for _ in 0..LINES_PER_SERVICE {
             if session.room.is_some_and(|room| room < MAX_LINE_BYTES) {
                 return Ok(true);
@@ -68,7 +73,7 @@ impl Interpreter {
             if record.is_none() {
                 session.error = ErrorCode::NotRecorded;
             }
-            let line = readout.line(record, &queues.recorder, self.commander.built());
+            let line = readout.line(record, &queues.recorder, &machine);
             out.write_all(line.as_bytes())?;
             session.room = session.room.map(|room| room - line.len());
             if readout.left == 0 {

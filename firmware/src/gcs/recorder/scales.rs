@@ -67,6 +67,14 @@ impl Scales {
     }
 }
 
+/// What a machine is when a record of it is read.
+pub(super) struct MachineNow<'a> {
+    /// What it is off the drawing, if that is known: what its encoders read is a pose by it.
+    pub built: Option<&'a MachineCalibration>,
+    /// Its lengths over those of the track as the parameter says.
+    pub growth: f64,
+}
+
 /// A row of a record, as it was read.
 pub(super) struct RecordRow<'a> {
     pub words: &'a [RawSignal],
@@ -76,10 +84,10 @@ pub(super) struct RecordRow<'a> {
     pub row: i64,
     /// Ticks from row to row.
     pub every: u32,
-    /// What the machine is off the drawing, if that is known: what its encoders read is a pose by it.
-    pub built: Option<&'a MachineCalibration>,
-    /// Measured pose, once somebody has asked.
+    pub machine: &'a MachineNow<'a>,
+    /// Measured pose, once somebody has asked; and by the drawing.
     pub pose: Option<[f64; 3]>,
+    pub drawn_pose: Option<[f64; 3]>,
 }
 
 impl RecordRow<'_> {
@@ -89,6 +97,7 @@ impl RecordRow<'_> {
             Signal::Zero => 0.0,
             Signal::Word(word) => self.word(word),
             Signal::Measured(i) => self.pose()[usize::from(i)],
+            Signal::MeasuredAsDrawn(i) => self.drawn_pose()[usize::from(i)],
             Signal::Error(i) => self.pose()[usize::from(i)] - self.word(setpoint(i)),
             Signal::Time => self.row as f64 * f64::from(self.every) * self.scales.period_s,
         }
@@ -105,18 +114,42 @@ impl RecordRow<'_> {
             SignalFormat::Float => f64::from(f32::from_bits(integer as u32)),
             _ => integer as f64,
         };
-        number * self.scales.factor(word)
+        let grown = if is_length(word) {
+            self.machine.growth
+        } else {
+            1.0
+        };
+        number * self.scales.factor(word) * grown
     }
 
     fn pose(&mut self) -> [f64; 3] {
         if let Some(pose) = self.pose {
             return pose;
         }
-        let pivots = PIVOTS.map(|pivot| Angle::from_units(self.integer(pivot) << 4));
-        let frames = &ActiveFrames::BASE;
-        let pose = measured(&pivots, frames, &self.scales.geometry, self.built)
-            .map_or([f64::NAN; 3], |pose| [pose[0], pose[1], pose[5]]);
+        let pose = self.pose_on(self.machine.built);
         self.pose = Some(pose);
         pose
     }
+
+    fn drawn_pose(&mut self) -> [f64; 3] {
+        let pose = self.drawn_pose.unwrap_or_else(|| self.pose_on(None));
+        self.drawn_pose = Some(pose);
+        pose
+    }
+
+    fn pose_on(&self, built: Option<&MachineCalibration>) -> [f64; 3] {
+        let pivots = PIVOTS.map(|pivot| Angle::from_units(self.integer(pivot) << 4));
+        let mut geometry = self.scales.geometry;
+        geometry.radius_mm *= self.machine.growth;
+        measured(&pivots, &ActiveFrames::BASE, &geometry, built)
+            .map_or([f64::NAN; 3], |pose| [pose[0], pose[1], pose[5]])
+    }
+}
+
+/// Whether a word is a length, or a velocity or an acceleration in lengths.
+const fn is_length(word: RawSignal) -> bool {
+    matches!(
+        word,
+        RawSignal::Centre(_) | RawSignal::Velocity(0 | 1) | RawSignal::Acceleration(0 | 1)
+    )
 }

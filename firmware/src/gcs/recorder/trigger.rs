@@ -35,11 +35,11 @@ pub(super) const TRIGGERS: &[(u16, &str)] = &[
     (4, "at once"),
     (
         100,
-        "signal of the table rises to <value>; not options 2, 3 of axes",
+        "signal of the table rises to <value>; not options 2, 3, 210 of axes",
     ),
     (
         101,
-        "signal of the table falls below <value>; not options 2, 3 of axes",
+        "signal of the table falls below <value>; not options 2, 3, 210 of axes",
     ),
     (102, "fault"),
 ];

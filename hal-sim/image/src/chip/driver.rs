@@ -206,8 +206,8 @@ where
                 self.landmarks.handler_end,
             ],
         });
-        let tripped = self.stage.tripped();
-        let faults = [0, 1, 2].map(|axis| self.bridge_faults[axis] || tripped[axis]);
+        let pulled = self.stage.pulled_fault_pins();
+        let faults = [0, 1, 2].map(|axis| self.bridge_faults[axis] || pulled[axis]);
         session.board_mut().set_bridge_faults(now, faults);
         self.tick += 1;
         flow

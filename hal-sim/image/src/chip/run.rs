@@ -17,8 +17,8 @@ use hal_sim::report::{Conditions, Run};
 use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::observer::Observer;
 use hal_sim::rig::run::{RunOptions, stage_parameters, stuck_text};
-use hal_sim::rig::run_conditions;
 use hal_sim::rig::script::{Script, ScriptError};
+use hal_sim::rig::{Disturbances, run_conditions};
 
 /// A run on the chip that came to its end, one way or another.
 #[derive(Debug)]
@@ -85,6 +85,7 @@ struct Runner {
     observer: Observer,
     progress: Progress,
     period_s: f64,
+    disturbances: Disturbances,
     answers: Vec<(String, String)>,
     agreed: u64,
     hash: u32,
@@ -124,6 +125,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
         observer: Observer::new(&parameters, options.every),
         progress: Progress::new(script.lines.len() as u64, options.quiet),
         period_s: stage.period_s(),
+        disturbances: Disturbances::default(),
         answers: Vec::new(),
         agreed: 0,
         hash: 0,
@@ -185,6 +187,7 @@ impl Runner {
     /// One control period; breaks at the end of the script, or with what ended it early.
     fn period(&mut self, period: &mut Period<'_>) -> ControlFlow<Option<String>> {
         self.follow(period)?;
+        (self.disturbances).act(&mut period.stage.plant, self.period_s);
         self.pose = period.stage.plant.pose();
         let received = period.received();
         if period.tick < WARM_UP {
@@ -198,6 +201,10 @@ impl Runner {
             self.progress.update(self.client.done() as u64, simulated_s);
         }
         match event {
+            Some(Event::Disturbed(disturbance)) => {
+                self.disturbances.begin(disturbance);
+                Continue(())
+            }
             Some(Event::Finished) => Break(None),
             Some(Event::Stuck(line)) => Break(Some(stuck_text(&self.script, &line))),
             Some(Event::Refused(line, error)) => Break(Some(format!(

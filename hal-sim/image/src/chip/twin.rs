@@ -190,7 +190,7 @@ impl Twin {
         let next = Latched {
             inputs: Inputs {
                 frames: frames.map(RawFrame),
-                bridge_fault: [false; 3],
+                bridge_fault: period.stage.pulled_fault_pins(),
                 emergency_stop: false,
                 current_counts: currents.map(signed_current_counts),
                 supply_counts,

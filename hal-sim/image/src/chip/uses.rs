@@ -41,11 +41,18 @@ pub enum Use {
     OffCalibrated,
     /// It is switched on then.
     SwitchedOnCalibrated,
+    /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, four sines of ripple and three of
+    /// the encoder's error within a period, and gains that go by the inertia.
+    MovingShaped,
+    /// It takes a plan then.
+    PlanTakenShaped,
+    /// The same with a table of iterative learning, in whose place the servos do not learn.
+    MovingShapedTrial,
 }
 
 impl Use {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::Off,
         Self::Holding,
         Self::Moving,
@@ -59,6 +66,9 @@ impl Use {
         Self::PlanTakenCalibrated,
         Self::OffCalibrated,
         Self::SwitchedOnCalibrated,
+        Self::MovingShaped,
+        Self::PlanTakenShaped,
+        Self::MovingShapedTrial,
     ];
 
     /// In words.
@@ -78,6 +88,9 @@ impl Use {
             Self::PlanTakenCalibrated => "calibrated, takes a plan",
             Self::OffCalibrated => "servo off, calibrated",
             Self::SwitchedOnCalibrated => "calibrated, switched on",
+            Self::MovingShaped => "moving, calibrated, all that shapes a loop",
+            Self::PlanTakenShaped => "all that shapes a loop, takes a plan",
+            Self::MovingShapedTrial => "all that shapes a loop, a repeated move",
         }
     }
 }
@@ -140,7 +153,7 @@ struct Stretch {
 const ORDER_TICKS: u64 = 40;
 
 /// Lines, and the tick before which they are sent.
-const LINES: [(u64, &[u8]); 13] = [
+const LINES: [(u64, &[u8]); 23] = [
     (150, b"FRF X\n"),
     (1_000, b"MOV X 40 Y 20 W 90\n"),
     (4_000, b"MOV X -30 Y 35 W -90\n"),
@@ -159,7 +172,35 @@ const LINES: [(u64, &[u8]); 13] = [
     (SERIAL_ASKED, b"SVO X 0\nCCL 1 ADVANCED\nSSN?\n"),
     (REFERENCED_AGAIN, b"FRF X\n"),
     (34_000, b"MOV X 40 Y 20 W 90\n"),
+    // The encoders' errors are told with the servo off, the rest while the stage rests: numbers that do no harm to this machine.
+    (42_000, b"SVO X 0\nSPA 1 0x54500E00 2048 1 0x54500E01 9\n"),
+    (42_100, b"SPA 1 0x54500E03 9 1 0x54500E05 9\n"),
+    (42_200, b"FRF X\n"),
+    (
+        43_600,
+        b"SPA 1 0x54500340 1425 1 0x54500341 450 1 0x54500342 0.3\n",
+    ),
+    (
+        43_700,
+        b"SPA 1 0x54500343 1680 1 0x54500344 450 1 0x54500345 0.3\n",
+    ),
+    (
+        43_800,
+        b"SPA 1 0x54500346 477 1 0x54500347 3000 1 0x54500306 0.04\n",
+    ),
+    (
+        43_900,
+        b"SPA 1 0x54500A00 1300 1 0x54500A01 2e-3 1 0x54500A03 2600 1 0x54500A04 1e-3\n",
+    ),
+    (
+        44_000,
+        b"SPA 1 0x54500A06 50 1 0x54500A07 1e-3 1 0x54500A09 100 1 0x54500A0A 1e-3\nERR?\n",
+    ),
+    (SHAPED, b"MOV X 10 Y 40 W 0\n"),
+    (REPEATED, b"ILC LEARN A\nMOV X 40 Y 20 W 90\nERR?\n"),
 ];
+const SHAPED: u64 = 45_000;
+const REPEATED: u64 = 53_000;
 const SERIAL_ASKED: u64 = 25_000;
 const REFERENCED_AGAIN: u64 = 32_000;
 /// The calibration's lines, and how far they are apart. Its last one keeps the command side busy for some thousand ticks.
@@ -174,7 +215,7 @@ const STREAM: Range<u64> = 15_200..17_200;
 const STREAM_EVERY: u64 = 20;
 const STREAM_START: [f64; 2] = [-30.0, 35.0];
 const STREAM_RADIUS_MM: f64 = 1.0;
-const END: u64 = 35_000;
+const END: u64 = 54_000;
 
 /// So many ticks of each use, at least; of those that take a command, as many as there are.
 fn stretches(ticks: u64) -> Vec<Stretch> {
@@ -214,6 +255,18 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             ticks.clamp(300, 900),
             Use::MovingCalibrated,
             Some(Use::PlanTakenCalibrated),
+        ),
+        stretch(
+            SHAPED,
+            ticks.clamp(300, 900),
+            Use::MovingShaped,
+            Some(Use::PlanTakenShaped),
+        ),
+        stretch(
+            REPEATED,
+            ticks.clamp(300, 900),
+            Use::MovingShapedTrial,
+            Some(Use::PlanTakenShaped),
         ),
     ]
 }
@@ -295,6 +348,10 @@ struct Run {
 impl Run {
     /// One control period; `None` where the ticks can not be followed.
     fn period(&mut self, period: &mut Period<'_>) -> Option<()> {
+        // A chip that starts again counts from nothing, and would be sent the same lines for ever.
+        if !period.resets.is_empty() {
+            return None;
+        }
         let trace = period.trace();
         let recorded = u64::from(trace.ticks);
         let took = trace.commands != std::mem::replace(&mut self.commands, trace.commands);

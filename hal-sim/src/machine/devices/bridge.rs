@@ -121,6 +121,7 @@ impl BridgeState {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Protection {
     tripped: bool,
+    wakes: bool,
     awake_s: f64,
 }
 
@@ -139,19 +140,19 @@ impl Protection {
             return pins;
         }
         self.tripped |= current_a.abs() > parameters.trip_a;
-        let is_up = self.awake_s >= parameters.wake_s;
+        self.wakes = self.awake_s < parameters.wake_s;
         self.awake_s += step_s;
         BridgeState {
-            awake: is_up,
+            awake: !self.wakes,
             fault: pins.fault || self.tripped,
             ..pins
         }
     }
 
-    /// Whether it pulls its fault pin.
+    /// Whether it pulls its fault pin: switched off, or awake and not ready yet.
     #[must_use]
-    pub const fn is_tripped(&self) -> bool {
-        self.tripped
+    pub const fn pulls_fault_pin(&self) -> bool {
+        self.tripped || self.wakes
     }
 }
 

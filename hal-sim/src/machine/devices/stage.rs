@@ -5,7 +5,7 @@
 //!  T           T + 0.32 P     T + 0.64 P   T + 0.7 P         T + P
 //!  |--- 16 us ---|--- 16 us ---|--- 3 us ---|------ 15 us ------|      P = 50 us
 //!  |  drive of tick k-1        |  drive of tick k               |
-//!                                           ^ encoders latch: the frames that tick k+1 reads
+//!                                           ^ encoders latch, one 60 ns after the other: the frames that tick k+1 reads
 //! ```
 //!
 //! The PWM runs at twice the control rate and takes a new duty over with the second period that begins after the tick
@@ -17,6 +17,7 @@ use super::bus::{Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
 use super::wiring::WiringParameters;
 use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
+use firmware::drivers::latch::LATCH_OFFSET_S;
 use serde::{Deserialize, Serialize};
 
 /// Substeps before the new drive acts, in parts of the period.
@@ -44,6 +45,10 @@ pub struct StageParameters {
     pub analog: AnalogParameters,
     /// The wires between machine and controller.
     pub wiring: WiringParameters,
+    /// How much later than the encoder at the first port that of each port latches, s. It is the board's, and no part of a machine's
+    /// file.
+    #[serde(skip, default = "reference_latch_offsets_s")]
+    pub latch_offsets_s: [f64; AXES],
     /// Seed of every random number. It is a run's, and no part of a machine's file.
     #[serde(skip, default = "reference_seed")]
     pub seed: u64,
@@ -81,6 +86,7 @@ impl StageParameters {
         bus: BusParameters::REFERENCE,
         analog: AnalogParameters::REFERENCE,
         wiring: WiringParameters::REFERENCE,
+        latch_offsets_s: LATCH_OFFSET_S,
         seed: REFERENCE_SEED,
     };
 }
@@ -89,6 +95,10 @@ const REFERENCE_SEED: u64 = 1;
 
 const fn reference_seed() -> u64 {
     REFERENCE_SEED
+}
+
+const fn reference_latch_offsets_s() -> [f64; AXES] {
+    LATCH_OFFSET_S
 }
 
 impl Default for StageParameters {
@@ -114,6 +124,7 @@ pub struct Stage {
     protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
     wiring: WiringParameters,
+    latch_offsets_s: [f64; AXES],
     seed: u64,
     periods: u64,
     acting: [BridgeState; AXES],
@@ -152,6 +163,7 @@ impl Stage {
                 AnalogParameters::EXACT
             },
             wiring: parameters.wiring,
+            latch_offsets_s: parameters.latch_offsets_s,
             seed: parameters.seed,
             periods: 0,
             acting: [BridgeState::RESET; AXES],
@@ -237,13 +249,13 @@ impl Stage {
         self.bus.as_ref()
     }
 
-    /// Which bridges have switched themselves off.
+    /// Which bridges pull their fault pins: those that have switched themselves off, or wake up.
     #[must_use]
-    pub fn tripped(&self) -> [bool; AXES] {
+    pub fn pulled_fault_pins(&self) -> [bool; AXES] {
         let Some(protection) = &self.protection else {
             return [false; AXES];
         };
-        [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].is_tripped())
+        [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].pulls_fault_pin())
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
@@ -288,8 +300,14 @@ impl Stage {
         self.latched_pose = self.plant.pose();
         let angles_rad = self.plant.pivots_rad();
         let rates_rad_s = self.plant.pivot_rates_rad_s();
+        let mut offsets_s = [0.0; AXES];
+        for (port, offset_s) in self.latch_offsets_s.into_iter().enumerate() {
+            offsets_s[self.wiring.ring_at_port(port)] = offset_s;
+        }
         for (axis, encoder) in self.encoders.iter_mut().enumerate() {
-            encoder.latch(angles_rad[axis], rates_rad_s[axis]);
+            let rate_rad_s = rates_rad_s[axis];
+            // A tenth of a microsecond: over that a rate is what it is.
+            encoder.latch(angles_rad[axis] + rate_rad_s * offsets_s[axis], rate_rad_s);
         }
     }
 }

@@ -25,4 +25,4 @@ pub mod workshop;
 
 pub use beside::Beside;
 pub use quasi_static::{EncoderErrors, QuasiStatic, Unrepeated};
-pub use survey::{commanded, survey};
+pub use survey::{CommandedError, commanded, survey};

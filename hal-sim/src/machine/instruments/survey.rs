@@ -2,8 +2,11 @@
 
 use calibration::frames::Pair;
 use calibration::plan::{At, Stop};
-use calibration::position::readings_rad;
 use calibration::{Instrument, Kit, Machine, Seen, Visit};
+use firmware::calibration::{CalibrationText, MachineCalibration};
+use firmware::control::CalibrationInForce;
+use firmware::motion::Position;
+use kinematics::Geometry;
 
 use super::camera::Camera;
 use super::ends::Ends;
@@ -73,25 +76,69 @@ pub fn survey(
     }
 }
 
-/// Poses (track radii, rad) that a controller commands with fitted numbers, and where the machine goes, from any side.
+/// Why a pose could not be commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CommandedError {
+    /// The controller does not take such numbers.
+    #[error("the numbers are beyond what a controller takes")]
+    BeyondLimits,
+    /// The controller knows no such pose.
+    #[error("no pose of the mechanism")]
+    NoPose,
+    /// The machine cannot be there.
+    #[error(transparent)]
+    OffGuide(#[from] OffGuide),
+}
+
+/// Poses (track radii, rad) that a controller commands with fitted numbers, and where the machine goes, from any side. The controller has
+/// the numbers as it is sent them, in floats of 32 bits, and reckons as its tick does: what either costs is in the errors.
 ///
 /// # Errors
-/// [`OffGuide`]: the machine cannot be there.
+/// [`CommandedError`].
 pub fn commanded(
     truth: &QuasiStatic,
     fitted: &Machine,
     poses: impl Iterator<Item = [f64; 3]>,
     random: &mut Random,
-) -> Result<Vec<Pair>, OffGuide> {
+) -> Result<Vec<Pair>, CommandedError> {
     let radius_m = truth.track_radius_m();
+    let in_force = in_force(fitted)?;
     poses
         .map(|asked| {
-            let readings = readings_rad(fitted, &asked).map_err(|_| OffGuide { guide: 0 })?;
-            let [x, y, theta] = truth.reached(readings, random)?;
+            let held = in_force.held_encoders(&position(asked));
+            let encoders = held.ok_or(CommandedError::NoPose)?;
+            let readings_rad = encoders.map(|encoder| encoder.radians());
+            let [x, y, theta] = truth.reached(readings_rad, random)?;
             Ok(Pair {
                 asked,
                 reached: [x / radius_m, y / radius_m, theta],
             })
         })
         .collect()
+}
+
+/// Fitted numbers as a controller's tick has them.
+fn in_force(fitted: &Machine) -> Result<CalibrationInForce, CommandedError> {
+    let sent = MachineCalibration {
+        serial: CalibrationText::new(),
+        date: CalibrationText::new(),
+        temperature_c: None,
+        numbers: fitted.map(|pivot| pivot.to_list().map(|number| number as f32)),
+        is_on: true,
+    };
+    let (calibration, margins) =
+        (sent.for_tick(&Geometry::REFERENCE)).map_err(|_| CommandedError::BeyondLimits)?;
+    Ok(CalibrationInForce {
+        is_on: !calibration.are_zero(),
+        calibration,
+        margins,
+    })
+}
+
+/// A pose (track radii, rad) as the tick has it.
+fn position([x, y, theta_rad]: [f64; 3]) -> Position {
+    const UNITS: f64 = 4_294_967_296.0;
+    let length = |radii: f64| (radii * UNITS).round() as i64;
+    let turn = (theta_rad / core::f64::consts::TAU * UNITS).round() as i64;
+    [length(x), length(y), turn]
 }

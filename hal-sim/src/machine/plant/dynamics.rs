@@ -36,6 +36,8 @@ pub struct External {
     pub force_n: [f64; 2],
     /// Torque on the platform, N m.
     pub torque_n_m: f64,
+    /// Acceleration of the floor along x and y besides what the surroundings make of it, m/s^2.
+    pub floor_m_s2: [f64; 2],
     /// Torque on each ring, N m.
     pub ring_torque_n_m: [f64; AXES],
     /// Angle at which a ring is jammed, rad: by something about as stiff as the guides' ends.

@@ -37,7 +37,8 @@ const MAX_STEPS: u32 = 30;
 const SMALL_STEP: f64 = 1e-10;
 
 /// A pivot cannot be on its guide at this pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("pivot {} cannot be on its guide", .guide + 1)]
 pub struct OffGuide {
     /// Which guide, 0 to 2.
     pub guide: usize,

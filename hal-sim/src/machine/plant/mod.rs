@@ -159,7 +159,8 @@ impl Plant {
     fn meet_surroundings(&mut self, step_s: f64) {
         self.surroundings.step(step_s, self.state.current_a.into());
         let (floor, gravity) = (self.surroundings.floor_m_s2(), self.parameters.gravity_m_s2);
-        self.dynamics.gravity_m_s2 = [gravity[0] + floor[0], gravity[1] + floor[1]];
+        let more = self.external.floor_m_s2;
+        self.dynamics.gravity_m_s2 = [0, 1].map(|axis| gravity[axis] + (floor[axis] - more[axis]));
         self.dynamics.resistance_ohm = self.surroundings.resistance_ohm();
     }
 

@@ -56,6 +56,8 @@ pub(super) struct RunOutput {
 #[derive(Subcommand, Debug)]
 pub(super) enum Command {
     /// Run a script of GCS lines on the simulated stage.
+    ///
+    /// `! PUSH X 5 N 20 MS` (W: NM) pushes the platform, `! SHAKE Y 0.05 M/S2 8 HZ 2 S` shakes the floor; the script goes on at once.
     Run {
         /// The script.
         file: PathBuf,

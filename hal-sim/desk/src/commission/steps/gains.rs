@@ -48,7 +48,7 @@ const WIDE_COUNTS: f64 = 100.0;
 const USUAL_COUNTS: f64 = 2.0;
 
 /// What rest leaves of whole gains; of a share of them more, so that the loop at rest is the same.
-const REST: f64 = 0.13;
+const REST: f64 = 0.1;
 
 /// The same for gains that were found.
 pub(super) fn rest_for(bench: &mut Bench<'_>, gains: &Gains) -> Result<(), CommissionError> {

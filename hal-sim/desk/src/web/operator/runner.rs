@@ -44,14 +44,24 @@ impl Runner {
             self.by = by;
             self.status.answers.clear();
             match Script::parse(&name, &text) {
-                Ok(script) => self.play(script, text, steps).await,
-                Err(error) => {
-                    (self.status.name, self.status.text) = (name, text);
-                    (self.status.line, self.status.done, self.status.total) = (None, 0, 0);
-                    self.say(State::Ended, false, format!("{error}; nothing was sent"));
+                Ok(script) if script.first_disturbance().is_some() => {
+                    let at = (script.first_disturbance()).map_or(0, |line| line.number);
+                    self.refuse(
+                        name,
+                        text,
+                        format!("line {at} disturbs a simulated stage: `tripivot run` can, a page can not"),
+                    );
                 }
+                Ok(script) => self.play(script, text, steps).await,
+                Err(error) => self.refuse(name, text, error.to_string()),
             }
         }
+    }
+
+    fn refuse(&mut self, name: String, text: String, reason: String) {
+        (self.status.name, self.status.text) = (name, text);
+        (self.status.line, self.status.done, self.status.total) = (None, 0, 0);
+        self.say(State::Ended, false, format!("{reason}; nothing was sent"));
     }
 
     async fn play(&mut self, script: Script, text: String, steps: bool) {

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use calibration::{Instrument, Noise};
 use desk::calibrate::{Told, Verdict, verify};
+use hal_sim::date::age_days;
 
 use super::super::FAILED;
 use super::super::arguments::CalibrateVerify;
@@ -13,6 +14,9 @@ use super::super::json;
 use super::error::CalibrateError;
 use super::measure::opened;
 use super::{BASE_M, calibration, line, nm};
+
+/// Days after which a calibration is worth a new one: guides wear, and are set anew.
+const OLD_DAYS: u64 = 365;
 
 pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     let calibration = calibration(&arguments.file)?;
@@ -47,10 +51,27 @@ pub(super) fn run(arguments: &CalibrateVerify) -> Result<ExitCode, CliError> {
     } else {
         (io::stdout().write_all(text(&told).as_bytes())).map_err(CliError::output)?;
     }
+    let temperature = machine.ask("TMP?").ok().flatten().unwrap_or_default();
+    for warning in warnings(age_days(&made.date), &temperature) {
+        eprintln!("tripivot: {warning}");
+    }
     Ok(match verified.verdict() {
         Verdict::Holds | Verdict::Better => ExitCode::SUCCESS,
         Verdict::Worse | Verdict::WorseThanDrawn => ExitCode::from(FAILED),
     })
+}
+
+/// What the controller cannot know, as it has no clock, and what it has been told.
+fn warnings(age_days: Option<u64>, temperature: &str) -> Vec<String> {
+    let old = age_days.filter(|days| *days > OLD_DAYS);
+    let old = old.map(|days| format!("this calibration is {days} days old"));
+    let over = temperature.lines().map(str::trim);
+    let is_off = over.clone().any(|line| line == "STATE=OFF");
+    let over = over.filter_map(|line| line.strip_prefix("OVER="));
+    let off = over
+        .filter(|_| is_off)
+        .map(|over_k| format!("the machine is {over_k} K warmer than when it was calibrated"));
+    old.into_iter().chain(off).collect()
 }
 
 pub(super) fn text(document: &Told) -> String {
@@ -121,4 +142,21 @@ pub(super) fn text(document: &Told) -> String {
         verdict => verdict.to_owned(),
     };
     text + &line("verdict", &verdict)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::warnings;
+
+    #[test]
+    fn age_and_temperature_are_warned_of() {
+        let off = "TEMPERATURE=24.5 \nGROWTH=12 \nOVER=4.000 \nSTATE=OFF\n";
+        let warm = "the machine is 4.000 K warmer than when it was calibrated";
+        assert_eq!(warnings(Some(365), ""), [""; 0]);
+        assert_eq!(warnings(None, &off.replace("OFF", "CALIBRATED")), [""; 0]);
+        assert_eq!(
+            warnings(Some(366), off),
+            ["this calibration is 366 days old", warm]
+        );
+    }
 }
