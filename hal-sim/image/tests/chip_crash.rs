@@ -126,7 +126,7 @@ fn a_processor_fault_without_a_stack_ends_in_a_reset_too() {
 /// Bytes that panic: `core`'s check of an index is called, told a place in a source file that stands behind.
 fn panics(at: u64, check: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
-    if at % 4 != 0 {
+    if !at.is_multiple_of(4) {
         bytes.extend([0x00, 0xBF]); // nop
     }
     let begin = at + bytes.len() as u64;

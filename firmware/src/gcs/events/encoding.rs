@@ -61,7 +61,7 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
         }) => (25, [*cause as u8, 0], [*program_counter, *link, *status]),
         Event::Crashed(Crash::NoAccess(address)) => (26, [0; 2], [*address, 0, 0]),
         Event::Crashed(Crash::State { stack, hard_fault }) => {
-            (29, [0; 2], [*stack, *hard_fault, 0])
+            (40, [0; 2], [*stack, *hard_fault, 0])
         }
         Event::BoardNotice(notice) => (27, [*notice as u8, 0], [0; 3]),
         Event::PoseOutside(pose) => (18, [0; 2], pose.map(f32::to_bits)),
@@ -122,7 +122,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
             status: c,
         }),
         26 => Event::Crashed(Crash::NoAccess(a)),
-        29 => Event::Crashed(Crash::State {
+        40 => Event::Crashed(Crash::State {
             stack: a,
             hard_fault: b,
         }),
