@@ -143,6 +143,7 @@ fn statistics_add_up_and_start_again() {
         bench.tick.now.loop_counters.cycles = cycles;
         bench.tick.now.loop_counters.cycles_sum += cycles;
         bench.tick.now.loop_counters.cycles_worst = cycles;
+        bench.tick.now.loop_counters.frame_margin_least = 100.max(cycles) - 30;
         bench.tick.now.loop_counters.late = u32::from(cycles == 300);
         bench.tick.now.loop_counters.peak_error = cycles;
         bench.run(1);
@@ -161,7 +162,7 @@ fn statistics_add_up_and_start_again() {
     assert_eq!(
         rest,
         format!(
-            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \n{servos}LOOSENED=0\n"
+            "CYCLES_LAST=200 \nCYCLES_MEAN={mean:.1} \nCYCLES_WORST=300 \nFRAME_MARGIN=70 \nLATE=1 \nPEAK_ERROR_RAD={rad:e} \nCOMMANDS=0 \nREFUSED=0 \n{servos}LOOSENED=0\n"
         )
     );
     // The peak since it was told; the rest since `LST`.

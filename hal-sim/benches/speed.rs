@@ -97,6 +97,7 @@ fn recorded_inputs() -> Vec<Inputs> {
                 current_counts: currents.map(signed_current_counts),
                 supply_counts,
                 tick_cycles: 0,
+                frame_margin_cycles: u32::MAX,
                 late: false,
             };
             commanded.rig.tick(&mut commanded.record);

@@ -177,6 +177,7 @@ impl Ideal {
                 SUPPLY_COUNTS
             },
             tick_cycles: 0,
+            frame_margin_cycles: u32::MAX,
             late: false,
         }
     }

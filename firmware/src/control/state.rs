@@ -35,6 +35,8 @@ pub struct Inputs {
     pub supply_counts: u16,
     /// Cost of the tick before, processor cycles; 0 where nobody counts them.
     pub tick_cycles: u32,
+    /// How long before this tick the last encoder's frame was whole, processor cycles; [`u32::MAX`] where nobody counts them.
+    pub frame_margin_cycles: u32,
     /// The duties of the tick before missed their PWM period, or there should have been one more tick since.
     pub late: bool,
 }

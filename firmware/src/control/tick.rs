@@ -100,17 +100,16 @@ pub fn tick_and_drive<'a>(
     });
 
     // What has no deadline: from here on it is for ticks to come.
-    state
-        .loop_counters
-        .count_tick(inputs.tick_cycles, inputs.late);
+    (state.loop_counters).count_tick(inputs.tick_cycles, inputs.frame_margin_cycles, inputs.late);
     let slot = state.inspection_slot;
     state.inspection_slot = (slot + 1) % INSPECTION_PERIOD_TICKS as usize;
     if driven.is_some() {
         state.record_trial(config, queues.trial, &pivots);
         state.learn(config, slot);
     }
-    // Taken below, by this tick. While the bridges wake up it waits: whatever it asks for, nothing could drive yet.
-    let takes = state.waking_ticks == 0;
+    // Taken below, by this tick. While the bridges wake up it waits: whatever it asks for, nothing could drive yet. And with a
+    // calibration it waits for the slot in which no curves are summed: a plan that is copied besides could be longer than a period.
+    let takes = state.waking_ticks == 0 && (!state.calibrated.is_on || slot == SNAPSHOT_SLOT);
     let commanded = takes && queues.commands.ready();
     if state.calibrated.is_on {
         if let Some(wanted) = &state.next.pivots {

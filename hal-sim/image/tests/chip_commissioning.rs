@@ -70,6 +70,13 @@ fn the_board_tests_itself_and_has_the_number_of_its_chip() {
     ] {
         assert!(readings.contains(good), "{good}: {readings}");
     }
+    let margin = readings
+        .lines()
+        .find(|line| line.starts_with("FRAME_MARGIN="));
+    assert!(
+        margin.is_some_and(|line| line.trim_end().ends_with("ok")),
+        "{readings}"
+    );
     let supply = readings.lines().find(|line| line.starts_with("SUPPLY="));
     assert!(
         supply.is_some_and(|line| line.trim_end().ends_with("ok")),

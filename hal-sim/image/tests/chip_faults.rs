@@ -395,15 +395,41 @@ fn a_host_that_falls_silent_has_the_stage_stopped() {
 /// latch does in time.
 const LATE_LATCH: i32 = 8 * 84;
 
-/// One latch comes late, as after a tick that took too long. Its frames are missing; the next ones are good again.
+/// Where the image's encoder buffers are: DMA leaves the frames there, port by port.
+fn frame_buffers() -> u64 {
+    let path = elf_file::find().expect("the image: build it with `cargo stage`");
+    let at = elf_file::symbol_with(&path, &["stage", "encoders", "BUFFERS"]);
+    at.expect("the buffers of the frames")
+}
+
+/// Whether the frames that the last tick found in its buffers are those that the encoders were given for it.
+fn has_good_frames(period: &mut Period<'_>, buffers: u64, given: [[u8; 8]; 3]) -> bool {
+    (0..3).zip(given).all(|(port, frame)| {
+        let mut word = |half: u64| period.word(buffers + 8 * port + 4 * half).unwrap_or(0);
+        let [low, high] = [word(0), word(1)].map(u32::to_le_bytes);
+        [low, high].concat() == frame
+    })
+}
+
+/// One latch comes late, as after a tick that took too long. Its frames are missing; three ticks later all are good again, and stay so.
 #[test]
 fn a_late_latch_costs_its_own_frames_and_no_more() {
+    const LATE: [u64; 3] = [400, 500, 600];
+    let buffers = frame_buffers();
+    let mut given = None;
+    let mut bad = Vec::new();
     let (send, receive) = mpsc::channel();
     run(FULL_SPEED, move |period| {
+        if let Some(given) = given.replace(period.stage.frames())
+            && period.tick > 10
+            && !has_good_frames(period, buffers, given)
+        {
+            bad.push(period.tick - 1);
+        }
         match period.tick {
             READY => period.send(b"FRF X\n"),
             // In the first half of a period, well before its latch; back in time for the next.
-            400 | 500 | 600 => {
+            tick if LATE.contains(&tick) => {
                 let before = period.tick_at_ns() - 40_000;
                 period.at(before + 50_000, Action::DelayLatch(LATE_LATCH));
                 period.at(before + 100_000, Action::DelayLatch(-LATE_LATCH));
@@ -411,19 +437,31 @@ fn a_late_latch_costs_its_own_frames_and_no_more() {
             800 => period.send(b"FLT?\nSVO?\n"),
             900 => {
                 let told = String::from_utf8_lossy(&period.received()).into_owned();
-                send.send(told).expect("the test waits");
+                send.send((told, std::mem::take(&mut bad)))
+                    .expect("the test waits");
                 return Break(());
             }
             _ => {}
         }
         Continue(())
     });
-    let told = receive.recv().expect("the last period");
-    println!("{told}");
+    let (told, bad) = receive.recv().expect("the last period");
+    println!("bad frames in ticks {bad:?}; {told}");
     assert!(
         told.contains("0 no fault") && told.contains("X=1"),
         "{told}"
     );
+    // Each of them cost frames, of the tick whose latch was late.
+    for late in LATE {
+        let of_it = |tick: &&u64| (late..late + 100).contains(*tick);
+        let of_it: Vec<u64> = bad.iter().filter(of_it).copied().collect();
+        assert!(!of_it.is_empty(), "{late}: {bad:?}");
+        assert!(
+            of_it.iter().all(|tick| *tick <= late + 3),
+            "{late}: {bad:?}"
+        );
+    }
+    assert!(bad.iter().all(|tick| *tick >= LATE[0]), "{bad:?}");
 }
 
 /// What a chip that is slower than it should be says of its loop and of the fault, and how often it was reset meanwhile.

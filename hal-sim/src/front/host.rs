@@ -179,6 +179,7 @@ impl Host {
             current_counts: currents.map(signed_current_counts),
             supply_counts,
             tick_cycles: 0,
+            frame_margin_cycles: u32::MAX,
             late: self.late | std::mem::take(&mut self.missed),
         }
     }

@@ -2,6 +2,11 @@
 //!
 //! The four channels are the converter's injected group, which has a result register for each: no DMA, nothing to
 //! wait for, nothing to overrun. Started with the latch they are ready 7.6 us later, in the middle of a PWM period.
+//!
+//! A motor's current ripples with the PWM, by up to 0.4 A, and is its mean where the motor is shorted for half its time: at 12.5 us of
+//! a short pulse's period. The four channels are sampled from 4 to 11 us after the period's beginning, before that, so that a current reads up to
+//! a quarter of the ripple high. Whether the ripple is what it is computed to be, and whether it is worth a start by a timer's event, a
+//! scope has to show: no emulator here has a ripple, or starts a converter by an event.
 
 use firmware::drivers::power_stage::signed_current_counts;
 use stm32f4xx_hal::{

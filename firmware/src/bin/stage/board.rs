@@ -41,6 +41,8 @@ pub struct Sensors {
     pub encoders: Encoders,
     /// Currents and supply.
     pub analog: Analog,
+    /// Counts of the latch's timer at which the encoders' ports were let go last.
+    pub latch_counts: u16,
 }
 
 /// Everything.
@@ -222,7 +224,11 @@ impl Board {
         Self {
             latch_timer,
             tick_event,
-            sensors: Sensors { encoders, analog },
+            sensors: Sensors {
+                encoders,
+                analog,
+                latch_counts: 0,
+            },
             pwm,
             bridges,
             brake_resistor: BrakeResistorSwitch(port_d.pd3.into_push_pull_output()),

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | core, AHB | 168 M | |
 //! | APB2 | 84 M, timers 168 M | TIM1, SPI1, USART1, ADC1 |
-//! | APB1 | 42 M, timers 84 M | TIM3, SPI2, SPI3 |
+//! | APB1 | 42 M, timers 84 M | TIM2, TIM3, SPI2, SPI3 |
 
 use stm32f4xx_hal::{
     pac,
@@ -16,7 +16,7 @@ use stm32f4xx_hal::{
 pub const CORE_HZ: u32 = 168_000_000;
 /// Counts of TIM1 in a second.
 pub const TIM1_HZ: u32 = 168_000_000;
-/// Counts of TIM3 in a second.
+/// Counts of TIM2 and TIM3 in a second.
 pub const TIM3_HZ: u32 = 84_000_000;
 /// Clock of SPI1 and USART1.
 pub const APB2_HZ: u32 = 84_000_000;

@@ -35,6 +35,12 @@ impl LatchTimer {
         pwm.start();
     }
 
+    /// Counts since the last latch's event.
+    #[inline(always)]
+    pub fn counts(&self) -> u16 {
+        self.tim.cnt().read().cnt().bits()
+    }
+
     /// Acknowledges the interrupt.
     pub fn acknowledge(&mut self) {
         self.tim.sr().write(|w| w.uif().clear_bit());

@@ -95,6 +95,7 @@ mod app {
         self_test::StageBoard,
         serial::{Receiver, Transmitter},
         tick_timing::TickTiming,
+        timeline::frame_margin_cycles,
         trace::{self, TRACE, TraceWriter},
         watchdog,
     };
@@ -172,6 +173,8 @@ mod app {
         TRACE.set_reset_cause(reset_cause);
         defmt::info!("start after {}", reset_cause);
         let mut core = context.core;
+        // Here, where nothing large is on the stack yet.
+        let tick_timing = TickTiming::new(&mut core.DCB, &mut core.DWT, &mut rcc);
         let (mut tick_queues, mut command_queues) =
             context.local.queues.split_with_retained(&RETAINED_MEMORY);
         let identity = Identity {
@@ -221,7 +224,7 @@ mod app {
             // They run behind the tick.
             observers: tick_queues.observers.take(),
             trace_writer: TraceWriter::default(),
-            tick_timing: TickTiming::new(&mut core.DCB, &mut core.DWT),
+            tick_timing,
             tick_queues,
             interpreter,
             session,
@@ -247,14 +250,18 @@ mod app {
     /// Latches the encoders, starts the conversions, arms the tick.
     #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event])]
     fn latch(mut context: latch::Context) {
-        context.local.latch_timer.acknowledge();
+        let timer = context.local.latch_timer;
+        timer.acknowledge();
         context.shared.sensors.lock(|sensors| {
             sensors.encoders.latch();
+            trace::mark_ports_let_go();
+            sensors.latch_counts = timer.counts();
             sensors.analog.start();
         });
         context.local.tick_event.arm();
         // The acknowledgement has arrived before the core looks for further interrupts (erratum 838869).
         cortex_m::asm::dsb();
+        trace::mark_end_of_latch();
     }
 
     /// The control task, every 50 us. Duties that are written more than 32 us after its event miss their PWM period: it
@@ -270,16 +277,23 @@ mod app {
         pwm.disarm_tick();
         let (tick_cycles, late) = context.local.tick_timing.begin(pwm.counts_since_tick());
         // The latch is 35 us off: nobody waits for this.
-        let (frames, counts) = (context.shared.sensors)
-            .lock(|sensors| (sensors.encoders.frames(), sensors.analog.counts()));
+        let (frames, counts, latch_counts) = (context.shared.sensors).lock(|sensors| {
+            (
+                sensors.encoders.frames(),
+                sensors.analog.counts(),
+                sensors.latch_counts,
+            )
+        });
+        let cut = pwm.take_break();
         let inputs = Inputs {
             frames,
             bridge_fault: bridges.faults(),
-            emergency_stop: pwm.take_break(),
+            emergency_stop: cut,
             current_counts: counts.current,
             supply_counts: counts.supply,
             tick_cycles,
             late,
+            frame_margin_cycles: frame_margin_cycles(latch_counts),
         };
         tick_and_drive(
             context.local.config,
@@ -287,9 +301,11 @@ mod app {
             &inputs,
             context.local.tick_queues,
             |outputs| {
+                pwm.hold_duties(true);
                 bridges.set(outputs.duty, outputs.awake);
+                pwm.hold_duties(false);
                 brake_resistor.set(outputs.brake_resistor);
-                pwm.connect(outputs.awake);
+                pwm.connect(outputs.awake && !cut);
                 context.local.tick_timing.end();
                 // What follows has no deadline.
                 trace::mark_end_of_tick();

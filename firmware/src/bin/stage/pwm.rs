@@ -5,8 +5,9 @@
 //! and the whole next one, and its duty acts with the one after. The latch task arms it in every second PWM period, and
 //! the tick disarms it.
 //!
-//! While the break input is low the outputs are low without any software, and they stay low until [`Bridges::drive`]
-//! finds the input released: low brakes the motors (the bridges' phase/enable mode).
+//! While the break input is low the outputs are low without any software, and they stay low until a tick finds that the break
+//! has not come since the one before: low brakes the motors (the bridges' phase/enable mode). Not the tick that is told of the
+//! break: the duty of before would act for the rest of its PWM period, where the input is released already.
 
 use crate::timeline::{PWM_COUNTS, TICK_COUNT};
 use core::convert::Infallible;
@@ -109,6 +110,17 @@ impl PwmTimer {
             self.tim.sr().write(|w| w.bif().clear_bit());
         }
         cut
+    }
+
+    /// Lets new duties take over, all at the next PWM period, or holds them back: what a late tick writes around the beginning of a
+    /// period would otherwise be half in it and half not.
+    #[inline(always)]
+    pub fn hold_duties(&mut self, held: bool) {
+        // Nothing else in this register is ever changed while it counts.
+        self.tim.cr1().write(|w| {
+            w.arpe().enabled().urs().counter_only().cen().enabled();
+            w.udis().bit(held)
+        });
     }
 
     /// Connects the outputs, or holds them low. While the break input is low they stay low whatever is asked.

@@ -1,9 +1,15 @@
 //! What a tick costs, whether it comes and ends in time, and whether it leaves any for the command side, by the core's cycle
-//! counter.
+//! counter. That one stands still while the core sleeps, unless a debugger is attached: whether a tick has come at all is told
+//! by TIM2, which counts on.
 
-use crate::timeline::{DEADLINE_CYCLES, PERIOD_CYCLES};
+use crate::clocks;
+use crate::timeline::{DEADLINE_CYCLES, LATCH_DEADLINE_CYCLES, PERIOD_CYCLES};
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{DCB, DWT};
+use stm32f4xx_hal::{
+    pac,
+    rcc::{Enable, Rcc},
+};
 
 // Told to who models the tick's cycles: symbols whose values are the numbers.
 core::arch::global_asm!(
@@ -11,12 +17,15 @@ core::arch::global_asm!(
     ".set stage_deadline_cycles, {}",
     ".global stage_period_cycles",
     ".set stage_period_cycles, {}",
+    ".global stage_latch_deadline_cycles",
+    ".set stage_latch_deadline_cycles, {}",
     const DEADLINE_CYCLES,
-    const PERIOD_CYCLES
+    const PERIOD_CYCLES,
+    const LATCH_DEADLINE_CYCLES
 );
 
-/// More than this between two ticks, and one has been missed: one and a half periods.
-const MISSED_CYCLES: u32 = PERIOD_CYCLES * 3 / 2;
+/// More than this between two ticks, and one has been missed: one and a half periods, in counts of TIM2, on the bus of TIM3.
+const MISSED_COUNTS: u32 = clocks::TIM3_HZ / (clocks::CORE_HZ / PERIOD_CYCLES) * 3 / 2;
 /// Of a period, in the mean, for tick and recorders together. With more the command side, which answers, plans and feeds the watchdog,
 /// would come to a standstill while duties are still in time: the loop counts as late, and stops the stage before the watchdog does.
 const MOST_LOAD_CYCLES: u32 = PERIOD_CYCLES / 100 * 97;
@@ -32,11 +41,18 @@ pub fn mark_recorded() {
     RECORDED.store(DWT::cycle_count(), Ordering::Relaxed);
 }
 
+/// TIM2: all its 32 bits, and nothing to be woken by.
+fn clock() -> &'static pac::tim2::RegisterBlock {
+    // SAFETY: this module has it to itself.
+    unsafe { &*pac::TIM2::ptr() }
+}
+
 /// See the module.
 #[derive(Default)]
 pub struct TickTiming {
-    /// When the last tick began.
+    /// When the last tick began, in cycles, and counts of TIM2.
     began: Option<u32>,
+    began_at: u32,
     /// What it cost.
     cycles: u32,
     /// How late it began, cycles after its event.
@@ -46,10 +62,15 @@ pub struct TickTiming {
 }
 
 impl TickTiming {
-    /// Starts the counter.
-    pub fn new(dcb: &mut DCB, dwt: &mut DWT) -> Self {
+    /// Starts the counters.
+    pub fn new(dcb: &mut DCB, dwt: &mut DWT, rcc: &mut Rcc) -> Self {
         dcb.enable_trace();
         dwt.enable_cycle_counter();
+        pac::TIM2::enable(rcc);
+        let clock = clock();
+        clock.arr().write(|w| w.arr().set(u32::MAX));
+        clock.egr().write(|w| w.ug().set_bit());
+        clock.cr1().write(|w| w.cen().enabled());
         Self::default()
     }
 
@@ -58,9 +79,9 @@ impl TickTiming {
     #[inline]
     pub fn begin(&mut self, delay: u32) -> (u32, bool) {
         let now = DWT::cycle_count();
-        let missed = self
-            .began
-            .is_some_and(|began| now.wrapping_sub(began) > MISSED_CYCLES);
+        let at = clock().cnt().read().bits();
+        let missed = self.began.is_some() && at.wrapping_sub(self.began_at) > MISSED_COUNTS;
+        self.began_at = at;
         let was_late = self.delay + self.cycles > DEADLINE_CYCLES;
         if let Some(began) = self.began {
             let busy = RECORDED.load(Ordering::Relaxed).wrapping_sub(began);

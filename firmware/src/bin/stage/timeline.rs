@@ -2,6 +2,7 @@
 //! asserted here.
 
 use crate::clocks;
+use crate::encoders::{BIT_HZ, FRAME_BYTES};
 
 /// Control ticks in a second.
 pub const TICK_HZ: u32 = 20_000;
@@ -34,6 +35,25 @@ pub const TICK_COUNT: u16 = PWM_COUNTS * 2 - (clocks::TIM1_HZ / 1_000_000 * DEAD
 pub const LATCH_COUNTS: u16 = (clocks::TIM3_HZ / TICK_HZ) as u16;
 const _: () = assert!(LATCH_COUNTS as u32 * TICK_HZ == clocks::TIM3_HZ);
 pub const LEAD_COUNTS: u16 = (clocks::TIM3_HZ / 1_000_000 * LEAD_US) as u16;
+
+/// Cycles of the core from the latch's event to the tick's.
+pub const LEAD_CYCLES: u32 = clocks::CORE_HZ / 1_000_000 * LEAD_US;
+/// Cycles from an encoder's port being let go to its frame's last byte in memory: its bits, and what the first byte takes from memory to
+/// the line and the last one back, by DMA over the slow bus.
+pub const FRAME_CYCLES: u32 =
+    FRAME_BYTES as u32 * 8 * (clocks::CORE_HZ / BIT_HZ) + FRAME_DMA_CYCLES;
+const FRAME_DMA_CYCLES: u32 = 60;
+/// The latch's interrupt has so many cycles until the ports are let go, or a frame is not whole when its tick comes.
+pub const LATCH_DEADLINE_CYCLES: u32 = LEAD_CYCLES - FRAME_CYCLES;
+// Half a microsecond beyond the microsecond and a half that it takes (`cargo chip-cycles`): the core may have a long instruction under way.
+const _: () = assert!(LATCH_DEADLINE_CYCLES > 168 * 2);
+
+/// Cycles that frames are whole before their tick, whose ports were let go so many counts of TIM3 after the latch's event.
+#[inline(always)]
+pub fn frame_margin_cycles(latch_counts: u16) -> u32 {
+    LATCH_DEADLINE_CYCLES
+        .saturating_sub(u32::from(latch_counts) * (clocks::CORE_HZ / clocks::TIM3_HZ))
+}
 
 /// Cycles of the core from the tick's event to its deadline; TIM1 counts the same clock.
 pub const DEADLINE_CYCLES: u32 = clocks::CORE_HZ / 1_000_000 * DEADLINE_US;

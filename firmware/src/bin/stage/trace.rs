@@ -103,3 +103,17 @@ pub fn mark_end_of_tick() {
 pub fn mark_end_of_handler() {
     mark!("stage_handler_end");
 }
+
+/// Where the latch has let the encoders' ports go.
+#[allow(named_asm_labels)]
+#[inline(always)]
+pub fn mark_ports_let_go() {
+    mark!("stage_ports_let_go");
+}
+
+/// Where all that the latch does has ended.
+#[allow(named_asm_labels)]
+#[inline(always)]
+pub fn mark_end_of_latch() {
+    mark!("stage_latch_end");
+}

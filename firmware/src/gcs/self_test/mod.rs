@@ -7,6 +7,9 @@ use crate::gcs::reply_writer::ReplyWriter;
 use crate::gcs::session::Session;
 use crate::self_test::{Board, Reading};
 
+/// Cycles of the core that encoder frames are whole before their tick, at least.
+const LEAST_FRAME_MARGIN: f64 = 84.0;
+
 impl Interpreter {
     /// The board that `TST?` asks.
     pub fn set_board(&mut self, board: &'static dyn Board) {
@@ -43,7 +46,7 @@ impl Interpreter {
         reply.end()
     }
 
-    /// What the control loop knows: encoders that can be used, and late ticks since `LST`.
+    /// What the control loop knows: encoders that can be used, when their frames were whole, and late ticks since `LST`.
     fn loop_readings(&self, tell: &mut dyn FnMut(&Reading)) {
         let faults =
             (self.commander.snapshot()).map_or([None; 3], |snapshot| snapshot.encoder_faults);
@@ -53,6 +56,15 @@ impl Interpreter {
                 value: f64::from(u8::from(fault.is_none())),
                 unit: "",
                 good: 1.0..=1.0,
+            });
+        }
+        // Half a microsecond, since the core may have a long instruction under way when the latch is due. Only a chip counts it.
+        if let Some(margin) = self.statistics.frame_margin_least {
+            tell(&Reading {
+                name: "FRAME_MARGIN",
+                value: f64::from(margin),
+                unit: "cycles",
+                good: LEAST_FRAME_MARGIN..=f64::from(u16::MAX),
             });
         }
         tell(&Reading {

@@ -27,6 +27,8 @@ impl Interpreter {
         reply.line(format_args!("CYCLES_LAST={}", s.cycles))?;
         reply.line(format_args!("CYCLES_MEAN={mean:.1}"))?;
         reply.line(format_args!("CYCLES_WORST={}", s.cycles_worst))?;
+        let margin = s.frame_margin_least.unwrap_or(0);
+        reply.line(format_args!("FRAME_MARGIN={margin}"))?;
         reply.line(format_args!("LATE={}", s.late))?;
         reply.line(format_args!("PEAK_ERROR_RAD={peak_rad:e}"))?;
         reply.line(format_args!("COMMANDS={}", s.commands))?;

@@ -10,6 +10,8 @@ pub(in crate::gcs) struct Statistics {
     pub cycles: u32,
     pub cycles_sum: u64,
     pub cycles_worst: u32,
+    /// `None` where nobody counts.
+    pub frame_margin_least: Option<u32>,
     pub late: u32,
     pub peak_error: u32,
     pub commands: u32,
@@ -26,6 +28,7 @@ impl Statistics {
             cycles,
             cycles_sum,
             cycles_worst,
+            frame_margin_least,
             late,
             peak_error,
         } = snapshot.loop_counters;
@@ -33,6 +36,10 @@ impl Statistics {
         self.cycles = cycles;
         self.cycles_sum += u64::from(cycles_sum);
         self.cycles_worst = self.cycles_worst.max(cycles_worst);
+        if frame_margin_least != u32::MAX {
+            let before = self.frame_margin_least.unwrap_or(u32::MAX);
+            self.frame_margin_least = Some(before.min(frame_margin_least));
+        }
         self.late = self.late.saturating_add(late);
         self.peak_error = self.peak_error.max(peak_error);
         let (commands, refused) = self.counted;

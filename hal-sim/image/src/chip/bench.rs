@@ -22,6 +22,8 @@ use std::path::{Path, PathBuf};
 pub(super) const TICK_BEGIN: &str = "TIM1_CC";
 pub(super) const TICK_END: &str = "stage_tick_end";
 pub(super) const HANDLER_END: &str = "stage_handler_end";
+/// The handler of the latch, where it has let the encoders' ports go, and its end.
+pub(super) const LATCH: [&str; 3] = ["TIM3", "stage_ports_let_go", "stage_latch_end"];
 const TRACE: &str = "TRACE";
 /// Where the image keeps its settings: at the beginning of bank 2.
 const SETTINGS_AT: u64 = 0x0810_0000;
@@ -37,6 +39,8 @@ pub struct Bench {
     instructions_per_second: NonZeroU64,
     has_crystal: bool,
     flash_kib: Option<u16>,
+    /// The handler that is counted and followed: its beginning, where its cost ends, its end.
+    handler: [&'static str; 3],
     /// What the settings' flash holds at the start.
     settings: SettingsFlash,
 }
@@ -100,6 +104,7 @@ impl Bench {
             instructions_per_second: STAGE_RATE,
             has_crystal: true,
             flash_kib: None,
+            handler: [TICK_BEGIN, TICK_END, HANDLER_END],
             settings: with_machine_settings(
                 SettingsFlash::in_memory(),
                 &Parameters::REFERENCE,
@@ -113,6 +118,15 @@ impl Bench {
     pub fn at_rate(self, instructions_per_second: NonZeroU64) -> Self {
         Self {
             instructions_per_second,
+            ..self
+        }
+    }
+
+    /// The same with the latch counted and followed, in place of the tick.
+    #[must_use]
+    pub(super) fn of_latch(self) -> Self {
+        Self {
+            handler: LATCH,
             ..self
         }
     }
@@ -162,9 +176,9 @@ impl Bench {
         F: FnMut(&mut Period<'_>) -> ControlFlow<()> + Send + 'static,
     {
         let landmarks = Landmarks {
-            tick_begin: self.symbol(TICK_BEGIN)?,
-            tick_end: self.symbol(TICK_END)?,
-            handler_end: self.symbol(HANDLER_END)?,
+            tick_begin: self.symbol(self.handler[0])?,
+            tick_end: self.symbol(self.handler[1])?,
+            handler_end: self.symbol(self.handler[2])?,
             trace: self.symbol(TRACE)?,
         };
         let board = ChipBoard::new().map_err(BenchError::Part)?;

@@ -40,6 +40,7 @@ const BRIDGE_FAULT: [u8; 3] = [8, 9, 10];
 const BRAKE_RESISTOR: u8 = 3;
 /// Pin of port E.
 const EMERGENCY_STOP: u8 = 15;
+const TIM1_DIER: u64 = 0x4001_000C;
 const TIM3_CR1: u64 = 0x4000_0400;
 const TIM3_CNT: u64 = 0x4000_0424;
 const LATCH_PERIOD_COUNTS: i64 = 4_200;
@@ -143,6 +144,16 @@ impl ChipBoard {
         }
     }
 
+    /// When the first and the last byte of each encoder's last frame were clocked, ns.
+    pub fn frames_clocked_at_ns(&mut self) -> Option<[(u64, u64); 3]> {
+        let [one, two, three] = [0, 1, 2].map(|port| {
+            let line = self.mcu.spi.get_mut(port)?.chip_mut::<EncoderLine>(0)?;
+            let (first, last) = line.clocked_at()?;
+            Some((first.0, last.0))
+        });
+        Some([one?, two?, three?])
+    }
+
     /// Puts counts on the ADC's inputs.
     pub fn set_analog(&mut self, (currents, supply): ([u16; 3], u16)) {
         let [first, second, third] = currents;
@@ -231,6 +242,14 @@ impl ChipBoard {
         let count = self.mcu.read(now, TIM3_CNT, Width::W32)? as i64;
         let moved = (count - i64::from(counts)).rem_euclid(LATCH_PERIOD_COUNTS);
         self.mcu.write(now, TIM3_CNT, Width::W32, moved as u64)
+    }
+
+    /// Takes the tick's interrupt away, until the next latch.
+    ///
+    /// # Errors
+    /// None, unless the emulator's part has no such register.
+    pub fn disarm_tick(&mut self, now: VirtualNanos) -> Result<(), Fault> {
+        self.mcu.write(now, TIM1_DIER, Width::W32, 0)
     }
 
     /// The host's end of the command interface.

@@ -159,6 +159,7 @@ impl<F> StageDriver<F> {
                 // The register exists: the image wrote to it before.
                 Action::HaltLoop => drop(board.stop_latch_timer(now)),
                 Action::DelayLatch(counts) => drop(board.delay_latch(now, counts)),
+                Action::LoseTick => drop(board.disarm_tick(now)),
                 Action::Probe => self
                     .probes
                     .push((now.0, board.bridges(now, self.bridge_faults))),
@@ -242,7 +243,8 @@ where
         self.notice_resets(session, now);
         match settled {
             Settled::Access { access, .. }
-                if access.address == TIM1_CR1
+                if self.started_at.is_none()
+                    && access.address == TIM1_CR1
                     && access.kind == AccessKind::Write
                     && access.value & COUNTER_ENABLE != 0 =>
             {

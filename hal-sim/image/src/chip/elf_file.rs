@@ -36,3 +36,23 @@ pub fn symbol(path: &Path, name: &str) -> Option<u64> {
     let file = object::File::parse(&*bytes).ok()?;
     Some(file.symbol_by_name(name)?.address())
 }
+
+/// The value of the symbol in whose name all of these stand, one behind the other, if there is exactly one.
+#[must_use]
+pub fn symbol_with(path: &Path, parts: &[&str]) -> Option<u64> {
+    let bytes = std::fs::read(path).ok()?;
+    let file = object::File::parse(&*bytes).ok()?;
+    let is_named = |name: &str| {
+        let mut rest = name;
+        parts.iter().all(|part| match rest.split_once(part) {
+            Some((_, behind)) => {
+                rest = behind;
+                true
+            }
+            None => false,
+        })
+    };
+    let mut found = (file.symbols()).filter(|symbol| symbol.name().is_ok_and(is_named));
+    let symbol = found.next()?;
+    found.next().is_none().then(|| symbol.address())
+}

@@ -3,6 +3,7 @@
 use rigless::chip::Timeline;
 use rigless::chip::spi::Peer;
 use rigless::snapshot::Store;
+use rigless::time::VirtualNanos;
 
 /// What an idle line reads.
 const IDLE: u32 = 0xFF;
@@ -12,6 +13,7 @@ const IDLE: u32 = 0xFF;
 pub struct EncoderLine {
     frame: [u8; 8],
     next: usize,
+    clocked_at: Option<(VirtualNanos, VirtualNanos)>,
 }
 
 impl EncoderLine {
@@ -20,12 +22,17 @@ impl EncoderLine {
         self.frame = frame;
         self.next = 0;
     }
+
+    /// When the first and the last byte of the last frame were clocked.
+    pub fn clocked_at(&self) -> Option<(VirtualNanos, VirtualNanos)> {
+        self.clocked_at
+    }
 }
 
 impl Store for EncoderLine {}
 
 impl Peer for EncoderLine {
-    fn transfer(&mut self, _mosi: u32, bits: u8, _context: &mut Timeline<'_, '_>) -> u32 {
+    fn transfer(&mut self, _mosi: u32, bits: u8, context: &mut Timeline<'_, '_>) -> u32 {
         // Whoever clocks other than bytes has the port set up wrongly, and is answered by a line without life.
         if bits != 8 {
             return 0;
@@ -34,6 +41,12 @@ impl Peer for EncoderLine {
             .frame
             .get(self.next)
             .map_or(IDLE, |byte| u32::from(*byte));
+        let now = context.now();
+        let first = self
+            .clocked_at
+            .filter(|_| self.next > 0)
+            .map_or(now, |(first, _)| first);
+        self.clocked_at = Some((first, now));
         self.next += 1;
         byte
     }

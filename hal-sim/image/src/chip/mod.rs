@@ -24,7 +24,7 @@
 //! | `pins` | what goes over the pins, tick by tick, for another emulator |
 //! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
-//! | `load` | the tick under all the load there is |
+//! | `load`, `busy` | the tick under all the load there is; with all that it is used for |
 //! | `cost`, `follow`, `way`, `estimate` | what ticks take; their instructions; one tick's by where they are written; `llvm-mca` on it |
 //! | `gaps` | what the emulator does not model |
 //! | `elf_file` | where the images lie |
@@ -33,6 +33,7 @@
 
 mod bench;
 pub(crate) mod board;
+mod busy;
 mod cost;
 mod driver;
 pub mod elf_file;
@@ -53,6 +54,7 @@ mod uses;
 mod way;
 
 pub use bench::{Bench, BenchError, Outcome};
+pub use busy::{Busy, Told, busy};
 pub use cost::TickCost;
 pub use estimate::{Estimate, estimate};
 pub use exercise::{Cost, Doing, Exercise, ExerciseOptions, Tally, Worst, exercise};

@@ -30,6 +30,8 @@ pub enum Action {
     HaltLoop,
     /// Move the latches to come by so many counts of TIM3 (84 MHz): later, or, less than 0, earlier again.
     DelayLatch(i32),
+    /// Take the tick's interrupt away that the latch has armed: it does not come.
+    LoseTick,
     /// Keep what the bridges' pins say, for [`Period::probes`].
     Probe,
 }
@@ -150,6 +152,12 @@ impl Period<'_> {
             .read(address, Width::W32)
             .ok()
             .map(|word| word as u32)
+    }
+
+    /// When the first and the last byte of each encoder's frame of the last tick were clocked, ns since power on; `None` where there was
+    /// none.
+    pub fn frames_clocked_at_ns(&mut self) -> Option<[(u64, u64); 3]> {
+        self.board.frames_clocked_at_ns()
     }
 
     /// Has the instructions of ticks noted from the next one on, or no more. Returns whether they can be.

@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::ControlFlow::{Break, Continue};
 use std::ops::Range;
+use std::path::Path;
 use std::sync::{Arc, mpsc};
 
 /// What a tick has to do.
@@ -41,11 +42,13 @@ pub enum Use {
     OffCalibrated,
     /// It is switched on then.
     SwitchedOnCalibrated,
+    /// No tick: the interrupt before each, until it has let the encoders' ports go.
+    Latch,
 }
 
 impl Use {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Off,
         Self::Holding,
         Self::Moving,
@@ -59,6 +62,7 @@ impl Use {
         Self::PlanTakenCalibrated,
         Self::OffCalibrated,
         Self::SwitchedOnCalibrated,
+        Self::Latch,
     ];
 
     /// In words.
@@ -78,6 +82,7 @@ impl Use {
             Self::PlanTakenCalibrated => "calibrated, takes a plan",
             Self::OffCalibrated => "servo off, calibrated",
             Self::SwitchedOnCalibrated => "calibrated, switched on",
+            Self::Latch => "latch, until the encoders' clocks start",
         }
     }
 }
@@ -95,6 +100,8 @@ pub struct UsedTick {
     pub tick: u64,
     /// What for.
     pub used: Use,
+    /// The instructions that its handler can come to.
+    pub program: Arc<Program>,
     /// Its instructions.
     pub steps: Vec<Step>,
     /// So many of them until its duties are written.
@@ -260,7 +267,48 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
     }
     let mut ticks = told.recv().map_err(|_| ChipError::Lost)?;
     keep_orders(&mut ticks);
+    ticks.extend(latches(&path)?);
     Ok(Used { program, ticks })
+}
+
+/// Latches that are followed: one is like the other.
+const LATCHES: Range<u64> = 60..100;
+
+/// The latch's interrupts.
+fn latches(path: &Path) -> Result<Vec<UsedTick>, ChipError> {
+    let no_bench = |error| ChipError::Bench(path.to_owned(), error);
+    let program = Program::read(path, bench::LATCH[0]);
+    let program = Arc::new(program.map_err(|error| ChipError::Proof(path.to_owned(), error))?);
+    let stage = Stage::new(&StageParameters::REFERENCE);
+    let (tell, told) = mpsc::channel();
+    let all = Arc::clone(&program);
+    let bench = Bench::load(path, stage).map_err(no_bench)?.of_latch();
+    let outcome = bench.run(move |period| {
+        if period.tick == LATCHES.start && !period.follow(Some(&all)) {
+            return Break(());
+        }
+        if period.tick < LATCHES.end {
+            return Continue(());
+        }
+        if let Some(followed) = period.followed() {
+            // Nobody is left to be told when the other side is gone.
+            let _ = tell.send(followed);
+        }
+        Break(())
+    });
+    let outcome = outcome.map_err(no_bench)?;
+    if !outcome.gaps.is_empty() {
+        return Err(ChipError::Gaps(outcome.gaps));
+    }
+    let followed = told.recv().map_err(|_| ChipError::Lost)?;
+    let latch = |followed: FollowedTick| UsedTick {
+        tick: followed.tick,
+        used: Use::Latch,
+        program: Arc::clone(&program),
+        steps: followed.steps,
+        until_duties: followed.until_duties,
+    };
+    Ok(followed.into_iter().map(latch).collect())
 }
 
 /// Of the ticks in which an order to record may come, those that take it: the longest of each stretch, by far.
@@ -342,6 +390,7 @@ impl Run {
         self.ticks.push(UsedTick {
             tick,
             used,
+            program: Arc::clone(&self.program),
             steps: followed.steps,
             until_duties: followed.until_duties,
         });

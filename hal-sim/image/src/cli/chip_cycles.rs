@@ -9,14 +9,16 @@ use super::error::CliError;
 use super::place::{lines, place};
 use crate::chip::{ChipError, Use, Used, elf_file, estimate, uses};
 use crate::cycles::{
-    Cycles, Setting, Tallies, Tally, limits, modelled_by_schedule, over, print_cycles, print_kinds,
-    print_places, read_limits, write_limits,
+    Cycles, Deadlines, Setting, Tallies, Tally, late, limits, modelled_by_schedule, over,
+    print_cycles, print_kinds, print_places, read_limits, write_limits,
 };
 
 /// Where the image tells from its interrupt on how many cycles its deadline is.
 const DEADLINE: &str = "stage_deadline_cycles";
 /// And its period.
 const PERIOD: &str = "stage_period_cycles";
+/// And how long the latch may take, so that frames are whole when their tick comes.
+const LATCH_DEADLINE: &str = "stage_latch_deadline_cycles";
 /// How far model and `llvm-mca` may be apart.
 const APART: f64 = 0.02;
 
@@ -26,7 +28,11 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
         let value = elf_file::symbol(&image, name);
         value.ok_or_else(|| CliError::Value(format!("{}: no symbol {name}", image.display())))
     };
-    let (deadline, period) = (symbol(DEADLINE)?, symbol(PERIOD)?);
+    let deadlines = Deadlines {
+        tick: symbol(DEADLINE)?,
+        latch: symbol(LATCH_DEADLINE)?,
+    };
+    let period = symbol(PERIOD)?;
     let kept = arguments
         .check
         .then(|| read_limits(&arguments.limits))
@@ -36,7 +42,7 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
         without: Tally::of(&used, Setting::WITHOUT_WAIT_STATES),
         guesses: Setting::ALL.map(|setting| Tally::of(&used, setting)),
     };
-    println!("{}", print_cycles(&tallies, deadline, period));
+    println!("{}", print_cycles(&tallies, deadlines, period));
     let nominal = tallies.nominal();
     for row in nominal.rows.iter().filter(|row| row.used == Use::Moving) {
         println!("{}", print_kinds(row));
@@ -44,13 +50,14 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
     print_top(nominal, &image, arguments.top)?;
     let apart = beside_llvm_mca(&used)?;
     if arguments.write {
-        write_limits(&arguments.limits, &limits(nominal, deadline))?;
+        write_limits(&arguments.limits, &limits(nominal, deadlines))?;
     }
     let mut found = kept.map_or_else(Vec::new, |kept| over(nominal, &kept));
     if arguments.check && apart.is_some_and(|apart| apart.abs() > APART) {
         found.push("the model is not what llvm-mca has".to_owned());
     }
     let pessimistic = &tallies.guesses[2];
+    found.extend(late(pessimistic, deadlines));
     for row in pessimistic.rows.iter().filter(|row| row.whole > period) {
         found.push(format!(
             "{}: all that a tick does takes {} cycles pessimistically, a period has {period}",
@@ -114,7 +121,7 @@ fn beside_llvm_mca(used: &Used) -> Result<Option<f64>, CliError> {
     let moving = used.ticks.iter().filter(|tick| tick.used == Use::Moving);
     let (mut ours, mut transfers, mut theirs) = (0, 0, 0);
     for tick in moving.rev().take(COMPARED) {
-        let [cycles, beyond] = modelled_by_schedule(used, tick);
+        let [cycles, beyond] = modelled_by_schedule(tick);
         (ours, transfers) = (ours + cycles, transfers + beyond);
         match estimate(&used.program, &tick.steps) {
             Ok(estimated) => theirs += estimated.cycles,

@@ -1,16 +1,22 @@
-//! `cargo chip-load`: when the tick starts under full load.
+//! `cargo chip-load`: when the tick starts under full load, and whether deadlines are kept with all that a tick is used for.
 
 use std::num::NonZeroU64;
 use std::process::ExitCode;
 
 use super::arguments::ChipLoad;
 use super::error::CliError;
-use crate::chip::load;
+use crate::chip::{busy, load};
 
 /// Instructions in a second: one a cycle, and with what wait states and long instructions may cost at the most.
 const RATES: [NonZeroU64; 2] = [
     NonZeroU64::new(168_000_000).unwrap(),
     NonZeroU64::new(100_000_000).unwrap(),
+];
+
+/// What it has to bear: one over the cycles that an instruction takes on silicon, pessimistically, and five percent less.
+const BUSY_RATES: [NonZeroU64; 2] = [
+    NonZeroU64::new(93_000_000).unwrap(),
+    NonZeroU64::new(88_000_000).unwrap(),
 ];
 
 pub(super) fn run(arguments: &ChipLoad) -> Result<ExitCode, CliError> {
@@ -29,6 +35,25 @@ pub(super) fn run(arguments: &ChipLoad) -> Result<ExitCode, CliError> {
         println!("{:>10}  bytes from it", load.bytes[1]);
         println!("{:>10}  parameters refused in motion", load.refused);
         println!("{:>10}  bytes of stack used", load.stack);
+    }
+    println!(
+        "\neight signals recorded in every tick, a stream at 1 kHz, moves and new targets, settings written with the servo on"
+    );
+    for rate in BUSY_RATES {
+        let busy = busy(rate)?;
+        let (cost, told) = (busy.cost, busy.told);
+        println!("\n{} million instructions a second", rate.get() / 1_000_000);
+        println!("{:>10}  ticks", cost.ticks);
+        println!("{:>10}  ns, latest end of duties", cost.latest_end_ns);
+        println!("{:>10}  late ticks", told.late);
+        println!(
+            "{:>10}  cycles from whole frames to their tick, at least",
+            told.frame_margin
+        );
+        println!("{:>10}  commands taken", busy.commands);
+        println!("{:>10}  commands refused", told.refused);
+        println!("{:>10}  points recorded last", told.points);
+        println!("fault: {}", told.fault);
     }
     Ok(ExitCode::SUCCESS)
 }

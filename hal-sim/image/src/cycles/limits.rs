@@ -1,6 +1,7 @@
 //! What a tick may take: the file that the repository keeps, and whether ticks keep to it.
 
 use super::tally::{Row, Tally};
+use crate::chip::Use;
 use std::path::{Path, PathBuf};
 
 /// Share of the deadline that a tick may take at most, nominally, in every use: what protection and calibration will need comes on top.
@@ -8,6 +9,27 @@ pub const GOAL: f64 = 0.62;
 /// And no tick may grow by more than this.
 const SPARE: f64 = 1.10;
 const COLUMNS: [&str; 3] = ["use", "nominal worst", "limit"];
+
+/// What there is time for, cycles from an interrupt on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deadlines {
+    /// Until the duties are written.
+    pub tick: u64,
+    /// Until the encoders' ports are let go: later, a frame is not whole when its tick comes.
+    pub latch: u64,
+}
+
+impl Deadlines {
+    /// The one of a use.
+    #[must_use]
+    pub fn of(self, used: Use) -> u64 {
+        if used == Use::Latch {
+            self.latch
+        } else {
+            self.tick
+        }
+    }
+}
 
 /// The limit of a use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,11 +63,11 @@ pub enum LimitsError {
     },
 }
 
-/// The limits that these ticks give, at a deadline in cycles: the figure and 10 %, and never more than the goal.
+/// The limits that these ticks give: the figure and 10 %, and never more than the goal.
 #[must_use]
-pub fn limits(nominal: &Tally, deadline: u64) -> Vec<Limit> {
-    let goal = (GOAL * deadline as f64) as u64;
+pub fn limits(nominal: &Tally, deadlines: Deadlines) -> Vec<Limit> {
     let limit = |row: &Row| {
+        let goal = (GOAL * deadlines.of(row.used) as f64) as u64;
         let worst = row.worst();
         Limit {
             name: row.name(),
@@ -81,6 +103,22 @@ pub fn over(nominal: &Tally, limits: &[Limit]) -> Vec<String> {
     found
         .extend(gone.map(|limit| format!("{}: has a limit, but there is no such use", limit.name)));
     found
+}
+
+/// What would miss its deadline on the slowest chip that there may be, in words.
+#[must_use]
+pub fn late(pessimistic: &Tally, deadlines: Deadlines) -> Vec<String> {
+    let of = |row: &Row| (row.worst(), deadlines.of(row.used));
+    (pessimistic.rows.iter())
+        .filter(|row| of(row).0 >= of(row).1)
+        .map(|row| {
+            let (worst, deadline) = of(row);
+            format!(
+                "{}: {worst} cycles pessimistically, its deadline is {deadline}",
+                row.name()
+            )
+        })
+        .collect()
 }
 
 /// Reads a file.
@@ -131,13 +169,21 @@ pub fn write_limits(path: &Path, limits: &[Limit]) -> Result<(), LimitsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chip::Use;
     use crate::cycles::{Cycles, Setting};
     use std::collections::HashMap;
 
+    const DEADLINES: Deadlines = Deadlines {
+        tick: 1_000,
+        latch: 600,
+    };
+
     fn tally(ticks: &[u64]) -> Tally {
+        tally_of(Use::Moving, ticks)
+    }
+
+    fn tally_of(used: Use, ticks: &[u64]) -> Tally {
         let row = Row {
-            used: Use::Moving,
+            used,
             writing: false,
             cycles: ticks.to_vec(),
             whole: 0,
@@ -153,14 +199,25 @@ mod tests {
 
     #[test]
     fn a_limit_is_the_figure_and_a_tenth_and_never_over_the_goal() {
-        assert_eq!(limits(&tally(&[400, 500]), 1_000)[0].limit, 550);
-        assert_eq!(limits(&tally(&[600]), 1_000)[0].limit, 620);
-        assert_eq!(limits(&tally(&[700]), 1_000)[0].limit, 620);
+        assert_eq!(limits(&tally(&[400, 500]), DEADLINES)[0].limit, 550);
+        assert_eq!(limits(&tally(&[600]), DEADLINES)[0].limit, 620);
+        assert_eq!(limits(&tally(&[700]), DEADLINES)[0].limit, 620);
+    }
+
+    #[test]
+    fn what_misses_its_deadline_pessimistically_is_named() {
+        assert_eq!(late(&tally(&[999]), DEADLINES), [""; 0]);
+        assert_eq!(
+            late(&tally(&[1_000]), DEADLINES),
+            ["moving: 1000 cycles pessimistically, its deadline is 1000"]
+        );
+        assert_eq!(late(&tally_of(Use::Latch, &[599]), DEADLINES), [""; 0]);
+        assert_eq!(late(&tally_of(Use::Latch, &[600]), DEADLINES).len(), 1);
     }
 
     #[test]
     fn what_is_over_its_limit_is_named() {
-        let kept = limits(&tally(&[500]), 1_000);
+        let kept = limits(&tally(&[500]), DEADLINES);
         assert_eq!(over(&tally(&[550]), &kept), [""; 0]);
         assert_eq!(
             over(&tally(&[551]), &kept),
@@ -173,7 +230,7 @@ mod tests {
     #[test]
     fn a_file_is_read_as_it_was_written() {
         let path = std::env::temp_dir().join(format!("limits-{}.csv", std::process::id()));
-        let kept = limits(&tally(&[700]), 1_000);
+        let kept = limits(&tally(&[700]), DEADLINES);
         write_limits(&path, &kept).expect("a file");
         assert_eq!(read_limits(&path).expect("limits"), kept);
         std::fs::write(&path, "use,nominal worst,limit\nmoving,many,1\n").expect("a file");

@@ -26,7 +26,9 @@ mod tally;
 
 pub use self::core::{Bus, Core, Cycles, Ran};
 pub use instruction::{Instruction, Kind, Place, address};
-pub use limits::{GOAL, Limit, LimitsError, limits, over, read_limits, write_limits};
+pub use limits::{
+    Deadlines, GOAL, Limit, LimitsError, late, limits, over, read_limits, write_limits,
+};
 pub use print::{Tallies, print_cycles, print_kinds, print_places};
 pub use program::Program;
 pub use registers::Registers;

@@ -1,7 +1,7 @@
 //! The table of uses, and where the cycles go.
 
 use super::core::Cycles;
-use super::limits::GOAL;
+use super::limits::{Deadlines, GOAL};
 use super::tally::{Row, Tally};
 use std::fmt::Write;
 
@@ -36,13 +36,13 @@ impl Tallies {
     }
 }
 
-/// The table; a tick's deadline and its period in cycles.
+/// The table; deadlines and period in cycles.
 #[must_use]
-pub fn print_cycles(tallies: &Tallies, deadline: u64, period: u64) -> String {
-    let share = |cycles: u64| 100.0 * cycles as f64 / deadline as f64;
+pub fn print_cycles(tallies: &Tallies, deadlines: Deadlines, period: u64) -> String {
+    let Deadlines { tick, latch } = deadlines;
     let mut text = format!(
         "cycles of a tick, from its interrupt until its duties are written, by a model of core and flash: no board was measured\n\
-         deadline {deadline} cycles; the goal is {:.0} % of it nominally, and under 100 % pessimistically\n\
+         deadline {tick} cycles, of the latch {latch}; the goal is {:.0} % of it nominally, and under 100 % pessimistically\n\
          whole: all that the longest tick does, the next setpoint among it; period {period} cycles\n\n",
         100.0 * GOAL,
     );
@@ -80,6 +80,7 @@ pub fn print_cycles(tallies: &Tallies, deadline: u64, period: u64) -> String {
     let [optimistic, nominal, pessimistic] = &tallies.guesses;
     for (index, row) in nominal.rows.iter().enumerate() {
         let ticks = row.cycles.len();
+        let share = |cycles: u64| 100.0 * cycles as f64 / deadlines.of(row.used) as f64;
         let worst = |tally: &Tally| tally.rows.get(index).map_or(0, Row::worst);
         let whole = pessimistic.rows.get(index).map_or(0, |row| row.whole);
         let _ = writeln!(

@@ -2,6 +2,7 @@
 
 use super::core::{Core, Cycles, Ran};
 use super::instruction::Instruction;
+use super::program::Program;
 use super::setting::Setting;
 use crate::chip::{Step, Use, Used, UsedTick};
 use std::collections::HashMap;
@@ -80,7 +81,7 @@ impl Tally {
             for doing in uses {
                 let ticks = used.ticks.iter().filter(|tick| tick.used == *doing);
                 let noted = (*doing == Use::Moving && !writing).then_some(&mut places);
-                rows.push(row(used, ticks, setting, (*doing, writing), noted));
+                rows.push(row(ticks, setting, (*doing, writing), noted));
             }
         }
         Self {
@@ -92,7 +93,6 @@ impl Tally {
 }
 
 fn row<'a>(
-    used: &Used,
     ticks: impl Iterator<Item = &'a UsedTick>,
     setting: Setting,
     (doing, writing): (Use, bool),
@@ -109,7 +109,7 @@ fn row<'a>(
     };
     for tick in ticks {
         let (mut until_duties, mut done) = (Cycles::default(), 0);
-        let whole = core.run(ran(used, &tick.steps), |at, cycles| {
+        let whole = core.run(ran(&tick.program, &tick.steps), |at, cycles| {
             done += 1;
             if done > tick.until_duties {
                 return;
@@ -133,11 +133,11 @@ fn row<'a>(
 /// them: without a memory, and with one cycle for each load or store. ARM's table has two for a load by itself, and one more for each
 /// word of those that move several: what that comes to is told beside.
 #[must_use]
-pub fn modelled_by_schedule(used: &Used, tick: &UsedTick) -> [u64; 2] {
+pub fn modelled_by_schedule(tick: &UsedTick) -> [u64; 2] {
     let mut core = Core::new(Setting::WITHOUT_WAIT_STATES);
     let mut transfers = 0;
-    let cycles = core.run(ran(used, &tick.steps), |at, cycles| {
-        if used.program.at(at).is_some_and(Instruction::is_transfer) {
+    let cycles = core.run(ran(&tick.program, &tick.steps), |at, cycles| {
+        if tick.program.at(at).is_some_and(Instruction::is_transfer) {
             transfers += cycles.table - 1;
         }
     });
@@ -145,9 +145,9 @@ pub fn modelled_by_schedule(used: &Used, tick: &UsedTick) -> [u64; 2] {
 }
 
 /// The steps of a tick as the model takes them.
-fn ran<'a>(used: &'a Used, steps: &'a [Step]) -> impl Iterator<Item = Ran<'a>> {
+fn ran<'a>(program: &'a Program, steps: &'a [Step]) -> impl Iterator<Item = Ran<'a>> {
     steps.iter().filter_map(|step| {
-        let instruction = used.program.at(step.at)?;
+        let instruction = program.at(step.at)?;
         Some(Ran {
             at: step.at,
             instruction,

@@ -175,6 +175,7 @@ impl Control<'_> {
             current_counts: [100; 3],
             supply_counts: SUPPLY_COUNTS,
             tick_cycles: 0,
+            frame_margin_cycles: u32::MAX,
             late: false,
         }
     }
