@@ -153,6 +153,8 @@ class Panels(OnServed):
         browser = self.ready()
         picture = "return document.getElementById('scene').toDataURL()"
         self.light(browser, "settled")
+        # The way it came fades, and the last of it is drawn after it has settled: a picture that stays, first.
+        browser.wait(lambda: browser.run(picture) == browser.run(picture), "a picture that stays")
         before = browser.run(picture)
         self.assertEqual(browser.run(picture), before)
         for line in ("NLM X -20", "PLM X 35", "KST TIP X 20 Y 10", "KEN TIP"):
