@@ -196,7 +196,7 @@ const COMMON: &[Parameter] = &[
     SERVO.float(0x5450_0305, "latency from latch to duty", "s", [0.0, 1e-3], at!(servo.latency_s)),
     SERVO.float(0x5450_0306, "inertia of a pivot and its share of the platform that velocity and integral gain are for, 0: the same gains everywhere", "kg m^2", [0.0, 10.0], at!(servo.scheduled_inertia_kg_m2)),
     SERVO.float(0x5450_0308, "what rest leaves of the gains' rates, 1: there is no rest mode", "", [0.05, 1.0], at!(servo.rest.stiffness)),
-    SERVO.float(0x5450_0309, "time at rest after which they fall", "s", [0.0, 10.0], at!(servo.rest.delay_s)),
+    SERVO.float(0x5450_0309, "time at rest after which they fall, 0.6 s at least if the loop does not hunt", "s", [0.0, 10.0], at!(servo.rest.delay_s)),
     SERVO.float(0x5450_030A, "mean following error that brings the full gains back", "encoder counts", [1.0, 1_000.0], at!(servo.rest.wake_counts)),
     SERVO.int(0x5450_030B, "what was learnt is kept over a restart: 0 by WPA alone, 1 by itself as well", [0.0, 1.0], flag!(servo.keeps_learnt)),
 ];
