@@ -40,6 +40,15 @@ const BETWEEN: &str = "
   (computed). The bridge bears the current, 15 A from 10 rad/s: it trips at 32 A. Nothing comes back to the supply.
 - **coast**: the sleep pins open the bridges.
 
+How far the worst machine goes and turns, and for how long, from the tick in which the fault begins until no pivot turns faster than
+0.01 rad/s: 5 kg on the platform, half of the reference stage's friction at the rings and none else, windings 100 K hot, masses a fifth more and motors a
+fifth weaker or the other way round, at the largest speed and rotation; each figure with the motion in which it is worst. A stop lasts as
+long as its currents ask for with that load. A stage that coasts is stopped by the ends of its guides
+and its bumpers. `KEEP=1 cargo bench -p tests --bench reactions` measures it again; `tests/tests/reactions.rs` holds it.
+
+";
+
+const AFTER_REACTIONS: &str = "
 An encoder that was lost is ready for `FRF` with four good frames in a row, where its pivot is slower than 2.5 rad/s; until then `FRF`
 answers 45. A stage that coasts faster than that could not be held.
 
@@ -125,10 +134,25 @@ fn kinds(page: &mut String) {
     }
 }
 
+/// Way, turn and time to rest of each reaction.
+fn reactions(page: &mut String) {
+    *page += "| reaction | way, mm | turn, deg | time, ms |\n|---|---|---|---|\n";
+    for row in include_str!("../reactions.csv").lines().skip(1) {
+        let mut cells = row.split(',');
+        write!(page, "| {} |", cells.next().expect("a reaction")).unwrap();
+        while let (Some(value), Some(motion)) = (cells.next(), cells.next()) {
+            write!(page, " {value} ({motion}) |").unwrap();
+        }
+        page.push('\n');
+    }
+}
+
 fn page() -> String {
     let mut page = HEAD.to_owned();
     states(&mut page);
     page += BETWEEN;
+    reactions(&mut page);
+    page += AFTER_REACTIONS;
     kinds(&mut page);
     page += TAIL;
     page

@@ -28,7 +28,7 @@ fn events_are_told_in_order_with_their_ticks() {
     assert_eq!(events(&mut bench), ["1 start"]);
     bench.say("FRF\n");
     bench.run(100);
-    bench.say("SPA 1 0x54500100 150 1 0x54500702 1\n");
+    bench.say("SPA 1 0x54500100 150 1 0x54500702 0.1\n");
     bench.say("SPA 1 0x54500100 1e9\n");
     bench.say("MOV X 10\n");
     bench.say("HLT X\n");
@@ -46,7 +46,7 @@ fn events_are_told_in_order_with_their_ticks() {
             "2 referenced",
             "3 servo on",
             "4 parameter 0x54500100 set to 150",
-            "5 parameter 0x54500702 set to 1",
+            "5 parameter 0x54500702 set to 0.1",
             "6 halted by command",
             "7 stopped by command",
             &*format!(

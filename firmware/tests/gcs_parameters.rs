@@ -213,7 +213,7 @@ fn the_tick_is_told_when_what_it_computes_with_changes() {
     assert_eq!(bench.error_after("SPA 1 0x54500100 100"), "0");
     assert!(bench.tick.log.is_empty());
     assert_eq!(
-        bench.error_after("SPA 1 0x54500300 250 1 0x54500702 2.5"),
+        bench.error_after("SPA 1 0x54500300 250 1 0x54500702 2.5 1 0x54500107 200"),
         "0"
     );
     assert_eq!(bench.tick.log, ["configure"]);
@@ -223,6 +223,7 @@ fn the_tick_is_told_when_what_it_computes_with_changes() {
     }
     wanted.platform.payload_kg = 2.5;
     wanted.limits.speed_mm_s = 100.0;
+    wanted.limits.pivot_acceleration_rad_s2 = 200.0;
     assert_eq!(bench.tick.config, Config::new(&wanted));
     // What it is already.
     assert_eq!(bench.error_after("SPA 1 0x54500300 250"), "0");

@@ -75,19 +75,19 @@ fn what_each_pivot_has_of_its_own_is_kept_apart() {
     const EACH: [&str; 3] = ["0x54500810", "0x54500820", "0x54500830"];
     let mut bench = start();
     let lines = format!(
-        "CCL 1 ADVANCED\nSPA 1 {ALL} 0.05\nSPA 1 {} 0.06 1 {} 0.07",
+        "CCL 1 ADVANCED\nSPA 1 0x54500106 8 1 {ALL} 0.065\nSPA 1 {} 0.06 1 {} 0.07",
         EACH[1], EACH[2]
     );
     assert_eq!(bench.error_after(&lines), "0");
-    let told = [0.05, 0.06, 0.07];
+    let told = [0.065, 0.06, 0.07];
     assert_eq!(EACH.map(|id| value(&mut bench, id)), told);
     // As the first pivot's.
-    assert_eq!(value(&mut bench, ALL), 0.05);
+    assert_eq!(value(&mut bench, ALL), 0.065);
     assert_eq!(bench.error_after("WPA 100"), "0");
     let mut bench = bench.restart();
     assert_eq!(EACH.map(|id| value(&mut bench, id)), told);
     // All of them come back by the one name.
-    let lines = format!("CCL 1 ADVANCED\nSPA 1 {ALL} 0.04\nRPA 1 {ALL}");
+    let lines = format!("CCL 1 ADVANCED\nSPA 1 {ALL} 0.062\nRPA 1 {ALL}");
     assert_eq!(bench.error_after(&lines), "0");
     assert_eq!(EACH.map(|id| value(&mut bench, id)), told);
 }

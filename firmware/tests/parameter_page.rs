@@ -14,7 +14,7 @@ Written by `UPDATE=1 cargo test -p firmware --test parameter_page` from the one 
 
 `SPA 1 <id> <value>` sets one, `SPA? 1 <id>` asks for it, `HPA?` lists all; ids in decimal or hexadecimal. Values are those that a
 controller has before anything is stored. A value out of its range, or one that does not go together with the others, is refused with error 17, and
-nothing of its line is done. Level 1 needs `CCL 1 ADVANCED` on the same connection, or the answer is 60. Setting one in motion
+nothing of its line is done. Limits of motion that the drives do not bear with their load are refused with 4011 ([GCS.md](GCS.md#motion)). Level 1 needs `CCL 1 ADVANCED` on the same connection, or the answer is 60. Setting one in motion
 is refused with 53, one that needs the servo off with 89. Limits of motion over what the stage was set up for need level 1.
 `WPA 100` keeps them over a restart, `RPA` brings back what is kept. Another reading at pivot angle 0 or another direction of
 an encoder takes the reference: `FRF` afterwards.

@@ -213,6 +213,21 @@ fn learning_that_is_too_fast_is_not_in_force() {
     assert_eq!(bench.say("FLT?\n"), format!("0 no fault \n{told}"));
 }
 
+/// Firmware that did not look at what the drives bear has kept it.
+#[test]
+fn limits_that_the_drives_do_not_bear_are_in_force_and_told() {
+    const PAYLOAD: u32 = 0x5450_0702;
+    let image = image(1, &[(PAYLOAD, 5.0), (SPEED, 123.5)]);
+    let mut bench = KeptBench::start(flash_with(&record(7, &image)));
+    assert_eq!(bench.bench.value(&format!("SPA? 1 {PAYLOAD}")), 5.0);
+    assert_eq!(bench.bench.value(&format!("SPA? 1 {SPEED}")), 123.5);
+    let events = bench.say("EVT?\n");
+    assert!(
+        events.contains("limits over what motors and supply bear with this load"),
+        "{events}"
+    );
+}
+
 #[test]
 fn a_value_out_of_its_range_is_told_and_the_others_are_taken() {
     const FOLLOWING_ERROR: u32 = 0x5450_0500;

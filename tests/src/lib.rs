@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`calibrated`] | a calibration of a machine as drawn |
 //! | [`trouble`] | ways to break a bench |
+//! | [`reactions`] | the worst machine, and how each reaction brings it to rest |
 //! | [`repeated`] | a way that is repeated, for iterative learning |
 //! | [`ideal`] | the controller on a stage without flaws, cheap enough for millions of ticks |
 //! | [`fuzz`] | random sessions and settings, and what has to hold whatever is sent |
@@ -16,6 +17,7 @@ pub mod calibrated;
 pub mod fuzz;
 pub mod ideal;
 pub mod measured;
+pub mod reactions;
 pub mod repeated;
 pub mod trouble;
 

@@ -101,6 +101,8 @@ fn a_motor_carries_no_more_than_its_limit() {
             (0x5450_0506, 0.05),
             (0x5450_0507, 36.0),
             (0x5450_0508, 0.02),
+            // What 4 A bear.
+            (0x5450_0107, 150.0),
             (LIMIT, limit_a),
         ]);
         assert_eq!(bench.error_after("FRF"), "0");

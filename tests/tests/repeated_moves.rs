@@ -51,7 +51,7 @@ fn it_stops_where_it_grows() {
             1.35,
             0.92,
         ),
-        ("SPA 1 0x54500807 0.2\n", "stopped", 1.35, 0.42),
+        ("SPA 1 0x54500107 20 1 0x5450050F 0.2 1 0x54500807 0.2\n", "stopped", 1.35, 0.42),
     ] {
         let mut bench = Bench::repeating(20.0, told);
         assert_eq!(bench.error_after("ILC LEARN OUT"), "0");

@@ -38,7 +38,7 @@ fn setting_while_holding_does_not_move_the_stage() {
     let mut bench = advanced();
     bench.forget_errors();
     assert_eq!(
-        bench.error_after("SPA 1 0x54500300 250 1 0x54500702 1 1 0x54500808 0.06"),
+        bench.error_after("SPA 1 0x54500107 250 1 0x54500300 250 1 0x54500702 1 1 0x54500808 0.06"),
         "0"
     );
     bench.run(2_000);

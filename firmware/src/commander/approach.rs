@@ -18,15 +18,6 @@ pub const MOST_APPROACH_UM: f64 = 200.0;
 /// Each carriage moves by this share of the way at least.
 const LEAST_SHARE: f64 = 0.35;
 
-/// How targets are arrived at.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Approach {
-    /// Way of each carriage on the last way to a target, um; 0 goes to the target at once.
-    way_um: f64,
-    /// The target, while the stage is on its way to where the last way begins.
-    pub target: Option<Position>,
-}
-
 impl Commander {
     /// From the next target on the last way moves each carriage by so much at least, always in the same direction at a target; 0 goes there
     /// at once.

@@ -7,6 +7,7 @@ use super::reach::ReachMargins;
 use super::state::Commander;
 use crate::control::SubdivisionTable;
 use crate::control::config::Config;
+use crate::control::servo::{BorneLimits, ask_the_same};
 use crate::mode::Mode;
 use crate::motion::{Constraints, Limits};
 use crate::parameters::Parameters;
@@ -18,7 +19,7 @@ impl Commander {
     ///
     /// # Errors
     /// [`CommandError::SoftLimitsInvalid`] when the travel leaves nothing of the soft limits, [`CommandError::Busy`]
-    /// when the tick can not be told, [`CommandError::RadiusWithToolFrame`] for another radius of the track while a
+    /// when the tick can not be told, [`CommandError::LimitsNotBorne`], [`CommandError::RadiusWithToolFrame`] for another radius of the track while a
     /// point beside the platform centre is moved. Nothing has changed then.
     pub fn configure(
         &mut self,
@@ -31,6 +32,7 @@ impl Commander {
             // The tick knows that point in track radii.
             return Err(CommandError::RadiusWithToolFrame);
         }
+        check_borne(now, wanted)?;
         let soft = self
             .soft_limits
             .narrowed_to(&travel(&self.active_frames, &wanted.geometry));
@@ -136,4 +138,21 @@ impl Commander {
         // Not refused: it is inside the new limits, which are far over the slowest.
         let _ = self.limit_velocity(mm_s);
     }
+}
+
+/// What a machine is commissioned with, its drives bear. Of one that was not so before, what is not made worse may be set: it is
+/// put right line by line. Until a machine is commissioned it is not known, and does not move.
+///
+/// # Errors
+/// [`CommandError::LimitsNotBorne`].
+fn check_borne(now: &Parameters, wanted: &Parameters) -> Result<(), CommandError> {
+    if !wanted.commissioned || now.commissioned && ask_the_same(now, wanted) {
+        return Ok(());
+    }
+    let borne = BorneLimits::new(wanted);
+    let excess = borne.excess(wanted);
+    if excess <= 1.0 || now.commissioned && excess <= BorneLimits::new(now).excess(now) {
+        return Ok(());
+    }
+    Err(CommandError::LimitsNotBorne(borne))
 }

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::frames::FrameError;
 use super::wave::WaveError;
+use crate::control::servo::BorneLimits;
 use crate::motion::Refusal;
 use core::fmt;
 
@@ -67,6 +68,9 @@ pub enum CommandError {
     StreamFull,
     /// Parameters that had been accepted were refused by the tick.
     ConfigurationRefused,
+    /// The pivots' limits, or the duration of a fault's stop, ask more of the drives than they bear with what they move: the nearest that
+    /// they bear.
+    LimitsNotBorne(BorneLimits),
     /// The corrected kinematics do not hold for this calibration.
     CalibrationBeyondLimits,
     /// About frames and the centre of rotation.
@@ -135,6 +139,7 @@ impl fmt::Display for CommandError {
             Self::CalibrationBeyondLimits => {
                 f.write_str("a number of the calibration is beyond its limit")
             }
+            Self::LimitsNotBorne(_) => f.write_str("limits of motion that the drives do not bear"),
             Self::ConfigurationRefused => f.write_str("the control loop refuses the parameters"),
         }
     }

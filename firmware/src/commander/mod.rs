@@ -32,7 +32,7 @@
 //! | `sent_plan` | a plan that was sent, with what it takes to leave it |
 //! | `repeated_moves` | the tables of iterative learning, and the moves that they are of |
 //! | `moves` | moves, stops, faults, soft limits |
-//! | `approach` | arriving from one side |
+//! | `approach`, `kept_approach` | arriving from one side |
 //! | `servo_switch` | the servo on and off |
 //! | `rest`, `rest_watch` | whether the stage rests, by what the encoders measure |
 //! | `jog` | constant velocities |
@@ -41,7 +41,7 @@
 //! | `recovery` | the way back of a stage that was found out of its reach |
 //! | `configure` | other parameters |
 //! | `calibration`, `kept_calibration` | what the machine is off the drawing |
-//! | `temperature` | how long lengths are |
+//! | `temperature`, `kept_temperature` | how long lengths are |
 //! | `excitation` | known voltages on a motor |
 //! | `velocities` | of the whole and of single axes |
 //! | `constraints` | what plans keep to now |
@@ -72,7 +72,9 @@ mod frame_changes;
 mod furthest_target;
 mod in_flight;
 mod jog;
+mod kept_approach;
 mod kept_calibration;
+mod kept_temperature;
 mod lamps;
 mod moves;
 mod pending;

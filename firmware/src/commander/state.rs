@@ -1,19 +1,19 @@
 //! What is known of the stage and asked of it, and how snapshots change it.
 
-use super::approach::Approach;
 use super::axis::{AxisSet, AxisValues, Coordinates};
 use super::coordinates::coordinates;
 use super::error::CommandError;
 use super::frames::{ActiveFrames, FrameTree};
 use super::in_flight::InFlight;
+use super::kept_approach::Approach;
 use super::kept_calibration::KeptCalibration;
+use super::kept_temperature::Temperature;
 use super::pending::Pending;
 use super::reach::ReachMargins;
 use super::recovery::Recovery;
 use super::rest_watch::RestWatch;
 use super::sent_plan::{Goal, SentPlan};
 use super::soft_limits::SoftLimits;
-use super::temperature::Temperature;
 use super::wave::Waveforms;
 use crate::fault::{Fault, FaultKind};
 use crate::iterative_learning::Tables;

@@ -7,30 +7,9 @@
 //! Steel grows by 12 ppm per K, aluminium by 23: 1.0 and 1.8 um at 80 mm from the middle.
 
 use super::error::CommandError;
+use super::kept_temperature::Temperature;
 use super::state::Commander;
 use crate::calibration::MachineCalibration;
-
-/// What is told of the machine's temperature, since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Temperature {
-    /// What it is, deg C.
-    celsius: Option<f64>,
-    /// How much longer lengths become, ppm per K.
-    growth_ppm_per_k: f64,
-}
-
-impl Temperature {
-    /// How much warmer than when this was calibrated, K.
-    fn over(&self, calibration: Option<&MachineCalibration>) -> Option<f64> {
-        let then = calibration.filter(|calibration| calibration.is_on)?;
-        Some(self.celsius? - f64::from(then.temperature_c?))
-    }
-
-    /// A length over what it was when this was calibrated; exactly 1 where one of the two temperatures is not known.
-    fn growth(&self, calibration: Option<&MachineCalibration>) -> f64 {
-        (self.over(calibration)).map_or(1.0, |over_k| 1.0 + over_k * self.growth_ppm_per_k * 1e-6)
-    }
-}
 
 impl Commander {
     /// The machine is at so many deg C; without a growth (ppm per K) the one before stays. From the next target on, and in every pose that is

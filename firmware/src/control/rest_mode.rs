@@ -8,10 +8,21 @@
 //! stage walks by some 50 nrad of theta. So its rate rises to the full one as long as an error stays. Where none does, rate and gains
 //! fall a little further: with the full rate the loop would hunt in a gap of 2 urad, where no torque holds the motor to one side.
 //! The rate rises from its low end: on its way down from the full one it would hunt at once.
+//!
+//! Most of it lets go in the first second, and the more the encoders' noise shakes the motor the more. The full loop takes that along
+//! at once, so the fall waits for [`CREEPING_S`], unless the full loop hunts.
 //! Everything changes over many ticks: no step in duty.
 
 use crate::parameters::Parameters;
 
+/// Time at rest in which friction lets go fastest: where the loop does not hunt, it stays the full one for so long.
+const CREEPING_S: f64 = 0.6;
+/// Mean of the pivots' largest error, encoder counts, from which the full loop hunts. Encoder noise of 200 nrad makes 0.7, hunting in a
+/// gap of 2 urad 1.5 to 3.
+const HUNTING_COUNTS: f64 = 1.2;
+const HUNTING_S: f64 = 0.05;
+/// What counts of a larger error: that of the arrival is soon forgotten.
+const MOST_HUNTING: f32 = 2.0;
 /// Time constants with which the loop becomes slower, and, once it is slow, slower and faster by the errors that stay.
 const SOFTENING_S: f64 = 0.2;
 const SLACKENING_S: f64 = 0.2;
@@ -30,14 +41,18 @@ const QUIET_SHARE: f64 = 0.5;
 /// For this, over a longer mean: the full loop's hunting, 300 to 700 Hz, is no push.
 const SMOOTHING_S: f64 = 0.01;
 /// While the loop becomes slow it may still hunt: a push is what is so much larger.
-const HUNTING: f64 = 5.0;
+const WAKE_WHILE_SOFTENING: f64 = 5.0;
 /// Units of an encoder count.
 pub(super) const UNITS_PER_COUNT: f64 = 64.0;
 
 /// Constants of rest mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestModeConfig {
-    delay_ticks: u32,
+    /// Ticks at rest before the fall where the loop hunts or is falling already, and where it is the full one.
+    delay_ticks: [u32; 2],
+    /// Mean of the largest error that is hunting.
+    hunting_sum: f32,
+    hunting_smoothing: f32,
     /// Sums of errors over the settling mean, 2^-32 turns: those that wake while the loop is not quite slow and when it is, and
     /// that which keeps it from becoming slow.
     wake_sums: [u32; 2],
@@ -68,10 +83,13 @@ impl RestModeConfig {
         let wake_sum = rest.wake_counts * UNITS_PER_COUNT * mean_ticks as f64;
         let decay = |time_s: f64| libm::exp(-1.0 / (time_s * rate_hz)) as f32;
         Self {
-            delay_ticks: libm::ceil(rest.delay_s * rate_hz) as u32,
-            wake_sums: [HUNTING * wake_sum, wake_sum].map(|sum| sum as u32),
+            delay_ticks: [rest.delay_s, rest.delay_s.max(CREEPING_S)]
+                .map(|delay_s| libm::ceil(delay_s * rate_hz) as u32),
+            hunting_sum: (HUNTING_COUNTS * UNITS_PER_COUNT * mean_ticks as f64) as f32,
+            wake_sums: [WAKE_WHILE_SOFTENING * wake_sum, wake_sum].map(|sum| sum as u32),
             quiet_sum: (wake_sum * QUIET_SHARE) as f32,
             smoothing: (1.0 / (SMOOTHING_S * rate_hz)) as f32,
+            hunting_smoothing: (1.0 / (HUNTING_S * rate_hz)) as f32,
             stiffness: rest.stiffness as f32,
             slack_stiffness: if rest.stiffness < 1.0 {
                 (SLACK * rest.stiffness) as f32
@@ -119,6 +137,8 @@ pub struct RestMode {
     /// Sums of the pivots' errors over the settling mean, smoothed, and smoothed for longer.
     slow_sums: [f32; 3],
     lasting_sums: [f32; 3],
+    /// The largest of their magnitudes, smoothed.
+    largest_sum: f32,
     quiet_ticks: u32,
     /// A push has woken the loop: on its way to the full one.
     woken: bool,
@@ -132,6 +152,7 @@ impl RestMode {
     pub fn update(&mut self, config: &RestModeConfig, moving: bool, sums: &[i32; 3]) -> Stiffness {
         if moving {
             (self.slow_sums, self.lasting_sums) = ([0.0; 3], [0.0; 3]);
+            self.largest_sum = 0.0;
             self.stiffen(config);
             return self.stiffness;
         }
@@ -145,13 +166,16 @@ impl RestMode {
             fast = sum.unsigned_abs().max(fast);
         }
         let is_soft = self.stiffness.gains <= config.stiffness;
+        let bounded = smaller(fast as f32, MOST_HUNTING * config.hunting_sum);
+        self.largest_sum += (bounded - self.largest_sum) * config.hunting_smoothing;
+        let waits = self.largest_sum <= config.hunting_sum && self.stiffness.gains >= 1.0;
         // What has begun is finished: on its way the loop counts as not quite slow, and would ask for a larger push.
         self.woken |= fast > config.wake_sums[usize::from(is_soft)];
         if self.woken {
             self.stiffen(config);
         } else if slow > config.quiet_sum {
             self.quiet_ticks = 0;
-        } else if self.quiet_ticks < config.delay_ticks {
+        } else if self.quiet_ticks < config.delay_ticks[usize::from(waits)] {
             self.quiet_ticks += 1;
         } else {
             self.soften(config, lasting > config.lasting_sum);
@@ -248,7 +272,10 @@ mod tests {
         let parameters = Parameters::REFERENCE;
         let config = RestModeConfig::new(&parameters, MEAN_TICKS);
         for (moving, counts) in [
-            (false, HUNTING * parameters.servo.rest.wake_counts + 1.0),
+            (
+                false,
+                WAKE_WHILE_SOFTENING * parameters.servo.rest.wake_counts + 1.0,
+            ),
             (false, parameters.servo.rest.wake_counts + 1.0),
             (true, 0.0),
         ] {
@@ -296,6 +323,35 @@ mod tests {
                 assert!(now.gains <= parameters.servo.rest.stiffness as f32);
             }
             assert_eq!(state.stiffness.integral_rate, rate, "{counts}");
+        }
+    }
+
+    /// Friction lets go fastest in the first second, and the full loop follows that best; one that hunts falls as soon as it may.
+    #[test]
+    fn the_full_loop_stays_while_friction_lets_go_unless_it_hunts() {
+        let parameters = Parameters::REFERENCE;
+        let config = RestModeConfig::new(&parameters, MEAN_TICKS);
+        // What the mean has of 500 Hz, and of an arrival 10 ms long that is 100 counts off.
+        for (amplitude, arrival, from_s, to_s) in [
+            (2.5, 0.0, parameters.servo.rest.delay_s, 0.079),
+            (1.0, 0.0, CREEPING_S, CREEPING_S + 0.01),
+            (1.0, 100.0, CREEPING_S, CREEPING_S + 0.045),
+        ] {
+            let mut state = RestMode::default();
+            let falls = (0..TICKS_A_SECOND).find(|&tick| {
+                let hunting = amplitude * libm::sin(tick as f64 * core::f64::consts::TAU / 40.0);
+                let counts = if tick < 10 * MILLISECOND {
+                    arrival
+                } else {
+                    0.0
+                } + hunting;
+                update(&mut state, &config, false, counts).gains < 1.0
+            });
+            let falls_s = falls.map(|tick| tick as f64 / TICKS_A_SECOND as f64);
+            assert!(
+                falls_s.is_some_and(|falls_s| (from_s..to_s).contains(&falls_s)),
+                "{amplitude}, {arrival}: {falls_s:?}"
+            );
         }
     }
 }

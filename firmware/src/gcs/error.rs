@@ -125,6 +125,9 @@ pub enum ErrorCode {
     CalibrationBeyondLimits = 4009,
     /// A calibration is that of another machine.
     CalibrationOfAnother = 4010,
+    /// The pivots' limits, or the duration of a fault's stop, are more than motors and supply bear with this load; `EVT?` has what they
+    /// bear.
+    LimitsNotBorne = 4011,
 }
 
 impl ErrorCode {
@@ -159,6 +162,7 @@ impl From<CommandError> for ErrorCode {
             CommandError::Debugged => Self::Debugged,
             CommandError::StopUntested => Self::StopUntested,
             CommandError::CalibrationBeyondLimits => Self::CalibrationBeyondLimits,
+            CommandError::LimitsNotBorne(_) => Self::LimitsNotBorne,
             CommandError::Faulted => Self::MotionError,
             CommandError::InMotion => Self::InMotion,
             CommandError::Streaming | CommandError::StreamNotAtRest | CommandError::ServoOn => {

@@ -74,6 +74,7 @@ error_words! {
     CalibrationDamaged: "the calibration has not come whole: numbers are missing, or its checksum is another",
     CalibrationBeyondLimits: "the calibration has numbers that cannot be corrected: is an encoder’s zero not the parameter’s?",
     CalibrationOfAnother: "the calibration is another machine’s: its serial number is not that of SSN?",
+    LimitsNotBorne: "motors and supply do not bear these limits of motion with this load: EVT? tells which they bear",
     ReferenceOutside: "the measured pose is out of the stage’s reach: check wiring and zeros (EVT? has the pose), then RCV 1 drives it slowly back in",
 }
 

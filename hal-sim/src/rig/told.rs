@@ -2,7 +2,7 @@
 
 use crate::machine::devices::{COUNTS_PER_TURN, StageParameters};
 use crate::machine::plant::PlantParameters;
-use firmware::control::servo::{ServoConfig, carried_inertia, pivot_limits};
+use firmware::control::servo::{BorneLimits, ServoConfig, carried_inertia};
 use firmware::parameters::{Harmonic, Notch, Parameters, SubdivisionHarmonic};
 use std::fmt;
 
@@ -194,12 +194,7 @@ pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Pa
 /// The same with a motion that its motors bear.
 #[must_use]
 pub fn with_motion_fitted(parameters: &Parameters) -> Parameters {
-    let mut told = parameters.clone();
-    let [rate, acceleration] = pivot_limits(parameters);
-    let limits = &mut told.limits;
-    limits.pivot_rate_rad_s = limits.pivot_rate_rad_s.min(rate);
-    limits.pivot_acceleration_rad_s2 = limits.pivot_acceleration_rad_s2.min(acceleration);
-    told
+    BorneLimits::new(parameters).applied_to(parameters)
 }
 
 /// Resonances under which a loop has to be kept from a drive's, Hz: what lies higher it does not reach.

@@ -171,7 +171,7 @@ fn settings_go_from_one_controller_to_another_as_text() {
     let folder = folder("text");
     let file = folder.join("stage.txt");
     let first = Served::start(&folder.join("first.bin"));
-    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500200 150 1 0x54500300 0.1\nMAC BEG scan\nMOV X $1\nDEL 5\nMAC END\nERR?";
+    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500107 200 1 0x54500200 150 1 0x54500300 0.1\nMAC BEG scan\nMOV X $1\nDEL 5\nMAC END\nERR?";
     assert_eq!(first.say(lines), "0\n");
     let exported = said(&first.settings("export", &file));
     assert!(
@@ -194,7 +194,7 @@ fn settings_go_from_one_controller_to_another_as_text() {
     let served = Served::start(&second);
     let imported = said(&served.settings("import", &file));
     // The gain as each pivot's.
-    assert_eq!(imported, "4 parameters and 1 macros changed, and kept\n");
+    assert_eq!(imported, "5 parameters and 1 macros changed, and kept\n");
     let again = said(&served.settings("import", &file));
     assert_eq!(again, "0 parameters and 0 macros changed, and kept\n");
     drop(served);

@@ -11,28 +11,35 @@ const PLACES: u16 = 48;
 /// Cosine and sine of the angle from one to the next, 7.5 deg.
 const STEP: [f32; 2] = [0.991_444_9, 0.130_526_19];
 
-/// Moment of inertia of the carried body as a pivot feels it, kg m^2: the diagonal of `J^-T M J^-1`, M the body's mass matrix and J
-/// the pivots' Jacobian.
+/// The platform's velocity along its own axes (x, y, theta; track radii) where one pivot alone turns at 1 rad/s, with the guides' lengths
+/// rho and cosines c: a column of `J^-1`, J the pivots' Jacobian.
 ///
-/// `c phi'_i = n_i v + rho_i w` (DESIGN.md, the guides' velocity equations) for a pivot that alone turns at 1 rad/s gives `w = c_i /
-/// sum rho` and `v = 2/3 (c_i n_i - w sum rho_j n_j)`, since the guides' normals n stand 120 deg apart; the inertia is twice the
-/// kinetic energy of that motion.
+/// `c phi'_i = n_i v + rho_i w` (DESIGN.md, the guides' velocity equations) gives `w = c_i / sum rho` and `v = 2/3 (c_i n_i - w sum rho_j
+/// n_j)`, since the guides' normals n stand 120 deg apart.
 #[inline]
-pub fn carried_inertia(body: &Body, lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> f32 {
+pub(super) fn unit_motion(lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> [f32; 3] {
     let [a, b, c] = *lengths;
     let (Some(&[x, y]), Some(&cosine)) = (NORMALS.get(pivot), cosines.get(pivot)) else {
-        return 0.0;
+        return [0.0; 3];
     };
     let turn = cosine / (a + b + c);
     let sum = [0.5 * (a + c) - b, HALF_ROOT * (a - c)];
     const TWO_THIRDS: f32 = 2.0 / 3.0;
-    let v = [
+    [
         TWO_THIRDS * (cosine * x - turn * sum[0]),
         TWO_THIRDS * (cosine * y - turn * sum[1]),
-    ];
+        turn,
+    ]
+}
+
+/// Moment of inertia of the carried body as a pivot feels it, kg m^2: the diagonal of `J^-T M J^-1`, M the body's mass matrix. Twice the
+/// kinetic energy of [`unit_motion`].
+#[inline]
+pub fn carried_inertia(body: &Body, lengths: &[f32; 3], cosines: &[f32; 3], pivot: usize) -> f32 {
+    let [x, y, turn] = unit_motion(lengths, cosines, pivot);
     let moment = &body.moment;
-    body.mass * (v[0] * v[0] + v[1] * v[1])
-        + 2.0 * turn * (moment[0] * v[1] - moment[1] * v[0])
+    body.mass * (x * x + y * y)
+        + 2.0 * turn * (moment[0] * y - moment[1] * x)
         + body.inertia * turn * turn
 }
 

@@ -22,7 +22,7 @@
 //! | `config` | its constants, derived from the parameters |
 //! | `filter` | notches and lead of the feedback |
 //! | `inertia` | what a pivot moves, for the gains' schedule |
-//! | `drive_limits` | rate and acceleration of the pivots that the drives allow |
+//! | `drive_limits` | rate and acceleration of the pivots, and stop of a fault, that the drives bear |
 //! | `ripple` | compensation of torque ripple |
 //! | `learnt` | what is learnt, as it is told and kept |
 //! | `current_limit` | the limit of the motors' currents |
@@ -43,7 +43,7 @@ mod presliding;
 mod ripple;
 
 pub use config::{PivotServoConfig, ServoConfig};
-pub use drive_limits::pivot_limits;
+pub use drive_limits::{BorneLimits, ask_the_same, largest_limits};
 pub use filter::{FilterConfig, Filters};
 pub use inertia::carried_inertia;
 pub use learnt::Learnt;

@@ -70,6 +70,7 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
             let [low, high] = number(*value);
             (23, [0; 2], [*id, low, high])
         }
+        Event::LimitsNotBorne(limits) => (30, [0; 2], limits.map(f32::to_bits)),
         Event::Recovered => bare(21),
         Event::RecoveryGivenUp => bare(22),
         Event::FramesBridged(pivot, count) => (28, [*pivot, 0], [u32::from(*count), 0, 0]),
@@ -130,6 +131,7 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
         18 => Event::PoseOutside([a, b, c].map(f32::from_bits)),
         20 => Event::Recovery([a, b, c].map(f32::from_bits)),
         23 => Event::UnusableParameter(a, number),
+        30 => Event::LimitsNotBorne([a, b, c].map(f32::from_bits)),
         21 => Event::Recovered,
         22 => Event::RecoveryGivenUp,
         28 => Event::FramesBridged(first, a as u16),

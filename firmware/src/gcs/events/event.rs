@@ -69,6 +69,9 @@ pub(in crate::gcs) enum Event {
     CalibratedTemperature(bool, f32),
     /// A value is stored that this firmware does not allow; it is not in force.
     UnusableParameter(u32, f64),
+    /// The drives do not bear the limits of motion that were asked for, or that are kept: the nearest rate and acceleration of a pivot,
+    /// and duration of a fault's stop, rad/s, rad/s^2 and s.
+    LimitsNotBorne([f32; 3]),
     /// So many parameters are stored that this firmware does not know.
     UnknownParameters(u16),
 }
@@ -133,6 +136,15 @@ impl fmt::Display for Event {
             Self::RecoveryGivenUp => f.write_str("recovery has ended on its way, servo off"),
             Self::ServoBeforeReference => {
                 f.write_str("servo asked for before the reference: it stays off until FRF")
+            }
+            Self::LimitsNotBorne([_, acceleration, _]) if *acceleration <= 0.0 => {
+                f.write_str("motors and supply do not move this load")
+            }
+            Self::LimitsNotBorne([rate, acceleration, stop_s]) => {
+                write!(
+                    f,
+                    "limits over what motors and supply bear with this load, which is 0x54500106 {rate}, 0x54500107 {acceleration}, 0x5450050F {stop_s}"
+                )
             }
             Self::UnknownParameters(count) => {
                 write!(f, "{count} kept parameters are unknown here and ignored")

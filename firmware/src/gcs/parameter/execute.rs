@@ -8,6 +8,8 @@ use super::address::{Address, Item, Settings};
 use super::descriptor::{Parameter, When};
 use super::looseness::loosened;
 use super::table::{COMMISSIONED, PARAMETERS};
+use crate::commander::CommandError;
+use crate::control::servo::BorneLimits;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::events::Event;
 use crate::gcs::interpreter::Interpreter;
@@ -70,8 +72,13 @@ impl Interpreter {
         if wanted.recorder.points > most_rows || !wanted.are_sound() {
             return Err(ErrorCode::OutOfRange);
         }
-        self.commander
-            .configure(&self.parameters, &wanted, queues)?;
+        let configured = self.commander.configure(&self.parameters, &wanted, queues);
+        if let Err(error) = configured {
+            if let CommandError::LimitsNotBorne(borne) = &error {
+                self.note_borne(borne);
+            }
+            return Err(error.into());
+        }
         if wanted.recorder != self.parameters.recorder {
             self.recorder_state.rearm(&queues.recorder);
         }
@@ -82,6 +89,25 @@ impl Interpreter {
         self.previous_parameters = core::mem::replace(&mut self.parameters, wanted);
         self.note_looseness();
         Ok(())
+    }
+
+    /// An event: limits of motion that the drives bear, in place of those that they do not. Rounded towards what they bear.
+    fn note_borne(&mut self, borne: &BorneLimits) {
+        let down = |value: f64, steps: f64| (libm::floor(value * steps) / steps) as f32;
+        let limits = [
+            down(borne.rate_rad_s, 100.0),
+            down(borne.acceleration_rad_s2, 10.0),
+            -down(-borne.stop_s, 1_000.0),
+        ];
+        (self.events).add(self.commander.tick(), Event::LimitsNotBorne(limits));
+    }
+
+    /// An event when the drives do not bear the limits of motion in force, which a firmware that did not look had kept.
+    pub(in crate::gcs) fn note_limits_in_force(&mut self) {
+        let borne = BorneLimits::new(&self.parameters);
+        if self.parameters.commissioned && borne.excess(&self.parameters) > 1.0 {
+            self.note_borne(&borne);
+        }
     }
 
     /// An event when supervision becomes looser than the reference, or does not stay so.

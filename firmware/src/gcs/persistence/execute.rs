@@ -182,6 +182,7 @@ impl Interpreter {
         self.previous_parameters.clone_from(&parameters);
         self.persistence.stored = parameters;
         self.note_looseness();
+        self.note_limits_in_force();
         if unknown > 0 {
             self.events.add(0, Event::UnknownParameters(unknown));
         }

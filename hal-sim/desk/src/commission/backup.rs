@@ -3,7 +3,10 @@
 use super::Machine;
 use crate::record::RecordError;
 use crate::settings::{Changed, Settings, SettingsError, export_from, import_to};
+use firmware::gcs::ErrorCode;
 use std::path::Path;
+
+const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,7 +68,13 @@ impl Backup {
             machine.ask(line)?;
         }
         machine.delay(0.2)?;
-        machine.ask(if self.commissioned { "CMS 1" } else { "CMS 0" })?;
+        match machine.ask(if self.commissioned { "CMS 1" } else { "CMS 0" }) {
+            // What is given back puts the limits right, and says the same then.
+            Err(RecordError::Refused { code, .. }) if code == LIMITS_NOT_BORNE => {}
+            answer => {
+                answer?;
+            }
+        }
         import_to(&self.settings, &mut |line| machine.ask(line))
     }
 }

@@ -1,12 +1,14 @@
 //! Questions, excitations and records, as the steps need them.
 
 use super::found::{CommissionError, fail};
+use super::id;
 use super::id::AXES;
 use super::{Machine, Task};
 use crate::record::desk::strange;
 use crate::record::{Record, RecordError, TABLES, answer};
 use commissioning::record::Signals;
-use firmware::gcs::PARAMETERS;
+use firmware::control::servo::BorneLimits;
+use firmware::gcs::{ErrorCode, PARAMETERS};
 use firmware::parameters::Parameters;
 
 type Answered<T> = Result<T, RecordError>;
@@ -26,6 +28,7 @@ pub(super) const SUPPLY: &str = "0 201";
 const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
 const PERIOD: u32 = 0x0E00_0200;
+const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 
@@ -45,6 +48,15 @@ pub(crate) struct Ended {
     pub by: String,
     /// Seconds that it took.
     pub seconds: f64,
+}
+
+/// Limits that the drives bear, as parameters.
+pub(super) const fn limits(borne: &BorneLimits) -> [(u32, f64); 3] {
+    [
+        (id::PIVOT_RATE, borne.rate_rad_s),
+        (id::PIVOT_ACCELERATION, borne.acceleration_rad_s2),
+        (id::FAULT_STOP, borne.stop_s),
+    ]
 }
 
 /// A record of a pivot.
@@ -129,15 +141,51 @@ impl<'a> Bench<'a> {
         Ok(parameters)
     }
 
-    /// Sets parameters, four in a line.
+    /// Sets parameters, four in a line. Where the drives turn out to bear less than the limits of motion in force, those are lowered first.
     pub fn set(&mut self, values: &[(u32, f64)]) -> Answered<()> {
         for some in values.chunks(4) {
-            let settings: String = (some.iter())
-                .map(|(id, value)| format!(" 1 0x{id:X} {value}"))
-                .collect();
-            self.ask(&format!("SPA{settings}"))?;
+            self.ask_bearing(some, |bench| bench.set_line(some))?;
         }
         Ok(())
+    }
+
+    /// Says that the machine is commissioned.
+    pub fn commission(&mut self) -> Answered<()> {
+        self.ask_bearing(&[], |bench| bench.ask("CMS 1").map(drop))
+    }
+
+    /// Asks for what the drives may not bear with the limits of motion in force, which are lowered then; with these values among what is
+    /// asked for.
+    fn ask_bearing(
+        &mut self,
+        values: &[(u32, f64)],
+        ask: impl Fn(&mut Self) -> Answered<()>,
+    ) -> Answered<()> {
+        match ask(self) {
+            Err(RecordError::Refused { code, .. }) if code == LIMITS_NOT_BORNE => {
+                self.lower_limits_for(values)?;
+                ask(self)
+            }
+            answer => answer,
+        }
+    }
+
+    fn set_line(&mut self, values: &[(u32, f64)]) -> Answered<()> {
+        let settings: String = (values.iter())
+            .map(|(id, value)| format!(" 1 0x{id:X} {value}"))
+            .collect();
+        self.ask(&format!("SPA{settings}")).map(drop)
+    }
+
+    fn lower_limits_for(&mut self, values: &[(u32, f64)]) -> Answered<()> {
+        let mut parameters = self.parameters()?;
+        for (id, value) in values {
+            let one = PARAMETERS.iter().find(|one| one.id == *id);
+            let set = one.map(|one| one.set(*value, &mut parameters));
+            set.and_then(Result::ok)
+                .ok_or_else(|| strange(&format!("SPA 1 0x{id:X}"), &value.to_string()))?;
+        }
+        self.set_line(&limits(&BorneLimits::new(&parameters)))
     }
 
     /// Measured angles of the pivots, rad, with their turns.

@@ -1,11 +1,10 @@
 //! Limits of motion that the motors bear with what they move: those of a controller that knows nothing, or less where that is too much. So a
 //! lighter load gets back what a heavier one had taken.
 
-use crate::commission::bench::Bench;
+use crate::commission::bench::{self, Bench};
 use crate::commission::found::{CommissionError, Finding, Found};
-use crate::commission::id;
 use crate::commission::known::Known;
-use firmware::control::servo::pivot_limits;
+use firmware::control::servo::{BorneLimits, largest_limits};
 use firmware::parameters::Parameters;
 
 /// What a stage that is of any use has at least, rad/s and rad/s^2.
@@ -17,25 +16,28 @@ pub(super) fn run(
     _: &mut Known,
     found: &mut Found,
 ) -> Result<(), CommissionError> {
-    let parameters = bench.parameters()?;
-    let borne = pivot_limits(&parameters);
-    let limits = &Parameters::REFERENCE.limits;
-    let most = [limits.pivot_rate_rad_s, limits.pivot_acceleration_rad_s2];
+    let mut parameters = bench.parameters()?;
+    let (limits, most) = (&mut parameters.limits, &Parameters::REFERENCE.limits);
+    limits.pivot_rate_rad_s = most.pivot_rate_rad_s;
+    limits.pivot_acceleration_rad_s2 = most.pivot_acceleration_rad_s2;
+    let borne = BorneLimits::new(&parameters);
+    let in_force = [borne.rate_rad_s, borne.acceleration_rad_s2];
+    let largest = largest_limits(&parameters);
     let names = ["rate (rad/s)", "acceleration (rad/s^2)"];
     for (i, name) in names.into_iter().enumerate() {
         found.push(Finding::new(
             format!("largest {name} of a pivot that motors and supply bear with this load"),
-            format!("{:.1}; in force: {:.1}", borne[i], most[i].min(borne[i])),
+            format!("{:.1}; in force: {:.1}", largest[i], in_force[i]),
             format!("over {}", LEAST[i]),
-            borne[i] > LEAST[i],
+            largest[i] > LEAST[i],
             WEAK,
         ));
     }
-    bench.set(&[
-        (id::PIVOT_RATE, most[0].min(borne[0])),
-        (id::PIVOT_ACCELERATION, most[1].min(borne[1])),
-    ])?;
-    found.number("rate of a pivot", borne[0], "rad/s");
-    found.number("acceleration of a pivot", borne[1], "rad/s^2");
+    // With less nothing is to be verified.
+    if largest[0] > LEAST[0] && largest[1] > LEAST[1] {
+        bench.set(&bench::limits(&borne))?;
+    }
+    found.number("rate of a pivot", largest[0], "rad/s");
+    found.number("acceleration of a pivot", largest[1], "rad/s^2");
     Ok(())
 }

@@ -27,7 +27,7 @@ pub(super) fn run(
 ) -> Result<(), CommissionError> {
     // What its gains may be is not known yet.
     gains::begin_softly(bench)?;
-    bench.ask("CMS 1")?;
+    bench.commission()?;
     bench.ask("FRF")?;
     let settled_s = bench.settle()?;
     let full = bench.number_of("VLS?")?;
