@@ -2,8 +2,8 @@
 //!
 //! 5 kg on the platform that the controller is told of, half of the reference stage's friction at the rings and none else, windings 100 K
 //! hot, the bus and the bridges as their parts have them, and all masses a fifth more and motors a fifth weaker than the reference stage's, or
-//! the other way round: without the load, cold, or with all of the friction it rests sooner. At the platform's largest speed along a chord of the disk, and at its largest
-//! rotation, and both.
+//! the other way round. Less load, cold windings and more friction leave more to brake with; they are not run. At the platform's largest speed
+//! along a chord of the disk, and at its largest rotation, and both.
 
 use crate::Bench;
 use firmware::fault::{FaultKind, Reaction};

@@ -42,16 +42,21 @@ fn after_five_trials_little_is_left() {
 /// then, and in the end it stays.
 #[test]
 fn it_stops_where_it_grows() {
-    // A model of the drive with a sixth of its inertia and resistance, which does not explain its currents either, and one with five times
-    // its inertia: the inverse is far from one.
+    // A model of the drive with a sixth of its inertia and resistance, which does not explain its currents either, and one with more
+    // than seven times its inertia, with limits that such a drive bears: the inverse is far from one.
     for (told, state, largest, last) in [
         (
             "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
             "learning",
             1.35,
-            0.92,
+            0.91,
         ),
-        ("SPA 1 0x54500107 20 1 0x5450050F 0.2 1 0x54500807 0.2\n", "stopped", 1.35, 0.42),
+        (
+            "SPA 1 0x54500107 60 1 0x5450050F 0.3 1 0x54500807 0.15\n",
+            "stopped",
+            0.66,
+            0.31,
+        ),
     ] {
         let mut bench = Bench::repeating(20.0, told);
         assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
@@ -59,7 +64,7 @@ fn it_stops_where_it_grows() {
         let table = bench.table("OUT");
         println!("{errors:.3?}, {table}");
         assert!(table.starts_with(&format!("OUT={state} ")), "{table}");
-        // 1.222 and 1.223 of the first one at most, 0.834 and 0.375 in the end.
+        // 1.223 and 0.592 of the first one at most, 0.822 and 0.275 in the end.
         assert!(errors[1..].iter().all(|error| *error < largest * errors[0]));
         assert!(errors[9..].iter().all(|error| *error < last * errors[0]));
         // After a trial that was worse the best is followed.

@@ -171,7 +171,7 @@ fn settings_go_from_one_controller_to_another_as_text() {
     let folder = folder("text");
     let file = folder.join("stage.txt");
     let first = Served::start(&folder.join("first.bin"));
-    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500107 200 1 0x54500200 150 1 0x54500300 0.1\nMAC BEG scan\nMOV X $1\nDEL 5\nMAC END\nERR?";
+    let lines = "CCL 1 ADVANCED\nSPA 1 0x54500107 100 1 0x54500200 150 1 0x54500300 0.1\nMAC BEG scan\nMOV X $1\nDEL 5\nMAC END\nERR?";
     assert_eq!(first.say(lines), "0\n");
     let exported = said(&first.settings("export", &file));
     assert!(

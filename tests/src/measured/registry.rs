@@ -216,11 +216,12 @@ pub const SECTIONS: &[Section] = &[
         name: "reactions",
         title: "Each reaction's way and turn to rest",
         group: Group::Faults,
-        about: "The worst machine on this power stage: 5 kg that the controller is told of, half of the reference stage's friction at the rings \
-                and none else, windings 100 K hot, masses a fifth more and motors a fifth weaker (\"weak\") or the other way round (\"strong\"); without the load, \
-                cold, or with all of the friction it rests sooner. In motion at the largest speed along chords of the disk, at the largest rotation that \
-                the pivots follow, and at both. Way of the platform's centre, its turn and the time from the tick in which the fault \
-                begins until no pivot turns faster than 0.01 rad/s, worst of all motions. The same table stands in FAULTS.md.",
+        about: "The worst machine on this power stage: 5 kg that the controller is told of, half of the reference stage's friction at the \
+                rings and none else, windings 100 K hot, masses a fifth more and motors a fifth weaker (\"weak\") or the other way round \
+                (\"strong\"). Less load, cold windings and more friction leave more to brake with; they are not run. In motion at the \
+                largest speed along chords of the disk, at the largest rotation that the pivots follow, and at both. Way of the \
+                platform's centre, its turn and the time from the tick in which the fault begins until no pivot turns faster than \
+                0.01 rad/s, worst of all motions. The same table stands in FAULTS.md.",
         command: "cargo bench -p tests --bench reactions",
         short: None,
         kind: Kind::Deterministic,

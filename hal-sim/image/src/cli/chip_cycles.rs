@@ -22,7 +22,9 @@ const APART: f64 = 0.02;
 
 /// Uses in which all that a tick does takes longer than a period, and what it may take at most, pessimistically: what it took, and a tenth.
 /// A controller set like this with a calibration has late ticks: known, and to be mended where the next setpoint is computed.
-const LONGER_THAN_PERIOD: [(Use, u64); 3] = [
+/// So has the one that switches a calibrated stage on, where it is one of the longer ones: ticks with the servo off differ by 250 cycles.
+const LONGER_THAN_PERIOD: [(Use, u64); 4] = [
+    (Use::SwitchedOnCalibrated, 9_321),
     (Use::MovingShaped, 9_711),
     (Use::PlanTakenShaped, 12_126),
     (Use::MovingShapedTrial, 10_230),
