@@ -178,6 +178,7 @@ impl NorFlash for SettingsFlash {
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         check_write(self, offset, bytes.len()).map_err(FlashError::Place)?;
         self.unlocked(|flash| {
+            flash.check_supply()?;
             flash
                 .flash
                 .cr()
