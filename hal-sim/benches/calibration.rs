@@ -5,8 +5,6 @@
 //! is the form that is published; without it there are 5. `ONLY=xyt` keeps the rows whose names contain that. `UNKIND=reference` has guides
 //! of 50 N/um lose motion under 1 N; `UNKIND=workshop` guides, scales and balls as machines of a workshop have them, drawn from the seed.
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use calibration::frames::{Size, without_frames};
@@ -16,6 +14,7 @@ use calibration::spread::over_disk;
 use calibration::{Accuracy, DRAWN, Fit, Instrument, Kit, Noise, fit, plan};
 use hal_sim::machine::instruments::{Unrepeated, commanded, survey, workshop};
 use hal_sim::machine::unknown;
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::random::Random;
 
 const RADIUS_M: f64 = 0.1;
@@ -168,24 +167,8 @@ fn stops_of(row: &Row) -> (Vec<Stop>, String) {
 }
 
 fn outcomes(row: &Row, stops: &[Stop], machines: usize, kind: Repeats) -> Vec<Outcome> {
-    let next = AtomicUsize::new(0);
-    let outcomes = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed >= machines {
-                        break;
-                    }
-                    let outcome = outcome(row, stops, seed as u64 + 1, kind);
-                    outcomes.lock().expect("no thread has failed").push(outcome);
-                }
-            });
-        }
-    });
-    outcomes.into_inner().expect("no thread has failed")
+    let seeds: Vec<u64> = (1..=machines as u64).collect();
+    of_all(&seeds, cores(), |seed| outcome(row, stops, *seed, kind))
 }
 
 fn outcome(row: &Row, stops: &[Stop], seed: u64, kind: Repeats) -> Outcome {

@@ -15,12 +15,11 @@ use firmware::queues::{Command, Queues, TickQueues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::machine::plant::External;
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 use hal_sim::rig::{with_gains_firmer, with_inertia_scheduled, with_payload_told};
 use std::f64::consts::TAU;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 const RATE_HZ: f64 = 20_000.0;
 const UNIT: f64 = 4_294_967_296.0;
@@ -160,7 +159,7 @@ fn main() {
         "| loop | crossover of pivot 1, Hz | Ms at, Hz | S at 30 Hz | push of 1 N m, LSB, back within ms | the same in rest mode |"
     );
     println!("|---|---|---|---|---|---|");
-    for row in of_all(&cases, Case::row) {
+    for row in of_all(&cases, cores(), Case::row) {
         println!("{row}");
     }
     println!();
@@ -193,7 +192,7 @@ fn print_over_the_disk() {
             })
         })
         .collect();
-    let peaks = of_all(&cases, Case::peaks);
+    let peaks = of_all(&cases, cores(), Case::peaks);
     println!(
         "| loop | place | Ms of pivot 1 at, Hz | of pivot 2 | of pivot 3 | all three encoders together |"
     );
@@ -232,29 +231,6 @@ fn print_over_the_disk() {
             word(all_place)
         );
     }
-}
-
-/// What is asked of each, by as many threads as there are cores.
-fn of_all<T: Sync, R: Send>(cases: &[T], ask: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((i, case)) = {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    cases.get(i).map(|case| (i, case))
-                } {
-                    let answer = ask(case);
-                    (answers.lock().expect("no thread has failed")).push((i, answer));
-                }
-            });
-        }
-    });
-    let mut answers = answers.into_inner().expect("no thread has failed");
-    answers.sort_by_key(|(i, _)| *i);
-    answers.into_iter().map(|(_, answer)| answer).collect()
 }
 
 /// The largest value, and at which frequency it is.

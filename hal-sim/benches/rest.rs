@@ -8,10 +8,9 @@ use firmware::parameters::Parameters;
 use firmware::queues::{Command, Queues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 const TICKS_A_SECOND: u64 = 20_000;
 const UNIT: f64 = 4_294_967_296.0;
@@ -45,22 +44,7 @@ fn main() {
     let seconds =
         std::env::var("SECONDS").map_or(20, |text| text.parse().expect("a number of seconds"));
     let cases = cases();
-    let next = AtomicUsize::new(0);
-    let rows = Mutex::new(vec![String::new(); cases.len()]);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((i, case)) = {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    cases.get(i).map(|case| (i, case))
-                } {
-                    let row = row(case, &watch(case, seconds));
-                    rows.lock().expect("no thread has failed")[i] = row;
-                }
-            });
-        }
-    });
+    let rows = of_all(&cases, cores(), |case| row(case, &watch(case, seconds)));
     println!(
         "{seconds} s at rest, after a second of settling. Position and theta are the plant's own."
     );
@@ -69,7 +53,7 @@ fn main() {
         "| machine | load, kg | backlash, urad | encoder noise, nrad | position, nm rms: all / median second / worst second | theta, nrad rms | pivots, LSB rms / peak | duty, % rms | not settled, % of the time |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    for row in rows.into_inner().expect("no thread has failed") {
+    for row in rows {
         println!("{row}");
     }
 }

@@ -7,6 +7,7 @@
 //! | [`rig`] | controller and machine together, under a script or a client |
 //! | [`campaign`] | many runs in each of which something breaks |
 //! | [`report`] | what a run leaves behind |
+//! | [`parallel`] | runs side by side |
 //! | [`random`] | random numbers from a seed |
 //! | [`date`] | today's date |
 
@@ -14,6 +15,7 @@ pub mod campaign;
 pub mod date;
 pub mod front;
 pub mod machine;
+pub mod parallel;
 pub mod random;
 pub mod report;
 pub mod rig;

@@ -1,9 +1,8 @@
 //! Way, turn and time to rest of each reaction on the worst machine, worst over a grid of motions: `cargo bench -p tests --bench reactions`.
 //! `KEEP=1` writes `firmware/reactions.csv`, from which `firmware/FAULTS.md` has them.
 
+use hal_sim::parallel::{cores, of_all};
 use std::fmt::Write;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use tests::reactions::{Motion, ToRest, Trouble, to_rest};
 
 fn main() {
@@ -11,23 +10,9 @@ fn main() {
     let runs: Vec<(Trouble, Motion)> = (Trouble::ALL.into_iter())
         .flat_map(|trouble| motions.iter().map(move |motion| (trouble, *motion)))
         .collect();
-    let next = AtomicUsize::new(0);
-    let all = Mutex::new(vec![ToRest::default(); runs.len()]);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((i, (trouble, motion))) = {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    runs.get(i).map(|run| (i, *run))
-                } {
-                    let rest = to_rest(trouble, motion);
-                    all.lock().expect("no run has failed")[i] = rest;
-                }
-            });
-        }
+    let all = of_all(&runs, cores(), |(trouble, motion)| {
+        to_rest(*trouble, *motion)
     });
-    let all = all.into_inner().expect("no run has failed");
     let mut csv = "reaction,way mm,in,turn deg,in,time ms,in\n".to_owned();
     println!("| reaction | way, mm | turn, deg | time, ms |\n|---|---|---|---|");
     for trouble in Trouble::ALL {

@@ -5,11 +5,10 @@
 //! without. An error is the root mean square over the pivots and the ticks of the move and of 5 ms after it.
 //! `TRIALS=1` prints every one of them.
 
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::random::Random;
 use hal_sim::rig::Told;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use tests::Bench;
 
 const MOVES: usize = 40;
@@ -50,25 +49,10 @@ fn main() {
         Ok(only) => vec![cases[only]],
         Err(_) => cases.to_vec(),
     };
-    let next = AtomicUsize::new(0);
-    let rows = Mutex::new(vec![String::new(); cases.len()]);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((i, case)) = {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    cases.get(i).map(|case| (i, case))
-                } {
-                    let row = row(*case);
-                    rows.lock().expect("no thread has failed")[i] = row;
-                }
-            });
-        }
-    });
+    let rows = of_all(&cases, cores(), |case| row(*case));
     println!("| {} |", TITLES.join(" | "));
     println!("|{}", "---|".repeat(TITLES.len()));
-    for row in rows.into_inner().expect("no thread has failed") {
+    for row in rows {
         println!("{row}");
     }
 }

@@ -1,10 +1,9 @@
 //! How much each imperfection of the simulated machine decides: the demonstration with one more, or one less, at a time.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use super::run::{RunOptions, run};
 use super::script::Script;
 use crate::machine::plant::{Imperfections, NAMED};
+use crate::parallel::of_all;
 use crate::report::Move;
 
 /// A machine that is compared.
@@ -59,27 +58,9 @@ pub fn measure(
     options: &RunOptions,
     threads: usize,
 ) -> Vec<Sensitivity> {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let i = next.fetch_add(1, Ordering::Relaxed);
-            let Some(machine) = machines.get(i) else {
-                return done;
-            };
-            done.push((i, demonstrate(script, machine, options)));
-        }
-    };
-    let mut rows = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let joined = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
-        // A thread that has failed fails this one.
-        joined
-            .flat_map(|rows| rows.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect::<Vec<_>>()
-    });
-    rows.sort_by_key(|(i, _)| *i);
-    rows.into_iter().map(|(_, row)| row).collect()
+    of_all(machines, threads, |machine| {
+        demonstrate(script, machine, options)
+    })
 }
 
 fn demonstrate(script: &Script, machine: &Compared, options: &RunOptions) -> Sensitivity {

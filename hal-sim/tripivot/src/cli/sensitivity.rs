@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::{Write, stdout};
 use std::process::ExitCode;
 
+use hal_sim::parallel::cores;
 use hal_sim::rig::run::RunOptions;
 use hal_sim::rig::script::Script;
 use hal_sim::rig::sensitivity::{Sensitivity, compared, measure};
@@ -18,8 +19,7 @@ pub(super) fn run(arguments: &SensitivityRun) -> Result<ExitCode, CliError> {
         payload_kg: arguments.payload,
         ..RunOptions::default()
     };
-    let threads = (arguments.jobs)
-        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let threads = arguments.jobs.unwrap_or_else(cores);
     let script = Script::demonstration()?;
     let machines = compared();
     let rows = measure(&script, &machines, &options, threads);
