@@ -12,7 +12,7 @@ const STOP: &str = "0x5450050F";
 const PAYLOAD: &str = "0x54500702";
 const MASS: &str = "0x54500700";
 const CURRENT: &str = "0x5450080F";
-const TOLD: &str = "limits over what motors and supply bear with this load, which is ";
+const TOLD: &str = "limits over what motors and supply bear with this load; they bear ";
 
 fn advanced(bench: &mut Bench) {
     assert_eq!(bench.error_after("CCL 1 ADVANCED"), "0");

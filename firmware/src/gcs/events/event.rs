@@ -138,7 +138,7 @@ impl fmt::Display for Event {
             Self::LimitsNotBorne([rate, acceleration, stop_s]) => {
                 write!(
                     f,
-                    "limits over what motors and supply bear with this load, which is 0x54500106 {rate}, 0x54500107 {acceleration}, 0x5450050F {stop_s}"
+                    "limits over what motors and supply bear with this load; they bear 0x54500106 {rate}, 0x54500107 {acceleration}, 0x5450050F {stop_s}"
                 )
             }
             Self::UnknownParameters(count) => {

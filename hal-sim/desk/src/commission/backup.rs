@@ -1,12 +1,10 @@
 //! What a controller was told before, in a file that can be read and given back.
 
 use super::Machine;
+use super::bench::LIMITS_NOT_BORNE;
 use crate::record::RecordError;
 use crate::settings::{Changed, Settings, SettingsError, export_from, import_to};
-use firmware::gcs::ErrorCode;
 use std::path::Path;
-
-const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq, Eq)]

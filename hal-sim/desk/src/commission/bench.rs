@@ -28,7 +28,7 @@ pub(super) const SUPPLY: &str = "0 201";
 const POINTS: &str = "0x16000201";
 const BEFORE: &str = "0x54500900";
 const PERIOD: u32 = 0x0E00_0200;
-const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
+pub(super) const LIMITS_NOT_BORNE: u16 = ErrorCode::LimitsNotBorne.number();
 /// How often it is looked whether something has ended, s.
 const LOOK_S: f64 = 0.02;
 
