@@ -1,4 +1,4 @@
-//! Tells the linker of the image where `memory.x` lies and what stands in RAM, and cargo to link again when that changes.
+//! Tells the linker of the images where `memory.x` lies and what stands in RAM, and cargo to link again when that changes.
 
 fn main() {
     let here = env!("CARGO_MANIFEST_DIR");
@@ -7,6 +7,8 @@ fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rustc-link-search={here}/..");
     if std::env::var_os("CARGO_FEATURE_STAGE").is_some() {
-        println!("cargo:rustc-link-arg-bin=stage=-T{here}/control-loop.x");
+        for board in ["stage", "stage-nucleo"] {
+            println!("cargo:rustc-link-arg-bin={board}=-T{here}/control-loop.x");
+        }
     }
 }

@@ -49,6 +49,7 @@
 //! | `frames`, `frame_changes` | coordinate systems of the user's own, and the centre of rotation |
 //! | `wave`, `wave_changes` | waveforms: tables and generators |
 //! | `queries`, `quantity` | what can be asked |
+//! | `lamps` | what a board's lamps show |
 //! | `furthest_target` | how far a target can go in a direction |
 //! | `coordinates` | between mm and deg and the motion layer's positions |
 //! | `axis` | axes, sets of them, values for them |
@@ -74,6 +75,7 @@ mod jog;
 mod kept_approach;
 mod kept_calibration;
 mod kept_temperature;
+mod lamps;
 mod moves;
 mod pending;
 mod quantity;
@@ -96,6 +98,7 @@ mod wave_changes;
 
 pub use approach::MOST_APPROACH_UM;
 pub use error::CommandError;
+pub use lamps::Lamps;
 pub use quantity::Quantity;
 pub use recovery::RecoveryEnd;
 pub use referencing::Referencing;

@@ -14,7 +14,7 @@ use super::recorder::RecorderState;
 use super::recovery::RecoveryOwner;
 use super::statistics::Statistics;
 use super::variables::Variables;
-use crate::commander::Commander;
+use crate::commander::{Commander, Lamps};
 use crate::motion::Limits;
 use crate::parameters::Parameters;
 use crate::self_test::Board;
@@ -103,6 +103,16 @@ impl Interpreter {
     pub fn set_start_cause(&mut self, cause: &'static str) {
         self.start_cause = Some(cause);
         self.events.set_start_cause(cause);
+    }
+
+    /// Notes why the controller started, for `EVT?` alone: somebody wanted it to. One of the [`START_CAUSES`](super::START_CAUSES).
+    pub fn set_wanted_start(&mut self, cause: &'static str) {
+        self.events.set_start_cause(cause);
+    }
+
+    /// What the board's lamps show now.
+    pub fn lamps(&self) -> Lamps {
+        self.commander.lamps()
     }
 
     /// Notes how the program ended before this start, for `EVT?`. To be called before anything is served.

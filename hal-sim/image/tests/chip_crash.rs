@@ -98,6 +98,13 @@ fn a_processor_fault_is_told_with_its_place() {
     assert!(told.contains(&place), "{told}");
     // An undefined instruction, in CFSR.
     assert!(told.contains("status 0x00010000"), "{told}");
+    // Where the stack stood, in the core-coupled memory, and that the fault was raised to a hard one (HFSR.FORCED).
+    let state = told.find("before the start: stack at 0x1000");
+    let state = state.map(|at| told[at..].lines().next().unwrap_or_default());
+    assert!(
+        state.is_some_and(|it| it.contains("hard fault status 0x40000000")),
+        "{told}"
+    );
     assert!(
         told.contains("start by a panic or a processor fault"),
         "{told}"
@@ -112,6 +119,52 @@ fn a_processor_fault_without_a_stack_ends_in_a_reset_too() {
     assert_eq!(outcome.resets.len(), 1);
     assert!(
         told.contains("before the start: processor fault, its stack lost"),
+        "{told}"
+    );
+}
+
+/// Bytes that panic: `core`'s check of an index is called, told a place in a source file that stands behind.
+fn panics(at: u64, check: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    if !at.is_multiple_of(4) {
+        bytes.extend([0x00, 0xBF]); // nop
+    }
+    let begin = at + bytes.len() as u64;
+    bytes.extend([0x01, 0xA2]); // adr r2, begin + 8
+    let offset = check.wrapping_sub(begin + 2 + 4) as u32;
+    let [sign, i1, i2] = [24, 23, 22].map(|bit| offset >> bit & 1);
+    let [j1, j2] = [i1, i2].map(|bit| (bit ^ 1) ^ sign);
+    let high = 0xF000 | sign << 10 | offset >> 12 & 0x3FF;
+    let low = 0xD000 | j1 << 13 | j2 << 11 | offset >> 1 & 0x7FF;
+    bytes.extend((high as u16).to_le_bytes()); // bl check
+    bytes.extend((low as u16).to_le_bytes());
+    bytes.extend([0x00, 0xBF]);
+    let file = b"src/some/place.rs\0";
+    // The place: file, its length, line, column.
+    for word in [begin as u32 + 24, file.len() as u32 - 1, 4711, 5] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.extend(file);
+    bytes
+}
+
+#[test]
+fn a_panic_is_told_with_its_place_and_lets_the_motors_coast() {
+    let path = elf_file::find().expect("the image: build it with `cargo stage`");
+    let code = Code::read(&path).expect("an image that can be taken apart");
+    let at = code.named(ON_COMMAND).expect("the function");
+    let check = (code.functions.iter())
+        .find(|(_, it)| it.name.ends_with("panicking::panic_bounds_check"))
+        .map(|(at, _)| *at)
+        .expect("the check");
+    let image = with_bytes_at(at, &panics(at, check));
+    let (told, outcome) = after_reset(image, b"FRF X\nWCL 1\n", None);
+    println!("{told}");
+    assert_eq!(outcome.resets.len(), 1);
+    let place = "before the start: panic in c/some/place, line 4711";
+    assert!(told.contains(place), "{told}");
+    assert!(
+        told.contains("start by a panic or a processor fault"),
         "{told}"
     );
 }

@@ -9,10 +9,10 @@ use stm32f4xx_hal::{
     rcc::{Enable, Rcc},
 };
 
-/// First of the four neighbouring channels.
-const FIRST_CHANNEL: u8 = 10;
 /// Code of 28 cycles of sampling; with 12 of conversion, 1.9 us at 21 MHz.
 const SAMPLING: u8 = 2;
+/// So many channels have their sampling times in one register, the rest in the other.
+const CHANNELS_0_TO_9: u8 = 10;
 
 /// The converter.
 pub struct Analog {
@@ -29,26 +29,32 @@ pub struct Counts {
 }
 
 impl Analog {
-    /// Switches the converter on.
-    pub fn new(adc: pac::ADC1, common: &pac::ADC_COMMON, rcc: &mut Rcc) -> Self {
+    /// Switches the converter on, to convert these channels: the three currents, the supply.
+    pub fn new(adc: pac::ADC1, common: &pac::ADC_COMMON, channels: [u8; 4], rcc: &mut Rcc) -> Self {
         pac::ADC1::enable(rcc);
         common.ccr().write(|w| w.adcpre().div4());
         adc.cr1().write(|w| w.scan().enabled());
-        // SAFETY: every code of a sampling time, and channel numbers up to 18, are defined.
-        unsafe {
-            adc.smpr1().write(|w| {
-                w.smp10().bits(SAMPLING).smp11().bits(SAMPLING);
-                w.smp12().bits(SAMPLING).smp13().bits(SAMPLING)
-            });
-            adc.jsqr().write(|w| {
-                w.jl().bits(3);
-                w.jsq1().bits(FIRST_CHANNEL).jsq2().bits(FIRST_CHANNEL + 1);
-                w.jsq3()
-                    .bits(FIRST_CHANNEL + 2)
-                    .jsq4()
-                    .bits(FIRST_CHANNEL + 3)
-            });
+        for channel in channels {
+            let code = u32::from(SAMPLING);
+            // SAFETY: every code of a sampling time is defined; the bits are the channel's.
+            unsafe {
+                match channel.checked_sub(CHANNELS_0_TO_9) {
+                    Some(above) => adc
+                        .smpr1()
+                        .modify(|r, w| w.bits(r.bits() | code << (3 * above))),
+                    None => adc
+                        .smpr2()
+                        .modify(|r, w| w.bits(r.bits() | code << (3 * channel))),
+                };
+            }
         }
+        let [first, second, third, supply] = channels;
+        // SAFETY: these are channels.
+        adc.jsqr().write(|w| unsafe {
+            w.jl().bits(3);
+            w.jsq1().bits(first).jsq2().bits(second);
+            w.jsq3().bits(third).jsq4().bits(supply)
+        });
         adc.cr2().write(|w| w.adon().enabled());
         Self { adc }
     }

@@ -7,6 +7,9 @@ use crate::{
     encoders::Encoders,
     flash::SettingsFlash,
     latch::LatchTimer,
+    marks::{BoardLamps, LatchMark, TickMark},
+    pin_list::Ports,
+    pins::{self, Pins},
     pwm::{self, PwmChannel, PwmTimer, TickEvent},
     reset_cause::ResetCause,
     self_check::SelfCheck,
@@ -18,15 +21,18 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use firmware::drivers::bridge::{Bridge, BridgeError, Duty};
 use firmware::gcs::Crash;
 use stm32f4xx_hal::{
-    gpio::{Input, Output, Pin, Pull, Speed},
+    gpio::{Input, Output, Pin, PinPull, PinSpeed, Pull, Speed},
     pac,
-    prelude::*,
     rcc::Rcc,
 };
 
 /// Where the sleep pins of all three bridges are set low, and by which word: `GPIOD_BSRR`, for whoever has nothing else
 /// left.
 pub const SLEEP_PINS_LOW: (u32, u32) = (0x4002_0C18, 0b111 << (16 + 4));
+/// They are these on every board.
+const _: fn(pins::Sleep1<Output>) -> Pin<'D', 4, Output> = |pin| pin;
+const _: fn(pins::Sleep2<Output>) -> Pin<'D', 5, Output> = |pin| pin;
+const _: fn(pins::Sleep3<Output>) -> Pin<'D', 6, Output> = |pin| pin;
 
 /// Lets all motors coast, from wherever the program has failed.
 pub fn let_motors_coast() {
@@ -51,6 +57,12 @@ pub struct Board {
     pub tick_event: TickEvent,
     /// What is measured.
     pub sensors: Sensors,
+    /// Where the latch is, for a scope.
+    pub latch_mark: LatchMark,
+    /// Where the tick is.
+    pub tick_mark: TickMark,
+    /// The lamps.
+    pub lamps: BoardLamps,
     /// The tick's timer.
     pub pwm: PwmTimer,
     /// The bridges.
@@ -68,7 +80,7 @@ pub struct Board {
     /// Why the chip started.
     pub reset_cause: ResetCause,
     /// How the program ended before.
-    pub crash: [Option<Crash>; 2],
+    pub crash: [Option<Crash>; 3],
     /// The crystal did not start.
     pub without_crystal: bool,
     /// What the chip says of itself.
@@ -77,15 +89,12 @@ pub struct Board {
     pub rcc: Rcc,
 }
 
-type Axis<const CHANNEL: u8, const DIRECTION: u8, const SLEEP: u8, const FAULT: u8> = Bridge<
-    PwmChannel<CHANNEL>,
-    Pin<'D', DIRECTION, Output>,
-    Pin<'D', SLEEP, Output>,
-    Pin<'D', FAULT, Input>,
->;
+type Axis1 = Bridge<PwmChannel<1>, pins::Phase1<Output>, pins::Sleep1<Output>, pins::Fault1<Input>>;
+type Axis2 = Bridge<PwmChannel<2>, pins::Phase2<Output>, pins::Sleep2<Output>, pins::Fault2<Input>>;
+type Axis3 = Bridge<PwmChannel<3>, pins::Phase3<Output>, pins::Sleep3<Output>, pins::Fault3<Input>>;
 
 /// The switch of the brake resistor.
-pub struct BrakeResistorSwitch(Pin<'D', 3, Output>);
+pub struct BrakeResistorSwitch(pins::BrakeResistor<Output>);
 
 impl BrakeResistorSwitch {
     /// On or off.
@@ -96,7 +105,7 @@ impl BrakeResistorSwitch {
 }
 
 /// The three bridges, pivot 1 first.
-pub struct Bridges(Axis<1, 0, 4, 8>, Axis<2, 1, 5, 9>, Axis<3, 2, 6, 10>);
+pub struct Bridges(Axis1, Axis2, Axis3);
 
 impl Bridges {
     /// Which bridges report a fault.
@@ -156,14 +165,17 @@ impl Board {
         let self_check = SelfCheck::new(&peripherals.DBGMCU, &peripherals.FLASH);
         let streams = dma::split(peripherals.DMA1, peripherals.DMA2, &mut rcc);
 
-        let port_a = peripherals.GPIOA.split(&mut rcc);
-        let port_b = peripherals.GPIOB.split(&mut rcc);
-        let port_c = peripherals.GPIOC.split(&mut rcc);
-        let port_d = peripherals.GPIOD.split(&mut rcc);
-        let port_e = peripherals.GPIOE.split(&mut rcc);
+        let ports = (
+            peripherals.GPIOA,
+            peripherals.GPIOB,
+            peripherals.GPIOC,
+            peripherals.GPIOD,
+            peripherals.GPIOE,
+        );
+        let pins = Pins::new(Ports::new(ports, &mut rcc));
 
         // Bank 2 of the flash is read wrongly while this pin floats, on silicon before revision 3 (erratum 2.2.14).
-        port_a.pa12.into_push_pull_output();
+        pins.held.into_push_pull_output();
         let encoders = Encoders::new(
             (peripherals.SPI1, peripherals.SPI2, peripherals.SPI3),
             [
@@ -176,56 +188,58 @@ impl Board {
         // The ports are set up and hold their clocks high: no edge reaches an encoder. The fastest slope: with a slower one
         // the last bit of a byte may be lost (erratum 2.12.4).
         let fastest = Speed::VeryHigh;
-        port_a.pa6.into_alternate::<5>();
-        let mut clock = port_a.pa5.into_alternate::<5>();
-        clock.set_speed(fastest);
-        clock.internal_pull_up(true);
-        port_b.pb14.into_alternate::<5>();
-        let mut clock = port_b.pb13.into_alternate::<5>();
-        clock.set_speed(fastest);
-        clock.internal_pull_up(true);
-        port_c.pc11.into_alternate::<6>();
-        let mut clock = port_c.pc10.into_alternate::<6>();
-        clock.set_speed(fastest);
-        clock.internal_pull_up(true);
+        pins.encoder_data_1.connect();
+        pins.encoder_data_2.connect();
+        pins.encoder_data_3.connect();
+        (pins.encoder_clock_1.connect().speed(fastest)).set_internal_resistor(Pull::Up);
+        (pins.encoder_clock_2.connect().speed(fastest)).set_internal_resistor(Pull::Up);
+        (pins.encoder_clock_3.connect().speed(fastest)).set_internal_resistor(Pull::Up);
 
-        port_c.pc0.into_analog();
-        port_c.pc1.into_analog();
-        port_c.pc2.into_analog();
-        port_c.pc3.into_analog();
-        let analog = Analog::new(peripherals.ADC1, &peripherals.ADC_COMMON, &mut rcc);
-
-        port_a.pa9.into_alternate::<7>();
-        port_a.pa10.into_alternate::<7>().internal_pull_up(true);
-        let (receiver, transmitter) = serial::configure(
-            peripherals.USART1,
-            (streams.usart1_receive, streams.usart1_transmit),
+        pins.current_1.into_analog();
+        pins.current_2.into_analog();
+        pins.current_3.into_analog();
+        pins.supply.into_analog();
+        let analog = Analog::new(
+            peripherals.ADC1,
+            &peripherals.ADC_COMMON,
+            pins::channels(),
             &mut rcc,
         );
 
+        pins.serial_transmit.connect();
+        (pins.serial_receive.connect()).set_internal_resistor(Pull::Up);
+        let serial_streams = (streams.serial_receive, streams.serial_transmit);
+        // SAFETY: the command line's port, which nothing else takes: its name is the board's to say.
+        let port = unsafe { pins::SerialPort::steal() };
+        let (receiver, transmitter) = serial::configure(port, serial_streams, &mut rcc);
+
         // The break input is connected before the timer that it cuts, the timer before its outputs.
-        port_e
-            .pe15
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
+        (pins.emergency_stop.connect()).set_internal_resistor(Pull::Down);
         let (pwm, tick_event, (pwm1, pwm2, pwm3)) = pwm::configure(peripherals.TIM1, &mut rcc);
-        port_e.pe9.into_alternate::<1>();
-        port_e.pe11.into_alternate::<1>();
-        port_e.pe13.into_alternate::<1>();
+        pins.pwm_1.connect();
+        pins.pwm_2.connect();
+        pins.pwm_3.connect();
         let latch_timer = LatchTimer::new(peripherals.TIM3, &mut rcc);
 
         let bridges = Bridges(
-            axis(pwm1, port_d.pd0, port_d.pd4, port_d.pd8),
-            axis(pwm2, port_d.pd1, port_d.pd5, port_d.pd9),
-            axis(pwm3, port_d.pd2, port_d.pd6, port_d.pd10),
+            axis(pwm1, pins.phase_1, pins.sleep_1, pins.fault_1),
+            axis(pwm2, pins.phase_2, pins.sleep_2, pins.fault_2),
+            axis(pwm3, pins.phase_3, pins.sleep_3, pins.fault_3),
         );
         Self {
             latch_timer,
             tick_event,
             sensors: Sensors { encoders, analog },
+            latch_mark: pins.latch_mark.into_push_pull_output(),
+            tick_mark: pins.tick_mark.into_push_pull_output(),
+            lamps: BoardLamps {
+                status: pins.status_lamp.into_push_pull_output(),
+                drive: pins.drive_lamp.into_push_pull_output(),
+                fault: pins.fault_lamp.into_push_pull_output(),
+            },
             pwm,
             bridges,
-            brake_resistor: BrakeResistorSwitch(port_d.pd3.into_push_pull_output()),
+            brake_resistor: BrakeResistorSwitch(pins.brake_resistor.into_push_pull_output()),
             receiver,
             transmitter,
             flash: SettingsFlash::new(peripherals.FLASH, peripherals.PWR, &self_check, &mut rcc),
@@ -239,15 +253,25 @@ impl Board {
     }
 }
 
-fn axis<const N: u8, const D: u8, const S: u8, const F: u8>(
+type BridgeOf<const N: u8, D, S, F> = Bridge<PwmChannel<N>, D, S, F>;
+
+fn axis<
+    const N: u8,
+    const DP: char,
+    const D: u8,
+    const SP: char,
+    const S: u8,
+    const FP: char,
+    const F: u8,
+>(
     pwm: PwmChannel<N>,
-    direction: Pin<'D', D>,
-    sleep: Pin<'D', S>,
-    fault: Pin<'D', F>,
-) -> Axis<N, D, S, F> {
+    phase: Pin<DP, D>,
+    sleep: Pin<SP, S>,
+    fault: Pin<FP, F>,
+) -> BridgeOf<N, Pin<DP, D, Output>, Pin<SP, S, Output>, Pin<FP, F, Input>> {
     let bridge = Bridge::new(
         pwm,
-        direction.into_push_pull_output(),
+        phase.into_push_pull_output(),
         sleep.into_push_pull_output(),
         fault.into_pull_up_input(),
     );

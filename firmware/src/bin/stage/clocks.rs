@@ -1,4 +1,4 @@
-//! The clock tree: 8 MHz crystal, 168 MHz core.
+//! The clock tree: 8 MHz from the board's crystal, or from outside, 168 MHz core.
 //!
 //! | clock | Hz | what hangs on it |
 //! |---|---|---|
@@ -6,6 +6,7 @@
 //! | APB2 | 84 M, timers 168 M | TIM1, SPI1, USART1, ADC1 |
 //! | APB1 | 42 M, timers 84 M | TIM3, SPI2, SPI3 |
 
+use crate::{pin_list::ClockSource, pins};
 use stm32f4xx_hal::{
     pac,
     rcc::{Config, Rcc, RccExt},
@@ -65,6 +66,9 @@ pub fn start(rcc: pac::RCC) -> Clocks {
 
 /// Whether the crystal has started. One that has not is switched off again.
 fn start_crystal(rcc: &pac::RCC) -> bool {
+    // Settable only while the oscillator is off.
+    let bypassed = pins::CLOCK == ClockSource::Bypassed;
+    rcc.cr().modify(|_, w| w.hsebyp().bit(bypassed));
     rcc.cr().modify(|_, w| w.hseon().on());
     let starts = (0..MAX_CRYSTAL_LOOKS).any(|_| rcc.cr().read().hserdy().is_ready());
     if !starts {

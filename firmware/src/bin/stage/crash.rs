@@ -40,8 +40,8 @@ pub fn keep_panic(location: Option<&core::panic::Location<'_>>) {
     CRASH[0].store(PANIC_MAGIC, Ordering::Release);
 }
 
-/// What was kept, once: the end of the program, and the address that it could not reach.
-pub fn take() -> [Option<Crash>; 2] {
+/// What was kept, once: the end of the program, the processor's state then, and the address that it could not reach.
+pub fn take() -> [Option<Crash>; 3] {
     let words: [u32; WORDS] = core::array::from_fn(|i| CRASH[i].load(Ordering::Relaxed));
     match CRASH[0].swap(0, Ordering::Acquire) {
         PANIC_MAGIC => {
@@ -50,10 +50,20 @@ pub fn take() -> [Option<Crash>; 2] {
                 bytes.copy_from_slice(&word.to_le_bytes());
             }
             let line = u16::try_from(words[1]).unwrap_or(u16::MAX);
-            [Some(Crash::Panic { file, line }), None]
+            [Some(Crash::Panic { file, line }), None, None]
         }
         EXCEPTION_MAGIC => {
-            let [_, number, _, program_counter, link, status, _, memory, bus] = words;
+            let [
+                _,
+                number,
+                stack,
+                program_counter,
+                link,
+                status,
+                hard_fault,
+                memory,
+                bus,
+            ] = words;
             let address = if status & BUS_ADDRESS_VALID != 0 {
                 Some(bus)
             } else {
@@ -65,9 +75,10 @@ pub fn take() -> [Option<Crash>; 2] {
                 link,
                 status,
             };
-            [Some(exception), address.map(Crash::NoAccess)]
+            let state = Crash::State { stack, hard_fault };
+            [Some(exception), Some(state), address.map(Crash::NoAccess)]
         }
-        _ => [None; 2],
+        _ => [None; 3],
     }
 }
 

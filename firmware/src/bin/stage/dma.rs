@@ -1,5 +1,9 @@
 //! DMA streams: which request runs on which, and the few operations the image needs of one.
 
+use crate::{
+    pins::SerialPort,
+    serial::{Port, SerialStreams},
+};
 use stm32f4xx_hal::{
     pac,
     rcc::{Enable, Rcc},
@@ -38,8 +42,8 @@ pub struct Streams {
     pub spi2_transmit: Stream,
     pub spi3_receive: Stream,
     pub spi3_transmit: Stream,
-    pub usart1_receive: Stream,
-    pub usart1_transmit: Stream,
+    pub serial_receive: Stream,
+    pub serial_transmit: Option<Stream>,
 }
 
 /// Clocks the controllers and hands their streams out.
@@ -56,6 +60,13 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
         flag_shift: [0, 6, 16, 22][number % 4],
         channel,
     };
+    let SerialStreams {
+        second,
+        receive,
+        transmit,
+        channel,
+    } = SerialPort::STREAMS;
+    let serial = |number| stream(if second { two } else { one }, number, channel);
     Streams {
         spi1_receive: stream(two, 0, 3),
         spi1_transmit: stream(two, 3, 3),
@@ -63,8 +74,8 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
         spi2_transmit: stream(one, 4, 0),
         spi3_receive: stream(one, 0, 0),
         spi3_transmit: stream(one, 5, 0),
-        usart1_receive: stream(two, 5, 4),
-        usart1_transmit: stream(two, 7, 4),
+        serial_receive: serial(receive),
+        serial_transmit: transmit.map(serial),
     }
 }
 

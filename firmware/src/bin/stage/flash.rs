@@ -5,7 +5,8 @@
 //! what comes in gathers in the receiver's ring of 2 KiB.
 //!
 //! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a
-//! sector is written, and empty when it is on again. The tick's constants then come from flash at five wait states.
+//! sector is written, and empty when it is on again. The loop does not mind: its code and its
+//! constants are in RAM (`loop_memory`; `cargo image-check` looks).
 
 use crate::{self_check::SelfCheck, watchdog};
 use embedded_storage::nor_flash::{
@@ -177,6 +178,7 @@ impl NorFlash for SettingsFlash {
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
         check_write(self, offset, bytes.len()).map_err(FlashError::Place)?;
         self.unlocked(|flash| {
+            flash.check_supply()?;
             flash
                 .flash
                 .cr()

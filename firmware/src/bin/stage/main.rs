@@ -1,24 +1,7 @@
-//! `stage`: the controller on its board, an STM32F427 at 168 MHz. Pins, clocks and interrupts, nothing else: what the
-//! controller does is the library's.
+//! The controller on its board, an STM32F427 at 168 MHz. Pins, clocks and interrupts, nothing else: what the controller does is
+//! the library's.
 //!
-//! # Pins
-//!
-//! | pin | function | connected to |
-//! |---|---|---|
-//! | PE9, PE11, PE13 | TIM1 channels 1 to 3, 40 kHz | enable of the bridges of pivots 1 to 3 |
-//! | PD0, PD1, PD2 | output | phase (direction) of the bridges |
-//! | PD4, PD5, PD6 | output | sleep of the bridges, low: the motor coasts |
-//! | PD8, PD9, PD10 | input, pulled up | fault of the bridges, open drain, low: fault |
-//! | PE15 | TIM1 break input, pulled down | emergency stop, normally closed to 3.3 V; low: stop |
-//! | PA5, PA6 | SPI1 clock, data in | encoder 1: MA, SLO (through RS-422) |
-//! | PB13, PB14 | SPI2 clock, data in | encoder 2 |
-//! | PC10, PC11 | SPI3 clock, data in | encoder 3 |
-//! | PD3 | output | switch of the brake resistor, high: on |
-//! | PC0, PC1, PC2 | ADC1 channels 10 to 12 | shunt amplifiers of the motors (0.2 V/A around 1.65 V) |
-//! | PC3 | ADC1 channel 13 | supply through 19 k over 1 k |
-//! | PA9, PA10 | USART1 transmit, receive | command interface, 921,600 baud, 8N1 |
-//! | PH0, PH1 | crystal, 8 MHz | |
-//! | PA13, PA14 | SWD | debugger, log (defmt over RTT) |
+//! The same for every board; the boards' roots (`reference.rs`, `nucleo.rs`) differ in the pins: `firmware/PINS.md`.
 //!
 //! # Timeline
 //!
@@ -49,36 +32,6 @@
 //! is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
 //! that reads its sensors, when no latch is due: a log frame that meets another one, or a full buffer, is dropped instead.
 //! The independent watchdog is fed by the idle task, and only while the tick counter moves.
-#![no_std]
-#![no_main]
-
-mod analog;
-mod board;
-mod clocks;
-mod crash;
-mod debug;
-mod dma;
-mod encoders;
-mod fault_handlers;
-mod flash;
-mod identity;
-mod latch;
-mod loop_memory;
-mod panic;
-mod pwm;
-mod reset_cause;
-mod restart;
-mod retained_memory;
-mod samples;
-mod self_check;
-mod self_test;
-mod serial;
-mod tick_timing;
-mod timeline;
-mod trace;
-mod watchdog;
-
-use defmt_rtt as _;
 
 /// The tasks.
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
@@ -88,6 +41,7 @@ mod app {
         flash::SettingsFlash,
         identity,
         latch::LatchTimer,
+        marks::{BoardLamps, LatchMark, TickMark},
         pwm::{PwmTimer, TickEvent},
         restart,
         retained_memory::RETAINED_MEMORY,
@@ -121,6 +75,9 @@ mod app {
     struct Local {
         latch_timer: LatchTimer,
         tick_event: TickEvent,
+        latch_mark: LatchMark,
+        tick_mark: TickMark,
+        lamps: BoardLamps,
         pwm: PwmTimer,
         bridges: Bridges,
         brake_resistor: BrakeResistorSwitch,
@@ -156,6 +113,9 @@ mod app {
             latch_timer,
             tick_event,
             sensors,
+            latch_mark,
+            tick_mark,
+            lamps,
             pwm,
             bridges,
             brake_resistor,
@@ -180,8 +140,9 @@ mod app {
         };
         let interpreter = place_interpreter(context.local.panel_place, identity);
         interpreter.set_board(&StageBoard);
-        if let Some(cause) = reset_cause.unasked() {
-            interpreter.set_start_cause(cause);
+        match reset_cause.told() {
+            (cause, true) => interpreter.set_wanted_start(cause),
+            (cause, false) => interpreter.set_start_cause(cause),
         }
         for crash in crash.into_iter().flatten() {
             defmt::error!("{}", defmt::Display2Format(&crash));
@@ -211,6 +172,9 @@ mod app {
         let mut local = Local {
             latch_timer,
             tick_event,
+            latch_mark,
+            tick_mark,
+            lamps,
             pwm,
             bridges,
             brake_resistor,
@@ -245,14 +209,18 @@ mod app {
     }
 
     /// Latches the encoders, starts the conversions, arms the tick.
-    #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event])]
+    #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event, latch_mark])]
     fn latch(mut context: latch::Context) {
         context.local.latch_timer.acknowledge();
+        let latch_mark = context.local.latch_mark;
         context.shared.sensors.lock(|sensors| {
             sensors.encoders.latch();
+            // Not before: the latch's time is the encoders'.
+            latch_mark.set_high();
             sensors.analog.start();
         });
         context.local.tick_event.arm();
+        latch_mark.set_low();
         // The acknowledgement has arrived before the core looks for further interrupts (erratum 838869).
         cortex_m::asm::dsb();
     }
@@ -262,11 +230,12 @@ mod app {
     /// comes late, and if it never ends, the watchdog resets the chip.
     #[task(
         binds = TIM1_CC, priority = 14, shared = [sensors],
-        local = [pwm, bridges, brake_resistor, config, state, tick_queues, sample_sender, tick_timing]
+        local = [pwm, tick_mark, bridges, brake_resistor, config, state, tick_queues, sample_sender, tick_timing]
     )]
     fn control(mut context: control::Context) {
         let (pwm, bridges) = (context.local.pwm, context.local.bridges);
-        let brake_resistor = context.local.brake_resistor;
+        let (brake_resistor, tick_mark) = (context.local.brake_resistor, context.local.tick_mark);
+        tick_mark.set_high();
         pwm.disarm_tick();
         let (tick_cycles, late) = context.local.tick_timing.begin(pwm.counts_since_tick());
         // The latch is 35 us off: nobody waits for this.
@@ -290,6 +259,7 @@ mod app {
                 bridges.set(outputs.duty, outputs.awake);
                 brake_resistor.set(outputs.brake_resistor);
                 pwm.connect(outputs.awake);
+                tick_mark.set_low();
                 context.local.tick_timing.end();
                 // What follows has no deadline.
                 trace::mark_end_of_tick();
@@ -321,7 +291,7 @@ mod app {
     }
 
     /// The command interface, the settings and the watchdog.
-    #[idle(local = [interpreter, session, settings_store, command_queues, receiver, transmitter])]
+    #[idle(local = [interpreter, session, settings_store, command_queues, receiver, transmitter, lamps])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
         let mut received = 0u32;
@@ -341,6 +311,7 @@ mod app {
                     .service(local.session, local.command_queues, local.transmitter);
             TRACE.record_service(received, local.interpreter.tick() as u32);
             local.transmitter.send();
+            local.lamps.show(local.interpreter.lamps());
             let trial = &mut local.command_queues.trial;
             (local.settings_store).store_pending(&mut local.interpreter.contents(trial));
             if local.interpreter.wants_restart() {

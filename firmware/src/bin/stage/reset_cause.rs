@@ -27,14 +27,17 @@ pub enum ResetCause {
 }
 
 impl ResetCause {
-    /// What is worth telling over the command interface: a start that nobody asked for.
-    pub const fn unasked(self) -> Option<&'static str> {
+    /// In words, and whether somebody asked for it.
+    pub const fn told(self) -> (&'static str, bool) {
         match self {
-            Self::Watchdog => Some(START_CAUSES[0]),
-            Self::Software => Some(START_CAUSES[1]),
-            Self::BrownOut => Some(START_CAUSES[2]),
-            Self::ClockFailure => Some(START_CAUSES[3]),
-            _ => None,
+            Self::Watchdog => (START_CAUSES[0], false),
+            Self::Software => (START_CAUSES[1], false),
+            Self::BrownOut => (START_CAUSES[2], false),
+            Self::ClockFailure => (START_CAUSES[3], false),
+            Self::PowerOn => (START_CAUSES[4], true),
+            Self::Pin => (START_CAUSES[5], true),
+            Self::Command => (START_CAUSES[6], true),
+            Self::Other => (START_CAUSES[7], true),
         }
     }
 

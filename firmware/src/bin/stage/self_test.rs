@@ -1,6 +1,6 @@
 //! What the chip reads about itself for `TST?`: registers and identity, nothing is changed and nothing waits.
 
-use crate::clocks;
+use crate::{clocks, pins};
 use core::ops::RangeInclusive;
 use firmware::control::units::SUPPLY_V_PER_COUNT;
 use firmware::drivers::power_stage::signed_current_counts;
@@ -31,7 +31,7 @@ fn exactly(value: f64) -> RangeInclusive<f64> {
 
 impl Board for StageBoard {
     fn name(&self) -> &'static str {
-        "reference board, STM32F427"
+        pins::NAME
     }
 
     fn has_debugger(&self) -> bool {

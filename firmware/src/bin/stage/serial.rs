@@ -1,4 +1,5 @@
-//! USART1: the command interface, 921,600 baud, both directions by DMA and without an interrupt.
+//! The command interface, on the board's USART, 921,600 baud: received by DMA, sent by DMA too where the encoders leave the port a
+//! stream, else by an interrupt a byte, below latch and tick.
 //!
 //! Received bytes land in a ring that the command side empties whenever it runs, within 50 us as a rule. At full rate
 //! half of it holds 11 ms, and so long the command side may be away; what is lost then is reported to it.
@@ -6,12 +7,18 @@
 use crate::{
     clocks,
     dma::{Mode, Stream},
+    pins::SerialPort,
     watchdog,
 };
-use core::{cell::UnsafeCell, convert::Infallible};
+use core::{
+    cell::UnsafeCell,
+    convert::Infallible,
+    ops::Deref,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 use stm32f4xx_hal::{
-    pac,
-    rcc::{Enable, Rcc},
+    pac::{self, Interrupt, NVIC, usart1},
+    rcc::{self, Rcc},
 };
 
 /// Rate of the line.
@@ -25,6 +32,50 @@ const BYTES: usize = 1024;
 /// How many bytes are passed on at a time.
 const PIECE_BYTES: usize = 32;
 
+/// A USART that a board may have its command line on.
+pub trait Port: Deref<Target = usart1::RegisterBlock> + rcc::Enable {
+    /// Its clock, Hz.
+    const CLOCK_HZ: u32;
+    /// Its streams (RM0090, tables 43 and 44).
+    const STREAMS: SerialStreams;
+    /// Its interrupt, where it has to send by that.
+    const INTERRUPT: Option<Interrupt>;
+}
+
+/// The streams of a port: of which controller, their numbers, their channel.
+pub struct SerialStreams {
+    /// Of the second controller.
+    pub second: bool,
+    /// For what comes.
+    pub receive: usize,
+    /// For what goes; `None` where the encoders have taken all that could.
+    pub transmit: Option<usize>,
+    /// Of all of them.
+    pub channel: u8,
+}
+
+impl Port for pac::USART1 {
+    const CLOCK_HZ: u32 = clocks::APB2_HZ;
+    const STREAMS: SerialStreams = SerialStreams {
+        second: true,
+        receive: 5,
+        transmit: Some(7),
+        channel: 4,
+    };
+    const INTERRUPT: Option<Interrupt> = None;
+}
+
+impl Port for pac::USART3 {
+    const CLOCK_HZ: u32 = clocks::APB1_HZ;
+    const STREAMS: SerialStreams = SerialStreams {
+        second: false,
+        receive: 1,
+        transmit: None,
+        channel: 4,
+    };
+    const INTERRUPT: Option<Interrupt> = Some(Interrupt::USART3);
+}
+
 struct Buffer<const N: usize>(UnsafeCell<[u8; N]>);
 
 // SAFETY: `Receiver` and `Transmitter`, of which there is one each, alone touch their buffers.
@@ -35,7 +86,7 @@ static SENDING: Buffer<BYTES> = Buffer(UnsafeCell::new([0; BYTES]));
 
 /// The receiving half.
 pub struct Receiver {
-    usart: pac::USART1,
+    usart: SerialPort,
     stream: Stream,
     /// Where the next byte to hand out lies.
     next: usize,
@@ -45,29 +96,48 @@ pub struct Receiver {
 
 /// The sending half.
 pub struct Transmitter {
-    stream: Stream,
+    /// `None`: byte by byte, by the port's interrupt.
+    stream: Option<Stream>,
     filled: usize,
 }
 
+/// Of what is sent by interrupt: the next byte, and how many there are.
+static NEXT: AtomicUsize = AtomicUsize::new(0);
+static END: AtomicUsize = AtomicUsize::new(0);
+
+/// The lowest priority that there is, that of the recorders.
+const LOWEST_PRIORITY: u8 = 0xF0;
+
 /// Configures the port and starts to receive.
 pub fn configure(
-    usart: pac::USART1,
-    (mut receive, mut transmit): (Stream, Stream),
+    usart: SerialPort,
+    (mut receive, mut transmit): (Stream, Option<Stream>),
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter) {
-    pac::USART1::enable(rcc);
-    let divider = ((clocks::APB2_HZ + BAUD / 2) / BAUD) as u16;
+    <SerialPort as rcc::Enable>::enable(rcc);
+    let divider = ((SerialPort::CLOCK_HZ + BAUD / 2) / BAUD) as u16;
     // SAFETY: the register takes the divider in sixteenths as it is.
     usart.brr().write(|w| unsafe { w.bits(divider) });
     let data = usart.dr().as_ptr().cast();
     receive.configure(Mode::ReceiveCircular, data);
-    transmit.configure(Mode::Transmit, data);
+    if let Some(stream) = &mut transmit {
+        stream.configure(Mode::Transmit, data);
+    }
     // SAFETY: the buffer is a static in RAM; `Receiver` reads only what the stream has left behind.
     unsafe { receive.start(RECEIVED.0.get().cast(), RING_BYTES as u16) };
-    usart.cr3().write(|w| w.dmar().enabled().dmat().enabled());
+    let by_stream = transmit.is_some();
+    (usart.cr3()).write(|w| w.dmar().enabled().dmat().bit(by_stream));
     usart
         .cr1()
         .write(|w| w.ue().enabled().te().enabled().re().enabled());
+    if let Some(interrupt) = SerialPort::INTERRUPT {
+        // SAFETY: during start-up; nothing else sets this interrupt up.
+        unsafe {
+            let mut core = cortex_m::Peripherals::steal();
+            core.NVIC.set_priority(interrupt, LOWEST_PRIORITY);
+            NVIC::unmask(interrupt);
+        }
+    }
     let receiver = Receiver {
         usart,
         stream: receive,
@@ -140,17 +210,35 @@ impl Transmitter {
             return;
         }
         self.wait();
-        // SAFETY: the buffer is a static in RAM, and nothing is written to it until the stream is done.
-        unsafe {
-            self.stream
-                .start(SENDING.0.get().cast(), self.filled as u16)
-        };
+        match &mut self.stream {
+            // SAFETY: the buffer is a static in RAM, and nothing is written to it until the stream is done.
+            Some(stream) => unsafe {
+                stream.start(SENDING.0.get().cast(), self.filled as u16);
+            },
+            None => {
+                NEXT.store(0, Ordering::Relaxed);
+                // What stands in the buffer is there before the interrupt looks.
+                END.store(self.filled, Ordering::Release);
+                // SAFETY: the port was handed over, and nothing else writes this register once it is set up but the interrupt, which
+                // is off.
+                unsafe { &*SerialPort::ptr() }
+                    .cr1()
+                    .modify(|_, w| w.txeie().enabled());
+            }
+        }
         self.filled = 0;
+    }
+
+    fn is_sending(&self) -> bool {
+        match &self.stream {
+            Some(stream) => stream.is_running(),
+            None => NEXT.load(Ordering::Acquire) < END.load(Ordering::Relaxed),
+        }
     }
 
     /// Bytes that can be written without waiting.
     pub fn room(&self) -> usize {
-        if self.stream.is_running() {
+        if self.is_sending() {
             0
         } else {
             BYTES - self.filled
@@ -159,11 +247,29 @@ impl Transmitter {
 
     /// Waits until nothing is being sent: 11 ms at most.
     fn wait(&mut self) {
-        while self.stream.is_running() {
+        while self.is_sending() {
             watchdog::feed();
             cortex_m::asm::wfi();
         }
     }
+}
+
+/// The port's interrupt, where it sends by that: it can take a byte.
+#[allow(dead_code)]
+pub fn send_next() {
+    // SAFETY: see `Transmitter::send`.
+    let port = unsafe { &*SerialPort::ptr() };
+    let next = NEXT.load(Ordering::Relaxed);
+    if next < END.load(Ordering::Acquire) {
+        // SAFETY: within the buffer, which nobody writes to until all of it is sent.
+        let byte = unsafe { SENDING.0.get().cast::<u8>().add(next).read_volatile() };
+        port.dr().write(|w| w.dr().set(byte.into()));
+        NEXT.store(next + 1, Ordering::Release);
+    } else {
+        port.cr1().modify(|_, w| w.txeie().disabled());
+    }
+    // The interrupt's end has arrived before the core looks for further ones (erratum 838869).
+    cortex_m::asm::dsb();
 }
 
 impl embedded_io::ErrorType for Transmitter {

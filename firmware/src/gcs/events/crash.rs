@@ -26,6 +26,13 @@ pub enum Crash {
         /// The processor's fault status (ARMv7-M: `CFSR`).
         status: u32,
     },
+    /// Where the stack stood at the exception, and how a fault came to be one (ARMv7-M: `HFSR`).
+    State {
+        /// The stack pointer.
+        stack: u32,
+        /// The processor's hard fault status.
+        hard_fault: u32,
+    },
     /// Which address the instruction of the exception could not reach, where the processor knows it.
     NoAccess(u32),
 }
@@ -102,6 +109,10 @@ impl fmt::Display for Crash {
                 }
                 Ok(())
             }
+            Self::State { stack, hard_fault } => write!(
+                f,
+                "before the start: stack at {stack:#010x}, hard fault status {hard_fault:#010x}"
+            ),
             Self::NoAccess(address) => write!(f, "before the start: no access to {address:#010x}"),
         }
     }

@@ -60,6 +60,9 @@ fn parts(event: &Event) -> (u8, [u8; 2], [u32; 3]) {
             status,
         }) => (25, [*cause as u8, 0], [*program_counter, *link, *status]),
         Event::Crashed(Crash::NoAccess(address)) => (26, [0; 2], [*address, 0, 0]),
+        Event::Crashed(Crash::State { stack, hard_fault }) => {
+            (40, [0; 2], [*stack, *hard_fault, 0])
+        }
         Event::BoardNotice(notice) => (27, [*notice as u8, 0], [0; 3]),
         Event::PoseOutside(pose) => (18, [0; 2], pose.map(f32::to_bits)),
         Event::Recovery(pose) => (20, [0; 2], pose.map(f32::to_bits)),
@@ -120,6 +123,10 @@ pub(super) fn event(words: &[u32; 8]) -> Option<(u64, Event)> {
             status: c,
         }),
         26 => Event::Crashed(Crash::NoAccess(a)),
+        40 => Event::Crashed(Crash::State {
+            stack: a,
+            hard_fault: b,
+        }),
         27 => Event::BoardNotice(*BoardNotice::ALL.get(usize::from(first))?),
         18 => Event::PoseOutside([a, b, c].map(f32::from_bits)),
         20 => Event::Recovery([a, b, c].map(f32::from_bits)),

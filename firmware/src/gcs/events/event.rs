@@ -5,12 +5,17 @@ use super::crash::Crash;
 use crate::fault::Fault;
 use core::fmt;
 
-/// What may start a controller unasked: the watchdog, the program, the supply, the clock.
-pub const START_CAUSES: [&str; 4] = [
+/// What may start a controller. Unasked: the watchdog, the program, the supply, the clock. Asked for: power, the reset pin, `RBT`. The
+/// last is none of them.
+pub const START_CAUSES: [&str; 8] = [
     "the watchdog: the control loop stood still",
     "a panic or a processor fault",
     "a dip of the supply",
     "a failure of the crystal",
+    "power on",
+    "the reset pin",
+    "the command RBT",
+    "a reset of another kind",
 ];
 
 /// Something that happened.

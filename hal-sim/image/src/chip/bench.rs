@@ -1,6 +1,6 @@
 //! The bench as its callers see it. The board comes commissioned: its flash keeps the settings of the simulated machine.
 
-use super::board::{ChipBoard, STAGE_RATE};
+use super::board::{BoardKind, ChipBoard, STAGE_RATE};
 use super::cost::TickCost;
 use super::driver::{Landmarks, StageDriver};
 use super::gaps;
@@ -34,8 +34,11 @@ pub struct Bench {
     image: Image,
     symbols: Symbols,
     stage: Stage,
+    kind: BoardKind,
     instructions_per_second: NonZeroU64,
     has_crystal: bool,
+    watchdog_hz: Option<u64>,
+    options: Option<u32>,
     flash_kib: Option<u16>,
     /// What the settings' flash holds at the start.
     settings: SettingsFlash,
@@ -67,6 +70,8 @@ pub enum BenchError {
     Symbols(symbols::Error),
     /// The emulated part could not be built.
     Part(rigless::soc::Error),
+    /// The board could not be set up.
+    Board(rigless::soc::Fault),
     /// The emulator gave up.
     Emulator(emulator::Error),
     /// The image did not start its timers within a second.
@@ -97,8 +102,11 @@ impl Bench {
             image,
             symbols,
             stage,
+            kind: BoardKind::REFERENCE,
             instructions_per_second: STAGE_RATE,
             has_crystal: true,
+            watchdog_hz: None,
+            options: None,
             flash_kib: None,
             settings: with_machine_settings(
                 SettingsFlash::in_memory(),
@@ -117,11 +125,35 @@ impl Bench {
         }
     }
 
+    /// The same on another board.
+    #[must_use]
+    pub fn on(self, kind: BoardKind) -> Self {
+        Self { kind, ..self }
+    }
+
     /// The same with a crystal that does not start.
     #[must_use]
     pub fn without_crystal(self) -> Self {
         Self {
             has_crystal: false,
+            ..self
+        }
+    }
+
+    /// The same with a watchdog's oscillator of so many Hz, 17,000 to 47,000.
+    #[must_use]
+    pub fn with_watchdog_hz(self, hz: u64) -> Self {
+        Self {
+            watchdog_hz: Some(hz),
+            ..self
+        }
+    }
+
+    /// The same with these option bytes, as the chip's register shows them.
+    #[must_use]
+    pub fn with_options(self, options: u32) -> Self {
+        Self {
+            options: Some(options),
             ..self
         }
     }
@@ -167,13 +199,19 @@ impl Bench {
             handler_end: self.symbol(HANDLER_END)?,
             trace: self.symbol(TRACE)?,
         };
-        let board = ChipBoard::new().map_err(BenchError::Part)?;
+        let board = ChipBoard::new(self.kind).map_err(BenchError::Part)?;
         let mut board = board.at_rate(self.instructions_per_second);
         if !self.has_crystal {
             board = board.without_crystal();
         }
         if let Some(flash_kib) = self.flash_kib {
             board = board.with_flash_kib(flash_kib);
+        }
+        if let Some(hz) = self.watchdog_hz {
+            board = board.with_watchdog_hz(hz);
+        }
+        if let Some(options) = self.options {
+            board = board.with_options(options).map_err(BenchError::Board)?;
         }
         let mut session =
             Session::new(Box::new(board), 0, VirtualNanos(1)).map_err(BenchError::Emulator)?;
@@ -228,6 +266,7 @@ impl fmt::Display for BenchError {
             Self::Image(error) => write!(f, "image: {error}"),
             Self::Symbols(error) => write!(f, "image: {error}"),
             Self::Part(error) => write!(f, "emulated part: {error}"),
+            Self::Board(fault) => write!(f, "board: {fault}"),
             Self::Emulator(error) => write!(f, "emulator: {error}"),
             Self::NeverStarted { gaps } => {
                 write!(f, "the image did not start its timers within a second")?;

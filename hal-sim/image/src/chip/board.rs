@@ -30,13 +30,11 @@ pub const STAGE_RATE: NonZeroU64 = NonZeroU64::new(CORE_HZ).unwrap();
 
 const ADC1: usize = 0;
 const TIM1: usize = 0;
-const USART1: usize = 0;
 const PORT_D: usize = 3;
 const PORT_E: usize = 4;
 /// Pins of port D, pivot 1 first.
 const DIRECTION: [u8; 3] = [0, 1, 2];
 const SLEEP: [u8; 3] = [4, 5, 6];
-const BRIDGE_FAULT: [u8; 3] = [8, 9, 10];
 const BRAKE_RESISTOR: u8 = 3;
 /// Pin of port E.
 const EMERGENCY_STOP: u8 = 15;
@@ -48,6 +46,10 @@ pub const RCC_CR: u64 = 0x4002_3800;
 pub const HSE_ON: u32 = 1 << 16;
 /// Where the vectors are, to the emulator from the reset on: on the chip they stand at 0 too until the program says otherwise.
 const FLASH_AT: u32 = 0x0800_0000;
+/// Where option bytes are changed, and what unlocks that.
+const FLASH_OPTKEYR: u64 = 0x4002_3C08;
+const FLASH_OPTCR: u64 = 0x4002_3C14;
+const OPTION_KEYS: [u64; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// What answers at address 0, and the bits of it with SRAM's first block there.
 const SYSCFG_MEMRMP: u64 = 0x4001_3800;
 const MEM_MODE: u32 = 0b111;
@@ -55,13 +57,39 @@ const SRAM1: u32 = 0b011;
 /// Of the chip on the board; and where it says so.
 const FLASH_KIB: u16 = 2048;
 const FLASH_KIB_AT: u64 = 0x1FFF_7A22;
-const FIRST_ADC_CHANNEL: u8 = 10;
 /// With as many millivolts of reference as there are counts, an input in millivolts is an input in counts.
 const ADC_REFERENCE: u32 = 4095;
+
+/// What differs from board to board, as `firmware/PINS.md` has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoardKind {
+    /// Place of the command line's port among the emulator's.
+    usart: usize,
+    /// Pins of port D: the bridges' faults.
+    bridge_fault: [u8; 3],
+    /// Channels of the three currents and the supply.
+    adc_channels: [u8; 4],
+}
+
+impl BoardKind {
+    /// The reference board.
+    pub const REFERENCE: Self = Self {
+        usart: 0,
+        bridge_fault: [8, 9, 10],
+        adc_channels: [10, 11, 12, 13],
+    };
+    /// NUCLEO-F429ZI.
+    pub const NUCLEO: Self = Self {
+        usart: 2,
+        bridge_fault: [11, 12, 13],
+        adc_channels: [3, 10, 13, 9],
+    };
+}
 
 /// The board.
 #[derive(Debug)]
 pub struct ChipBoard {
+    kind: BoardKind,
     mcu: Stm32f427,
     emergency_stop: Level,
     instructions_per_second: NonZeroU64,
@@ -71,7 +99,7 @@ pub struct ChipBoard {
 
 impl ChipBoard {
     /// The board, powered, its emergency stop released.
-    pub fn new() -> Result<Self, Error> {
+    pub fn new(kind: BoardKind) -> Result<Self, Error> {
         let mut mcu = Stm32f427::new()?;
         mcu.rcc.attach_crystals(CRYSTAL_HZ, 0);
         mcu.set_supply(SUPPLY_MV);
@@ -79,8 +107,9 @@ impl ChipBoard {
         for port in &mut mcu.spi[..3] {
             port.attach(EncoderLine::default());
         }
-        mcu.usart[USART1].attach(HostLine::default());
+        mcu.usart[kind.usart].attach(HostLine::default());
         let mut board = Self {
+            kind,
             mcu,
             emergency_stop: Level::High,
             instructions_per_second: STAGE_RATE,
@@ -110,6 +139,24 @@ impl ChipBoard {
     /// The same with a chip of which the manufacturer says that it has so much flash.
     pub fn with_flash_kib(self, flash_kib: u16) -> Self {
         Self { flash_kib, ..self }
+    }
+
+    /// The same with a watchdog's oscillator of so many Hz: 17,000 to 47,000, as the data sheet has it.
+    pub fn with_watchdog_hz(mut self, hz: u64) -> Self {
+        self.mcu.rcc.calibrate_lsi(hz);
+        self
+    }
+
+    /// The same with these option bytes, as the chip's register shows them.
+    ///
+    /// # Errors
+    /// None, unless the emulator's part has no such registers.
+    pub fn with_options(mut self, options: u32) -> Result<Self, Fault> {
+        for key in OPTION_KEYS {
+            (self.mcu).write(VirtualNanos(0), FLASH_OPTKEYR, Width::W32, key)?;
+        }
+        (self.mcu).write(VirtualNanos(0), FLASH_OPTCR, Width::W32, options.into())?;
+        Ok(self)
     }
 
     /// Sets the supply of the chip itself, mV.
@@ -146,7 +193,12 @@ impl ChipBoard {
     /// Puts counts on the ADC's inputs.
     pub fn set_analog(&mut self, (currents, supply): ([u16; 3], u16)) {
         let [first, second, third] = currents;
-        for (channel, counts) in (FIRST_ADC_CHANNEL..).zip([first, second, third, supply]) {
+        for (channel, counts) in self
+            .kind
+            .adc_channels
+            .into_iter()
+            .zip([first, second, third, supply])
+        {
             if let Some(channel) = AdcChannel::new(channel) {
                 self.mcu.adc[ADC1].set_input(channel, u32::from(counts));
             }
@@ -162,7 +214,7 @@ impl ChipBoard {
 
     /// Lets bridges pull their fault pins low.
     pub fn set_bridge_faults(&mut self, now: VirtualNanos, faults: [bool; 3]) {
-        for (pin, fault) in BRIDGE_FAULT.into_iter().zip(faults) {
+        for (pin, fault) in self.kind.bridge_fault.into_iter().zip(faults) {
             let level = if fault { Level::Low } else { Level::High };
             self.drive_pin(now, PORT_D, pin, level);
         }
@@ -235,7 +287,7 @@ impl ChipBoard {
 
     /// The host's end of the command interface.
     pub fn line(&mut self) -> Option<&mut HostLine> {
-        self.mcu.usart[USART1].chip_mut::<HostLine>()
+        self.mcu.usart[self.kind.usart].chip_mut::<HostLine>()
     }
 
     fn drive_pin(&mut self, now: VirtualNanos, port: usize, pin: u8, level: Level) {

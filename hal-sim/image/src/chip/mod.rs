@@ -53,6 +53,7 @@ mod uses;
 mod way;
 
 pub use bench::{Bench, BenchError, Outcome};
+pub use board::BoardKind;
 pub use cost::TickCost;
 pub use estimate::{Estimate, estimate};
 pub use exercise::{Cost, Doing, Exercise, ExerciseOptions, Tally, Worst, exercise};

@@ -48,6 +48,8 @@ pub enum ChipError {
     Bench(PathBuf, BenchError),
     /// It could not be taken apart.
     Proof(PathBuf, ProofError),
+    /// Its functions' names and places could not be read.
+    Lines(PathBuf, String),
     /// The image touched what the emulator does not model.
     Gaps(Vec<String>),
     /// The run ended without a result.
@@ -62,6 +64,7 @@ impl fmt::Display for ChipError {
             Self::NoImage => write!(f, "no image: build it with `cargo stage` first"),
             Self::Bench(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Proof(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Lines(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Gaps(gaps) => {
                 write!(
                     f,

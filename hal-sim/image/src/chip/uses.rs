@@ -3,13 +3,16 @@
 use super::follow::{FollowedTick, Step};
 use super::{Bench, ChipError, Period, bench, elf_file};
 use crate::cycles::{Bus, Program};
+use addr2line::Loader;
 use firmware::calibration::{CalibrationText, MachineCalibration};
 use hal_sim::machine::devices::{Stage, StageParameters};
 use kinematics::COEFFICIENTS;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::ControlFlow::{Break, Continue};
 use std::ops::Range;
+use std::path::Path;
 use std::sync::{Arc, mpsc};
 
 /// What a tick has to do.
@@ -173,9 +176,9 @@ const LINES: [(u64, &[u8]); 23] = [
     (REFERENCED_AGAIN, b"FRF X\n"),
     (34_000, b"MOV X 40 Y 20 W 90\n"),
     // The encoders' errors are told with the servo off, the rest while the stage rests: numbers that do no harm to this machine.
-    (42_000, b"SVO X 0\nSPA 1 0x54500E00 2048 1 0x54500E01 9\n"),
-    (42_100, b"SPA 1 0x54500E03 9 1 0x54500E05 9\n"),
-    (42_200, b"FRF X\n"),
+    (42_700, b"SVO X 0\nSPA 1 0x54500E00 2048 1 0x54500E01 9\n"),
+    (42_800, b"SPA 1 0x54500E03 9 1 0x54500E05 9\n"),
+    (42_900, b"FRF X\n"),
     (
         43_600,
         b"SPA 1 0x54500340 1425 1 0x54500341 450 1 0x54500342 0.3\n",
@@ -203,6 +206,11 @@ const SHAPED: u64 = 45_000;
 const REPEATED: u64 = 53_000;
 const SERIAL_ASKED: u64 = 25_000;
 const REFERENCED_AGAIN: u64 = 32_000;
+/// With the calibration the servo is switched off and on again at rest, each time a tick later: ticks take turns in what they do besides.
+const SWITCHED: Range<u64> = 41_400..42_600;
+const SWITCHED_EVERY: u64 = 240;
+/// From off to on.
+const SWITCHED_AFTER: u64 = 30;
 /// The calibration's lines, and how far they are apart. Its last one keeps the command side busy for some thousand ticks.
 const CALIBRATION_SENT: u64 = 26_000;
 const CALIBRATION_EVERY: u64 = 60;
@@ -225,8 +233,16 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
         taken,
     };
     let quarter = ticks.div_ceil(4);
+    let switched_on = |from, ticks| {
+        stretch(
+            from,
+            ticks,
+            Use::OffCalibrated,
+            Some(Use::SwitchedOnCalibrated),
+        )
+    };
     let plan = Some(Use::PlanTaken);
-    vec![
+    let mut stretches = vec![
         stretch(60, ticks.min(80), Use::Off, None),
         stretch(600, ticks, Use::Holding, None),
         stretch(1_000, quarter.max(300), Use::Moving, plan),
@@ -243,12 +259,7 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             Some(Use::PlanTakenRecording),
         ),
         stretch(21_200, 400, Use::Recording, Some(Use::PlanTakenRecording)),
-        stretch(
-            REFERENCED_AGAIN,
-            250,
-            Use::OffCalibrated,
-            Some(Use::SwitchedOnCalibrated),
-        ),
+        switched_on(REFERENCED_AGAIN, 250),
         stretch(33_000, ticks.min(900), Use::HoldingCalibrated, None),
         stretch(
             34_000,
@@ -268,7 +279,11 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             Use::MovingShapedTrial,
             Some(Use::PlanTakenShaped),
         ),
-    ]
+    ];
+    let rounds = SWITCHED.step_by(SWITCHED_EVERY as usize);
+    let ticks = SWITCHED_EVERY - SWITCHED_AFTER;
+    stretches.extend(rounds.map(|from| switched_on(from + SWITCHED_AFTER, ticks)));
+    stretches
 }
 
 /// Has the image in the target folder used in every way, and so many ticks of each followed.
@@ -280,17 +295,16 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
     let no_bench = |error| ChipError::Bench(path.clone(), error);
     let program = Program::read(&path, bench::TICK_BEGIN);
     let program = Arc::new(program.map_err(|error| ChipError::Proof(path.clone(), error))?);
+    let takes_command = takes_command(&path, &program)?;
     let stage = Stage::new(&StageParameters::REFERENCE);
     let mut run = Run {
         program: Arc::clone(&program),
         stretches: stretches(ticks),
+        takes_command,
         following: false,
-        commands: 0,
-        switched_on: false,
+        switched_on_in: None,
         answers: Vec::new(),
         calibration: Vec::new(),
-        taken: BTreeSet::new(),
-        pending: Vec::new(),
         ticks: Vec::new(),
     };
     let (tell, told) = mpsc::channel();
@@ -316,6 +330,32 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
     Ok(Used { program, ticks })
 }
 
+/// Where a tick handles a command: the instructions of the firmware's own function for it, wherever the compiler has put them. When the
+/// trace tells of a command depends on when it is written.
+fn takes_command(path: &Path, program: &Program) -> Result<BTreeSet<u64>, ChipError> {
+    let lines =
+        Loader::new(path).map_err(|error| ChipError::Lines(path.into(), error.to_string()))?;
+    let is_in = |at: u64| {
+        let mut frames = lines.find_frames(at).ok()?;
+        while let Ok(Some(frame)) = frames.next() {
+            let name = frame
+                .function
+                .and_then(|it| it.demangle().ok().map(Cow::into_owned));
+            if name.is_some_and(|name| name.ends_with(HANDLE_COMMAND)) {
+                return Some(at);
+            }
+        }
+        None
+    };
+    let places: BTreeSet<u64> = program.addresses().filter_map(is_in).collect();
+    (!places.is_empty())
+        .then_some(places)
+        .ok_or_else(|| ChipError::Lines(path.into(), format!("no function {HANDLE_COMMAND}")))
+}
+
+/// The function's name, or the end of it.
+const HANDLE_COMMAND: &str = "handle_command";
+
 /// Of the ticks in which an order to record may come, those that take it: the longest of each stretch, by far.
 fn keep_orders(ticks: &mut Vec<UsedTick>) {
     let mut longest: BTreeMap<u64, (usize, u64)> = BTreeMap::new();
@@ -330,18 +370,15 @@ fn keep_orders(ticks: &mut Vec<UsedTick>) {
 struct Run {
     program: Arc<Program>,
     stretches: Vec<Stretch>,
+    /// Instructions by one of which a tick is known to take a command.
+    takes_command: BTreeSet<u64>,
     following: bool,
-    commands: u32,
-    /// The servo, with the calibration.
-    switched_on: bool,
+    /// The stretch in which the servo was switched on, by where it begins.
+    switched_on_in: Option<u64>,
     /// To what was asked last.
     answers: Vec<u8>,
     /// Lines, the next one last.
     calibration: Vec<String>,
-    /// Ticks that have taken a command.
-    taken: BTreeSet<u64>,
-    /// Ticks of which it is not known yet whether they have.
-    pending: Vec<FollowedTick>,
     ticks: Vec<UsedTick>,
 }
 
@@ -352,20 +389,8 @@ impl Run {
         if !period.resets.is_empty() {
             return None;
         }
-        let trace = period.trace();
-        let recorded = u64::from(trace.ticks);
-        let took = trace.commands != std::mem::replace(&mut self.commands, trace.commands);
-        if took {
-            // The tick before the one that tells of it.
-            self.taken.insert(recorded - 2);
-        }
         if self.following {
-            self.pending.extend(period.followed()?);
-            let (over, pending) = std::mem::take(&mut self.pending)
-                .into_iter()
-                .partition(|followed| followed.tick + 1 < recorded);
-            self.pending = pending;
-            for followed in over {
+            for followed in period.followed()? {
                 self.keep(followed);
             }
         }
@@ -374,7 +399,7 @@ impl Run {
         let follow = self
             .stretches
             .iter()
-            .any(|it| it.ticks.contains(&period.tick));
+            .any(|it| it.ticks.contains(&period.tick) && !self.is_over(it));
         if follow != self.following {
             self.following = follow;
             period
@@ -384,17 +409,25 @@ impl Run {
         Some(())
     }
 
+    /// Where the servo is switched on, what comes after is of no use.
+    fn is_over(&self, stretch: &Stretch) -> bool {
+        self.switched_on_in == Some(stretch.ticks.start)
+    }
+
     /// Keeps a tick of one of the stretches, with what it was used for.
     fn keep(&mut self, followed: FollowedTick) {
         let tick = followed.tick;
-        let Some(stretch) = self.stretches.iter().find(|it| it.ticks.contains(&tick)) else {
+        let mut stretches = self.stretches.iter();
+        let Some(stretch) = stretches.find(|it| it.ticks.contains(&tick) && !self.is_over(it))
+        else {
             return;
         };
-        let taken = stretch.taken.filter(|_| self.taken.contains(&tick));
-        let mut used = taken.unwrap_or(stretch.used);
-        self.switched_on |= used == Use::SwitchedOnCalibrated;
-        if used == Use::OffCalibrated && self.switched_on {
-            used = Use::HoldingCalibrated;
+        let mut steps = followed.steps.iter();
+        let takes = steps.any(|step| self.takes_command.contains(&step.at));
+        let taken = stretch.taken.filter(|_| takes);
+        let used = taken.unwrap_or(stretch.used);
+        if used == Use::SwitchedOnCalibrated {
+            self.switched_on_in = Some(stretch.ticks.start);
         }
         self.ticks.push(UsedTick {
             tick,
@@ -446,6 +479,15 @@ fn send(period: &mut Period<'_>) {
     for (at, line) in LINES {
         if period.tick == at {
             period.send(line);
+        }
+    }
+    if SWITCHED.contains(&period.tick) {
+        let done = period.tick - SWITCHED.start;
+        let (round, at) = (done / SWITCHED_EVERY, done % SWITCHED_EVERY);
+        if at == 0 {
+            period.send(b"SVO X 0\n");
+        } else if at == SWITCHED_AFTER + round {
+            period.send(b"SVO X 1\n");
         }
     }
     if STREAM.contains(&period.tick) && period.tick.is_multiple_of(STREAM_EVERY) {

@@ -2,7 +2,7 @@
 
 use super::driver::{CostDriver, End, LONGEST_NAME, Order};
 use super::part::Part;
-use crate::chip::board::ChipBoard;
+use crate::chip::board::{BoardKind, ChipBoard};
 use crate::chip::{elf_file, gaps};
 use drawing::Progress;
 use rigless::emulator::{self, Start};
@@ -109,7 +109,7 @@ fn counted(path: &Path, order: &Order, progress: Progress) -> Result<Vec<Part>, 
         calls: 0,
         still: 0,
     };
-    let board = ChipBoard::new().map_err(|error| bad(error.to_string()))?;
+    let board = ChipBoard::new(BoardKind::REFERENCE).map_err(|error| bad(error.to_string()))?;
     let session = Session::new(
         Box::new(board.at_rate(INSTRUCTIONS_PER_SECOND)),
         0,

@@ -1,0 +1,41 @@
+//! `stage-nucleo`: the controller on a NUCLEO-F429ZI.
+#![no_std]
+#![no_main]
+
+// First: the list of pins is written in it.
+#[macro_use]
+mod pin_list;
+
+mod analog;
+mod board;
+mod clocks;
+mod crash;
+mod debug;
+mod dma;
+mod encoders;
+mod fault_handlers;
+mod flash;
+mod identity;
+mod latch;
+mod loop_memory;
+mod marks;
+mod panic;
+mod pwm;
+mod reset_cause;
+mod restart;
+mod retained_memory;
+mod samples;
+mod self_check;
+mod self_test;
+mod serial;
+#[path = "main.rs"]
+mod tasks;
+mod tick_timing;
+mod timeline;
+mod trace;
+mod watchdog;
+
+#[path = "board_pins/nucleo.rs"]
+mod pins;
+
+use defmt_rtt as _;
