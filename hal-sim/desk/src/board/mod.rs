@@ -31,7 +31,24 @@ pub struct Found {
     /// In words and numbers.
     pub text: String,
     /// Whether that is what is expected.
-    pub passed: bool,
+    pub verdict: Verdict,
+}
+
+/// Whether what was found is what is expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is.
+    Passed,
+    /// An emulated chip can not show it: it is told, and nothing is said about it.
+    NotJudged,
+    /// It is not.
+    Failed,
+}
+
+impl From<bool> for Verdict {
+    fn from(passed: bool) -> Self {
+        if passed { Self::Passed } else { Self::Failed }
+    }
 }
 
 /// How the plan is run.
@@ -43,7 +60,7 @@ pub struct PlanOptions {
     pub emulated: bool,
 }
 
-/// Runs the plan and tells of every test as it ends: `None` for one that was left out. Whether all have passed.
+/// Runs the plan and tells of every test as it ends: `None` for one that was left out. Whether none has failed.
 ///
 /// A test that the controller refuses has failed; the rest is run all the same. The servo is off at the end of tests that move.
 ///
@@ -65,11 +82,11 @@ pub fn run(
             Ok(found) => found,
             Err(error @ (RecordError::Refused { .. } | RecordError::Strange { .. })) => Found {
                 text: error.to_string(),
-                passed: false,
+                verdict: Verdict::Failed,
             },
             Err(error) => return Err(error),
         };
-        all &= found.passed;
+        all &= found.verdict != Verdict::Failed;
         tell(test, Some(&found));
     }
     Ok(all)

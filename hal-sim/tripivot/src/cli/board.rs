@@ -7,7 +7,7 @@ use super::FAILED;
 use super::arguments::BoardRun;
 use super::error::CliError;
 use super::view::endpoint;
-use desk::board::{Found, PLAN, PlanOptions, Test, run as run_plan};
+use desk::board::{Found, PLAN, PlanOptions, Test, Verdict, run as run_plan};
 
 pub(super) fn run(arguments: &BoardRun) -> Result<ExitCode, CliError> {
     if arguments.list {
@@ -45,14 +45,15 @@ fn listed(test: &Test) -> String {
 
 fn told(test: &Test, found: Option<&Found>) -> String {
     let name = test.name;
-    match found {
-        None => format!("{name:<14}left out: it moves the stage (--move)\n"),
-        Some(Found { text, passed: true }) => format!("{name:<14}ok      {text}\n"),
-        Some(Found { text, .. }) => {
-            format!(
-                "{name:<14}FAILED  {text}\n{:<22}expected: {}\n",
-                "", test.expected
-            )
-        }
+    let Some(Found { text, verdict }) = found else {
+        return format!("{name:<14}left out: it moves the stage (--move)\n");
+    };
+    match verdict {
+        Verdict::Passed => format!("{name:<14}ok      {text}\n"),
+        Verdict::NotJudged => format!("{name:<14}-       not judged on an emulated chip: {text}\n"),
+        Verdict::Failed => format!(
+            "{name:<14}FAILED  {text}\n{:<22}expected: {}\n",
+            "", test.expected
+        ),
     }
 }
