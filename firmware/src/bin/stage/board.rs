@@ -13,7 +13,7 @@ use crate::{
     pwm::{self, PwmChannel, PwmTimer, TickEvent},
     reset_cause::ResetCause,
     self_check::SelfCheck,
-    serial::{self, Receiver, Transmitter},
+    serial::{self, Port as _, Receiver, Transmitter},
     watchdog::Watchdogs,
 };
 use core::convert::Infallible;
@@ -163,7 +163,12 @@ impl Board {
         } = clocks::start(peripherals.RCC);
         debug::halt_stops_the_motors(&peripherals.DBGMCU);
         let self_check = SelfCheck::new(&peripherals.DBGMCU, &peripherals.FLASH);
-        let streams = dma::split(peripherals.DMA1, peripherals.DMA2, &mut rcc);
+        let streams = dma::split(
+            peripherals.DMA1,
+            peripherals.DMA2,
+            pins::SerialPort::STREAMS,
+            &mut rcc,
+        );
 
         let ports = (
             peripherals.GPIOA,

@@ -1,9 +1,5 @@
 //! DMA streams: which request runs on which, and the few operations the image needs of one.
 
-use crate::{
-    pins::SerialPort,
-    serial::{Port, SerialStreams},
-};
 use stm32f4xx_hal::{
     pac,
     rcc::{Enable, Rcc},
@@ -46,8 +42,20 @@ pub struct Streams {
     pub serial_transmit: Option<Stream>,
 }
 
+/// The streams of the command line's port: of which controller, their numbers, their channel.
+pub struct SerialStreams {
+    /// Of the second controller.
+    pub second: bool,
+    /// For what comes.
+    pub receive: usize,
+    /// For what goes; `None` where the encoders have taken all that could.
+    pub transmit: Option<usize>,
+    /// Of all of them.
+    pub channel: u8,
+}
+
 /// Clocks the controllers and hands their streams out.
-pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
+pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, serial: SerialStreams, rcc: &mut Rcc) -> Streams {
     pac::DMA1::enable(rcc);
     pac::DMA2::enable(rcc);
     // SAFETY: the controllers were handed over, and each stream's registers go to one owner. The flag registers, which
@@ -65,7 +73,7 @@ pub fn split(_dma1: pac::DMA1, _dma2: pac::DMA2, rcc: &mut Rcc) -> Streams {
         receive,
         transmit,
         channel,
-    } = SerialPort::STREAMS;
+    } = serial;
     let serial = |number| stream(if second { two } else { one }, number, channel);
     Streams {
         spi1_receive: stream(two, 0, 3),

@@ -23,6 +23,7 @@ impl<P: Into<S>, S> Alternate<P, S> {
 
 /// Where the clock comes from.
 #[derive(Clone, Copy, PartialEq, Eq)]
+// Each board has one of them.
 #[allow(dead_code)]
 pub enum ClockSource {
     /// A crystal at both pins.
@@ -102,6 +103,7 @@ macro_rules! board {
 
         $(
             #[doc = $ptext]
+            // Most pins are named by their field alone.
             #[allow(dead_code)]
             pub type $PType<M> = gpio::$Ppin<M>;
         )*

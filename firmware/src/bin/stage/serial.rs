@@ -6,7 +6,7 @@
 
 use crate::{
     clocks,
-    dma::{Mode, Stream},
+    dma::{Mode, SerialStreams, Stream},
     pins::SerialPort,
     watchdog,
 };
@@ -40,18 +40,6 @@ pub trait Port: Deref<Target = usart1::RegisterBlock> + rcc::Enable {
     const STREAMS: SerialStreams;
     /// Its interrupt, where it has to send by that.
     const INTERRUPT: Option<Interrupt>;
-}
-
-/// The streams of a port: of which controller, their numbers, their channel.
-pub struct SerialStreams {
-    /// Of the second controller.
-    pub second: bool,
-    /// For what comes.
-    pub receive: usize,
-    /// For what goes; `None` where the encoders have taken all that could.
-    pub transmit: Option<usize>,
-    /// Of all of them.
-    pub channel: u8,
 }
 
 impl Port for pac::USART1 {
@@ -255,6 +243,7 @@ impl Transmitter {
 }
 
 /// The port's interrupt, where it sends by that: it can take a byte.
+// On a board whose port sends by DMA nobody calls it.
 #[allow(dead_code)]
 pub fn send_next() {
     // SAFETY: see `Transmitter::send`.
