@@ -1,4 +1,4 @@
-//! Iterative learning on the simulated machine: a move that is repeated is followed better each time, and never worse for long.
+//! Iterative learning on the simulated machine: a move that is repeated is followed better each time, and never worse than without.
 
 use tests::Bench;
 use tests::repeated::{BACK, OUT};
@@ -38,37 +38,43 @@ fn after_five_trials_little_is_left() {
     }
 }
 
-/// A correction of the wrong size: too small it takes longer; too large a trial may be worse than the best, which is followed again
-/// then, and in the end it stays.
+/// Controllers that know their machine so badly that a whole correction is worse than none: its inertia and resistance a sixth of what
+/// they are, or told seven, ten or more times too heavy, with limits that such drives bear. Small steps get better, and no trial is worse
+/// than the first one, which is without a table.
 #[test]
-fn it_stops_where_it_grows() {
-    // A model of the drive with a sixth of its inertia and resistance, which does not explain its currents either, and one with more
-    // than seven times its inertia, with limits that such a drive bears: the inverse is far from one.
-    for (told, state, largest, last) in [
+fn no_trial_is_worse_than_without_a_table() {
+    for (told, largest, last) in [
         (
             "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
-            "learning",
-            1.35,
-            0.91,
+            0.84,
+            0.76,
         ),
         (
             "SPA 1 0x54500107 60 1 0x5450050F 0.3 1 0x54500807 0.15\n",
-            "stopped",
-            0.66,
-            0.31,
+            0.78,
+            0.43,
+        ),
+        (
+            "SPA 1 0x54500107 40 1 0x5450050F 0.3 1 0x54500807 0.2\n",
+            0.82,
+            0.74,
+        ),
+        (
+            "SPA 1 0x54500107 20 1 0x5450050F 0.3 1 0x54500807 0.2\n",
+            0.91,
+            0.91,
         ),
     ] {
         let mut bench = Bench::repeating(20.0, told);
         assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
         let errors: Vec<f64> = (0..16).map(|_| bench.way_out()).collect();
-        let table = bench.table("OUT");
-        println!("{errors:.3?}, {table}");
-        assert!(table.starts_with(&format!("OUT={state} ")), "{table}");
-        // 1.223 and 0.592 of the first one at most, 0.822 and 0.275 in the end.
-        assert!(errors[1..].iter().all(|error| *error < largest * errors[0]));
-        assert!(errors[9..].iter().all(|error| *error < last * errors[0]));
+        let shares: Vec<f64> = errors.iter().map(|error| error / errors[0]).collect();
+        println!("{shares:.3?}, {}", bench.table("OUT"));
+        let at_most = |shares: &[f64], most: f64| shares.iter().all(|share| *share <= most);
+        assert!(at_most(&shares[1..], 1.1 * largest), "{shares:.3?}");
+        assert!(at_most(&shares[9..], 1.1 * last), "{shares:.3?}");
         // After a trial that was worse the best is followed.
-        let grows = |three: &[f64]| three[1] > 1.05 * three[0] && three[2] > 1.05 * three[0];
+        let grows = |three: &[f64]| three[1] > 1.1 * three[0] && three[2] > 1.1 * three[0];
         assert!(!errors.windows(3).any(grows), "{errors:?}");
     }
 }

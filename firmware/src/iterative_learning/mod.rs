@@ -11,7 +11,10 @@
 //! and that, smoothed, is the next table: feedback is what the model had not known, and what it left undone is put into volts by the
 //! drive's and the body's inertia, `P^-1 e = R J / (Kt N) e'' + (Kt N + R b / (Kt N)) e'`, as much later as winding and latency take. It is
 //! the inverse of the loop as far as the points reach, some 350 Hz where they are half a millisecond apart (Bristow, Tharayil, Alleyne,
-//! A survey of iterative learning control, 2006). Where a trial was worse than the best, the best is followed
+//! A survey of iterative learning control, 2006).
+//!
+//! The first step is a quarter: a machine that is told too heavy by r answers r times too much, and from twice on a whole step makes it
+//! worse. A step that gains what it should is followed by one twice as large. Where a trial was worse than the best, the best is followed
 //! once more, for it may have started from another state of the friction; if it still is the best, the step from it is halved, as are
 //! those to come; three times in a row, and the best is what stays. Where a trial is hardly better, what is left is noise, and the step is
 //! halved as well.

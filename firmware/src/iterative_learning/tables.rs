@@ -15,8 +15,12 @@ pub(super) const SPACING_TICKS: u32 = 10;
 pub(super) const TAIL_TICKS: u64 = 40;
 /// Error of a trial over the best one from which on it was worse: what noise makes of the same again.
 const WORSE: f32 = 1.02;
-/// Error of a trial over the best one from which on it was hardly better: what is left is noise, of which less is learnt the smaller the step.
-const LITTLE_BETTER: f32 = 0.8;
+/// The first step is this power of a half: with a machine that is told ten times too heavy a whole one is twice as bad as none.
+const FIRST_HALVINGS: u8 = 2;
+/// What a step gains of the best error, over its own size, below which what is left is noise, of which less is learnt the smaller the step.
+const HARDLY_GAINS: f32 = 0.2;
+/// The same from which on the machine is as told: the next step is twice as large.
+const GAINS_AS_TOLD: f32 = 0.75;
 /// Error of the best one, followed again, over what it was, from which on the machine is another one.
 const OTHER: f32 = 1.5;
 /// Trials worse than the best, in a row, after which the best is what stays.
@@ -124,7 +128,7 @@ impl Tables {
                 TableState::Waiting | TableState::Learning => {}
                 TableState::Frozen | TableState::Stopped => {
                     table.report.state = TableState::Learning;
-                    (table.worse, table.halvings) = (0, 0);
+                    (table.worse, table.halvings) = (0, FIRST_HALVINGS);
                 }
             }
             return Ok(());
@@ -146,7 +150,7 @@ impl Tables {
             ticks: 0,
             first: self.used(),
             worse: 0,
-            halvings: 0,
+            halvings: FIRST_HALVINGS,
             checks_best: None,
         };
         self.tables.push(table).map_err(|_| LearningError::TooMany)
@@ -295,7 +299,7 @@ impl Tables {
         if let Some(tried_counts) = checks_best.take() {
             if *last > OTHER * *best_counts {
                 // It is another machine than it was: what it needs now is more than noise.
-                *halvings = 0;
+                *halvings = FIRST_HALVINGS;
             }
             *best_counts = *last;
             if tried_counts <= WORSE * *best_counts {
@@ -318,8 +322,14 @@ impl Tables {
             return;
         }
         *worse = 0;
-        if report.trials > 1 && *last > LITTLE_BETTER * *best_counts {
-            *halvings = (*halvings + 1).min(MOST_HALVINGS);
+        if report.trials > 1 {
+            let step = 1.0 / (1_u32 << *halvings) as f32;
+            let gain = (*best_counts - *last) / (step * *best_counts);
+            if gain < HARDLY_GAINS {
+                *halvings = (*halvings + 1).min(MOST_HALVINGS);
+            } else if gain > GAINS_AS_TOLD {
+                *halvings = halvings.saturating_sub(1);
+            }
         }
         if *last < *best_counts {
             *best_counts = *last;
