@@ -77,8 +77,8 @@ pub struct State {
     pub(super) supply: f32,
     pub(super) commands: u32,
     pub(super) refused: u32,
-    /// Mode and commands at the end of the last tick.
-    pub(super) last_mode_and_commands: (Mode, u32),
+    /// Mode and commands that were last told of.
+    pub(super) told_mode_and_commands: (Mode, u32),
     pub(super) loop_counters: LoopCounters,
     /// The pivot whose servo is told of in the next snapshot.
     pub(super) reported_servo: usize,

@@ -109,10 +109,16 @@ pub fn tick_and_drive<'a>(
         state.record_trial(config, queues.trial, &pivots);
         state.learn(config, slot);
     }
+    // With a calibration there is time for a command or a snapshot only in the tick that looks nothing up, and for one of them:
+    // what the last command did is told before the next one is taken.
+    let calibrated = state.calibrated.is_on;
+    let has_time = slot == SNAPSHOT_SLOT || !calibrated;
+    let now = (state.mode, state.commands);
+    let is_told = now == state.told_mode_and_commands;
     // Taken below, by this tick. While the bridges wake up it waits: whatever it asks for, nothing could drive yet.
-    let takes = state.waking_ticks == 0;
+    let takes = has_time && (is_told || !calibrated) && state.waking_ticks == 0;
     let commanded = takes && queues.commands.ready();
-    if state.calibrated.is_on {
+    if calibrated {
         if let Some(wanted) = &state.next.pivots {
             (state.calibrated).look_up_at(slot, &wanted.angles, &wanted.lengths);
         } else if !state.servo_on() && !commanded {
@@ -141,16 +147,15 @@ pub fn tick_and_drive<'a>(
         servo: state.servo_sample(slot),
     };
     observe(queues, &sample);
-    // In its slot, and when mode or commands have changed. Where there is no room then, it is sent in the next slot: so
-    // the ticks that can send one do not depend on when the command side reads.
-    let now = (state.mode, state.commands);
-    if slot == SNAPSHOT_SLOT || now != state.last_mode_and_commands {
+    // In its slot, and when mode or commands have changed. Where there is no room then, it is sent in the next slot: so the
+    // ticks that can send one do not depend on when the command side reads.
+    if has_time && (!is_told || slot == SNAPSHOT_SLOT && !commanded) {
         let setpoint = state.next.point.position;
         state.send_snapshot(queues, &setpoint, &pivots, &target, duty);
+        state.told_mode_and_commands = now;
     }
-    state.last_mode_and_commands = now;
     // Handled where it lies: a plan is too long to be moved twice.
-    if takes && let Some(command) = queues.commands.peek() {
+    if commanded && let Some(command) = queues.commands.peek() {
         state.commands = state.commands.wrapping_add(1);
         state.handle_command(config, command, &pivots);
         let _ = queues.commands.dequeue();

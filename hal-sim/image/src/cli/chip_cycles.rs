@@ -22,9 +22,7 @@ const APART: f64 = 0.02;
 
 /// Uses in which all that a tick does takes longer than a period, and what it may take at most, pessimistically: what it took, and a tenth.
 /// A controller set like this with a calibration has late ticks: known, and to be mended where the next setpoint is computed.
-/// So has the one that switches a calibrated stage on, by what else falls into it: 7,416 to 8,577 cycles were seen, in thirty places.
-const LONGER_THAN_PERIOD: [(Use, u64); 4] = [
-    (Use::SwitchedOnCalibrated, 9_321),
+const LONGER_THAN_PERIOD: [(Use, u64); 3] = [
     (Use::MovingShaped, 9_711),
     (Use::PlanTakenShaped, 12_126),
     (Use::MovingShapedTrial, 10_230),
