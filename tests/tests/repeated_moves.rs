@@ -43,39 +43,49 @@ fn after_five_trials_little_is_left() {
 /// than the first one, which is without a table.
 #[test]
 fn no_trial_is_worse_than_without_a_table() {
-    for (told, largest, last) in [
+    for (told, state, largest, last) in [
         (
             "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
+            "learning",
             0.84,
-            0.76,
+            0.77,
         ),
         (
             "SPA 1 0x54500107 60 1 0x5450050F 0.3 1 0x54500807 0.15\n",
+            "stopped",
             0.78,
-            0.43,
+            0.42,
         ),
         (
             "SPA 1 0x54500107 40 1 0x5450050F 0.3 1 0x54500807 0.2\n",
+            "learning",
             0.82,
             0.74,
         ),
         (
             "SPA 1 0x54500107 20 1 0x5450050F 0.3 1 0x54500807 0.2\n",
+            "learning",
             0.91,
-            0.91,
+            0.88,
         ),
     ] {
         let mut bench = Bench::repeating(20.0, told);
         assert_eq!(bench.error_after("ILC LEARN OUT"), "0");
-        let errors: Vec<f64> = (0..16).map(|_| bench.way_out()).collect();
+        let trials = (0..16).map(|_| (bench.way_out(), last_counts(&bench.table("OUT"))));
+        let (errors, told): (Vec<f64>, Vec<f64>) = trials.unzip();
+        let table = bench.table("OUT");
         let shares: Vec<f64> = errors.iter().map(|error| error / errors[0]).collect();
-        println!("{shares:.3?}, {}", bench.table("OUT"));
+        println!("{shares:.3?}, {told:.3?}, {table}");
+        assert!(table.starts_with(&format!("OUT={state} ")), "{table}");
         let at_most = |shares: &[f64], most: f64| shares.iter().all(|share| *share <= most);
-        assert!(at_most(&shares[1..], 1.1 * largest), "{shares:.3?}");
+        assert!(
+            at_most(&shares[1..], (1.1_f64 * largest).min(1.0)),
+            "{shares:.3?}"
+        );
         assert!(at_most(&shares[9..], 1.1 * last), "{shares:.3?}");
-        // After a trial that was worse the best is followed.
-        let grows = |three: &[f64]| three[1] > 1.1 * three[0] && three[2] > 1.1 * three[0];
-        assert!(!errors.windows(3).any(grows), "{errors:?}");
+        // After a trial that was worse, by what is told of it, the best is followed.
+        let grows = |three: &[f64]| three[1] > 1.05 * three[0] && three[2] > 1.05 * three[0];
+        assert!(!told.windows(3).any(grows), "{told:?}");
     }
 }
 

@@ -24,7 +24,7 @@ const APART: f64 = 0.02;
 /// A controller set like this with a calibration has late ticks: known, and to be mended where the next setpoint is computed.
 const LONGER_THAN_PERIOD: [(Use, u64); 3] = [
     (Use::MovingShaped, 9_711),
-    (Use::PlanTakenShaped, 12_126),
+    (Use::PlanTakenShaped, 11_409),
     (Use::MovingShapedTrial, 10_230),
 ];
 
