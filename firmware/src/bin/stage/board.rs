@@ -160,7 +160,7 @@ impl Board {
         let Clocks {
             mut rcc,
             without_crystal,
-        } = clocks::start(peripherals.RCC);
+        } = clocks::start(peripherals.RCC, pins::CLOCK);
         debug::halt_stops_the_motors(&peripherals.DBGMCU);
         let self_check = SelfCheck::new(&peripherals.DBGMCU, &peripherals.FLASH);
         let streams = dma::split(

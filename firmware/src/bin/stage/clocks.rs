@@ -6,7 +6,6 @@
 //! | APB2 | 84 M, timers 168 M | TIM1, SPI1, USART1, ADC1 |
 //! | APB1 | 42 M, timers 84 M | TIM3, SPI2, SPI3 |
 
-use crate::{pin_list::ClockSource, pins};
 use stm32f4xx_hal::{
     pac,
     rcc::{Config, Rcc, RccExt},
@@ -30,6 +29,17 @@ const CRYSTAL: Hertz = Hertz::MHz(8);
 /// one takes 2 ms.
 const MAX_CRYSTAL_LOOKS: u32 = 500_000;
 
+/// Where the clock comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+// Each board has one of them.
+#[allow(dead_code)]
+pub enum ClockSource {
+    /// A crystal at both pins.
+    Crystal,
+    /// Somebody else's clock at one of them.
+    Bypassed,
+}
+
 /// The clock tree, and where it comes from.
 pub struct Clocks {
     /// For those who switch their own clocks on.
@@ -41,8 +51,8 @@ pub struct Clocks {
 
 /// Starts the crystal and the PLL, switches over to them, and has the crystal watched: when it stops, the timers' break
 /// cuts the outputs, and the processor takes the non-maskable interrupt.
-pub fn start(rcc: pac::RCC) -> Clocks {
-    let has_crystal = start_crystal(&rcc);
+pub fn start(rcc: pac::RCC, source: ClockSource) -> Clocks {
+    let has_crystal = start_crystal(&rcc, source);
     let source = if has_crystal {
         Config::hse(CRYSTAL)
     } else {
@@ -65,9 +75,9 @@ pub fn start(rcc: pac::RCC) -> Clocks {
 }
 
 /// Whether the crystal has started. One that has not is switched off again.
-fn start_crystal(rcc: &pac::RCC) -> bool {
+fn start_crystal(rcc: &pac::RCC, source: ClockSource) -> bool {
     // Settable only while the oscillator is off.
-    let bypassed = pins::CLOCK == ClockSource::Bypassed;
+    let bypassed = source == ClockSource::Bypassed;
     rcc.cr().modify(|_, w| w.hsebyp().bit(bypassed));
     rcc.cr().modify(|_, w| w.hseon().on());
     let starts = (0..MAX_CRYSTAL_LOOKS).any(|_| rcc.cr().read().hserdy().is_ready());

@@ -21,17 +21,6 @@ impl<P: Into<S>, S> Alternate<P, S> {
     }
 }
 
-/// Where the clock comes from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-// Each board has one of them.
-#[allow(dead_code)]
-pub enum ClockSource {
-    /// A crystal at both pins.
-    Crystal,
-    /// Somebody else's clock at one of them.
-    Bypassed,
-}
-
 /// All ports that boards use.
 #[allow(missing_docs)]
 pub struct Ports {
@@ -86,7 +75,8 @@ macro_rules! board {
         plain: { $($PType:ident $pname:ident: $Ppin:ident $pport:ident.$pfield:ident, $ptext:literal;)* }
         analog: { $($NType:ident $nname:ident: $Npin:ident $nport:ident.$nfield:ident, $ntext:literal;)* }
     ) => {
-        use crate::pin_list::{Alternate, ClockSource, Ports};
+        use crate::clocks::ClockSource;
+        use crate::pin_list::{Alternate, Ports};
         use stm32f4xx_hal::{gpio, gpio::alt, hal_02::adc::Channel, pac};
 
         /// What the board is.
