@@ -28,7 +28,7 @@ const SOFTENING_S: f64 = 0.2;
 const SLACKENING_S: f64 = 0.2;
 const QUICKENING_S: f64 = 0.5;
 /// What is left of the gains at rest where no error lasts.
-const SLACK: f64 = 0.6;
+const SLACK: f64 = 0.5;
 /// Share of the integral's rate at rest where no error lasts, over that of the gains.
 const REST_INTEGRAL: f64 = 2.0;
 /// Error that lasts for about this time, encoder counts.
