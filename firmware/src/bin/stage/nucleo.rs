@@ -34,6 +34,7 @@ mod tick_timing;
 mod timeline;
 mod trace;
 mod watchdog;
+mod word_copy;
 
 #[path = "board_pins/nucleo.rs"]
 mod pins;
