@@ -53,7 +53,7 @@ fn follow(
     signals: &[Signals; 3],
 ) -> Followed {
     let mut trial = Trial::default();
-    assert_eq!(trial.advance(table, TICK_HZ as f32, Some((plan, 1))), None);
+    assert_eq!(trial.advance(table, TICK_HZ as f32, Some((plan, 2))), None);
     assert!(trial.is_under_way());
     let mut volts: [Vec<f64>; 3] = Default::default();
     for tick in 0..signals[0].error.len() {
@@ -66,7 +66,7 @@ fn follow(
             integral: signals[i].offset_v as f32,
         });
         trial.record(table, inverse, &steps);
-        let motion = Some((plan, tick as u64 + 2));
+        let motion = Some((plan, tick as u64 + 3));
         if let Some(left) = trial.advance(table, TICK_HZ as f32, motion) {
             let left = left.map(f64::from);
             return Followed { volts, left };

@@ -52,4 +52,4 @@ mod trigonometric;
 pub use fixed::Fixed;
 pub use root::round_ties_even;
 pub use root::{cbrt_f32, sqrt_f32};
-pub use trigonometric::sin_cos_f32;
+pub use trigonometric::{sin_cos_f32, sin_cos_short};

@@ -252,37 +252,36 @@ impl Calibrated {
     /// See [`corrected_inverse`].
     fn solve(&self, config: &Config, pose: &Pose<Fixed>) -> Option<CorrectedInverse<Fixed>> {
         let (twist, acceleration) = (Twist::default(), Acceleration::default());
-        let mut at = None;
-        let _ = self.pivot_setpoints(config, pose, &twist, &acceleration, Some(&mut at));
+        let (mut at, mut unused) = (None, PivotSetpoints::at_rest([Angle::ZERO; 3]));
+        let at_rest = (&twist, &acceleration);
+        let _ = self.pivot_setpoints(config, pose, at_rest, &mut unused, Some(&mut at));
         at
     }
 
-    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism; and, if
-    /// asked, how the pose was solved.
+    /// Setpoint of the pose to setpoints of the pivots as their encoders read them, if it is a pose of the mechanism, written where they
+    /// are kept; and, if asked, how the pose was solved.
     // The corrected inverse stands here, once in the loop's memory: a function of its own would hand its results over in memory.
     #[inline(never)]
     pub fn pivot_setpoints(
         &self,
         config: &Config,
         pose: &Pose<Fixed>,
-        twist: &Twist<f32>,
-        acceleration: &Acceleration<f32>,
+        (twist, acceleration): (&Twist<f32>, &Acceleration<f32>),
+        wanted: &mut PivotSetpoints,
         solved: Option<&mut Option<CorrectedInverse<Fixed>>>,
-    ) -> Option<PivotSetpoints> {
+    ) -> Option<()> {
         let at = corrected_inverse(pose, &self.near).ok()?;
         let guides = &at.guides;
         let (twist, acceleration) = in_platform_axes(guides, twist, acceleration);
-        let setpoints = PivotSetpoints {
-            angles: at.encoders,
-            motion: corrected_pivot_motion(&at, &self.near.lines, &twist, &acceleration),
-            torques: platform_torques(&config.servo.body, guides, &twist, &acceleration),
-            lengths: [guides[0].rho(), guides[1].rho(), guides[2].rho()],
-            cosines: [guides[0].cosine, guides[1].cosine, guides[2].cosine],
-        };
+        wanted.angles = at.encoders;
+        wanted.motion = corrected_pivot_motion(&at, &self.near.lines, &twist, &acceleration);
+        wanted.torques = platform_torques(&config.servo.body, guides, &twist, &acceleration);
+        wanted.lengths = [guides[0].rho(), guides[1].rho(), guides[2].rho()];
+        wanted.cosines = [guides[0].cosine, guides[1].cosine, guides[2].cosine];
         if let Some(solved) = solved {
             *solved = Some(at);
         }
-        Some(setpoints)
+        Some(())
     }
 }
 

@@ -3,6 +3,7 @@
 use super::config::Config;
 use super::encoder::Encoder;
 use super::excitation::{ExcitationSignal, GuardBroken};
+use super::next_setpoint::feed_forward;
 use super::pivot_setpoints::PivotSetpoints;
 use super::rest_mode::Stiffness;
 use super::state::State;
@@ -52,7 +53,7 @@ impl State {
                 gains: stiffness,
                 integral_rate: stiffness,
             };
-            self.feed_forward(config, &wanted);
+            feed_forward(&mut self.servo, config, &wanted, self.inspection_slot);
             let (asked, _) = self.step_servos(config, &errors, stiffness, current_counts);
             duty = asked.map(|asked| Duty(asked.0.min(most_counts).max(-most_counts)));
         } else if let Some(duty) = duty.get_mut(pivot) {

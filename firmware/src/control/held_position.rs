@@ -9,7 +9,7 @@
 //! decimals would be 2 counts, and the simulated stage settles 1 ms later with them.
 
 use crate::motion::Position;
-use core::num::{NonZeroU32, NonZeroU64};
+use core::num::NonZeroU32;
 
 /// Steps in a mm and in a deg.
 pub(crate) const STEPS_PER_UNIT: f64 = 1e6;
@@ -46,12 +46,21 @@ impl PositionSteps {
 }
 
 /// The nearest multiple of 2^32 over `steps`, rounded to a unit. Whole radii and turns, on which there is a step, are set
-/// aside: the rest has room in 64 bits.
+/// aside: the rest has room in 64 bits. A step is less than 2^31 / `steps` units away: the chip divides that in an instruction, where the
+/// whole position would be a call.
 fn nearest(units: i64, steps: NonZeroU32) -> i64 {
     let [fraction, per_whole] = [units as u32, steps.get()].map(u64::from);
-    let step = (fraction * per_whole + (1 << 31)) >> 32;
-    let back = ((step << 32) + per_whole / 2) / NonZeroU64::from(steps);
-    (units >> 32 << 32).wrapping_add(back as i64)
+    let product = fraction * per_whole;
+    let step = (product + (1 << 31)) >> 32;
+    let away = (step << 32).wrapping_sub(product) as i64;
+    let (far, half) = (away.unsigned_abs() as u32, steps.get() / 2);
+    // To the nearest unit; from halfway up.
+    let moved = if away >= 0 {
+        i64::from(far.wrapping_add(half) / steps)
+    } else {
+        -i64::from(far.wrapping_add(steps.get() - 1 - half) / steps)
+    };
+    units.wrapping_add(moved)
 }
 
 #[cfg(test)]
@@ -82,6 +91,23 @@ mod tests {
                 assert_eq!(held[i], units, "{position:?}");
             }
             assert_eq!(steps.nearest(&held), held);
+        }
+    }
+
+    #[test]
+    fn it_is_the_quotient_of_the_whole_position() {
+        for radius_mm in [0.001, 33.3, 100.0, 360.0, 1_999.9] {
+            let steps = PositionSteps::new(radius_mm);
+            let per_whole = i128::from(steps.per_radius.get());
+            for units in positions().flatten().chain([0, 1, -1, i64::from(u32::MAX)]) {
+                let step = (i128::from(units) * per_whole + (1 << 31)) >> 32;
+                let exact = ((step << 32) + per_whole / 2).div_euclid(per_whole);
+                assert_eq!(
+                    i128::from(steps.nearest(&[units, 0, 0])[0]),
+                    exact,
+                    "{units}"
+                );
+            }
         }
     }
 

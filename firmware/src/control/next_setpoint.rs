@@ -7,12 +7,13 @@
 
 use super::config::Config;
 use super::pivot_setpoints::{PivotSetpoints, pivot_setpoints, pose};
-use super::servo::PivotSetpoint;
+use super::servo::{PivotServo, PivotSetpoint};
 use super::state::State;
 use crate::fault::FaultKind;
 use crate::iterative_learning::TrialTable;
 use crate::mode::Mode;
 use crate::motion::Setpoint;
+use kinematics::Angle;
 
 impl State {
     /// One tick on: the setpoint that the next tick follows, and what a trial adds in it. One that can not be followed is
@@ -25,11 +26,12 @@ impl State {
         self.next.point = point;
         self.next.platform = platform;
         self.next.moving = self.motion.is_moving();
-        self.next.pivots = if self.servo_on() && self.is_in_disk(config, &platform.position) {
-            self.pivots_of(config, &platform)
-        } else {
-            None
-        };
+        if !(self.servo_on()
+            && self.is_in_disk(config, &platform.position)
+            && self.find_pivots(config, &platform))
+        {
+            self.next.pivots = None;
+        }
     }
 
     fn advance_motion(&mut self, config: &Config) -> Setpoint {
@@ -45,25 +47,23 @@ impl State {
         motion.setpoint(&config.scale)
     }
 
-    fn pivots_of(&mut self, config: &Config, platform: &Setpoint) -> Option<PivotSetpoints> {
-        let wanted = if self.calibrated.is_on {
+    /// The pivots' setpoints, where they are kept, and the servos' voltages for them; not where nothing may follow them.
+    fn find_pivots(&mut self, config: &Config, platform: &Setpoint) -> bool {
+        let wanted =
+            (self.next.pivots).get_or_insert_with(|| PivotSetpoints::at_rest([Angle::ZERO; 3]));
+        let found = if self.calibrated.is_on {
             pose(&platform.position).and_then(|pose| {
                 self.calibrated.follow_from(&pose);
-                self.calibrated.pivot_setpoints(
-                    config,
-                    &pose,
-                    &platform.twist,
-                    &platform.acceleration,
-                    None,
-                )
+                let motion = (&platform.twist, &platform.acceleration);
+                (self.calibrated).pivot_setpoints(config, &pose, motion, wanted, None)
             })
         } else {
-            pivot_setpoints(config, platform)
+            pivot_setpoints(config, platform, wanted)
         };
-        let Some(wanted) = wanted else {
+        if found.is_none() {
             self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
-            return None;
-        };
+            return false;
+        }
         // Of the pivot that is inspected in the next tick.
         let i = self.inspection_slot;
         if let (Some(&length), Some(rate), Some(acceleration)) = (
@@ -74,24 +74,32 @@ impl State {
             self.next.slowly = rate.abs() < config.limits.slow_rate
                 && acceleration.abs() < config.limits.slow_acceleration;
             if !self.is_in_guide_range(config, i, length) {
-                return None;
+                return false;
             }
         }
-        self.feed_forward(config, &wanted);
-        Some(wanted)
-    }
-
-    /// The servos' voltages for these setpoints.
-    #[inline(never)]
-    pub(super) fn feed_forward(&mut self, config: &Config, wanted: &PivotSetpoints) {
-        for (i, (servo, config)) in (self.servo.iter_mut().zip(&config.servo.pivots)).enumerate() {
-            let setpoint = PivotSetpoint {
-                rate: wanted.motion.rates[i],
-                acceleration: wanted.motion.accelerations[i],
-                platform_torque: wanted.torques[i],
-                angle: wanted.angles[i],
-            };
-            servo.feed_forward(config, &setpoint);
+        if let Some(wanted) = &self.next.pivots {
+            feed_forward(&mut self.servo, config, wanted, i);
         }
+        true
+    }
+}
+
+/// The servos' voltages for these setpoints; `turn` is the pivot that has its turn.
+#[inline(never)]
+pub(super) fn feed_forward(
+    servos: &mut [PivotServo; 3],
+    config: &Config,
+    wanted: &PivotSetpoints,
+    turn: usize,
+) {
+    for (i, (servo, config)) in (servos.iter_mut().zip(&config.servo.pivots)).enumerate() {
+        let setpoint = PivotSetpoint {
+            rate: wanted.motion.rates[i],
+            acceleration: wanted.motion.accelerations[i],
+            platform_torque: wanted.torques[i],
+            angle: wanted.angles[i],
+            has_turn: i == turn,
+        };
+        servo.feed_forward(config, &setpoint);
     }
 }

@@ -5,6 +5,9 @@ use super::memory::TrialTable;
 /// 2^-32 turns of an encoder count.
 const COUNTS_PER_UNIT: f32 = 1.0 / 64.0;
 
+/// Ticks of its plan after which a trial starts: not in the one that takes the plan, which is the longest as it is.
+const STARTS_AFTER: u64 = 2;
+
 /// The voltage behind a pivot's motion: `volt_s2 e'' + volt_s e'`, e in 2^-32 turns, so many ticks later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InversePlant {
@@ -108,7 +111,9 @@ impl Trial {
     ) -> Option<[f32; 3]> {
         let left = self.end_if_over(table, motion, open);
         match (self.plan, motion) {
-            (None, Some((plan, 1))) if open == Some(plan) => self.start(table, tick_hz, plan),
+            (None, Some((plan, STARTS_AFTER))) if open == Some(plan) => {
+                self.start(table, tick_hz, plan);
+            }
             (None, _) => {}
             (Some(_), _) => self.step(table),
         }
@@ -162,14 +167,12 @@ impl Trial {
             return;
         }
         let per_tick = 1.0 / spacing_ticks as f32;
-        *self = Self {
-            plan: Some(plan),
-            points,
-            spacing_ticks,
-            per_tick,
-            point_hz: tick_hz * per_tick,
-            ..Self::default()
-        };
+        // The pivots are as the last trial's end has left them.
+        self.plan = Some(plan);
+        self.points = points;
+        self.spacing_ticks = spacing_ticks;
+        self.per_tick = per_tick;
+        self.point_hz = tick_hz * per_tick;
         for (i, pivot) in self.pivots.iter_mut().enumerate() {
             pivot.to_middle = spacing_ticks / 2 + i as u32;
             pivot.to_end = spacing_ticks + i as u32;

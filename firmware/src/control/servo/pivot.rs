@@ -25,6 +25,8 @@ pub struct PivotSetpoint {
     pub platform_torque: f32,
     /// Angle.
     pub angle: Angle,
+    /// At rest, where nothing changes, the ripple there is computed when the pivot has its turn.
+    pub has_turn: bool,
 }
 
 /// What is measured of one pivot at a tick, and what somebody else asks for.
@@ -161,7 +163,9 @@ impl PivotServo {
         self.feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
             + (config.model_weights[1] + self.learnt.weights[1]) * torque
             + (config.model_weights[2] + self.learnt.weights[2]) * friction;
-        self.ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
+        if setpoint.rate != 0.0 || setpoint.has_turn {
+            self.ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
+        }
     }
 
     /// Duty for this tick.

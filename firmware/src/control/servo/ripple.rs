@@ -6,9 +6,9 @@
 //! voltage acts. So the phase is right at every speed, as far as the model of the winding is.
 
 use crate::control::units::UNITS_PER_RAD;
-use crate::number::Fixed;
+use crate::number::sin_cos_short;
 use crate::parameters::{Drive, HARMONICS, Harmonic};
-use kinematics::{Angle, Scalar};
+use kinematics::Angle;
 
 /// Binary places of a harmonic's periods.
 const PERIOD_PLACES: u32 = 15;
@@ -65,14 +65,20 @@ impl RippleConfig {
         if self.count == 0 {
             return 0.0;
         }
+        self.sum(setpoint, rate)
+    }
+
+    /// Of the sines that are there.
+    // Once in the loop's memory: written out for each pivot and each sine it would be long.
+    #[inline(never)]
+    fn sum(&self, setpoint: Angle, rate: f32) -> f32 {
         let angle = setpoint.units() + i64::from((rate * self.lead) as i32);
         let mut volts = 0.0;
         for sine in self.sines.iter().take(self.count.into()) {
             // All turns count, so that a gear without a whole ratio keeps its phase.
             let turned = (angle.wrapping_mul(i64::from(sine.periods)) >> PERIOD_PLACES) as u32;
-            let phase = Angle::from_units(i64::from(turned.wrapping_add(sine.phase)));
-            let (sin, cos) = Fixed::sin_cos(phase);
-            volts += sine.volts * sin.to_f32() + sine.volts_per_rate * rate * cos.to_f32();
+            let (sin, cos) = sin_cos_short(turned.wrapping_add(sine.phase));
+            volts += sine.volts * sin + sine.volts_per_rate * rate * cos;
         }
         volts
     }

@@ -168,6 +168,7 @@ fn pivot(random: &mut Random) -> (PivotSetpoint, PivotFeedback) {
         acceleration: random.within(-100.0, 100.0) as f32,
         platform_torque: random.within(-6.0, 6.0) as f32,
         angle: Angle::from_units(random.within(-2e9, 2e9) as i64),
+        has_turn: true,
     };
     let measured = PivotFeedback {
         error,
