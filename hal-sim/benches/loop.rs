@@ -83,7 +83,7 @@ struct Gains {
 }
 
 const SHAPED: Tuning = Tuning::Shaped(Gains {
-    velocity_v_s_rad: 43.0,
+    velocity_v_s_rad: 43.6,
     position_1_s: 650.0,
     integral_1_s: 720.0,
 });

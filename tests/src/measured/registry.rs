@@ -459,7 +459,7 @@ pub const SECTIONS: &[Section] = &[
                 [cycle-limits.csv](../firmware/cycle-limits.csv) keeps the nominal worst of each use and what it may be at most: \
                 `--check` fails where one is over, a tick has loaded from flash, or the model without a memory is more than 2 % off \
                 `llvm-mca`'s, both with one cycle for each load and store: ARM's table has more. No tick, with all that it does after its \
-                duties, may be longer than a period: those with a calibration and all that shapes a loop are, and are not to grow.",
+                duties, may be longer than a period, pessimistically.",
         command: "cargo chip-cycles",
         short: Some("cargo chip-cycles --ticks 100"),
         kind: Kind::Compiled,

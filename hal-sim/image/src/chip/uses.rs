@@ -42,7 +42,7 @@ pub enum Use {
     PlanTakenCalibrated,
     /// The servo is off, and the pose is followed.
     OffCalibrated,
-    /// It is switched on then.
+    /// It is switched on then, without and with all that shapes a loop.
     SwitchedOnCalibrated,
     /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, four sines of ripple and three of
     /// the encoder's error within a period, and gains that go by the inertia.
@@ -207,7 +207,8 @@ const REPEATED: u64 = 53_000;
 const SERIAL_ASKED: u64 = 25_000;
 const REFERENCED_AGAIN: u64 = 32_000;
 /// With the calibration the servo is switched off and on again at rest, each time a tick later: ticks take turns in what they do besides.
-const SWITCHED: Range<u64> = 41_400..42_600;
+/// Then once more, with all that shapes a loop.
+const SWITCHED: [Range<u64>; 2] = [41_400..42_600, 44_100..44_820];
 const SWITCHED_EVERY: u64 = 240;
 /// From off to on.
 const SWITCHED_AFTER: u64 = 30;
@@ -280,7 +281,9 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             Some(Use::PlanTakenShaped),
         ),
     ];
-    let rounds = SWITCHED.step_by(SWITCHED_EVERY as usize);
+    let rounds = SWITCHED
+        .into_iter()
+        .flat_map(|range| range.step_by(SWITCHED_EVERY as usize));
     let ticks = SWITCHED_EVERY - SWITCHED_AFTER;
     stretches.extend(rounds.map(|from| switched_on(from + SWITCHED_AFTER, ticks)));
     stretches
@@ -481,8 +484,8 @@ fn send(period: &mut Period<'_>) {
             period.send(line);
         }
     }
-    if SWITCHED.contains(&period.tick) {
-        let done = period.tick - SWITCHED.start;
+    if let Some(range) = SWITCHED.iter().find(|it| it.contains(&period.tick)) {
+        let done = period.tick - range.start;
         let (round, at) = (done / SWITCHED_EVERY, done % SWITCHED_EVERY);
         if at == 0 {
             period.send(b"SVO X 0\n");

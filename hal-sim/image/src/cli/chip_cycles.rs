@@ -20,14 +20,6 @@ const PERIOD: &str = "stage_period_cycles";
 /// How far model and `llvm-mca` may be apart.
 const APART: f64 = 0.02;
 
-/// Uses in which all that a tick does takes longer than a period, and what it may take at most, pessimistically: what it took, and a tenth.
-/// A controller set like this with a calibration has late ticks: known, and to be mended where the next setpoint is computed.
-const LONGER_THAN_PERIOD: [(Use, u64); 3] = [
-    (Use::MovingShaped, 9_711),
-    (Use::PlanTakenShaped, 11_409),
-    (Use::MovingShapedTrial, 10_230),
-];
-
 pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
     let image = elf_file::find().ok_or(ChipError::NoImage)?;
     let symbol = |name: &str| {
@@ -60,18 +52,11 @@ pub(super) fn run(arguments: &ChipCycles) -> Result<ExitCode, CliError> {
     }
     let pessimistic = &tallies.guesses[2];
     for row in pessimistic.rows.iter().filter(|row| row.whole > period) {
-        let known = LONGER_THAN_PERIOD
-            .iter()
-            .find(|(used, _)| *used == row.used);
-        let text = format!(
+        found.push(format!(
             "{}: all that a tick does takes {} cycles pessimistically, a period has {period}",
             row.name(),
             row.whole
-        );
-        match known {
-            Some((_, most)) if row.whole <= *most => println!("{text}: known"),
-            _ => found.push(text),
-        }
+        ));
     }
     if let Some(at) = used.flash_read() {
         found.push(format!(
