@@ -44,6 +44,8 @@ pub enum Use {
     OffCalibrated,
     /// It is switched on then, without and with all that shapes a loop.
     SwitchedOnCalibrated,
+    /// With the calibration and all that shapes a loop, as below, it takes settings.
+    SettingsTakenShaped,
     /// It moves with it, and all is on that shapes a loop or learns: of each pivot two notches, the lead, four sines of ripple and three of
     /// the encoder's error within a period, and gains that go by the inertia.
     MovingShaped,
@@ -55,7 +57,7 @@ pub enum Use {
 
 impl Use {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Off,
         Self::Holding,
         Self::Moving,
@@ -69,6 +71,7 @@ impl Use {
         Self::PlanTakenCalibrated,
         Self::OffCalibrated,
         Self::SwitchedOnCalibrated,
+        Self::SettingsTakenShaped,
         Self::MovingShaped,
         Self::PlanTakenShaped,
         Self::MovingShapedTrial,
@@ -91,6 +94,7 @@ impl Use {
             Self::PlanTakenCalibrated => "calibrated, takes a plan",
             Self::OffCalibrated => "servo off, calibrated",
             Self::SwitchedOnCalibrated => "calibrated, switched on",
+            Self::SettingsTakenShaped => "all that shapes a loop, takes settings",
             Self::MovingShaped => "moving, calibrated, all that shapes a loop",
             Self::PlanTakenShaped => "all that shapes a loop, takes a plan",
             Self::MovingShapedTrial => "all that shapes a loop, a repeated move",
@@ -196,19 +200,21 @@ const LINES: [(u64, &[u8]); 23] = [
         b"SPA 1 0x54500A00 1300 1 0x54500A01 2e-3 1 0x54500A03 2600 1 0x54500A04 1e-3\n",
     ),
     (
-        44_000,
+        SETTINGS_TAKEN,
         b"SPA 1 0x54500A06 50 1 0x54500A07 1e-3 1 0x54500A09 100 1 0x54500A0A 1e-3\nERR?\n",
     ),
     (SHAPED, b"MOV X 10 Y 40 W 0\n"),
     (REPEATED, b"ILC LEARN A\nMOV X 40 Y 20 W 90\nERR?\n"),
 ];
+/// The last of these lines: its settings are taken while the others are in force.
+const SETTINGS_TAKEN: u64 = 44_000;
 const SHAPED: u64 = 45_000;
 const REPEATED: u64 = 53_000;
 const SERIAL_ASKED: u64 = 25_000;
 const REFERENCED_AGAIN: u64 = 32_000;
 /// With the calibration the servo is switched off and on again at rest, each time a tick later: ticks take turns in what they do besides.
 /// Then once more, with all that shapes a loop.
-const SWITCHED: [Range<u64>; 2] = [41_400..42_600, 44_100..44_820];
+const SWITCHED: [Range<u64>; 2] = [41_400..42_600, 44_400..44_880];
 const SWITCHED_EVERY: u64 = 240;
 /// From off to on.
 const SWITCHED_AFTER: u64 = 30;
@@ -267,6 +273,12 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
             ticks.clamp(300, 900),
             Use::MovingCalibrated,
             Some(Use::PlanTakenCalibrated),
+        ),
+        stretch(
+            SETTINGS_TAKEN,
+            300,
+            Use::SettingsTakenShaped,
+            Some(Use::SettingsTakenShaped),
         ),
         stretch(
             SHAPED,
@@ -429,6 +441,10 @@ impl Run {
         let takes = steps.any(|step| self.takes_command.contains(&step.at));
         let taken = stretch.taken.filter(|_| takes);
         let used = taken.unwrap_or(stretch.used);
+        // Where the stage rests meanwhile it does what it does when it moves.
+        if used == Use::SettingsTakenShaped && !takes {
+            return;
+        }
         if used == Use::SwitchedOnCalibrated {
             self.switched_on_in = Some(stretch.ticks.start);
         }
