@@ -46,9 +46,9 @@ fn no_trial_is_worse_than_without_a_table() {
     for (told, state, largest, last) in [
         (
             "SPA 1 0x54500807 0.001 1 0x54500802 0.3 1 0x54500513 20\n",
-            "learning",
+            "stopped",
             0.84,
-            0.77,
+            0.69,
         ),
         (
             "SPA 1 0x54500107 60 1 0x5450050F 0.3 1 0x54500807 0.15\n",

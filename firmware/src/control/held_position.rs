@@ -46,7 +46,7 @@ impl PositionSteps {
 }
 
 /// The nearest multiple of 2^32 over `steps`, rounded to a unit. Whole radii and turns, on which there is a step, are set
-/// aside: the rest has room in 64 bits. A step is less than 2^31 / `steps` units away: the chip divides that in an instruction, where the
+/// aside: the rest has room in 64 bits. A step is at most 2^31 / `steps` units away: the chip divides that in an instruction, where the
 /// whole position would be a call.
 fn nearest(units: i64, steps: NonZeroU32) -> i64 {
     let [fraction, per_whole] = [units as u32, steps.get()].map(u64::from);

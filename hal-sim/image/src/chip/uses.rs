@@ -225,11 +225,11 @@ const CALIBRATION_EVERY: u64 = 60;
 const OFF_BY: f32 = 1e-5;
 /// Numbers in a line.
 const LINE_NUMBERS: usize = 8;
-/// Streamed targets: one every 20 ticks on a circle that begins and ends where the stage is.
-const STREAM: Range<u64> = 15_200..17_200;
+/// Streamed targets: one every 20 ticks on a circle that begins and ends where the stage is, from rest to rest.
+const STREAM: Range<u64> = 15_200..19_200;
 const STREAM_EVERY: u64 = 20;
 const STREAM_START: [f64; 2] = [-30.0, 35.0];
-const STREAM_RADIUS_MM: f64 = 1.0;
+const STREAM_RADIUS_MM: f64 = 0.2;
 const END: u64 = 54_000;
 
 /// So many ticks of each use, at least; of those that take a command, as many as there are.
@@ -256,7 +256,7 @@ fn stretches(ticks: u64) -> Vec<Stretch> {
         stretch(2_000, quarter, Use::Moving, plan),
         stretch(4_000, quarter.max(400), Use::Moving, plan),
         stretch(5_000, quarter, Use::Moving, plan),
-        stretch(15_600, ticks, Use::Streaming, None),
+        stretch(17_000, ticks, Use::Streaming, None),
         stretch(20_200, ORDER_TICKS, Use::RecordOrder, None),
         stretch(20_300, ORDER_TICKS, Use::RecordOrder, None),
         stretch(
@@ -511,6 +511,8 @@ fn send(period: &mut Period<'_>) {
     }
     if STREAM.contains(&period.tick) && period.tick.is_multiple_of(STREAM_EVERY) {
         let done = (period.tick - STREAM.start) as f64 / (STREAM.end - STREAM.start) as f64;
+        // A quintic: what began at full speed would be refused.
+        let done = done.powi(3) * (10.0 + done * (6.0 * done - 15.0));
         let (sine, cosine) = (std::f64::consts::TAU * done).sin_cos();
         let [x, y] = STREAM_START;
         let x = x + STREAM_RADIUS_MM * (1.0 - cosine);
