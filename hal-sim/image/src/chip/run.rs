@@ -52,6 +52,8 @@ pub enum ChipError {
     Lines(PathBuf, String),
     /// The image touched what the emulator does not model.
     Gaps(Vec<String>),
+    /// Its lines were answered with these, and not with those.
+    Answers(Vec<String>, String),
     /// The run ended without a result.
     Lost,
     /// The lines of an exercise are no script.
@@ -72,6 +74,11 @@ impl fmt::Display for ChipError {
                     gaps.join("; ")
                 )
             }
+            Self::Answers(answers, wanted) => write!(
+                f,
+                "the lines were answered with {}, which has to be {wanted}",
+                answers.join(" ")
+            ),
             Self::Lost => write!(f, "the emulator ended before the script"),
             Self::Script(error) => error.fmt(f),
         }

@@ -160,12 +160,14 @@ struct Stretch {
 const ORDER_TICKS: u64 = 40;
 
 /// Lines, and the tick before which they are sent.
-const LINES: [(u64, &[u8]); 23] = [
+const LINES: [(u64, &[u8]); 25] = [
     (150, b"FRF X\n"),
     (1_000, b"MOV X 40 Y 20 W 90\n"),
     (4_000, b"MOV X -30 Y 35 W -90\n"),
     (15_000, b"SPA 1 0x19001900 1\nSCT T 1\n"),
-    (20_000, b"SPA 1 0x19001900 0\n"),
+    (19_000, b"ERR?\n"),
+    // The stream has dried up, as it has to be.
+    (20_000, b"ERR?\nSPA 1 0x19001900 0\n"),
     (
         20_100,
         b"RTR 1\nDRC 1 X 1 2 X 2 3 X 3 4 Y 1 5 Y 2 6 W 1 7 1 73 8 0 204\n",
@@ -177,6 +179,8 @@ const LINES: [(u64, &[u8]); 23] = [
     (21_200, b"MOV X 10 Y 40 W 0\n"),
     // A calibration is for a serial number, and is taken with the servo off.
     (SERIAL_ASKED, b"SVO X 0\nCCL 1 ADVANCED\nSSN?\n"),
+    // It is in force; the emulated flash keeps nothing.
+    (31_500, b"ERR?\n"),
     (REFERENCED_AGAIN, b"FRF X\n"),
     (34_000, b"MOV X 40 Y 20 W 90\n"),
     // The encoders' errors are told with the servo off, the rest while the stage rests: numbers that do no harm to this machine.
@@ -206,6 +210,8 @@ const LINES: [(u64, &[u8]); 23] = [
     (SHAPED, b"MOV X 10 Y 40 W 0\n"),
     (REPEATED, b"ILC LEARN A\nMOV X 40 Y 20 W 90\nERR?\n"),
 ];
+/// What they are answered with, but for the serial number: no more is refused than stands beside them.
+const ANSWERS: [&str; 5] = ["0", "220", "4001", "0", "0"];
 /// The last of these lines: its settings are taken while the others are in force.
 const SETTINGS_TAKEN: u64 = 44_000;
 const SHAPED: u64 = 45_000;
@@ -318,7 +324,8 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
         takes_command,
         following: false,
         switched_on_in: None,
-        answers: Vec::new(),
+        received: Vec::new(),
+        serial: String::new(),
         calibration: Vec::new(),
         ticks: Vec::new(),
     };
@@ -333,14 +340,17 @@ pub fn uses(ticks: u64) -> Result<Used, ChipError> {
                 return Continue(());
             }
             // Nobody is left to be told when the other side is gone.
-            let _ = tell.send(std::mem::take(&mut run.ticks));
+            let _ = tell.send((std::mem::take(&mut run.ticks), run.answers()));
             Break(())
         });
     let outcome = outcome.map_err(no_bench)?;
     if !outcome.gaps.is_empty() {
         return Err(ChipError::Gaps(outcome.gaps));
     }
-    let mut ticks = told.recv().map_err(|_| ChipError::Lost)?;
+    let (mut ticks, answers) = told.recv().map_err(|_| ChipError::Lost)?;
+    if answers != ANSWERS {
+        return Err(ChipError::Answers(answers, ANSWERS.join(" ")));
+    }
     keep_orders(&mut ticks);
     Ok(Used { program, ticks })
 }
@@ -390,8 +400,9 @@ struct Run {
     following: bool,
     /// The stretch in which the servo was switched on, by where it begins.
     switched_on_in: Option<u64>,
-    /// To what was asked last.
-    answers: Vec<u8>,
+    /// What has been answered.
+    received: Vec<u8>,
+    serial: String,
     /// Lines, the next one last.
     calibration: Vec<String>,
     ticks: Vec<UsedTick>,
@@ -456,13 +467,20 @@ impl Run {
         });
     }
 
+    /// What was answered, line by line, but for the serial number once that is known.
+    fn answers(&self) -> Vec<String> {
+        let text = String::from_utf8_lossy(&self.received);
+        let lines = text.lines().map(str::trim);
+        (lines.filter(|line| !line.is_empty() && *line != self.serial))
+            .map(str::to_owned)
+            .collect()
+    }
+
     fn calibrate(&mut self, period: &mut Period<'_>) {
-        if period.tick == SERIAL_ASKED {
-            self.answers.clear();
-        }
-        self.answers.extend(period.received());
+        self.received.extend(period.received());
         if period.tick == CALIBRATION_SENT {
-            self.calibration = calibration(String::from_utf8_lossy(&self.answers).trim());
+            self.serial = self.answers().pop().unwrap_or_default();
+            self.calibration = calibration(&self.serial);
         }
         if period.tick.is_multiple_of(CALIBRATION_EVERY)
             && let Some(line) = self.calibration.pop()
