@@ -9,8 +9,13 @@ pub trait Board: Sync {
     /// What it is, in words.
     fn name(&self) -> &'static str;
 
-    /// Tells every reading that it can take with the bridges asleep, at once: nothing here waits.
+    /// Tells every reading that it can take with the bridges asleep, at once: a millisecond is all that may be waited here.
     fn readings(&self, tell: &mut dyn FnMut(&Reading));
+
+    /// Cycles that a tick may take until its duties are written, where somebody counts them.
+    fn deadline_cycles(&self) -> Option<u32> {
+        None
+    }
 
     /// Whether a debugger is attached: it can halt the processor, and with it the loop, at any time.
     fn has_debugger(&self) -> bool {

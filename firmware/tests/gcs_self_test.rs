@@ -12,6 +12,10 @@ impl Board for Fake {
         "a board of this test"
     }
 
+    fn deadline_cycles(&self) -> Option<u32> {
+        Some(5_376)
+    }
+
     fn readings(&self, tell: &mut dyn FnMut(&Reading)) {
         tell(&Reading {
             name: "CORE",
@@ -42,7 +46,11 @@ fn a_sound_board_is_good_in_every_reading() {
             "ENCODER1=1, 1 to 1, ok",
             "ENCODER2=1, 1 to 1, ok",
             "ENCODER3=1, 1 to 1, ok",
+            "NOISE1=0 counts, 0 to 6, ok",
+            "NOISE2=0 counts, 0 to 6, ok",
+            "NOISE3=0 counts, 0 to 6, ok",
             "LATE=0 ticks, 0 to 0, ok",
+            "WORST_TICK=0 cycles, 0 to 5376, ok",
             "BAD=0",
         ]
     );

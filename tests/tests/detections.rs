@@ -335,7 +335,7 @@ fn nothing_drives_before_the_emergency_stop_was_pressed_where_that_is_asked_for(
     // Once for each start.
     bench
         .rig
-        .reset("the watchdog: the control loop stood still");
+        .reset("the watchdog: the control loop or the command side stood still");
     bench.reconnect();
     bench.run(20);
     bench.set(&[(STOP_TEST, 1.0)]);

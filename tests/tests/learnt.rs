@@ -15,7 +15,7 @@ const MOVES: [&str; 3] = [
 
 /// Largest following error of a pivot in the first of the moves, encoder counts, after a restart.
 fn first_move(bench: &mut Bench) -> u64 {
-    bench.reset("the watchdog: the control loop stood still");
+    bench.reset("the watchdog: the control loop or the command side stood still");
     bench.run(20);
     bench.say("FLC\nFRF\n");
     bench.settle();

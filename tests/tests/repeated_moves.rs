@@ -172,7 +172,7 @@ fn a_table_that_is_kept_outlives_a_restart() {
     assert!(told.contains(" KEPT=1"), "{told}");
     assert!(bench.table("BACK").contains(" KEPT=0"));
     let restart = |bench: &mut Bench| {
-        bench.reset("the watchdog: the control loop stood still");
+        bench.reset("the watchdog: the control loop or the command side stood still");
         bench.run(20);
         bench.say("FLC\nFRF\nCCL 1 ADVANCED\n");
         bench.settle();

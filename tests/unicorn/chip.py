@@ -14,6 +14,7 @@ from unicorn.arm_const import (
     UC_ARM_REG_BASEPRI,
     UC_ARM_REG_PRIMASK,
     UC_ARM_REG_SP,
+    UC_ARM_REG_XPSR,
     UC_CPU_ARM_CORTEX_M4,
 )
 
@@ -29,6 +30,8 @@ FLASH_SIZE_KIB = (0x1FFF_7A22, 2048)
 WFI = b"\x30\xbf"
 # What an exception leaves on the stack, floating-point registers and all.
 FRAME_BYTES = 104
+# Of the program status: how far an IT block has come. An exception begins outside of any.
+IT_STATE = 0b11 << 25 | 0b111111 << 10
 TIM1_UPDATE, TIM1_COMPARE, TIM3 = 25, 27, 29
 BITS_A_BYTE = 10
 # Of port D: bridges without a fault; of port E: the emergency stop released.
@@ -209,6 +212,7 @@ class Chip:
         self.interrupts.pending.discard(lines[0])
         self.uc.reg_write(UC_ARM_REG_PC, self.pc)
         self.kept.append((self.uc.context_save(), priority))
+        self.uc.reg_write(UC_ARM_REG_XPSR, self.uc.reg_read(UC_ARM_REG_XPSR) & ~IT_STATE)
         table = self.interrupts.read(part.Interrupts.VTOR) or FLASH
         vector = struct.unpack("<I", self.uc.mem_read(table + 4 * (16 + lines[0]), 4))[0]
         self.uc.reg_write(UC_ARM_REG_SP, (self.uc.reg_read(UC_ARM_REG_SP) - FRAME_BYTES) & ~7)

@@ -110,6 +110,9 @@ impl Commander {
 
     /// Takes the next step of the stream.
     pub(super) fn advance_streaming(&mut self, queues: &mut CommandQueues<'_>) {
+        if self.waits_for_tick() {
+            return;
+        }
         let Some(mut streaming) = self.pending.take_stream() else {
             return;
         };
@@ -135,10 +138,33 @@ impl Commander {
         }
     }
 
+    /// Whether a stream of somebody's targets has nothing to do until the tick goes on. Looked at first: it is so nearly
+    /// always, and the stream is long to move.
+    fn waits_for_tick(&self) -> bool {
+        let (Some(streaming), Some(progress)) = (self.pending.stream(), self.plan_progress())
+        else {
+            return false;
+        };
+        (streaming.run.is_none() && streaming.started)
+            && (streaming.stream.as_ref()).is_some_and(|stream| stream.waits(&progress))
+    }
+
+    fn plan_progress(&self) -> Option<PlanProgress> {
+        let snapshot = self.snapshot.as_ref()?;
+        Some(PlanProgress {
+            plan: snapshot.plan,
+            tick: snapshot.plan_tick,
+            moving: snapshot.mode == Mode::Moving,
+        })
+    }
+
     /// Brings targets where generators make them, and asks the stream what is to be done.
     fn next_step(&mut self, streaming: &mut Streaming) -> Result<StreamStep, CommandError> {
         let constraints = self.constraints();
         let (now, period) = (self.tick(), self.period(self.cycle_ms));
+        let Some(progress) = self.plan_progress() else {
+            return Ok(StreamStep::Wait);
+        };
         if streaming.stream.is_none() {
             let there = self.mode() == Mode::Holding;
             if !there {
@@ -167,14 +193,6 @@ impl Commander {
             // Too few for a stream: they are all that come.
             stream.finish();
         }
-        let Some(snapshot) = &self.snapshot else {
-            return Ok(StreamStep::Wait);
-        };
-        let progress = PlanProgress {
-            plan: snapshot.plan,
-            tick: snapshot.plan_tick,
-            moving: snapshot.mode == Mode::Moving,
-        };
         Ok(stream.next(id, &progress, &constraints))
     }
 

@@ -659,19 +659,30 @@ pub(super) static COMMANDS: &[Entry] = &[
 
 /// The line command of this name, in either case; `keyword` is the second word of those that have two.
 pub(super) fn find(name: &[u8], keyword: &[u8]) -> Option<&'static Entry> {
+    let length = match keyword {
+        [] => name.len(),
+        _ => name.len() + 1 + keyword.len(),
+    };
     COMMANDS.iter().find(|entry| {
-        let (first, second) = entry.name.split_once(' ').unwrap_or((entry.name, ""));
-        !matches!(entry.syntax, Syntax::Byte(..))
-            && first.as_bytes().eq_ignore_ascii_case(name)
-            && second.as_bytes().eq_ignore_ascii_case(keyword)
+        // By length first: it is looked for with every line that comes, and most have another.
+        entry.name.len() == length && is_named(entry, name, keyword)
     })
+}
+
+fn is_named(entry: &Entry, name: &[u8], keyword: &[u8]) -> bool {
+    let (first, second) = entry.name.split_once(' ').unwrap_or((entry.name, ""));
+    !matches!(entry.syntax, Syntax::Byte(..))
+        && first.as_bytes().eq_ignore_ascii_case(name)
+        && second.as_bytes().eq_ignore_ascii_case(keyword)
 }
 
 /// Whether there are commands of two words that start with this one.
 pub(super) fn has_keywords(name: &[u8]) -> bool {
     COMMANDS.iter().any(|entry| {
-        let first = entry.name.split_once(' ').map(|(first, _)| first);
-        first.is_some_and(|first| first.as_bytes().eq_ignore_ascii_case(name))
+        let parts = entry.name.as_bytes().split_at_checked(name.len());
+        parts.is_some_and(|(first, rest)| {
+            rest.first() == Some(&b' ') && first.eq_ignore_ascii_case(name)
+        })
     })
 }
 

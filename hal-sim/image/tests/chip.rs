@@ -163,7 +163,7 @@ fn a_halted_loop_is_reset_by_the_watchdog_which_the_image_tells() {
     assert_eq!(trace.reset_cause, WATCHDOG);
     assert_eq!(
         answer,
-        "0 no fault, started by the watchdog: the control loop stood still\n"
+        "0 no fault, started by the watchdog: the control loop or the command side stood still\n"
     );
     assert_eq!(pins, BRIDGES_ASLEEP);
     assert_eq!(outcome.resets.len(), 1);

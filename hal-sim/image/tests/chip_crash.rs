@@ -2,7 +2,7 @@
 //! few bytes put into a function of the image. Needs `cargo stage` first, then `cargo chip-test`.
 
 use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Bench, Outcome, elf_file};
+use image::chip::{Bench, Outcome, ResetCause, elf_file};
 use image::proof::Code;
 use image::seal::{seal, unseal};
 use object::{Object, ObjectSegment};
@@ -179,6 +179,49 @@ fn a_tick_that_hangs_is_ended_by_the_window_watchdogs_interrupt_and_told() {
     let place = format!("before the start: the control loop stood still at {at:#010x}");
     assert!(told.contains(&place), "{told}");
     assert!(told.contains("start by the watchdog"), "{told}");
+}
+
+/// Ticks go on, and so do the motors: it is the independent watchdog that ends it.
+#[test]
+fn a_command_side_that_hangs_is_reset_half_a_second_later() {
+    let (image, _) = broken(ON_COMMAND, HANGS);
+    let (send, receive) = mpsc::channel();
+    let mut hung_at_ns = 0;
+    let outcome = bench(image)
+        .run(move |period| {
+            match (period.resets.len(), period.tick) {
+                (0, 20) => period.send(b"FRF X\n"),
+                (0, 400) => {
+                    hung_at_ns = period.tick_at_ns();
+                    period.send(b"WCL 1\n");
+                }
+                (1.., 50) => {
+                    drop(period.received());
+                    period.send(b"FLT?\n");
+                }
+                (1.., 100) => {
+                    let told = String::from_utf8_lossy(&period.received()).into_owned();
+                    send.send((hung_at_ns, told)).expect("the test waits");
+                    return Break(());
+                }
+                (0, 20_000) => return Break(()),
+                _ => {}
+            }
+            Continue(())
+        })
+        .expect("a run");
+    let (hung_at_ns, told) = receive.try_recv().expect("a reset, and an answer after it");
+    let [reset] = outcome.resets[..] else {
+        panic!("{:?}", outcome.resets);
+    };
+    assert_eq!(reset.cause, ResetCause::Model("IWDG"));
+    // Half a second, and five counts of 4 ms.
+    let after_ms = (reset.at_ns - hung_at_ns) as f64 * 1e-6;
+    println!("{after_ms:.1} ms: {told}");
+    assert!((515.0..522.0).contains(&after_ms), "{after_ms} ms");
+    let said =
+        "0 no fault, started by the watchdog: the control loop or the command side stood still\n";
+    assert_eq!(told, said);
 }
 
 /// What the chip answers to some lines.

@@ -221,6 +221,25 @@ impl Stream {
         self.announced = true;
     }
 
+    /// Whether there is nothing to be done yet: a plan has been sent, and the tick is still on the one before, or on the last of
+    /// all. Asked first, it spares the way to [`next`](Self::next).
+    pub fn waits(&self, progress: &PlanProgress) -> bool {
+        self.end.is_none()
+            && self.sent.is_some_and(|sent| {
+                if progress.plan == sent.id {
+                    self.complete && progress.moving
+                } else {
+                    !self.is_late(progress)
+                }
+            })
+    }
+
+    /// Whether the last plan that was sent has come too late: the one before is past its end.
+    fn is_late(&self, progress: &PlanProgress) -> bool {
+        (self.before)
+            .is_some_and(|before| progress.plan == before.id && progress.tick > before.splice)
+    }
+
     /// What is to be done, `id` being the identity of a plan to come. To be asked whenever there is news of the tick.
     pub fn next(
         &mut self,
@@ -242,10 +261,7 @@ impl Stream {
             };
         };
         if progress.plan != sent.id {
-            // On the plan before. Once that is past its end the last one has come too late.
-            let late =
-                |before: SentPlan| progress.plan == before.id && progress.tick > before.splice;
-            return if self.before.is_some_and(late) {
+            return if self.is_late(progress) {
                 self.over(StreamEnd::Starved)
             } else {
                 StreamStep::Wait

@@ -8,6 +8,7 @@ use crate::{
     flash::SettingsFlash,
     latch::LatchTimer,
     marks::{BoardLamps, LatchMark, TickMark},
+    oscillator,
     pin_list::Ports,
     pins::{self, Pins},
     pwm::{self, PwmChannel, PwmTimer, TickEvent},
@@ -163,6 +164,7 @@ impl Board {
         } = clocks::start(peripherals.RCC, pins::CLOCK);
         debug::halt_stops_the_motors(&peripherals.DBGMCU);
         let self_check = SelfCheck::new(&peripherals.DBGMCU, &peripherals.FLASH);
+        oscillator::watch(&peripherals.TIM5, &mut rcc);
         let streams = dma::split(
             peripherals.DMA1,
             peripherals.DMA2,

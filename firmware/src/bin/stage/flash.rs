@@ -1,7 +1,7 @@
 //! The flash that settings are kept in: the four sectors of 16 KiB at the beginning of bank 2.
 //!
 //! Code lies in bank 1 (`memory.x`) and goes on from there while bank 2 is written: the tick never waits. The idle task
-//! does, with the watchdog fed: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered;
+//! does, giving the watchdog its signs of life: 16 us for a word, 0.25 s, 0.5 s at most, for an erase. Meanwhile no line is answered;
 //! what comes in gathers in the receiver's ring of 2 KiB.
 //!
 //! Reading one bank while the other is written may corrupt the data cache (erratum 2.2.15), so that is off while a
@@ -96,7 +96,7 @@ impl SettingsFlash {
     /// Waits for the end of what was begun.
     fn finish(&mut self) -> Result<(), FlashError> {
         while self.flash.sr().read().bsy().is_busy() {
-            watchdog::feed();
+            watchdog::note_alive();
         }
         if self.flash.sr().read().bits() & ERRORS == 0 {
             Ok(())

@@ -35,6 +35,12 @@ impl LatchTimer {
         pwm.start();
     }
 
+    /// Counts since the event.
+    #[inline(always)]
+    pub fn counts(&self) -> u32 {
+        self.tim.cnt().read().bits()
+    }
+
     /// Acknowledges the interrupt.
     pub fn acknowledge(&mut self) {
         self.tim.sr().write(|w| w.uif().clear_bit());

@@ -28,10 +28,10 @@
 //! for the recorders and the command side. Above them, at 0, are only the exceptions that end the program
 //! (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
 //! Below them, at 15 in the hardware, runs what records the ticks (`samples`): rows of the recorders and the trace are
-//! written in what the tick leaves of its period. All the rest, command interface, settings, independent watchdog and log,
-//! is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
+//! written in what the tick leaves of its period, and the independent watchdog is fed. All the rest, command interface,
+//! settings and log, is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
 //! that reads its sensors, when no latch is due: a log frame that meets another one, or a full buffer, is dropped instead.
-//! The independent watchdog is fed by the idle task, and only while the tick counter moves.
+//! The independent watchdog is fed only while the idle task gives signs of life.
 
 /// The tasks.
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
@@ -41,6 +41,7 @@ mod app {
         flash::SettingsFlash,
         identity,
         latch::LatchTimer,
+        latch_timing,
         marks::{BoardLamps, LatchMark, TickMark},
         pwm::{PwmTimer, TickEvent},
         restart,
@@ -48,7 +49,7 @@ mod app {
         samples::{SampleQueue, SampleReceiver, SampleSender},
         self_test::StageBoard,
         serial::{Receiver, Transmitter},
-        tick_timing::TickTiming,
+        tick_timing::{TickTiming, count_latch},
         trace::{self, TRACE, TraceWriter},
         watchdog,
     };
@@ -211,10 +212,13 @@ mod app {
     /// Latches the encoders, starts the conversions, arms the tick.
     #[task(binds = TIM3, priority = 15, shared = [sensors], local = [latch_timer, tick_event, latch_mark])]
     fn latch(mut context: latch::Context) {
-        context.local.latch_timer.acknowledge();
+        let latch_timer = context.local.latch_timer;
+        latch_timer.acknowledge();
+        count_latch();
         let latch_mark = context.local.latch_mark;
         context.shared.sensors.lock(|sensors| {
             sensors.encoders.latch();
+            latch_timing::record(latch_timer.counts());
             // Not before: the latch's time is the encoders'.
             latch_mark.set_high();
             sensors.analog.start();
@@ -241,10 +245,11 @@ mod app {
         // The latch is 35 us off: nobody waits for this.
         let (frames, counts) = (context.shared.sensors)
             .lock(|sensors| (sensors.encoders.frames(), sensors.analog.counts()));
+        let cut = pwm.take_break();
         let inputs = Inputs {
             frames,
             bridge_fault: bridges.faults(),
-            emergency_stop: pwm.take_break(),
+            emergency_stop: cut,
             current_counts: counts.current,
             supply_counts: counts.supply,
             tick_cycles,
@@ -258,7 +263,8 @@ mod app {
             |outputs| {
                 bridges.set(outputs.duty, outputs.awake);
                 brake_resistor.set(outputs.brake_resistor);
-                pwm.connect(outputs.awake);
+                // Not in the tick that is told of a break: the old duty would act for the rest of the period.
+                pwm.connect(outputs.awake && !cut);
                 tick_mark.set_low();
                 context.local.tick_timing.end();
                 // What follows has no deadline.
@@ -273,7 +279,7 @@ mod app {
         trace::mark_end_of_handler();
     }
 
-    /// Records the tick that has just ended, in what it leaves of the period: below latch and tick, above the command
+    /// Records the tick that has just ended and feeds the independent watchdog, in what it leaves of the period: below latch and tick, above the command
     /// side. Bound to the interrupt of a peripheral that the chip does not have.
     #[task(binds = CRYP, priority = 1, local = [sample_receiver, observers, trace_writer])]
     fn observe(context: observe::Context) {
@@ -287,10 +293,11 @@ mod app {
             local.trace_writer.observe(sample);
             let _ = local.sample_receiver.dequeue();
         }
+        watchdog::feed();
         crate::tick_timing::mark_recorded();
     }
 
-    /// The command interface, the settings and the watchdog.
+    /// The command interface and the settings.
     #[idle(local = [interpreter, session, settings_store, command_queues, receiver, transmitter, lamps])]
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
@@ -317,7 +324,7 @@ mod app {
             if local.interpreter.wants_restart() {
                 restart::now();
             }
-            watchdog::feed();
+            watchdog::note_alive();
             cortex_m::asm::wfi();
         }
     }

@@ -3,7 +3,8 @@
 //! Compare values are preloaded: what the tick writes takes over at the next PWM period, whole. The tick is the interrupt
 //! of channel 4's compare event, so that it may come anywhere in a PWM period (`timeline`): it has the rest of that one
 //! and the whole next one, and its duty acts with the one after. The latch task arms it in every second PWM period, and
-//! the tick disarms it.
+//! the tick disarms it. A late tick may write its three duties on both sides of a period's beginning: for that period the motors have
+//! duties of two ticks. Each has a loop of its own, and the tick counts as late.
 //!
 //! While the break input is low the outputs are low without any software, and they stay low until [`Bridges::drive`]
 //! finds the input released: low brakes the motors (the bridges' phase/enable mode).

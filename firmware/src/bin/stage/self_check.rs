@@ -73,6 +73,13 @@ impl SelfCheck {
     }
 }
 
+/// Whether the processor looks for its vectors where this image has them, whoever started it.
+pub fn has_own_vectors() -> bool {
+    // SAFETY: reading this register has no effect.
+    let vectors = unsafe { &*cortex_m::peripheral::SCB::PTR }.vtor.read();
+    vectors as usize == addr_of!(__vector_table) as usize
+}
+
 /// The checksum of what lies in flash.
 fn checksum_now() -> u32 {
     let begin = addr_of!(__vector_table);

@@ -1,6 +1,9 @@
-//! What the chip reads about itself for `TST?`: registers and identity, nothing is changed and nothing waits.
+//! What the chip reads about itself for `TST?`: registers and identity. Nothing is changed; a millisecond is waited at most, for
+//! the watchdog's oscillator.
 
-use crate::{clocks, pins};
+use crate::{
+    analog::Analog, clocks, latch_timing, oscillator, pins, self_check, timeline::DEADLINE_CYCLES,
+};
 use core::ops::RangeInclusive;
 use firmware::control::units::SUPPLY_V_PER_COUNT;
 use firmware::drivers::power_stage::signed_current_counts;
@@ -18,6 +21,16 @@ const FLASH_KIB: *const u16 = 0x1FFF_7A22 as *const u16;
 const SUPPLY_V: RangeInclusive<f64> = 45.6..=50.4;
 /// Counts of a current with the bridge asleep: 30 mA, twice what shunt amplifier, reference and converter may be off.
 const NO_CURRENT: RangeInclusive<f64> = -8.0..=8.0;
+/// The chip's own supply, V: what the converter's counts are shares of.
+const CHIP_SUPPLY_V: RangeInclusive<f64> = 3.2..=3.4;
+const CONVERTER_SUPPLY_V: f64 = 3.3;
+/// The watchdog's oscillator, Hz (data sheet, table 43).
+const OSCILLATOR_HZ: RangeInclusive<f64> = 17e3..=47e3;
+/// Counts of 84 MHz: half a microsecond. So much a latch may wander, and so much has to be left before a frame is missing; with
+/// no delay at all 236 were.
+const MOST_JITTER: f64 = 42.0;
+const LEAST_MARGIN: f64 = 42.0;
+const MOST_MARGIN: f64 = 236.0;
 /// Pins: emergency stop (PE15) released; sleep (PD4 to PD6) low.
 const RELEASED: u32 = 1 << 15;
 const SLEEP_PINS: u32 = 0b111 << 4;
@@ -36,6 +49,10 @@ impl Board for StageBoard {
 
     fn has_debugger(&self) -> bool {
         cortex_m::peripheral::DCB::is_debugger_attached()
+    }
+
+    fn deadline_cycles(&self) -> Option<u32> {
+        Some(DEADLINE_CYCLES)
     }
 
     fn readings(&self, tell: &mut dyn FnMut(&Reading)) {
@@ -84,6 +101,13 @@ impl Board for StageBoard {
         let cached =
             acr.prften().bit_is_set() && acr.icen().bit_is_set() && acr.dcen().bit_is_set();
         say("CACHES", f64::from(u8::from(cached)), "", exactly(1.0));
+        let own_vectors = self_check::has_own_vectors();
+        say(
+            "VECTORS",
+            f64::from(u8::from(own_vectors)),
+            "",
+            exactly(1.0),
+        );
         let options = flash.optcr().read().bits();
         say(
             "BROWN_OUT_LEVEL",
@@ -97,6 +121,30 @@ impl Board for StageBoard {
             f64::from(options >> 5 & 1),
             "",
             exactly(1.0),
+        );
+        // SAFETY: as above.
+        let low = unsafe { &*pac::PWR::ptr() }.csr().read().pvdo().bit();
+        say(
+            "FLASH_SUPPLY_LOW",
+            f64::from(u8::from(low)),
+            "",
+            exactly(0.0),
+        );
+        let chip_supply_v = Analog::supply_v();
+        say("CHIP_SUPPLY", chip_supply_v, "V", CHIP_SUPPLY_V);
+        let oscillator_hz = oscillator::rate_hz().unwrap_or(0.0);
+        say("LSI", oscillator_hz, "Hz", OSCILLATOR_HZ);
+        say(
+            "LATCH_JITTER",
+            f64::from(latch_timing::jitter()),
+            "counts of 84 MHz",
+            0.0..=MOST_JITTER,
+        );
+        say(
+            "FRAME_MARGIN",
+            f64::from(latch_timing::frame_margin()),
+            "counts of 84 MHz",
+            LEAST_MARGIN..=MOST_MARGIN,
         );
         let released = ports.1.idr().read().bits() & RELEASED != 0;
         say(
@@ -121,7 +169,9 @@ impl Board for StageBoard {
         for (name, counts) in ["CURRENT1", "CURRENT2", "CURRENT3"].into_iter().zip(counts) {
             say(name, f64::from(counts), "counts", NO_CURRENT);
         }
-        let supply_v = f64::from(adc.jdr4().read().jdata().bits()) * SUPPLY_V_PER_COUNT;
+        let supply_v = f64::from(adc.jdr4().read().jdata().bits())
+            * SUPPLY_V_PER_COUNT
+            * (chip_supply_v / CONVERTER_SUPPLY_V);
         say("SUPPLY", supply_v, "V", SUPPLY_V);
     }
 }

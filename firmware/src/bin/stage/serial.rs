@@ -236,7 +236,7 @@ impl Transmitter {
     /// Waits until nothing is being sent: 11 ms at most.
     fn wait(&mut self) {
         while self.is_sending() {
-            watchdog::feed();
+            watchdog::note_alive();
             cortex_m::asm::wfi();
         }
     }

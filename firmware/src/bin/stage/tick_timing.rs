@@ -15,16 +15,36 @@ core::arch::global_asm!(
     const PERIOD_CYCLES
 );
 
-/// More than this between two ticks, and one has been missed: one and a half periods.
-const MISSED_CYCLES: u32 = PERIOD_CYCLES * 3 / 2;
-/// Of a period, in the mean, for tick and recorders together. With more the command side, which answers, plans and feeds the watchdog,
-/// would come to a standstill while duties are still in time: the loop counts as late, and stops the stage before the watchdog does.
+/// Latches so far, and those that a tick has seen. Ticks are counted by them: the cycle counter may stand while the core sleeps.
+static LATCHES: AtomicU32 = AtomicU32::new(0);
+static SEEN_LATCHES: AtomicU32 = AtomicU32::new(0);
+/// Of a period, in the mean, for tick and recorders together. With more the command side, which answers and plans, would come to a
+/// standstill while duties are still in time: the loop counts as late, and stops the stage before the watchdog does.
 const MOST_LOAD_CYCLES: u32 = PERIOD_CYCLES / 100 * 97;
 /// The mean is over so many ticks, a power of two: 3 ms.
 const LOAD_TICKS: u32 = 64;
 
 /// When the recorders were last done.
 static RECORDED: AtomicU32 = AtomicU32::new(0);
+
+/// A latch has come, and its tick has to.
+#[inline(always)]
+pub fn count_latch() {
+    // Nobody else writes it.
+    LATCHES.store(
+        LATCHES.load(Ordering::Relaxed).wrapping_add(1),
+        Ordering::Relaxed,
+    );
+}
+
+/// Whether there have been latches since this was asked last whose tick has not come.
+#[inline(always)]
+fn has_lost_a_tick() -> bool {
+    let latches = LATCHES.load(Ordering::Relaxed);
+    let before = SEEN_LATCHES.load(Ordering::Relaxed);
+    SEEN_LATCHES.store(latches, Ordering::Relaxed);
+    latches.wrapping_sub(before) > 1
+}
 
 /// The recorders are done, and the rest of the period is the command side's.
 #[inline]
@@ -58,9 +78,7 @@ impl TickTiming {
     #[inline]
     pub fn begin(&mut self, delay: u32) -> (u32, bool) {
         let now = DWT::cycle_count();
-        let missed = self
-            .began
-            .is_some_and(|began| now.wrapping_sub(began) > MISSED_CYCLES);
+        let missed = has_lost_a_tick();
         let was_late = self.delay + self.cycles > DEADLINE_CYCLES;
         if let Some(began) = self.began {
             let busy = RECORDED.load(Ordering::Relaxed).wrapping_sub(began);

@@ -40,11 +40,6 @@ pub static TRACE: Trace = Trace {
 };
 
 impl Trace {
-    /// Ticks since start.
-    pub fn ticks(&self) -> u32 {
-        self.ticks.load(Ordering::Relaxed)
-    }
-
     /// Keeps why the chip started.
     pub fn set_reset_cause(&self, cause: ResetCause) {
         self.reset_cause.store(cause as u32, Ordering::Relaxed);

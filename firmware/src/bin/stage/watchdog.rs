@@ -1,23 +1,27 @@
 //! Two watchdogs. The window watchdog is fed by the tick: when one does not end, the outputs are cut half a millisecond
-//! later. The independent one, with an oscillator of its own, is fed by the command side while ticks come: it also bites
-//! when the crystal is gone, or the command side hangs.
+//! later. The independent one, with an oscillator of its own, is fed behind each tick, by what records it: it also bites when
+//! the crystal is gone. And it bites when the command side has not come round for half a second: it may be slow, with ticks
+//! that leave it little, but not hang.
 //!
 //! | | time | what it does |
 //! |---|---|---|
 //! | window watchdog, early warning | 0.39 to 0.49 ms after the last tick | interrupt above the tick: `fault_handlers` cut the outputs, keep where the program was, and reset |
 //! | window watchdog itself | 0.1 ms later | reset, where even that interrupt was held back |
 //! | independent watchdog | 20 ms nominal; 10.9 to 37.6 ms, its oscillator has 17 to 47 kHz | reset |
+//! | the same, when the command side hangs | 0.5 s more | reset |
 //! | the same during start-up | 8.2 s nominal; 5.6 to 15.4 s | reset |
 
-use crate::trace::TRACE;
+use crate::timeline::TICK_HZ;
 use core::sync::atomic::{AtomicU32, Ordering};
 use stm32f4xx_hal::{
     pac::{self, Interrupt, NVIC},
     rcc::Rcc,
 };
 
-/// The tick at which the watchdog was last fed.
-static FED_AT: AtomicU32 = AtomicU32::new(0);
+/// Ticks since the command side's last sign of life.
+static SILENT_TICKS: AtomicU32 = AtomicU32::new(0);
+/// As many may be: its longest work, a long plan, takes some ms of the processor, of which ticks may leave it a thirtieth.
+const MOST_SILENT_TICKS: u32 = TICK_HZ / 2;
 
 const UNLOCK: u16 = 0x5555;
 const RELOAD: u16 = 0xAAAA;
@@ -97,14 +101,17 @@ pub fn feed_window() {
     unsafe { (*pac::WWDG::ptr()).cr().write(|w| w.bits(FED)) };
 }
 
-/// Feeds the independent watchdog if the tick has run since the last time. Only the command side calls this, so both have
-/// to live.
+/// The command side's sign of life: each time it comes round, and while it waits for the flash or the line.
+pub fn note_alive() {
+    SILENT_TICKS.store(0, Ordering::Relaxed);
+}
+
+/// Feeds the independent watchdog: called behind every tick. Not once the command side has been silent for too long.
 pub fn feed() {
-    let ticks = TRACE.ticks();
-    if ticks == FED_AT.load(Ordering::Relaxed) {
-        return;
+    let silent = SILENT_TICKS.load(Ordering::Relaxed);
+    if silent < MOST_SILENT_TICKS {
+        SILENT_TICKS.store(silent + 1, Ordering::Relaxed);
+        // SAFETY: the key register is only written, and this key only reloads the counter.
+        write_key(unsafe { &*pac::IWDG::ptr() }, RELOAD);
     }
-    FED_AT.store(ticks, Ordering::Relaxed);
-    // SAFETY: the key register is only written, and this key only reloads the counter.
-    write_key(unsafe { &*pac::IWDG::ptr() }, RELOAD);
 }

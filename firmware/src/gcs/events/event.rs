@@ -8,7 +8,7 @@ use core::fmt;
 /// What may start a controller. Unasked: the watchdog, the program, the supply, the clock. Asked for: power, the reset pin, `RBT`. The
 /// last is none of them.
 pub const START_CAUSES: [&str; 8] = [
-    "the watchdog: the control loop stood still",
+    "the watchdog: the control loop or the command side stood still",
     "a panic or a processor fault",
     "a dip of the supply",
     "a failure of the crystal",

@@ -7,6 +7,10 @@ use crate::gcs::reply_writer::ReplyWriter;
 use crate::gcs::session::Session;
 use crate::self_test::{Board, Reading};
 
+/// Of an encoder at rest, rms, counts of 26 bits: a third of what `tripivot board` takes from its lowest reading to its highest. A
+/// ring that is turned has more.
+const MOST_NOISE: f64 = 6.0;
+
 impl Interpreter {
     /// The board that `TST?` asks.
     pub fn set_board(&mut self, board: &'static dyn Board) {
@@ -43,7 +47,7 @@ impl Interpreter {
         reply.end()
     }
 
-    /// What the control loop knows: encoders that can be used, and late ticks since `LST`.
+    /// What the control loop knows: encoders that can be used and their noise; late ticks and the longest, since `LST`.
     fn loop_readings(&self, tell: &mut dyn FnMut(&Reading)) {
         let faults =
             (self.commander.snapshot()).map_or([None; 3], |snapshot| snapshot.encoder_faults);
@@ -55,18 +59,37 @@ impl Interpreter {
                 good: 1.0..=1.0,
             });
         }
+        let noise = self.statistics.noise_counts();
+        for (name, value) in ["NOISE1", "NOISE2", "NOISE3"].into_iter().zip(noise) {
+            tell(&Reading {
+                name,
+                value,
+                unit: "counts",
+                good: 0.0..=MOST_NOISE,
+            });
+        }
         tell(&Reading {
             name: "LATE",
             value: f64::from(self.statistics.late),
             unit: "ticks",
             good: 0.0..=0.0,
         });
+        if let Some(cycles) = self.board.and_then(Board::deadline_cycles) {
+            tell(&Reading {
+                name: "WORST_TICK",
+                value: f64::from(self.statistics.cycles_worst),
+                unit: "cycles",
+                good: 0.0..=f64::from(cycles),
+            });
+        }
     }
 }
 
 /// Name, value, what it has to be, and whether it is.
 fn reply_reading(reply: &mut ReplyWriter<'_>, reading: &Reading) -> Result<(), WriteFailed> {
-    let (name, value, unit) = (reading.name, reading.value, reading.unit);
+    let (name, unit) = (reading.name, reading.unit);
+    // More decimals tell nobody anything.
+    let value = libm::rint(reading.value * 1e3) / 1e3;
     let (low, high) = (reading.good.start(), reading.good.end());
     let judged = if reading.is_good() { "ok" } else { "BAD" };
     let space = if unit.is_empty() { "" } else { " " };

@@ -40,6 +40,7 @@ pub struct Bench {
     watchdog_hz: Option<u64>,
     options: Option<u32>,
     flash_kib: Option<u16>,
+    converter_supply: Option<f64>,
     /// What the settings' flash holds at the start.
     settings: SettingsFlash,
 }
@@ -108,6 +109,7 @@ impl Bench {
             watchdog_hz: None,
             options: None,
             flash_kib: None,
+            converter_supply: None,
             settings: with_machine_settings(
                 SettingsFlash::in_memory(),
                 &Parameters::REFERENCE,
@@ -167,6 +169,15 @@ impl Bench {
         }
     }
 
+    /// The same with a converter supplied with so much of 3.3 V.
+    #[must_use]
+    pub fn with_converter_supply(self, share: f64) -> Self {
+        Self {
+            converter_supply: Some(share),
+            ..self
+        }
+    }
+
     /// The same on a board whose flash keeps the settings of this machine; nothing, if nobody has commissioned it yet.
     #[must_use]
     pub fn commissioned_as(self, parameters: &Parameters) -> Self {
@@ -206,6 +217,9 @@ impl Bench {
         }
         if let Some(flash_kib) = self.flash_kib {
             board = board.with_flash_kib(flash_kib);
+        }
+        if let Some(share) = self.converter_supply {
+            board = board.with_converter_supply(share);
         }
         if let Some(hz) = self.watchdog_hz {
             board = board.with_watchdog_hz(hz);

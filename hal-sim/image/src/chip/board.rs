@@ -56,6 +56,9 @@ const MEM_MODE: u32 = 0b111;
 const SRAM1: u32 = 0b011;
 /// Of the chip on the board; and where it says so.
 const FLASH_KIB: u16 = 2048;
+/// What the maker has read of the internal reference at 3.3 V, and where: with the converter's reference below, its millivolts.
+const REFERENCE_COUNTS: u16 = 1_210;
+const REFERENCE_COUNTS_AT: u64 = 0x1FFF_7A2A;
 const FLASH_KIB_AT: u64 = 0x1FFF_7A22;
 /// With as many millivolts of reference as there are counts, an input in millivolts is an input in counts.
 const ADC_REFERENCE: u32 = 4095;
@@ -95,6 +98,7 @@ pub struct ChipBoard {
     instructions_per_second: NonZeroU64,
     has_crystal: bool,
     flash_kib: u16,
+    reference_counts: u16,
 }
 
 impl ChipBoard {
@@ -115,6 +119,7 @@ impl ChipBoard {
             instructions_per_second: STAGE_RATE,
             has_crystal: true,
             flash_kib: FLASH_KIB,
+            reference_counts: REFERENCE_COUNTS,
         };
         board.drive_again(VirtualNanos(0), [false; 3]);
         Ok(board)
@@ -139,6 +144,15 @@ impl ChipBoard {
     /// The same with a chip of which the manufacturer says that it has so much flash.
     pub fn with_flash_kib(self, flash_kib: u16) -> Self {
         Self { flash_kib, ..self }
+    }
+
+    /// The same with a converter supplied with so much of 3.3 V. Of a higher supply its reference is a smaller share: here the
+    /// maker's reading is the greater instead.
+    pub fn with_converter_supply(self, share: f64) -> Self {
+        Self {
+            reference_counts: (f64::from(REFERENCE_COUNTS) * share).round() as u16,
+            ..self
+        }
     }
 
     /// The same with a watchdog's oscillator of so many Hz: 17,000 to 47,000, as the data sheet has it.
@@ -188,6 +202,14 @@ impl ChipBoard {
                 line.latch(frame);
             }
         }
+    }
+
+    /// When the first byte of each encoder's last frame crossed its line, and the last, ns.
+    pub fn frames_ns(&mut self) -> [[u64; 2]; 3] {
+        [0, 1, 2].map(|port| {
+            let line = self.mcu.spi[port].chip_mut::<EncoderLine>(0);
+            line.map_or([0; 2], |line| line.crossed_ns())
+        })
     }
 
     /// Puts counts on the ADC's inputs.
@@ -345,12 +367,13 @@ impl Board for ChipBoard {
             region: "sram",
             at: 0,
         }];
-        let factory_bytes = self.flash_kib.to_le_bytes().to_vec();
-        core.factory_images.extend(Image::new(
-            Path::new("factory"),
-            factory_bytes,
-            Some(FLASH_KIB_AT),
-        ));
+        for (word, at) in [
+            (self.flash_kib, FLASH_KIB_AT),
+            (self.reference_counts, REFERENCE_COUNTS_AT),
+        ] {
+            let bytes = word.to_le_bytes().to_vec();
+            (core.factory_images).extend(Image::new(Path::new("factory"), bytes, Some(at)));
+        }
         vec![Target::new("stm32f427", &mut self.mcu, core)]
     }
 }

@@ -12,9 +12,16 @@ const IDLE: u32 = 0xFF;
 pub struct EncoderLine {
     frame: [u8; 8],
     next: usize,
+    crossed_ns: [u64; 8],
 }
 
 impl EncoderLine {
+    /// When the first byte of the last frame crossed, and the last, ns.
+    pub fn crossed_ns(&self) -> [u64; 2] {
+        let [first, .., last] = self.crossed_ns;
+        [first, last]
+    }
+
     /// Latches a frame for the transfer to come.
     pub fn latch(&mut self, frame: [u8; 8]) {
         self.frame = frame;
@@ -25,7 +32,7 @@ impl EncoderLine {
 impl Store for EncoderLine {}
 
 impl Peer for EncoderLine {
-    fn transfer(&mut self, _mosi: u32, bits: u8, _context: &mut Timeline<'_, '_>) -> u32 {
+    fn transfer(&mut self, _mosi: u32, bits: u8, context: &mut Timeline<'_, '_>) -> u32 {
         // Whoever clocks other than bytes has the port set up wrongly, and is answered by a line without life.
         if bits != 8 {
             return 0;
@@ -34,6 +41,9 @@ impl Peer for EncoderLine {
             .frame
             .get(self.next)
             .map_or(IDLE, |byte| u32::from(*byte));
+        if let Some(crossed_ns) = self.crossed_ns.get_mut(self.next) {
+            *crossed_ns = context.now().0;
+        }
         self.next += 1;
         byte
     }

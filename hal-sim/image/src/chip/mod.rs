@@ -24,7 +24,7 @@
 //! | `pins` | what goes over the pins, tick by tick, for another emulator |
 //! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
-//! | `load` | the tick under all the load there is |
+//! | `load`, `busy` | the tick under all the load there is; all that a slow chip has to do at once |
 //! | `cost`, `follow`, `way`, `estimate` | what ticks take; their instructions; one tick's by where they are written; `llvm-mca` on it |
 //! | `gaps` | what the emulator does not model |
 //! | `elf_file` | where the images lie |
@@ -33,6 +33,7 @@
 
 mod bench;
 pub(crate) mod board;
+mod busy;
 mod cost;
 mod driver;
 pub mod elf_file;
@@ -54,6 +55,7 @@ mod way;
 
 pub use bench::{Bench, BenchError, Outcome};
 pub use board::BoardKind;
+pub use busy::{BUSY_CHIPS, Busy, BusyOptions, busy};
 pub use cost::TickCost;
 pub use estimate::{Estimate, estimate};
 pub use exercise::{Cost, Doing, Exercise, ExerciseOptions, Tally, Worst, exercise};

@@ -196,6 +196,11 @@ impl Period<'_> {
         }
     }
 
+    /// When the first byte of each encoder's last frame crossed its line, and the last, ns since power on.
+    pub fn frames_ns(&mut self) -> [[u64; 2]; 3] {
+        self.board.frames_ns()
+    }
+
     /// Sets the supply of the chip itself, mV.
     pub fn set_chip_supply(&mut self, millivolts: u32) {
         self.board.set_chip_supply(millivolts);
