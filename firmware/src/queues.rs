@@ -1,4 +1,5 @@
-//! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other.
+//! Between the tick and the command side: bounded lock-free queues, commands one way and snapshots the other, and the slots that plans
+//! are written to.
 //!
 //! The tick never waits for either: it takes at most one command a tick, and leaves a snapshot only when there is room
 //! for one, every fourth tick or when mode or commands have changed, and not when it took a command: that tick is the
@@ -10,15 +11,17 @@ pub use crate::recorder::QueueFull;
 use crate::control::{SNAPSHOT_SLOTS, TickObservers};
 use crate::fault_record::RetainedMemory;
 use crate::iterative_learning::{TrialControl, TrialMemory};
+use crate::motion::{Plan, PlanSender, PlanSlots};
 use crate::recorder::{RECORDER_WORDS, Recorder, RecorderReader};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Slots of the command queue (one is lost to the ring).
-pub const COMMAND_SLOTS: usize = 3;
+pub const COMMAND_SLOTS: usize = 2;
 
 /// Storage of both queues, of the data recorder, and of a trial of iterative learning.
 pub struct Queues {
     commands: Queue<Command, COMMAND_SLOTS>,
+    plans: PlanSlots,
     snapshots: Queue<Snapshot, SNAPSHOT_SLOTS>,
     recorder: Recorder<RECORDER_WORDS>,
     trial: TrialMemory,
@@ -27,6 +30,7 @@ pub struct Queues {
 /// The command side's ends.
 pub struct CommandQueues<'a> {
     commands: Producer<'a, Command>,
+    plans: PlanSender<'a>,
     snapshots: Consumer<'a, Snapshot>,
     /// The data recorder's end outside the tick.
     pub recorder: RecorderReader<'a>,
@@ -42,6 +46,7 @@ impl Queues {
     pub const fn new() -> Self {
         Self {
             commands: Queue::new(),
+            plans: PlanSlots::new(),
             snapshots: Queue::new(),
             recorder: Recorder::new(),
             trial: TrialMemory::new(),
@@ -66,12 +71,14 @@ impl Queues {
         retained_memory: Option<&'a RetainedMemory>,
     ) -> (TickQueues<'a>, CommandQueues<'a>) {
         let (command_in, command_out) = self.commands.split();
+        let (plan_sender, plan_receiver) = self.plans.split();
         let (snapshot_in, snapshot_out) = self.snapshots.split();
         let (recorder_writer, recorder_reader) = self.recorder.split();
         let (trial_control, trial_table) = self.trial.split();
         (
             TickQueues {
                 commands: command_out,
+                plans: plan_receiver,
                 snapshots: snapshot_in,
                 trial: trial_table,
                 observers: Some(TickObservers {
@@ -81,6 +88,7 @@ impl Queues {
             },
             CommandQueues {
                 commands: command_in,
+                plans: plan_sender,
                 snapshots: snapshot_out,
                 recorder: recorder_reader,
                 trial: trial_control,
@@ -101,6 +109,24 @@ impl CommandQueues<'_> {
     /// Queues a command.
     pub fn send(&mut self, command: Command) -> Result<(), QueueFull> {
         self.commands.enqueue(command).map_err(|_| QueueFull)
+    }
+
+    /// Hands a plan over, and queues the command to move by it. One at a time: until it is taken or refused there is no room for
+    /// another.
+    pub fn send_plan(&mut self, plan: &Plan) -> Result<(), QueueFull> {
+        if !self.commands.ready() {
+            return Err(QueueFull);
+        }
+        let command = self.hand_over(plan)?;
+        self.send(command)
+    }
+
+    /// Hands a plan over. The command to move by it is to be sent.
+    pub fn hand_over(&mut self, plan: &Plan) -> Result<Command, QueueFull> {
+        self.plans
+            .hand_over(plan)
+            .map(Command::Move)
+            .ok_or(QueueFull)
     }
 
     /// The oldest snapshot waiting, if any. The tick refills the slot within four; a caller that wants the present

@@ -5,8 +5,8 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisState, Constraints, Effort, Plan, PlanFollower, PlanStart, Position, RetargetError,
-    RotationCentre, Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
+    AxisState, Constraints, Effort, Plan, PlanStart, Position, RetargetError, RotationCentre,
+    Setpoint, SetpointScale, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
 use motion_bench::constraints::{Velocity, any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
@@ -154,7 +154,7 @@ fn limits_workspace_and_continuity_are_kept() {
         prop_assume!(from.is_some());
         let mut course = Course::resting(from.unwrap(), constraints);
         let scale = SetpointScale::new(constraints.limits.rate_hz);
-        let mut motion = PlanFollower::default();
+        let mut motion = follower();
         motion.rest_at(course.plan.end);
         let mut at = 0;
         let mut seen = motion.setpoint(&scale);

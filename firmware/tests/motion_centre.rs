@@ -2,9 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{
-    MAX_CENTRE_OFFSET, PlanFollower, RotationCentre, Setpoint, SetpointScale, Stale,
-};
+use firmware::motion::{MAX_CENTRE_OFFSET, RotationCentre, Setpoint, SetpointScale, Stale};
 use kinematics::{Acceleration, Twist};
 use motion_bench::*;
 use proptest::prelude::*;
@@ -38,7 +36,7 @@ proptest! {
 
     #[test]
     fn another_point_does_not_move_the_platform(start in positions(1e4), chosen in proptest::collection::vec(points(), 1..6)) {
-        let mut motion = PlanFollower::default();
+        let mut motion = follower();
         motion.rest_at(start);
         for point in chosen {
             prop_assert_eq!(motion.set_centre(centre(point)), Ok(()));
@@ -126,7 +124,7 @@ fn a_point_out_of_reach_is_none() {
 #[test]
 fn in_motion_the_point_stays() {
     let (from, to) = (at(0.0, 0.0, 0.0), at(10.0, 5.0, 0.2));
-    let mut motion = PlanFollower::default();
+    let mut motion = follower();
     motion.rest_at(from);
     motion.accept(&line(from, to)).expect("at rest");
     for _ in 0..10 {

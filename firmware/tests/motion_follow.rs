@@ -2,15 +2,15 @@
 
 mod motion_bench;
 
-use firmware::motion::{Plan, PlanFollower, PlanStart, SetpointScale, Stale, Stop, plan_stop};
+use firmware::motion::{LoneFollower, Plan, PlanStart, SetpointScale, Stale, Stop, plan_stop};
 use motion_bench::*;
 use proptest::prelude::*;
 
-fn started(plan: &Plan) -> PlanFollower {
+fn started(plan: &Plan) -> LoneFollower<'static> {
     let PlanStart::Rest(from) = plan.start else {
         panic!("a line starts at rest");
     };
-    let mut motion = PlanFollower::default();
+    let mut motion = follower();
     motion.rest_at(from);
     assert_eq!(motion.accept(plan), Ok(()));
     motion
@@ -102,7 +102,7 @@ fn plans_that_do_not_start_where_the_motion_is_are_stale() {
     let plan = line(from, to);
     let splice = |tick| plan_stop(8, &plan, &at_rest(from), tick, &CONSTRAINTS, Stop::Smooth);
     let splice = |tick| splice(tick).expect("far from the end");
-    let mut motion = PlanFollower::default();
+    let mut motion = follower();
     motion.rest_at(to);
     assert_eq!(motion.accept(&plan), Err(Stale), "starts elsewhere");
     assert_eq!(motion.accept(&splice(100)), Err(Stale), "nothing to leave");

@@ -2,7 +2,7 @@
 
 mod motion_bench;
 
-use firmware::motion::{AxisState, PlanFollower, PlanStart, Refusal, RetargetError, plan_jog};
+use firmware::motion::{AxisState, PlanStart, Refusal, RetargetError, plan_jog};
 use motion_bench::constraints::{Velocity, any_constraints, rest, velocities};
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::random::Random;
@@ -169,7 +169,7 @@ fn theta_turns_without_end_and_without_a_step() {
         let lifetime = 30 * 365 * 86_400 * 20_000;
         assert!(plan.ticks() > lifetime, "{} ticks", plan.ticks());
         // The tick's own steps, beginning wherever: the same as the plan's, and all of one size.
-        let mut motion = PlanFollower::default();
+        let mut motion = follower();
         motion.rest_at([0, 0, from]);
         motion.accept(&plan).expect("at rest");
         for _ in 0..4_000 {

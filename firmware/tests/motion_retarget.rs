@@ -4,8 +4,7 @@ mod motion_bench;
 
 use firmware::motion::plan::axis_state::TickIncrement;
 use firmware::motion::{
-    AxisState, Constraints, Effort, Plan, PlanFollower, Position, RetargetError, Stop,
-    plan_retarget, plan_stop,
+    AxisState, Constraints, Effort, Plan, Position, RetargetError, Stop, plan_retarget, plan_stop,
 };
 use motion_bench::exact::{Worst, ends_at_rest};
 use motion_bench::*;
@@ -90,7 +89,7 @@ fn the_tick_follows_a_tour_without_a_step() {
     let from = at(-50.0, 10.0, 0.2);
     let mut plan = line(from, at(60.0, 20.0, 1.0));
     let mut start = at_rest(from);
-    let mut motion = PlanFollower::default();
+    let mut motion = follower();
     motion.rest_at(from);
     motion.accept(&plan).unwrap();
     let scale = firmware::motion::SetpointScale::new(LIMITS.rate_hz);

@@ -3,7 +3,7 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisState, Constraints, Effort, Plan, PlanFollower, PlanStart, Position, RetargetError,
+    AxisState, Constraints, Effort, LoneFollower, Plan, PlanStart, Position, RetargetError,
     RotationCentre, Stop, plan_jog, plan_line, plan_retarget, plan_stop,
 };
 use motion_bench::constraints::{any_constraints, rest, velocities};
@@ -74,7 +74,7 @@ proptest! {
     fn the_tick_plays_it_the_same_whenever_it_begins((from, to) in moves(), late in 0..5_000) {
         let plan = line(from, to);
         let mut motions = [0, late].map(|wait| {
-            let mut motion = PlanFollower::default();
+            let mut motion = follower();
             motion.rest_at(from);
             for _ in 0..wait {
                 motion.advance();
@@ -83,8 +83,8 @@ proptest! {
             motion
         });
         for _ in 0..plan.ticks() {
-            motions.iter_mut().for_each(PlanFollower::advance);
-            let [one, shifted] = motions.each_ref().map(PlanFollower::position);
+            motions.iter_mut().for_each(LoneFollower::advance);
+            let [one, shifted] = motions.each_ref().map(|motion| motion.position());
             prop_assert_eq!(one, shifted);
         }
     }

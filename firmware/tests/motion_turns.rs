@@ -4,7 +4,7 @@
 mod motion_bench;
 
 use firmware::motion::{
-    AxisState, Constraints, Plan, PlanFollower, PlanStart, Position, RotationCentre, plan_jog,
+    AxisState, Constraints, LoneFollower, Plan, PlanStart, Position, RotationCentre, plan_jog,
     plan_line,
 };
 use firmware::number::Fixed;
@@ -30,7 +30,7 @@ fn fast() -> Constraints {
 
 /// The setpoint's motion, tick by tick.
 struct Stage {
-    motion: PlanFollower,
+    motion: LoneFollower<'static>,
     constraints: Constraints,
     id: u32,
 }
@@ -38,7 +38,7 @@ struct Stage {
 impl Stage {
     fn new() -> Self {
         let constraints = fast();
-        let mut motion = PlanFollower::default();
+        let mut motion = follower();
         motion
             .set_centre(RotationCentre::new(constraints.rotation_centre).expect("near"))
             .expect("at rest");

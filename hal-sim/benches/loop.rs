@@ -399,7 +399,7 @@ impl Case {
         ];
         let constraints = Constraints::new(parameters.limits, parameters.geometry);
         let plan = plan_line(1, from, to, &constraints).expect("in place");
-        assert!(commands.send(Command::Move(plan)).is_ok(), "room");
+        assert!(commands.send_plan(&plan).is_ok(), "room");
         bench.run(20_000);
         let mut columns = Vec::new();
         let mut hz = sweep.from_hz;

@@ -5,7 +5,7 @@
 
 use firmware::motion::{Constraints, plan_line};
 use firmware::parameters::Parameters;
-use firmware::queues::{Command, Queues};
+use firmware::queues::{Command, CommandQueues, Queues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
 use hal_sim::parallel::{cores, of_all};
@@ -145,10 +145,7 @@ fn watch(case: &Case, seconds: u64) -> Quiet {
     let mut host = Host::new(&stage, &parameters);
     let mut record = TickRecord::default();
     let mut settled = false;
-    let mut tick = |host: &mut Host, record: &mut TickRecord, command: Option<Command>| {
-        if let Some(command) = command {
-            assert!(commands.send(command).is_ok(), "room");
-        }
+    let mut tick = |host: &mut Host, record: &mut TickRecord, commands: &mut CommandQueues<'_>| {
         host.tick(&mut tick_queues, record);
         assert_eq!(host.fault(), None);
         if let Some(snapshot) = commands.snapshot() {
@@ -157,11 +154,12 @@ fn watch(case: &Case, seconds: u64) -> Quiet {
         settled
     };
     for _ in 0..20 {
-        tick(&mut host, &mut record, None);
+        tick(&mut host, &mut record, &mut commands);
     }
-    tick(&mut host, &mut record, Some(Command::Reference));
+    assert!(commands.send(Command::Reference).is_ok(), "room");
+    tick(&mut host, &mut record, &mut commands);
     for _ in 0..4_000 {
-        tick(&mut host, &mut record, None);
+        tick(&mut host, &mut record, &mut commands);
     }
     let from = record
         .sample
@@ -177,9 +175,10 @@ fn watch(case: &Case, seconds: u64) -> Quiet {
     let constraints = Constraints::new(parameters.limits, parameters.geometry);
     let plan = plan_line(1, from, to, &constraints).expect("inside the disk");
     let ticks = plan.ticks();
-    tick(&mut host, &mut record, Some(Command::Move(plan)));
+    assert!(commands.send_plan(&plan).is_ok(), "room");
+    tick(&mut host, &mut record, &mut commands);
     for _ in 0..ticks + TICKS_A_SECOND {
-        tick(&mut host, &mut record, None);
+        tick(&mut host, &mut record, &mut commands);
     }
     let (mut all, mut by_second) = ([Spread::default(); 3], Vec::new());
     let (mut square, mut peak, mut lost) = (0.0, 0.0_f64, 0_u64);
@@ -187,7 +186,7 @@ fn watch(case: &Case, seconds: u64) -> Quiet {
     for _ in 0..seconds {
         let mut second = [Spread::default(); 3];
         for _ in 0..TICKS_A_SECOND {
-            lost += u64::from(!tick(&mut host, &mut record, None));
+            lost += u64::from(!tick(&mut host, &mut record, &mut commands));
             let pose = host.stage.plant.pose();
             let sample = record.sample.as_ref().expect("a tick has run");
             for i in 0..3 {

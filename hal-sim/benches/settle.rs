@@ -233,7 +233,7 @@ fn moves(case: &Case) -> Rest {
         let to = random.target(&from);
         let plan = plan_line(number as u32 + 1, from, to, &ground).expect("inside the disk");
         let profile = plan.ticks();
-        bench.send(Command::Move(plan));
+        assert!(bench.commands.send_plan(&plan).is_ok(), "room");
         let (mut since, mut settled) = (None, None);
         for tick in 1..=profile + PATIENCE {
             bench.tick();

@@ -99,7 +99,8 @@ fn the_machine_turns_about_the_chosen_point() {
     to[2] += (TURN * 2.0 / 3.0) as i64;
     let plan = plan_line(1, held.setpoint, to, &ground).expect("inside the disk");
     let ticks = plan.ticks();
-    run.ticks(Some(Command::Move(plan)), 10);
+    let command = run.queues.split().1.hand_over(&plan).expect("a slot");
+    run.ticks(Some(command), 10);
     let mut worst_um = 0.0_f64;
     let mut furthest_mm = 0.0_f64;
     for tick in 0..ticks {

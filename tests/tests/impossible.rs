@@ -4,7 +4,7 @@ use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use firmware::motion::{Constraints, Plan, plan_line};
 use firmware::parameters::{Parameters, Supervision};
-use firmware::queues::{Command, Queues, Snapshot};
+use firmware::queues::{Command, CommandQueues, QueueFull, Queues, Snapshot};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
 use tests::Bench;
@@ -110,7 +110,7 @@ fn fault_of_lines(places_mm: &[f64], theta_deg: f64, parameters: &Parameters) ->
             && let Some(way_mm) = ways.next()
         {
             let plan = line(parameters, at, way_mm);
-            commands.send(Command::Move(plan)).expect("room");
+            commands.send_plan(&plan).expect("room");
             now = None;
         }
         let outputs = host.tick(&mut tick_queues, &mut ());
@@ -208,6 +208,9 @@ fn what_is_not_a_number_is_a_fault_and_never_a_duty() {
     }
 }
 
+/// Sends something, or nothing.
+type Sends<'a> = &'a dyn Fn(&mut CommandQueues<'_>) -> Result<(), QueueFull>;
+
 /// The tick refuses by itself what the command side would not send: nobody can go round it.
 #[test]
 fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
@@ -215,10 +218,8 @@ fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
     let mut host = Host::new(&StageParameters::REFERENCE, &parameters);
     let mut queues = Queues::new();
     let (mut tick_queues, mut commands) = queues.split();
-    let mut after = |host: &mut Host, command: Option<Command>| {
-        if let Some(command) = command {
-            commands.send(command).expect("room");
-        }
+    let mut after = |host: &mut Host, sends: Sends<'_>| {
+        sends(&mut commands).expect("room");
         let mut last = None;
         for _ in 0..10 {
             host.tick(&mut tick_queues, &mut ());
@@ -226,23 +227,24 @@ fn in_a_fault_the_tick_takes_nothing_but_the_acknowledgement() {
         }
         last.expect("a snapshot")
     };
-    after(&mut host, None);
-    let holding = after(&mut host, Some(Command::Reference));
+    after(&mut host, &|_| Ok(()));
+    let holding = after(&mut host, &|queues| queues.send(Command::Reference));
     assert_eq!(holding.mode, Mode::Holding);
     host.emergency_stop = true;
-    after(&mut host, None);
+    after(&mut host, &|_| Ok(()));
     host.emergency_stop = false;
     let plan = line(&parameters, &holding, 10.0);
-    for command in [
-        Command::Servo(true),
-        Command::Reference,
-        Command::Move(plan),
-        Command::Servo(false),
-    ] {
-        let now = after(&mut host, Some(command.clone()));
-        assert_eq!(now.mode, Mode::Fault, "{command:?}");
-        assert_eq!(now.setpoint, holding.setpoint, "{command:?}");
+    let all: [(&str, Sends<'_>); 4] = [
+        ("servo on", &|queues| queues.send(Command::Servo(true))),
+        ("reference", &|queues| queues.send(Command::Reference)),
+        ("move", &|queues| queues.send_plan(&plan)),
+        ("servo off", &|queues| queues.send(Command::Servo(false))),
+    ];
+    for (name, sends) in all {
+        let now = after(&mut host, sends);
+        assert_eq!(now.mode, Mode::Fault, "{name}");
+        assert_eq!(now.setpoint, holding.setpoint, "{name}");
     }
-    let now = after(&mut host, Some(Command::Acknowledge));
+    let now = after(&mut host, &|queues| queues.send(Command::Acknowledge));
     assert_eq!((now.mode, now.fault, now.refused), (Mode::Off, None, 4));
 }

@@ -95,6 +95,11 @@ impl Run {
         }
     }
 
+    fn follow(&mut self, plan: &Plan) {
+        let command = self.commands.hand_over(plan).expect("a slot");
+        self.command(command);
+    }
+
     /// A line of 60 mm from where it stands.
     fn line(&self) -> Plan {
         let parameters = Parameters::REFERENCE;
@@ -113,8 +118,8 @@ impl Run {
             Mode::Holding => {}
             Mode::Moving | Mode::Stopping => {
                 let line = run.line();
-                run.plan = Some(line.clone());
-                run.command(Command::Move(line));
+                run.follow(&line);
+                run.plan = Some(line);
                 run.ticks(2_000);
             }
             Mode::Fault => {
@@ -157,7 +162,7 @@ impl Run {
             Event::Reference => self.command(Command::Reference),
             Event::ServoOn => self.command(Command::Servo(true)),
             Event::ServoOff => self.command(Command::Servo(false)),
-            Event::Move => self.command(Command::Move(self.next_plan())),
+            Event::Move => self.follow(&self.next_plan()),
             Event::Centre => {
                 let centre = RotationCentre::new([0.2, 0.1]).expect("near enough");
                 self.command(Command::Centre(centre));
@@ -238,6 +243,21 @@ fn every_event_does_in_every_state_what_is_expected() {
             let faulted = matches!(run.now.mode, Mode::Fault | Mode::Stopping);
             assert_eq!(run.now.fault.is_some(), faulted, "{event:?} in {state:?}");
         }
+    }
+}
+
+/// Whatever becomes of a plan, its slot or another comes back: there is room for the next.
+#[test]
+fn every_plan_leaves_room_for_the_next_in_every_state() {
+    for state in COLUMNS {
+        let mut run = Run::in_state(state);
+        let (line, before) = (run.line(), run.now.refused);
+        for _ in 0..4 {
+            run.follow(&line);
+        }
+        // The first, where there is rest; the others start where the stage no longer is.
+        let taken = u32::from(state == Mode::Holding);
+        assert_eq!(run.now.refused - before, 4 - taken, "{state:?}");
     }
 }
 

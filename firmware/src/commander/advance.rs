@@ -8,7 +8,7 @@ use super::sent_plan::{Goal, SentPlan};
 use super::state::Commander;
 use crate::mode::Mode;
 use crate::motion::{Constraints, Effort, PlanStart, RetargetError, Stop, check_target};
-use crate::queues::{Command, CommandQueues};
+use crate::queues::CommandQueues;
 
 /// A sooner way takes over from the one under way if it saves this part of what is left: each has more pieces than the one
 /// before.
@@ -259,8 +259,9 @@ impl Commander {
             // The motion will be another one than the table under way is of.
             queues.trial.cancel();
         }
-        let command = Command::Move(sent_plan.plan.clone());
-        self.send(command, InFlight::Plan(sent_plan, goal), queues)
+        (queues.send_plan(&sent_plan.plan)).map_err(|_| CommandError::Busy)?;
+        self.note_sent(InFlight::Plan(sent_plan, goal));
+        Ok(())
     }
 
     pub(super) const fn next_plan_id(&mut self) -> u32 {

@@ -317,14 +317,18 @@ impl Commander {
         queues: &mut CommandQueues<'_>,
     ) -> Result<(), CommandError> {
         queues.send(command).map_err(|_| CommandError::Busy)?;
-        self.commands_sent = self.commands_sent.wrapping_add(1);
-        self.refusals_before = self.snapshot.as_ref().map_or(0, |s| s.refused);
-        self.in_flight = Some(in_flight);
+        self.note_sent(in_flight);
         Ok(())
     }
 
+    pub(super) fn note_sent(&mut self, in_flight: InFlight) {
+        self.commands_sent = self.commands_sent.wrapping_add(1);
+        self.refusals_before = self.snapshot.as_ref().map_or(0, |s| s.refused);
+        self.in_flight = Some(in_flight);
+    }
+
     /// Servo on or off.
-    // In a frame of its own: a command has the length of a plan, and callers plan.
+    // In a frame of its own: a command is long, and callers plan.
     #[inline(never)]
     pub(super) fn send_servo(
         &mut self,

@@ -4,11 +4,11 @@ use super::calibrated::CalibrationInForce;
 use super::config::Config;
 use super::excitation::Excitation;
 use super::subdivision::SubdivisionTable;
-use crate::motion::{Plan, RotationCentre};
+use crate::motion::{PlanHandle, RotationCentre};
 
 /// What the command side asks of the tick.
 #[derive(Clone, Debug, PartialEq)]
-// A plan is by far the largest command and the most frequent; there is no heap to box it in.
+// There is no heap to box the larger ones in.
 #[allow(clippy::large_enum_variant)]
 pub enum Command {
     /// Take theta and the pivots' turns from the absolute encoders and hold the pose found there.
@@ -16,7 +16,7 @@ pub enum Command {
     /// Hold the measured pose, or switch the drives off (the stage coasts).
     Servo(bool),
     /// Execute a plan. Refused by the tick (and counted) when its start is no longer where the motion is.
-    Move(Plan),
+    Move(PlanHandle),
     /// Move another point of the platform from now on, and turn about it. Refused unless the stage is at rest, held or
     /// not; the platform does not move.
     Centre(RotationCentre),
@@ -36,7 +36,7 @@ pub enum Command {
     Acknowledge,
 }
 
-// Constants are copied in the tick that takes them, as a plan is: no larger one, so no longer a tick.
-const _: () = assert!(size_of::<Config>() <= size_of::<Plan>());
-const _: () = assert!(size_of::<CalibrationInForce>() <= size_of::<Plan>());
-const _: () = assert!(size_of::<Excitation>() <= size_of::<Plan>());
+// Constants are copied in the tick that takes them: none is larger than the controller's own, so none makes a longer tick.
+const _: () = assert!(size_of::<CalibrationInForce>() <= size_of::<Config>());
+const _: () = assert!(size_of::<[SubdivisionTable; 3]>() <= size_of::<Config>());
+const _: () = assert!(size_of::<Excitation>() <= size_of::<Config>());

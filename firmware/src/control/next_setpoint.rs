@@ -12,15 +12,20 @@ use super::state::State;
 use crate::fault::FaultKind;
 use crate::iterative_learning::TrialTable;
 use crate::mode::Mode;
-use crate::motion::Setpoint;
+use crate::motion::{PlanReceiver, Setpoint};
 use kinematics::Angle;
 
 impl State {
     /// One tick on: the setpoint that the next tick follows, and what a trial adds in it. One that can not be followed is
     /// a fault, and nothing drives.
     #[inline(never)]
-    pub(super) fn prepare_next(&mut self, config: &Config, table: TrialTable<'_>) {
-        let point = self.advance_motion(config);
+    pub(super) fn prepare_next(
+        &mut self,
+        config: &Config,
+        plans: PlanReceiver<'_>,
+        table: TrialTable<'_>,
+    ) {
+        let point = self.advance_motion(config, plans);
         self.advance_trial(config, table);
         let platform = self.motion.centre().platform_setpoint(&point);
         self.next.point = point;
@@ -34,15 +39,15 @@ impl State {
         }
     }
 
-    fn advance_motion(&mut self, config: &Config) -> Setpoint {
+    fn advance_motion(&mut self, config: &Config, plans: PlanReceiver<'_>) -> Setpoint {
         let motion = &mut self.motion;
         if self.mode == Mode::Stopping {
-            motion.advance_fault_stop(&config.fault_stop);
+            motion.advance_fault_stop(&config.fault_stop, plans);
             return motion.fault_stop_setpoint(&config.scale);
         }
         // With the servo off there is nothing under way.
         if matches!(self.mode, Mode::Holding | Mode::Moving) {
-            motion.advance();
+            motion.advance(plans);
         }
         motion.setpoint(&config.scale)
     }

@@ -154,13 +154,13 @@ pub fn tick_and_drive<'a>(
         state.send_snapshot(queues, &setpoint, &pivots, &target, duty);
         state.told_mode_and_commands = now;
     }
-    // Handled where it lies: a plan is too long to be moved twice.
+    // Handled where it lies: constants are too long to be moved twice.
     if commanded && let Some(command) = queues.commands.peek() {
         state.commands = state.commands.wrapping_add(1);
-        state.handle_command(config, command, &pivots);
+        state.handle_command(config, command, queues.plans, &pivots);
         let _ = queues.commands.dequeue();
     }
-    state.prepare_next(config, queues.trial);
+    state.prepare_next(config, queues.plans, queues.trial);
 }
 
 // The stages of a tick are functions of their own on the chip too: each has its registers to itself, and a bench can

@@ -4,12 +4,15 @@ use super::command::Command;
 use super::observers::TickObservers;
 use super::snapshot::{SNAPSHOT_SLOTS, Snapshot};
 use crate::iterative_learning::TrialTable;
+use crate::motion::PlanReceiver;
 use heapless::spsc::{Consumer, Producer};
 
 /// The tick's ends.
 pub struct TickQueues<'a> {
     /// Commands to take.
     pub commands: Consumer<'a, Command>,
+    /// Where the plans lie that they hand over.
+    pub plans: PlanReceiver<'a>,
     /// Where snapshots are sent.
     pub snapshots: Producer<'a, Snapshot>,
     /// The table of a move that is repeated.
@@ -30,6 +33,7 @@ impl TickQueues<'_> {
     /// Throws away the commands that wait: the controller starts again.
     pub fn clear(&mut self) {
         while self.commands.dequeue().is_some() {}
+        self.plans.restart();
         let observers = self.observers.as_mut();
         if let Some(fault_record) = observers.and_then(|it| it.fault_record.as_mut()) {
             fault_record.restart();

@@ -45,7 +45,19 @@ pub struct RawFrame(pub [u8; 8]);
 impl RawFrame {
     /// What an idle line gives; stands for a frame that did not come.
     pub const MISSING: Self = Self([0xFF; 8]);
+
+    /// Bits before the start bit of a frame whose CRC fits: what the encoder takes to answer. More than
+    /// [`MOST_BITS_BEFORE_START`] there can not be.
+    pub fn bits_before_start(&self) -> Option<u32> {
+        check_frame(self).ok()?;
+        let bits = u64::from_be_bytes(self.0);
+        let idle = bits.leading_ones();
+        Some(idle + bits.wrapping_shl(idle).leading_zeros())
+    }
 }
+
+/// A frame that begins later does not end within the 64 bits.
+pub const MOST_BITS_BEFORE_START: u32 = 64 - HEAD_BITS - PAYLOAD_BITS;
 
 /// A frame that can be believed, as far as the frame alone can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,7 +125,7 @@ pub fn check_frame(frame: &RawFrame) -> Result<CheckedFrame, FrameError> {
     let acknowledge = first.wrapping_shl(idle).leading_zeros();
     // At least one: the first bit is either idle or acknowledge.
     let start = idle + acknowledge;
-    if start > 64 - HEAD_BITS - PAYLOAD_BITS {
+    if start > MOST_BITS_BEFORE_START {
         return Err(FrameError::Silent);
     }
     // Start bit, zero bit, position, flags and two bits of the CRC; then its other four.
@@ -166,7 +178,9 @@ mod tests {
         for counts in [0, 1, 0x2AA_AAAA, 0x3FF_FFFF, 12_345_678] {
             for idle in 1..4 {
                 for acknowledge in 1..25 {
-                    let reading = decode(&frame(counts, 0b11, idle, acknowledge));
+                    let came = frame(counts, 0b11, idle, acknowledge);
+                    assert_eq!(came.bits_before_start(), Some(idle + acknowledge));
+                    let reading = decode(&came);
                     let expected = Reading {
                         counts,
                         warning: false,

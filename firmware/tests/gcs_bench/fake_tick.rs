@@ -64,7 +64,7 @@ impl<'q> FakeTick<'q> {
             self.now.commands += 1;
             self.obey(command);
         }
-        self.motion.advance();
+        self.motion.advance(self.queues.plans);
         self.axes.follow(&self.motion);
         let setpoint = self.motion.setpoint(&self.scale);
         let on = matches!(self.now.mode, Mode::Holding | Mode::Moving);
@@ -131,6 +131,9 @@ impl<'q> FakeTick<'q> {
     fn obey(&mut self, command: Command) {
         if self.now.mode == Mode::Fault && command != Command::Acknowledge {
             self.now.refused += 1;
+            if let Command::Move(handle) = command {
+                self.queues.plans.give_back(handle.slot);
+            }
             return;
         }
         match command {
@@ -153,13 +156,15 @@ impl<'q> FakeTick<'q> {
                     self.now.refused += 1;
                 }
             }
-            Command::Move(plan) => {
-                let accepted = self.motion.accept(&plan).is_ok();
+            Command::Move(handle) => {
+                let plan = self.queues.plans.plan(&handle);
+                let accepted = self.motion.accept(&handle, self.queues.plans).is_ok();
                 self.log.push(if accepted { "move" } else { "refused" });
                 if accepted {
                     self.now.mode = Mode::Moving;
                     self.accepted = Some(self.axes.accept(plan).clone());
                 } else {
+                    self.queues.plans.give_back(handle.slot);
                     self.now.refused += 1;
                 }
             }

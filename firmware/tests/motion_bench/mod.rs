@@ -17,7 +17,9 @@ mod proptest_settings;
 pub use proptest_settings::settings;
 
 use firmware::motion::plan::axis_state::TickIncrement;
-use firmware::motion::{AxisState, Constraints, Limits, Plan, Position, plan_line};
+use firmware::motion::{
+    AxisState, Constraints, Limits, LoneFollower, Plan, PlanSlots, Position, plan_line,
+};
 use firmware::parameters::Parameters;
 use kinematics::Geometry;
 use proptest::prelude::*;
@@ -62,6 +64,11 @@ pub fn moves() -> impl Strategy<Value = (Position, Position)> {
 
 pub fn line(from: Position, to: Position) -> Plan {
     plan_line(7, from, to, &CONSTRAINTS).expect("a move inside the disk")
+}
+
+/// At rest at the origin. Its slots stay as long as the test runs: some kilobytes.
+pub fn follower() -> LoneFollower<'static> {
+    LoneFollower::new(Box::leak(Box::new(PlanSlots::new())))
 }
 
 pub fn at_rest(position: Position) -> [AxisState; 3] {

@@ -1,10 +1,11 @@
 //! A stream between a sender and the tick: what is sent when, what the tick makes of it.
 
 use super::exact::Worst;
+use super::follower;
 use super::{AXIS_UNIT, LIMITS, at_rest};
 use firmware::motion::{
-    AxisState, Clock, Constraints, Plan, PlanFollower, PlanProgress, Position, PushError, Stream,
-    StreamEnd, StreamStep,
+    AxisState, Clock, Constraints, Plan, PlanProgress, Position, PushError, Stream, StreamEnd,
+    StreamStep,
 };
 
 /// How targets arrive.
@@ -57,7 +58,7 @@ pub fn run(
 ) -> Run {
     let mut targets = targets.peekable();
     let mut stream = Stream::new(start, sender.period, sender.clock).expect("a period");
-    let mut motion = PlanFollower::default();
+    let mut motion = follower();
     motion.rest_at(start);
     let mut course: Option<(Plan, [AxisState; 3])> = None;
     let mut pending: Option<(Plan, [AxisState; 3])> = None;

@@ -85,7 +85,7 @@ fn measure(stage: &StageParameters, parameters: &Parameters, x_m: f64) -> Vec<Po
     let to = [from[0], from[1], from[2] + (10.0 * 4_294_967_296.0) as i64];
     let constraints = Constraints::new(parameters.limits, parameters.geometry);
     let plan = plan_line(1, from, to, &constraints).expect("in place");
-    assert!(commands.send(Command::Move(plan)).is_ok());
+    assert!(commands.send_plan(&plan).is_ok());
     run(&mut host, &mut record, 10_000);
     let mut points = Vec::new();
     for bin in BINS {

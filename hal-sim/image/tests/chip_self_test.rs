@@ -63,6 +63,10 @@ fn a_sound_chip_is_good_in_every_reading() {
     assert_eq!(reading(&told, "VECTORS"), (1.0, "ok"));
     let (supply_v, _) = reading(&told, "CHIP_SUPPLY");
     assert!((supply_v - 3.3).abs() < 1e-9, "{supply_v}");
+    for name in ["FRAME_START1", "FRAME_START2", "FRAME_START3"] {
+        // Idle and acknowledge of the simulated encoders.
+        assert_eq!(reading(&told, name), (10.0, "ok"));
+    }
     let (worst, _) = reading(&told, "WORST_TICK");
     assert!((1.0..5_376.0).contains(&worst), "{worst}");
 }

@@ -13,8 +13,8 @@
 mod reference;
 
 use firmware::motion::{
-    AxisState, Effort, Plan, PlanFollower, Position, SetpointScale, StreamStep, plan_line,
-    plan_retarget,
+    AxisState, Effort, LoneFollower, Plan, PlanSlots, Position, SetpointScale, StreamStep,
+    plan_line, plan_retarget,
 };
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground, position, way};
@@ -172,14 +172,14 @@ impl Times {
 }
 
 /// A plan that the tick has taken, and rsruckig's from the same state to the same end.
-fn under_way(random: &mut Random) -> (PlanFollower, Trajectory<3>) {
+fn under_way(random: &mut Random) -> (LoneFollower<'static>, Trajectory<3>) {
     loop {
         let now = Moving::new(random);
         let input = asked(&now.start, &now.plan.end);
         let mut trajectory = Trajectory::new(None);
         let planned = Reference::new(None, PERIOD_S).calculate(&input, &mut trajectory);
         let (plan, from): (Plan, _) = now.begun_at_rest();
-        let mut motion = PlanFollower::default();
+        let mut motion = LoneFollower::new(Box::leak(Box::new(PlanSlots::new())));
         motion.rest_at(from);
         if plan.ticks() > u64::from(TICKS) && planned.is_ok() && motion.accept(&plan).is_ok() {
             return (motion, trajectory);

@@ -3,18 +3,20 @@
 use super::axis_state::{AxisState, TickIncrement};
 use super::fault_stop::{FaultStop, TimeScaling};
 use super::setpoint::{ACCELERATION_CUT, RotationCentre, Setpoint, SetpointScale, VELOCITY_CUT};
-use super::{Pieces, Plan, PlanStart, Position, same};
+use super::slots::{FIRST_KEPT, PlanHandle, PlanReceiver};
+use super::{PlanStart, Position, same};
 
 /// The motion of the setpoint: at rest, or following a plan.
 ///
-/// A plan is 1,100 bytes, so it is copied once, into the slot that is free; to begin it is to change the slot's number.
-#[derive(Clone, Debug, Default)]
+/// A plan is 1,100 bytes: it stays in the [slot](super::slots) where it was written, and each piece is read when its time comes.
+#[derive(Clone, Debug)]
 pub struct PlanFollower {
     axes: [AxisState; 3],
     /// The point that is moved.
     centre: RotationCentre,
-    slots: [Plan; 2],
-    /// Slot of the plan under way, or of the last one.
+    /// The plan under way, or the last one, and the other: the next, or the one before.
+    plans: [KeptPlan; 2],
+    /// Which of them is under way, or was last.
     current: usize,
     moving: bool,
     /// Tick of the plan under way at which the plan in the other slot takes over, if there is one.
@@ -27,9 +29,42 @@ pub struct PlanFollower {
     time_scaling: TimeScaling,
 }
 
+/// What is kept of a plan whose pieces lie in a slot.
+#[derive(Clone, Copy, Debug, Default)]
+struct KeptPlan {
+    id: u32,
+    nudge: [i64; 3],
+    end: Position,
+    pieces: u8,
+    slot: u8,
+}
+
 /// A plan does not start where the motion is (any more); nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
+
+impl Default for PlanFollower {
+    /// At rest at the origin.
+    fn default() -> Self {
+        let plans = FIRST_KEPT.map(|slot| KeptPlan {
+            slot,
+            ..KeptPlan::default()
+        });
+        Self {
+            axes: Default::default(),
+            centre: RotationCentre::default(),
+            plans,
+            current: 0,
+            moving: false,
+            splice: None,
+            piece: 0,
+            left: 0,
+            increments: Default::default(),
+            done: 0,
+            time_scaling: TimeScaling::default(),
+        }
+    }
+}
 
 impl PlanFollower {
     /// Sets the setpoint to `position`, at rest. Only for a stage that is not held: the setpoint may jump.
@@ -67,20 +102,21 @@ impl PlanFollower {
     /// Identity of the plan under way or last ended, and its ticks done.
     #[inline]
     pub fn progress(&self) -> (u32, u64) {
-        (self.slots[self.current & 1].id, self.done)
+        (self.plans[self.current & 1].id, self.done)
     }
 
     /// Takes a plan: from rest it starts with the next [`advance`](Self::advance), a splice when its tick comes.
-    pub fn accept(&mut self, plan: &Plan) -> Result<(), Stale> {
+    /// The slot that it displaces goes back. Of a plan that is refused its own has to, which is the caller's to do.
+    pub fn accept(&mut self, plan: &PlanHandle, plans: PlanReceiver<'_>) -> Result<(), Stale> {
         match plan.start {
             PlanStart::Rest(from) if !self.moving && same(&from, &self.position()) => {
-                self.keep(plan);
-                self.begin();
+                self.keep(plan, plans);
+                self.begin(plans);
             }
             PlanStart::Splice { plan: id, tick }
                 if self.moving && self.progress().0 == id && tick >= self.done =>
             {
-                self.keep(plan);
+                self.keep(plan, plans);
                 self.splice = Some(tick);
             }
             _ => return Err(Stale),
@@ -90,12 +126,12 @@ impl PlanFollower {
 
     /// One tick on. Bounded: at most one change of piece or plan.
     #[inline]
-    pub fn advance(&mut self) {
+    pub fn advance(&mut self, plans: PlanReceiver<'_>) {
         if !self.moving {
             return;
         }
         if self.splice == Some(self.done) {
-            self.begin();
+            self.begin(plans);
         }
         // None are left where a plan has no pieces.
         if self.left > 0 {
@@ -107,7 +143,7 @@ impl PlanFollower {
         }
         if self.left == 0 {
             self.piece += 1;
-            self.enter();
+            self.enter(plans);
             if self.left == 0 {
                 self.finish();
             }
@@ -115,9 +151,10 @@ impl PlanFollower {
     }
 
     /// Enters a piece, if there is one.
-    fn enter(&mut self) {
-        let plan = &self.slots[self.current & 1];
-        let Some(piece) = plan.pieces.get(self.piece) else {
+    fn enter(&mut self, plans: PlanReceiver<'_>) {
+        let plan = &self.plans[self.current & 1];
+        let is_over = self.piece >= usize::from(plan.pieces);
+        let Some(piece) = plans.piece(plan.slot, self.piece).filter(|_| !is_over) else {
             return;
         };
         self.left = piece.ticks;
@@ -140,12 +177,12 @@ impl PlanFollower {
     }
 
     /// One tick on, in a fault's stop. Bounded as [`advance`](Self::advance) is, which it calls at most once.
-    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop) {
+    pub fn advance_fault_stop(&mut self, fault_stop: &FaultStop, plans: PlanReceiver<'_>) {
         if !self.moving {
             return;
         }
         match self.time_scaling.advance(fault_stop) {
-            Some(true) => self.advance(),
+            Some(true) => self.advance(plans),
             Some(false) => {}
             None => self.rest_at(self.time_scaling.position(&self.axes)),
         }
@@ -166,38 +203,34 @@ impl PlanFollower {
         each!(i => self.axes[i].rounded())
     }
 
-    /// Copies a plan into the free slot.
-    fn keep(&mut self, plan: &Plan) {
-        let slot = &mut self.slots[(self.current + 1) & 1];
-        slot.id = plan.id;
-        slot.nudge = plan.nudge;
-        slot.end = plan.end;
-        copy(&plan.pieces, &mut slot.pieces);
+    /// Keeps a plan in the place of the one that is not under way.
+    fn keep(&mut self, plan: &PlanHandle, plans: PlanReceiver<'_>) {
+        let other = &mut self.plans[(self.current + 1) & 1];
+        plans.give_back(other.slot);
+        *other = KeptPlan {
+            id: plan.id,
+            nudge: plan.nudge,
+            end: plan.end,
+            pieces: plan.pieces,
+            slot: plan.slot,
+        };
     }
 
-    /// Starts the plan in the other slot.
-    fn begin(&mut self) {
+    /// Starts the plan that is not under way.
+    fn begin(&mut self, plans: PlanReceiver<'_>) {
         self.current = (self.current + 1) & 1;
         self.moving = true;
         self.splice = None;
         self.piece = 0;
         self.left = 0;
         self.done = 0;
-        self.enter();
+        self.enter(plans);
     }
 
     /// What rounding left of velocity, acceleration and sub-units (see [`Plan::nudge`]) is dropped here.
     fn finish(&mut self) {
-        self.axes = self.slots[self.current & 1].end.map(AxisState::at_rest);
+        self.axes = self.plans[self.current & 1].end.map(AxisState::at_rest);
         self.moving = false;
         self.splice = None;
     }
-}
-
-/// In a function of its own, which the image's linker finds.
-#[inline(never)]
-fn copy(pieces: &Pieces, slot: &mut Pieces) {
-    slot.clear();
-    // As long as it is.
-    let _ = slot.extend_from_slice(pieces);
 }

@@ -15,13 +15,17 @@
 //! | `setpoint` | what the control loop is given at a tick: of the point that is moved, and of the platform's centre |
 //! | `fault_stop` | a fault's stop: the plan's time runs slower and slower |
 //! | `follower` | following a plan, and taking the next |
+//! | `lone_follower` | the same with a memory of its own |
+//! | `slots` | where plans lie while they are handed over and followed |
 
 pub mod axis_state;
 pub mod cubic_segment;
 pub mod fault_stop;
 pub mod follower;
+pub mod lone_follower;
 pub mod quantise;
 pub mod setpoint;
+pub mod slots;
 
 use axis_state::{AxisState, SUB_BITS};
 use heapless::Vec;

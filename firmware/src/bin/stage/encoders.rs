@@ -1,7 +1,8 @@
 //! The three encoders: BiSS-C on SPI1, SPI2 and SPI3, read in parallel by DMA.
 //!
 //! A frame is eight bytes at 5.25 MHz (the fastest rate below BiSS-C's 10 MHz that both buses divide to), 12.2 us. The
-//! clock idles high, and its first falling edge latches the position. The encoder shifts on rising edges; SPI mode 3
+//! clock idles high, and its first falling edge latches the position; some makers
+//! say the first rising one, 95 ns later, which all three have in common. The encoder shifts on rising edges; SPI mode 3
 //! samples a bit at the rising edge that ends it, which leaves the whole 190 ns of a bit for the line and the
 //! transceivers. Where the frame begins in the 64 bits is the decoder's to find.
 //!
@@ -72,6 +73,14 @@ struct Buffer(UnsafeCell<u64>);
 unsafe impl Sync for Buffer {}
 
 static BUFFERS: [Buffer; 3] = [const { Buffer(UnsafeCell::new(MISSING)) }; 3];
+
+/// What lies in the buffers, for who is not the tick: a transfer may be under way, which leaves bytes of two frames there.
+pub fn last_frames() -> [RawFrame; 3] {
+    // SAFETY: each is a word of RAM. Volatile, since the compiler does not know who wrote there.
+    BUFFERS
+        .each_ref()
+        .map(|buffer| RawFrame(unsafe { buffer.0.get().read_volatile() }.to_ne_bytes()))
+}
 
 /// What is clocked out, to nobody. Mutable in name only, so that it lies in RAM beside the rest.
 static IDLE: Buffer = Buffer(UnsafeCell::new(MISSING));

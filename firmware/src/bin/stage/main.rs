@@ -82,7 +82,7 @@ mod app {
         pwm: PwmTimer,
         bridges: Bridges,
         brake_resistor: BrakeResistorSwitch,
-        config: Config,
+        config: &'static mut Config,
         state: &'static mut State,
         sample_sender: SampleSender,
         sample_receiver: SampleReceiver,
@@ -101,7 +101,10 @@ mod app {
     // What is large is written to where it stays: in `Local` it would stand on the stack several times on its way.
     #[init(local = [
         queues: Queues = Queues::new(),
-        samples: SampleQueue = SampleQueue::new(),
+        #[unsafe(link_section = ".ccm.samples")]
+        samples_place: MaybeUninit<SampleQueue> = MaybeUninit::uninit(),
+        #[unsafe(link_section = ".ccm.config")]
+        config_place: MaybeUninit<Config> = MaybeUninit::uninit(),
         panel_place: MaybeUninit<Interpreter> = MaybeUninit::uninit(),
         #[unsafe(link_section = ".ccm.session")]
         session_place: MaybeUninit<Session> = MaybeUninit::uninit(),
@@ -158,15 +161,16 @@ mod app {
             settings_store.restore(&mut interpreter.contents(&mut command_queues.trial));
         let damaged = self_check.image_damaged.then_some(FaultKind::ImageDamaged);
         let no_crystal = without_crystal.then_some(FaultKind::CrystalFailed);
-        let config = Config::new(interpreter.parameters());
+        let config = (context.local.config_place).write(Config::new(interpreter.parameters()));
         // The one that stays first.
         let state = match damaged.or(no_crystal).or(unusable_settings) {
             None => State::new(),
             Some(problem) => State::with_fault(problem),
         }
         .with_motor_heat(RETAINED_MEMORY.motor_heat())
-        .with_learnt(&config);
-        let (sample_sender, sample_receiver) = context.local.samples.split();
+        .with_learnt(config);
+        let samples = context.local.samples_place.write(SampleQueue::new());
+        let (sample_sender, sample_receiver) = samples.split();
         watchdogs.start(&mut rcc);
         let state = context.local.state_place.write(state);
         let session = context.local.session_place.write(Session::new());

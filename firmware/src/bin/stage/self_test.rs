@@ -2,10 +2,12 @@
 //! the watchdog's oscillator.
 
 use crate::{
-    analog::Analog, clocks, latch_timing, oscillator, pins, self_check, timeline::DEADLINE_CYCLES,
+    analog::Analog, clocks, encoders, latch_timing, oscillator, pins, self_check,
+    timeline::DEADLINE_CYCLES,
 };
 use core::ops::RangeInclusive;
 use firmware::control::units::SUPPLY_V_PER_COUNT;
+use firmware::drivers::biss::MOST_BITS_BEFORE_START;
 use firmware::drivers::power_stage::signed_current_counts;
 use firmware::self_test::{Board, Reading};
 use stm32f4xx_hal::pac;
@@ -37,6 +39,18 @@ const SLEEP_PINS: u32 = 0b111 << 4;
 
 /// The chip of this board.
 pub struct StageBoard;
+
+/// How often to look for whole frames: one comes in 50 us, and for 12 of them there are bytes of two.
+const FRAME_LOOKS: u32 = 1_000;
+
+/// Clocks before each encoder's start bit; 0 where there is no good frame.
+fn bits_before_start() -> [f64; 3] {
+    [0, 1, 2].map(|pivot| {
+        let found =
+            (0..FRAME_LOOKS).find_map(|_| encoders::last_frames().get(pivot)?.bits_before_start());
+        f64::from(found.unwrap_or(0))
+    })
+}
 
 fn exactly(value: f64) -> RangeInclusive<f64> {
     value..=value
@@ -146,6 +160,15 @@ impl Board for StageBoard {
             "counts of 84 MHz",
             LEAST_MARGIN..=MOST_MARGIN,
         );
+        let names = ["FRAME_START1", "FRAME_START2", "FRAME_START3"];
+        for (name, bits) in names.into_iter().zip(bits_before_start()) {
+            say(
+                name,
+                bits,
+                "clocks",
+                1.0..=f64::from(MOST_BITS_BEFORE_START),
+            );
+        }
         let released = ports.1.idr().read().bits() & RELEASED != 0;
         say(
             "EMERGENCY_STOP",

@@ -10,7 +10,7 @@ use crate::control::state::State;
 use crate::control::subdivision::SubdivisionTable;
 use crate::fault::Fault;
 use crate::mode::Mode;
-use crate::motion::Position;
+use crate::motion::{PlanReceiver, Position};
 use crate::number::Fixed;
 use kinematics::{Angle, Pose};
 
@@ -20,19 +20,20 @@ impl State {
         &mut self,
         config: &mut Config,
         command: &Command,
+        plans: PlanReceiver<'_>,
         pivots: &[Angle; 3],
     ) {
         let event = event_of(config, command);
         let done = match outcome(self.mode, event) {
-            Outcome::Nothing => return,
-            Outcome::Refused => false,
+            Outcome::Nothing => None,
+            Outcome::Refused => Some(false),
             Outcome::To(mode) => {
                 self.apply(config, command);
                 self.mode = mode;
-                true
+                Some(true)
             }
             Outcome::If(mode) => {
-                let done = self.try_apply(config, command, pivots);
+                let done = self.try_apply(config, command, plans, pivots);
                 if done {
                     let slept = !self.bridges_awake();
                     self.mode = mode;
@@ -40,11 +41,16 @@ impl State {
                         self.waking_ticks = config.limits.wake_ticks();
                     }
                 }
-                done
+                Some(done)
             }
         };
-        if !done {
+        if done == Some(false) {
             self.refused = self.refused.wrapping_add(1);
+        }
+        if done != Some(true)
+            && let Command::Move(plan) = command
+        {
+            plans.give_back(plan.slot);
         }
     }
 
@@ -78,14 +84,20 @@ impl State {
     }
 
     /// What the stage may not be ready for; nothing has changed then.
-    fn try_apply(&mut self, config: &Config, command: &Command, pivots: &[Angle; 3]) -> bool {
+    fn try_apply(
+        &mut self,
+        config: &Config,
+        command: &Command,
+        plans: PlanReceiver<'_>,
+        pivots: &[Angle; 3],
+    ) -> bool {
         match command {
             // The command side refuses it before: this is for the case that it does not.
             Command::Reference | Command::Servo(_) if !config.commissioned => false,
             Command::Reference if !self.referenced => self.reference(config, pivots),
             Command::Reference | Command::Servo(_) => self.hold(config, pivots),
             Command::Move(plan) => {
-                let taken = self.motion.accept(plan).is_ok();
+                let taken = self.motion.accept(plan, plans).is_ok();
                 if taken {
                     self.settling.start();
                 }
@@ -174,7 +186,7 @@ impl State {
         true
     }
 
-    /// Takes other constants: a quarter of the bytes that a plan has.
+    /// Takes other constants.
     fn configure(&mut self, config: &mut Config, wanted: &Config) {
         let moved = [0, 1, 2].map(|i| {
             !config.encoders[i].has_same_mounting(&wanted.encoders[i])

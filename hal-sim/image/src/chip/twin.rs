@@ -21,7 +21,7 @@ use firmware::drivers::biss::{RawFrame, decode};
 use firmware::drivers::power_stage::signed_current_counts;
 use firmware::gcs::Session;
 use firmware::parameters::Parameters;
-use firmware::queues::{CommandQueues, Snapshot, TickQueues};
+use firmware::queues::{Command, CommandQueues, Snapshot, TickQueues};
 use hal_sim::front::ControlLoop;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::machine::devices::biss::{Preamble, encode};
@@ -298,11 +298,15 @@ impl Twin {
 
     /// Passes on the next command, of which the chip's tick takes one at a time; whether there was one.
     fn relay(&mut self) -> bool {
-        let sent = self
-            .panel_side
-            .commands
-            .dequeue()
-            .and_then(|command| self.tick_side.send(command).ok());
+        let sent = match self.panel_side.commands.dequeue() {
+            Some(Command::Move(handle)) => {
+                let plan = self.panel_side.plans.plan(&handle);
+                self.panel_side.plans.give_back(handle.slot);
+                self.tick_side.send_plan(&plan).ok()
+            }
+            Some(command) => self.tick_side.send(command).ok(),
+            None => None,
+        };
         if sent.is_some() {
             self.commands = self.commands.wrapping_add(1);
         }

@@ -2,14 +2,18 @@
 
 use crate::bench::{Bench, no_result};
 use crate::table::CallResult;
-use firmware::motion::{PlanFollower, SetpointScale};
+use cortex_m::singleton;
+use firmware::motion::{LoneFollower, PlanSlots, SetpointScale};
 use firmware_cost::random::Random;
 use firmware_cost::states::{Moving, ground};
 
 /// Counts taking a plan, and a tick of it.
 #[inline(never)]
 pub fn run(bench: &mut Bench) {
-    let mut motion = PlanFollower::default();
+    let Some(slots) = singleton!(: PlanSlots = PlanSlots::new()) else {
+        return;
+    };
+    let mut motion = LoneFollower::new(slots);
     bench.part_with(
         "tick: a plan is taken",
         1,
@@ -17,11 +21,11 @@ pub fn run(bench: &mut Bench) {
         |motion, random| {
             let (plan, from) = Moving::new(random).begun_at_rest();
             motion.rest_at(from);
-            plan
+            motion.hand_over(&plan)
         },
-        |motion, plan| motion.accept(plan),
+        |motion, handle| handle.map(|handle| motion.take(&handle)),
         |_, taken| CallResult {
-            refused: taken.is_err(),
+            refused: !matches!(taken, Some(Ok(()))),
             ticks: 0,
         },
     );
@@ -44,7 +48,7 @@ pub fn run(bench: &mut Bench) {
 }
 
 /// Pieces of two ticks or fewer, so that many change.
-fn begin_one_of_short_pieces(motion: &mut PlanFollower, random: &mut Random) {
+fn begin_one_of_short_pieces(motion: &mut LoneFollower<'_>, random: &mut Random) {
     let (mut plan, from) = Moving::new(random).begun_at_rest();
     for piece in &mut plan.pieces {
         piece.ticks = piece.ticks.min(2);

@@ -231,7 +231,7 @@ impl Control<'_> {
             self.start = start;
             self.plan = plan.clone();
             // The tick has emptied the queue, or nearly.
-            let _ = self.panel.send(Command::Move(plan));
+            let _ = self.panel.send_plan(&plan);
             self.sent += 1;
         }
     }
