@@ -97,6 +97,7 @@ fn recorded_inputs() -> Vec<Inputs> {
                 current_counts: currents.map(signed_current_counts),
                 supply_counts,
                 tick_cycles: 0,
+                program_damaged: false,
                 late: false,
             };
             commanded.rig.tick(&mut commanded.record);

@@ -177,6 +177,7 @@ impl Ideal {
                 SUPPLY_COUNTS
             },
             tick_cycles: 0,
+            program_damaged: false,
             late: false,
         }
     }

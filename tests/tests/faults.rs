@@ -106,6 +106,26 @@ fn coast(bench: &mut Bench) {
     bench.run(10_000);
 }
 
+/// What the board finds while it runs; and it stays, as what is found at the start.
+#[test]
+fn a_program_that_changes_lets_go_until_a_restart() {
+    let mut bench = moving();
+    bench.tick();
+    assert_eq!(bench.fault(), None);
+    bench.rig.front.program_damaged = true;
+    bench.run(2);
+    assert_eq!(bench.fault_kind(), Some(FaultKind::ImageDamaged));
+    assert!(!bench.outputs.awake, "coasts");
+    bench.rig.front.program_damaged = false;
+    coast(&mut bench);
+    for line in ["FLC", "FRF", "SVO X 1", "MOV X 1"] {
+        bench.say(&format!("{line}\n"));
+        bench.run(10);
+        assert_eq!(bench.mode(), Mode::Fault, "{line}");
+    }
+    assert_eq!(bench.fault_kind(), Some(FaultKind::ImageDamaged));
+}
+
 #[test]
 fn bad_frames_beyond_the_bridged_are_a_fault() {
     for (encoder, (fault, kind)) in BAD_FRAMES.into_iter().enumerate() {

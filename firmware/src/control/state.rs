@@ -29,6 +29,8 @@ pub struct Inputs {
     pub bridge_fault: [bool; 3],
     /// Emergency stop pressed.
     pub emergency_stop: bool,
+    /// The program is no longer what it was: somebody has looked.
+    pub program_damaged: bool,
     /// Motor currents, ADC counts with their sign.
     pub current_counts: [i16; 3],
     /// Supply, ADC counts.

@@ -155,9 +155,9 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::ImageDamaged,
-        detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it; at the start, before anything drives. An image that was not sealed is not checked, which `EVT?` tells",
+        detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it: at the start, before anything drives, and over and over while the chip runs, all of it in some 3 s; or the control loop's code in RAM is not what it was copied from, all of it in some 0.3 s. An image that was not sealed has no CRC, which `EVT?` tells",
         thresholds: &[],
-        reason: "nothing has moved yet; what a damaged program does nobody knows: `FLC` does not take the fault away",
+        reason: "what a damaged program does nobody knows: nothing is driven by what it computes, and `FLC` does not take the fault away",
     },
     FaultDescription {
         kind: FaultKind::SupplyHigh,

@@ -47,7 +47,7 @@ pub enum FaultKind {
     Oscillation,
     /// The crystal did not start: the controller runs on a clock that nothing watches.
     CrystalFailed,
-    /// The program in flash does not have its checksum.
+    /// The program in flash does not have its checksum, or the control loop in RAM is not what it was copied from.
     ImageDamaged,
     /// The supply is over what the bridges may have; value and limit in V.
     SupplyHigh,
@@ -96,7 +96,7 @@ impl FaultKind {
             | Self::CurrentUnexplained
             | Self::ExcitationWay
             | Self::NotFinite => Reaction::Brake,
-            // Nothing has moved yet at the start.
+            // Nothing has moved yet at the start; what a damaged program computes is nothing to drive by.
             Self::BridgeFault
             | Self::SettingsDamaged
             | Self::SettingsNewer
@@ -148,7 +148,9 @@ impl FaultKind {
             Self::LoopLate => "control loop late too often",
             Self::Oscillation => "servo oscillates",
             Self::CrystalFailed => "crystal does not start, only a restart takes this away",
-            Self::ImageDamaged => "the program in flash is damaged: flash it again",
+            Self::ImageDamaged => {
+                "the program is damaged: restart, and flash it again if that stays"
+            }
             Self::NotFinite => "a computed value is not a number",
             Self::SettingsDamaged => {
                 "kept settings are damaged, the controller's own are in force (WPA 100 keeps those)"

@@ -268,7 +268,7 @@ fn a_sealed_image_is_whole_and_one_with_a_flipped_bit_never_drives() {
     let mut damaged = sealed;
     damaged[offset] ^= 1;
     let told = answers(bench(damaged), b"FLC\nFRF X\nFLT?\nSVO?\n");
-    assert!(told.contains("the program in flash is damaged"), "{told}");
+    assert!(told.contains("the program is damaged"), "{told}");
     assert!(told.contains("X=0"), "{told}");
 }
 

@@ -26,6 +26,7 @@ const NO_INPUTS: Inputs = Inputs {
     current_counts: [0; 3],
     supply_counts: 0,
     tick_cycles: 0,
+    program_damaged: false,
     late: false,
 };
 

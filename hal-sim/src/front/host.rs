@@ -57,6 +57,8 @@ pub struct Host {
     pub emergency_stop: bool,
     /// Wires to the motors.
     pub wiring: [Wiring; AXES],
+    /// The program is no longer what it was.
+    pub program_damaged: bool,
     /// The tick before was late, or there should have been one more: what a host has no clock to find out.
     pub late: bool,
     /// What starts the controller again.
@@ -89,6 +91,7 @@ impl Host {
             bridges: bridges.try_into().expect(three),
             emergency_stop: false,
             wiring: [Wiring::Sound; AXES],
+            program_damaged: false,
             late: false,
             watchdog: Watchdog::new(0.5),
             missed: false,
@@ -179,6 +182,7 @@ impl Host {
             current_counts: currents.map(signed_current_counts),
             supply_counts,
             tick_cycles: 0,
+            program_damaged: self.program_damaged,
             late: self.late | std::mem::take(&mut self.missed),
         }
     }

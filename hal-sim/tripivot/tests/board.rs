@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 
 /// A simulated stage; ends with the test.
@@ -59,13 +60,29 @@ impl Drop for Served {
 fn a_sound_stage_passes_every_test() {
     let served = Served::start(&[]);
     // A busy machine simulates slower than real time: what depends on its seconds is not what is tested here.
-    let (output, text) = served.board(&["--move", "--emulated"]);
+    let page = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board.html");
+    let out = page.to_str().unwrap();
+    let (output, text) = served.board(&["--move", "--emulated", "--out", out]);
     assert!(
         !text.contains("FAILED") && !text.contains("left out"),
         "{text}"
     );
     assert_eq!(text.lines().count(), 16, "{text}");
     assert_eq!(output.status.code(), Some(0));
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains("nothing has failed"), "{page}");
+    // Every test, and what the loop knows of itself: a simulated controller has no chip.
+    for row in [
+        "<td>servo</td>",
+        "<td>ENCODER3</td><td>1</td><td>1 to 1</td><td class=\"ok\">ok</td>",
+    ] {
+        assert!(page.contains(row), "{row}: {page}");
+    }
+    let (output, _) = served.board(&["--out", "/nowhere/board.html"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("/nowhere/board.html: cannot be written")
+    );
 }
 
 #[test]

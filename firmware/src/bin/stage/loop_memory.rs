@@ -15,7 +15,7 @@ const SYSCFG_MEMRMP: u32 = 0x4001_3800;
 const MEM_MODE: u32 = 0b111;
 const SRAM1: u32 = 0b011;
 /// SRAM1 at its own address.
-const SRAM1_BASE: u32 = 0x2000_0000;
+pub const SRAM1_BASE: u32 = 0x2000_0000;
 
 core::arch::global_asm!(
     ".section .text.loop_memory, \"ax\"",

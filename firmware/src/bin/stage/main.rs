@@ -29,7 +29,7 @@
 //! (`fault_handlers`): processor faults, the crystal's failure, and the window watchdog, which the tick feeds.
 //! Below them, at 15 in the hardware, runs what records the ticks (`samples`): rows of the recorders and the trace are
 //! written in what the tick leaves of its period, and the independent watchdog is fed. All the rest, command interface,
-//! settings and log, is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
+//! settings, log, and a look whether the program is still whole, is the idle task. Between them are lock-free queues and atomics. Nothing masks interrupts after start-up but a tick
 //! that reads its sensors, when no latch is due: a log frame that meets another one, or a full buffer, is dropped instead.
 //! The independent watchdog is fed only while the idle task gives signs of life.
 
@@ -43,6 +43,7 @@ mod app {
         latch::LatchTimer,
         latch_timing,
         marks::{BoardLamps, LatchMark, TickMark},
+        program_watch::{self, ProgramWatch},
         pwm::{PwmTimer, TickEvent},
         restart,
         retained_memory::RETAINED_MEMORY,
@@ -254,6 +255,7 @@ mod app {
             frames,
             bridge_fault: bridges.faults(),
             emergency_stop: cut,
+            program_damaged: program_watch::is_damaged(),
             current_counts: counts.current,
             supply_counts: counts.supply,
             tick_cycles,
@@ -306,6 +308,7 @@ mod app {
     fn idle(context: idle::Context) -> ! {
         let local = context.local;
         let mut received = 0u32;
+        let mut program = ProgramWatch::new();
         loop {
             if local.receiver.poll() {
                 local.session.lose();
@@ -328,6 +331,7 @@ mod app {
             if local.interpreter.wants_restart() {
                 restart::now();
             }
+            program.step();
             watchdog::note_alive();
             cortex_m::asm::wfi();
         }

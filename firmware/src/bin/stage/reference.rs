@@ -22,6 +22,7 @@ mod loop_memory;
 mod marks;
 mod oscillator;
 mod panic;
+mod program_watch;
 mod pwm;
 mod reset_cause;
 mod restart;

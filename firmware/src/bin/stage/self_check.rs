@@ -46,13 +46,12 @@ impl SelfCheck {
         let has_second_bank = matches!(flash_kib, 0 | BOTH_BANKS_KIB..);
         let options = flash.optcr().read();
         let revision = dbgmcu.idcode().read().rev_id().bits();
-        // SAFETY: read as it lies in flash: the tool writes it after the compiler has seen it.
-        let checksum = unsafe { addr_of!(IMAGE_CHECKSUM).read_volatile() };
-        let has_checksum = checksum != NO_CHECKSUM;
+        let (image, checksum_at, checksum) = image();
+        let is_whole = |checksum| checksum == image_checksum(image, checksum_at);
         let brown_out = options.bor_lev().bits() == BROWN_OUT_LEVEL_3;
         Self {
             has_second_bank,
-            image_damaged: has_checksum && checksum != checksum_now(),
+            image_damaged: !checksum.is_none_or(is_whole),
             notices: [
                 (!brown_out, BoardNotice::BrownOutLevel),
                 (options.bits() & BFB2 != 0, BoardNotice::BootsFromSettings),
@@ -61,7 +60,7 @@ impl SelfCheck {
                     BoardNotice::EarlySilicon,
                 ),
                 (!has_second_bank, BoardNotice::NoSecondBank),
-                (!has_checksum, BoardNotice::NoChecksum),
+                (checksum.is_none(), BoardNotice::NoChecksum),
             ],
         }
     }
@@ -80,15 +79,16 @@ pub fn has_own_vectors() -> bool {
     vectors as usize == addr_of!(__vector_table) as usize
 }
 
-/// The checksum of what lies in flash.
-fn checksum_now() -> u32 {
+/// The image in flash, where in it its checksum lies, and that, if it has one.
+pub fn image() -> (&'static [u8], usize, Option<u32>) {
     let begin = addr_of!(__vector_table);
     let checksum_at = addr_of!(IMAGE_CHECKSUM) as usize - begin as usize;
     let filled = addr_of!(__edata) as usize - addr_of!(__sdata) as usize;
     let length = addr_of!(__sidata) as usize + filled - begin as usize;
     // SAFETY: the image from its first byte to its last, which nobody writes.
-    image_checksum(
-        unsafe { core::slice::from_raw_parts(begin, length) },
-        checksum_at,
-    )
+    let image = unsafe { core::slice::from_raw_parts(begin, length) };
+    // SAFETY: read as it lies in flash: the tool writes it after the compiler has seen it.
+    let checksum = unsafe { addr_of!(IMAGE_CHECKSUM).read_volatile() };
+    let checksum = (checksum != NO_CHECKSUM).then_some(checksum);
+    (image, checksum_at, checksum)
 }

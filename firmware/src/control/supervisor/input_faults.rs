@@ -16,7 +16,8 @@ impl State {
     #[inline]
     pub(in crate::control) fn check_inputs(&mut self, config: &Config, inputs: &Inputs) {
         let [one, two, three] = inputs.bridge_fault;
-        let reported = inputs.emergency_stop | inputs.late | one | two | three;
+        let reported =
+            inputs.emergency_stop | inputs.program_damaged | inputs.late | one | two | three;
         let [first, second, third] = self.bridge_faults;
         let seen = first | second | third;
         let pending = self.lateness | u32::from(self.bad_supply_ticks) | u32::from(seen);
@@ -36,6 +37,10 @@ impl State {
         }
         if inputs.emergency_stop {
             self.raise_fault(FaultKind::EmergencyStop, None, 0.0, 0.0);
+            return;
+        }
+        if inputs.program_damaged {
+            self.raise_fault(FaultKind::ImageDamaged, None, 0.0, 0.0);
             return;
         }
         self.check_lateness(config, inputs.late);

@@ -5,14 +5,17 @@
 //! | here | running the plan |
 //! | `plan` | the tests |
 //! | `controller` | what the tests ask the controller |
+//! | `report` | what was found, as a page |
 
 mod controller;
 mod plan;
+mod report;
 
 use crate::record::RecordError;
 use crate::web::Endpoint;
 use controller::Controller;
 pub use plan::PLAN;
+pub use report::{Done, page};
 
 /// A test of the plan.
 pub struct Test {
@@ -60,7 +63,18 @@ pub struct PlanOptions {
     pub emulated: bool,
 }
 
-/// Runs the plan and tells of every test as it ends: `None` for one that was left out. Whether none has failed.
+/// What has come of the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// No test has failed.
+    pub passed: bool,
+    /// Who was tested.
+    pub identity: String,
+    /// What `TST?` has answered before the tests; nothing where it was refused.
+    pub self_test: String,
+}
+
+/// Runs the plan and tells of every test as it ends: `None` for one that was left out.
 ///
 /// A test that the controller refuses has failed; the rest is run all the same. The servo is off at the end of tests that move.
 ///
@@ -69,10 +83,18 @@ pub struct PlanOptions {
 pub fn run(
     endpoint: &Endpoint,
     options: PlanOptions,
-    tell: &mut dyn FnMut(&Test, Option<&Found>),
-) -> Result<bool, RecordError> {
+    tell: &mut dyn FnMut(&'static Test, Option<Found>),
+) -> Result<Outcome, RecordError> {
     let mut controller = Controller::open(endpoint, options.emulated)?;
-    let mut all = true;
+    let mut outcome = Outcome {
+        passed: true,
+        identity: controller.identity().to_owned(),
+        self_test: match controller.ask("TST?") {
+            Ok(answer) => answer,
+            Err(RecordError::Refused { .. }) => String::new(),
+            Err(error) => return Err(error),
+        },
+    };
     for test in PLAN {
         if test.moves && !options.moves {
             tell(test, None);
@@ -86,8 +108,8 @@ pub fn run(
             },
             Err(error) => return Err(error),
         };
-        all &= found.verdict != Verdict::Failed;
-        tell(test, Some(&found));
+        outcome.passed &= found.verdict != Verdict::Failed;
+        tell(test, Some(found));
     }
-    Ok(all)
+    Ok(outcome)
 }

@@ -152,6 +152,11 @@ impl Period<'_> {
             .map(|word| word as u32)
     }
 
+    /// Changes the word at an address of the chip's RAM; whether there is one.
+    pub fn set_word(&mut self, address: u64, word: u32) -> bool {
+        (self.host.write(address, Width::W32, word.into())).is_ok()
+    }
+
     /// Has the instructions of ticks noted from the next one on, or no more. Returns whether they can be.
     pub fn follow(&mut self, program: Option<&Arc<Program>>) -> bool {
         let before = std::mem::replace(

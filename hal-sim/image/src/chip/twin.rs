@@ -195,6 +195,7 @@ impl Twin {
                 current_counts: currents.map(signed_current_counts),
                 supply_counts,
                 tick_cycles: 0,
+                program_damaged: false,
                 late: false,
             },
             pose: period.stage.latched_pose(),

@@ -7,7 +7,9 @@ use super::FAILED;
 use super::arguments::BoardRun;
 use super::error::CliError;
 use super::view::endpoint;
-use desk::board::{Found, PLAN, PlanOptions, Test, Verdict, run as run_plan};
+use desk::board::{Done, Found, PLAN, PlanOptions, Test, Verdict, page, run as run_plan};
+use drawing::WholeFile;
+use hal_sim::date;
 
 pub(super) fn run(arguments: &BoardRun) -> Result<ExitCode, CliError> {
     if arguments.list {
@@ -19,19 +21,27 @@ pub(super) fn run(arguments: &BoardRun) -> Result<ExitCode, CliError> {
         moves: arguments.moves,
         emulated: arguments.emulated,
     };
-    let mut written = Ok(());
-    let all = run_plan(
+    // What cannot be written is found out before the tests, not after them.
+    let unwritable = |error| CliError::unwritable(arguments.out.as_deref(), &error);
+    let file = (arguments.out.as_deref().map(WholeFile::create).transpose()).map_err(unwritable)?;
+    let (mut written, mut all) = (Ok(()), Vec::<Done>::new());
+    let outcome = run_plan(
         &endpoint(&arguments.controller)?,
         options,
         &mut |test, found| {
-            let text = told(test, found);
+            let text = told(test, found.as_ref());
+            all.push((test, found));
             if written.is_ok() {
                 written = io::stdout().write_all(text.as_bytes());
             }
         },
     )?;
     written.map_err(CliError::output)?;
-    Ok(if all {
+    if let Some(file) = file {
+        let text = page(&date::today(), &outcome, &all);
+        file.finish(text.as_bytes()).map_err(unwritable)?;
+    }
+    Ok(if outcome.passed {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(FAILED)

@@ -5,7 +5,7 @@ use drawing::ReportError;
 use hal_sim::report::SETTLING_S;
 use hal_sim::rig::script::ScriptError;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a command ended early.
 #[derive(Debug, thiserror::Error)]
@@ -72,6 +72,12 @@ pub(super) enum CliError {
 }
 
 impl CliError {
+    /// A file that was asked for can not be written.
+    pub(super) fn unwritable(path: Option<&Path>, error: &io::Error) -> Self {
+        let path = path.unwrap_or(Path::new("")).display();
+        Self::Value(format!("{path}: cannot be written: {error}"))
+    }
+
     pub(super) fn exit_code(&self) -> u8 {
         match self {
             Self::Fault(_) | Self::OutOfReach(_) | Self::NeverSettled { .. } => FAILED,

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::num::NonZero;
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::available_parallelism;
@@ -58,10 +57,7 @@ struct Told<'a> {
 }
 
 pub(super) fn run(arguments: &Faults) -> Result<ExitCode, CliError> {
-    let unwritable = |error: io::Error| {
-        let path = arguments.out.as_deref().unwrap_or(Path::new("")).display();
-        CliError::Value(format!("{path}: cannot be written: {error}"))
-    };
+    let unwritable = |error| CliError::unwritable(arguments.out.as_deref(), &error);
     // What cannot be written is found out before the runs, not after them.
     let file = (arguments.out.as_deref().map(WholeFile::create).transpose()).map_err(unwritable)?;
     let runs = match arguments.only {

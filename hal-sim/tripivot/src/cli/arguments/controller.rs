@@ -104,6 +104,9 @@ pub(in super::super) struct BoardRun {
     /// The controller runs on an emulated chip, whose seconds are not those of this machine.
     #[arg(long)]
     pub(in super::super) emulated: bool,
+    /// Write what was found into this file, as a page to be kept with the board.
+    #[arg(long, value_name = "FILE", conflicts_with = "list")]
+    pub(in super::super) out: Option<PathBuf>,
 }
 
 /// What to do with settings.

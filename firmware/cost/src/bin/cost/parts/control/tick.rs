@@ -181,6 +181,7 @@ impl Control<'_> {
             current_counts: [100; 3],
             supply_counts: SUPPLY_COUNTS,
             tick_cycles: 0,
+            program_damaged: false,
             late: false,
         }
     }
