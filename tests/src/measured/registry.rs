@@ -473,7 +473,8 @@ pub const SECTIONS: &[Section] = &[
         about: "When the tick starts after its timer event while the serial line is full in both directions and records are read out. Then \
                 chips that execute few instructions a second, with all at once that a controller has to do: two streams, one of them while \
                 eight signals are recorded in every tick, new targets in motion, settings stored with the servo on. Each with streams that it \
-                can follow, and two with faster ones, which end there and are told (220: targets did not come in time; 89, 8: what followed).",
+                can follow, and two with faster ones, which end there and are told: the first error that was. 220: targets did not come in time; \
+                others followed from it.",
         command: "cargo chip-load",
         short: None,
         kind: Kind::Compiled,
