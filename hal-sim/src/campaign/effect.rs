@@ -304,8 +304,13 @@ impl<'a> Effects<'a> {
             Effect::FollowingError if self.driven == 0 => false,
             Effect::FollowingError => {
                 let errors = shown_errors_rad(now.shown, self.parameters, now.position);
+                // The setpoint is behind by what the pivots go in ticks that do not come.
+                let age = tick.checked_sub(scenario.at);
+                let missed = age.map_or(0, |age| scenario.injection.missed_ticks(age));
+                let allowed_s =
+                    supervision.following_error_s + missed as f64 / self.parameters.limits.rate_hz;
                 (errors.iter().zip(now.rates_rad_s)).any(|(error, rate_rad_s)| {
-                    let lag_rad = supervision.following_error_s * f64::from(rate_rad_s.abs());
+                    let lag_rad = allowed_s * f64::from(rate_rad_s.abs());
                     *error > SAME * (supervision.following_error_rad + lag_rad)
                 })
             }

@@ -155,6 +155,19 @@ pub const NAMES: [&str; 42] = [
 
 /// One of so many ticks does not come.
 pub(super) const MISSED_EVERY: u64 = 5;
+
+impl Injection {
+    /// How many ticks have not come, so many after the first that does not.
+    pub(super) fn missed_ticks(&self, age: u64) -> u64 {
+        let missed = age / MISSED_EVERY + 1;
+        match *self {
+            Self::FewMissedTicks(ticks) => missed.min(ticks.into()),
+            Self::LateLoop => missed,
+            _ => 0,
+        }
+    }
+}
+
 /// Longest silence that a host has promised, ms, and in ticks.
 pub(super) const HEARTBEAT_MS: u64 = 30;
 pub(super) const HEARTBEAT_TICKS: u64 = HEARTBEAT_MS * 20;
