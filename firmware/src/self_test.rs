@@ -9,7 +9,7 @@ pub trait Board: Sync {
     /// What it is, in words.
     fn name(&self) -> &'static str;
 
-    /// Tells every reading that it can take with the bridges asleep, at once: a millisecond is all that may be waited here.
+    /// Tells every reading that it can take with the bridges asleep, at once: some milliseconds are all that may be waited here.
     fn readings(&self, tell: &mut dyn FnMut(&Reading));
 
     /// Cycles that a tick may take until its duties are written, where somebody counts them.

@@ -155,7 +155,7 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
     },
     FaultDescription {
         kind: FaultKind::ImageDamaged,
-        detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it: at the start, before anything drives, and over and over while the chip runs, all of it in some 3 s; or the control loop's code in RAM is not what it was copied from, all of it in some 0.3 s. An image that was not sealed has no CRC, which `EVT?` tells",
+        detection: "the CRC-32 of the image in flash is not the one that `cargo seal` gave it: at the start, before anything drives, and over and over while the chip runs, all of it in 1.1 s where the command side has nothing else to do; or the control loop's code in RAM is not what it was copied from, all of it in 0.15 s. An image that was not sealed has no CRC, which `EVT?` tells",
         thresholds: &[],
         reason: "what a damaged program does nobody knows: nothing is driven by what it computes, and `FLC` does not take the fault away",
     },

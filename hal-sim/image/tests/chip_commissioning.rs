@@ -1,38 +1,24 @@
 //! What the unmodified image makes of a flash that keeps nothing, and of one that keeps the machine's settings. Needs `cargo stage`
 //! first, then `cargo chip-test`.
 
+mod asked;
+
+use asked::{answers, bench};
 use firmware::parameters::Parameters;
-use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Bench, elf_file};
-use std::ops::ControlFlow::{Break, Continue};
-use std::sync::mpsc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the image answers to these lines on a board of this machine, and whether a bridge was ever awake.
 fn asked(parameters: &Parameters, lines: &'static [u8]) -> (String, bool) {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let stage = Stage::new(&StageParameters::REFERENCE);
-    let bench = Bench::load(&path, stage).expect("an image with its symbols");
-    let (send, receive) = mpsc::channel();
-    let (mut answers, mut awake) = (Vec::new(), false);
-    let outcome = bench
-        .commissioned_as(parameters)
-        .run(move |period| {
-            answers.extend(period.received());
-            awake |= period.pins.iter().any(|pins| pins.awake);
-            match period.tick {
-                20 => period.send(lines),
-                600 => {
-                    let text = String::from_utf8_lossy(&answers).into_owned();
-                    send.send((text, awake)).expect("the test waits");
-                    return Break(());
-                }
-                _ => {}
-            }
-            Continue(())
-        })
-        .expect("a run");
-    assert_eq!(outcome.gaps, Vec::<String>::new());
-    receive.recv().expect("the last period")
+    let awake = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&awake);
+    let bench = bench().commissioned_as(parameters);
+    let text = answers(bench, lines, [20, 600], move |period| {
+        if period.pins.iter().any(|pins| pins.awake) {
+            seen.store(true, Ordering::Relaxed);
+        }
+    });
+    (text, awake.load(Ordering::Relaxed))
 }
 
 #[test]

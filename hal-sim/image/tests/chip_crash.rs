@@ -1,11 +1,12 @@
 //! How the unmodified image ends when its program goes wrong, and what it tells afterwards. The program is made to go wrong by a
 //! few bytes put into a function of the image. Needs `cargo stage` first, then `cargo chip-test`.
 
-use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Bench, Outcome, ResetCause, elf_file};
+mod asked;
+
+use asked::{address, answers, of, offset, path, whole, write};
+use image::chip::{Bench, Outcome, ResetCause};
 use image::proof::Code;
-use image::seal::{seal, unseal};
-use object::{Object, ObjectSegment};
+use image::seal::seal;
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::mpsc;
 
@@ -26,29 +27,14 @@ const WINDOW_WATCHDOG: u16 = 0;
 
 /// The image with these bytes at the beginning of a function, and where that is.
 fn broken(function: &str, bytes: &[u8]) -> (Vec<u8>, u64) {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let code = Code::read(&path).expect("an image that can be taken apart");
-    let at = code.named(function).expect("the function");
+    let at = address(function);
     (with_bytes_at(at, bytes), at)
 }
 
 fn with_bytes_at(at: u64, bytes: &[u8]) -> Vec<u8> {
     let mut image = whole();
-    let place = {
-        let file = object::File::parse(&*image).expect("an image");
-        let segment = file
-            .segments()
-            .find(|segment| (segment.address()..segment.address() + segment.size()).contains(&at));
-        let segment = segment.expect("it is loaded");
-        (segment.file_range().0 + at - segment.address()) as usize
-    };
-    image[place..place + bytes.len()].copy_from_slice(bytes);
+    write(&mut image, at, bytes);
     image
-}
-
-fn bench(image: Vec<u8>) -> Bench {
-    let stage = Stage::new(&StageParameters::REFERENCE);
-    Bench::from_elf(image, stage).expect("an image with its symbols")
 }
 
 /// What the chip answers to `EVT?` and `FLT?` after its first reset, and the run.
@@ -58,7 +44,7 @@ fn after_reset(
     interrupts: Option<u16>,
 ) -> (String, Outcome) {
     let (send, receive) = mpsc::channel();
-    let outcome = bench(image)
+    let outcome = of(image)
         .run(move |period| {
             match (period.resets.len(), period.tick) {
                 (0, 20) => period.send(trigger),
@@ -150,8 +136,7 @@ fn panics(at: u64, check: u64) -> Vec<u8> {
 
 #[test]
 fn a_panic_is_told_with_its_place_and_lets_the_motors_coast() {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let code = Code::read(&path).expect("an image that can be taken apart");
+    let code = Code::read(&path()).expect("an image that can be taken apart");
     let at = code.named(ON_COMMAND).expect("the function");
     let check = (code.functions.iter())
         .find(|(_, it)| it.name.ends_with("panicking::panic_bounds_check"))
@@ -187,7 +172,7 @@ fn a_command_side_that_hangs_is_reset_half_a_second_later() {
     let (image, _) = broken(ON_COMMAND, HANGS);
     let (send, receive) = mpsc::channel();
     let mut hung_at_ns = 0;
-    let outcome = bench(image)
+    let outcome = of(image)
         .run(move |period| {
             match (period.resets.len(), period.tick) {
                 (0, 20) => period.send(b"FRF X\n"),
@@ -225,74 +210,37 @@ fn a_command_side_that_hangs_is_reset_half_a_second_later() {
 }
 
 /// What the chip answers to some lines.
-fn answers(bench: Bench, lines: &'static [u8]) -> String {
-    let (send, receive) = mpsc::channel();
-    let outcome = bench
-        .run(move |period| {
-            match period.tick {
-                20 => period.send(lines),
-                600 => {
-                    let told = String::from_utf8_lossy(&period.received()).into_owned();
-                    send.send(told).expect("the test waits");
-                    return Break(());
-                }
-                _ => {}
-            }
-            Continue(())
-        })
-        .expect("a run");
-    assert_eq!(outcome.gaps, Vec::<String>::new());
-    receive.recv().expect("the last period")
-}
-
-/// The image as it was linked: `cargo seal` may have been there before.
-fn whole() -> Vec<u8> {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    unseal(std::fs::read(path).expect("the image")).expect("an image with a place for its checksum")
+fn said(bench: Bench, lines: &'static [u8]) -> String {
+    answers(bench, lines, [20, 600], |_| {})
 }
 
 #[test]
 fn a_sealed_image_is_whole_and_one_with_a_flipped_bit_never_drives() {
     let sealed = seal(whole()).expect("an image that can be sealed");
-    let told = answers(bench(sealed.clone()), b"EVT?\nFLT?\n");
+    let told = said(of(sealed.clone()), b"EVT?\nFLT?\n");
     assert!(
         !told.contains("has no checksum") && told.contains("0 no fault"),
         "{told}"
     );
 
     // A function that nothing calls here.
-    let path = elf_file::find().expect("the image");
-    let code = Code::read(&path).expect("an image that can be taken apart");
-    let at = code.named(ON_COMMAND).expect("the function");
-    let offset = sealed_offset(&sealed, at);
+    let place = offset(&sealed, address(ON_COMMAND));
     let mut damaged = sealed;
-    damaged[offset] ^= 1;
-    let told = answers(bench(damaged), b"FLC\nFRF X\nFLT?\nSVO?\n");
+    damaged[place] ^= 1;
+    let told = said(of(damaged), b"FLC\nFRF X\nFLT?\nSVO?\n");
     assert!(told.contains("the program is damaged"), "{told}");
     assert!(told.contains("X=0"), "{told}");
 }
 
-fn sealed_offset(image: &[u8], at: u64) -> usize {
-    let file = object::File::parse(image).expect("an image");
-    let segment = file
-        .segments()
-        .find(|segment| (segment.address()..segment.address() + segment.size()).contains(&at))
-        .expect("it is loaded");
-    (segment.file_range().0 + at - segment.address()) as usize
-}
-
 #[test]
 fn an_image_that_nobody_has_sealed_says_so() {
-    let told = answers(bench(whole()), b"EVT?\n");
+    let told = said(of(whole()), b"EVT?\n");
     assert!(told.contains("the image has no checksum"), "{told}");
 }
 
 #[test]
 fn without_a_crystal_the_chip_answers_and_never_drives() {
-    let told = answers(
-        bench(whole()).without_crystal(),
-        b"FLC\nFRF X\nFLT?\nSVO?\n",
-    );
+    let told = said(of(whole()).without_crystal(), b"FLC\nFRF X\nFLT?\nSVO?\n");
     println!("{told}");
     assert!(told.contains("crystal does not start"), "{told}");
     assert!(told.contains("X=0"), "{told}");
@@ -300,8 +248,8 @@ fn without_a_crystal_the_chip_answers_and_never_drives() {
 
 #[test]
 fn a_chip_with_half_the_flash_starts_and_keeps_nothing() {
-    let told = answers(
-        bench(whole()).with_flash_kib(1024),
+    let told = said(
+        of(whole()).with_flash_kib(1024),
         b"EVT?\nFLC\nWPA 100\nERR?\n",
     );
     println!("{told}");

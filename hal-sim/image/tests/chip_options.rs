@@ -1,8 +1,10 @@
 //! What the unmodified image does about its option bytes, and about a watchdog's oscillator as slow or as fast as the data sheet allows.
 //! Needs `cargo stage` first, then `cargo chip-test`.
 
-use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Action, Bench, Outcome, Period, ResetCause, elf_file};
+mod asked;
+
+use asked::{answers, bench};
+use image::chip::{Action, Bench, Outcome, Period, ResetCause};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::sync::mpsc;
 
@@ -11,12 +13,6 @@ const GOOD_OPTIONS: u32 = 0x0FFF_AAE0;
 /// Brown-out reset off, as the factory delivers.
 const BROWN_OUT_OFF: u32 = 0b11 << 2;
 const BOOT_BANK_2: u32 = 1 << 4;
-
-fn bench() -> Bench {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let stage = Stage::new(&StageParameters::REFERENCE);
-    Bench::load(&path, stage).expect("an image with its symbols")
-}
 
 fn run<F>(bench: Bench, on_period: F) -> Outcome
 where
@@ -29,20 +25,8 @@ where
 
 /// What `EVT?` tells of a chip with these option bytes.
 fn events_with(options: u32) -> String {
-    let (send, receive) = mpsc::channel();
-    run(bench().with_options(options), move |period| {
-        match period.tick {
-            20 => period.send(b"EVT?\nTST?\n"),
-            800 => {
-                let told = String::from_utf8_lossy(&period.received()).into_owned();
-                send.send(told).expect("the test waits");
-                return Break(());
-            }
-            _ => {}
-        }
-        Continue(())
-    });
-    receive.recv().expect("the last period")
+    let bench = bench().with_options(options);
+    answers(bench, b"EVT?\nTST?\n", [20, 800], |_| {})
 }
 
 #[test]

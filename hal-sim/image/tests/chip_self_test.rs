@@ -1,44 +1,18 @@
 //! What the unmodified image tells of its chip by `TST?`, against what the emulator shows of it. Needs `cargo stage` first, then
 //! `cargo chip-test`.
 
-use hal_sim::machine::devices::{Stage, StageParameters};
-use image::chip::{Action, Bench, Period, elf_file};
-use std::ops::ControlFlow::{Break, Continue};
+mod asked;
+
+use asked::{answers, bench};
+use image::chip::{Action, Bench, Period};
 use std::sync::mpsc;
 
-fn bench() -> Bench {
-    let path = elf_file::find().expect("the image: build it with `cargo stage`");
-    let stage = Stage::new(&StageParameters::REFERENCE);
-    Bench::load(&path, stage).expect("an image with its symbols")
-}
-
-/// What is answered to some lines at tick 800, after something was done before each tick.
 fn told(
     bench: Bench,
     lines: &'static [u8],
-    mut before_tick: impl FnMut(&mut Period<'_>) + Send + 'static,
+    before_tick: impl FnMut(&mut Period<'_>) + Send + 'static,
 ) -> String {
-    let (send, receive) = mpsc::channel();
-    let outcome = bench
-        .run(move |period| {
-            before_tick(period);
-            match period.tick {
-                800 => {
-                    drop(period.received());
-                    period.send(lines);
-                }
-                1_400 => {
-                    let told = String::from_utf8_lossy(&period.received()).into_owned();
-                    send.send(told).expect("the test waits");
-                    return Break(());
-                }
-                _ => {}
-            }
-            Continue(())
-        })
-        .expect("a run");
-    assert_eq!(outcome.gaps, Vec::<String>::new());
-    receive.recv().expect("the last period")
+    answers(bench, lines, [800, 1_400], before_tick)
 }
 
 /// A reading of `TST?`, and how it was judged.

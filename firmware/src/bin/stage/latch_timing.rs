@@ -10,6 +10,9 @@ static LATEST: AtomicU32 = AtomicU32::new(0);
 /// Counts of a frame: 64 bits of 16 counts.
 const FRAME_COUNTS: i32 = 64 * 16;
 
+/// What is left until the tick with no delay at all.
+pub const MOST_MARGIN: i32 = LEAD_COUNTS as i32 - FRAME_COUNTS;
+
 /// The encoders have latched, so many counts after the event.
 #[inline(always)]
 pub fn record(counts: u32) {
@@ -28,5 +31,5 @@ pub fn jitter() -> u32 {
 
 /// From the last bit of the latest frame to the tick: what is left before an encoder counts as missing.
 pub fn frame_margin() -> i32 {
-    i32::from(LEAD_COUNTS) - LATEST.load(Ordering::Relaxed) as i32 - FRAME_COUNTS
+    MOST_MARGIN - LATEST.load(Ordering::Relaxed) as i32
 }

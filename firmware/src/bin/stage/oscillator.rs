@@ -14,7 +14,7 @@ const OSCILLATOR: u8 = 0b01;
 /// One capture in so many edges, and the code of that.
 const EDGES: u32 = 8;
 const EDGES_CODE: u8 = 0b11;
-/// How often to look for a capture: eight edges at 17 kHz are 0.5 ms, 80,000 cycles.
+/// How often to look for a capture: eight edges at 17 kHz are 0.5 ms, 80,000 cycles, and a look takes several.
 const MAX_LOOKS: u32 = 80_000;
 
 /// Lets the timer capture.
@@ -27,7 +27,7 @@ pub fn watch(tim: &pac::TIM5, rcc: &mut Rcc) {
     tim.cr1().write(|w| w.cen().enabled());
 }
 
-/// Its rate, Hz: from one capture to the next, a millisecond at most. `None` when no edges come.
+/// Its rate, Hz: from one capture to the next, a millisecond at most. `None` when no edges come, after some.
 pub fn rate_hz() -> Option<f64> {
     let first = next_capture()?;
     let counts = next_capture()?.wrapping_sub(first);

@@ -2,7 +2,7 @@
 //! targets in motion, settings stored with the servo on. Wait states and long instructions are in the rate: so many are executed in
 //! a second of 168 million cycles.
 
-use super::{Bench, ChipError, Period, elf_file};
+use super::{Bench, ChipError, Period, circle, elf_file};
 use hal_sim::machine::devices::{Stage, StageParameters};
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::{Break, Continue};
@@ -58,7 +58,6 @@ pub struct Busy {
 const STREAMS: [Range<u64>; 2] = [800..5_600, 8_000..12_800];
 /// At the end of a stream its last target comes again: it ends at rest. So many ticks.
 const AT_REST: u64 = 800;
-const RADIUS_MM: f64 = 0.2;
 /// How often the stream's errors are asked for, in targets, and the recorder is started again, in ticks.
 const ASKED_EVERY: u64 = 8;
 const RECORD_EVERY: u64 = 1_200;
@@ -178,10 +177,7 @@ impl Run {
         }
         let length = (sent.end - sent.start - AT_REST) as f64;
         let done = ((tick - sent.start) as f64 / length).min(1.0);
-        // A quintic: what began at full speed would be refused.
-        let done = done.powi(3) * (10.0 + done * (6.0 * done - 15.0));
-        let (sine, cosine) = (std::f64::consts::TAU * done).sin_cos();
-        let (x, y) = (RADIUS_MM * (1.0 - cosine), RADIUS_MM * sine);
+        let [x, y] = circle::offset_mm(done);
         period.send(format!("MOV X {x:.6} Y {y:.6}\n").as_bytes());
         if ((tick - sent.start) / every).is_multiple_of(ASKED_EVERY) {
             self.ask(period, Asked::Stream(number));

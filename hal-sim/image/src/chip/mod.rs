@@ -24,7 +24,7 @@
 //! | `pins` | what goes over the pins, tick by tick, for another emulator |
 //! | `timeline` | when ticks, latches and stops come |
 //! | `twin` | the same controller on the host |
-//! | `load`, `busy` | the tick under all the load there is; all that a slow chip has to do at once |
+//! | `load`, `busy`, `circle` | the tick under all the load there is; all that a slow chip has to do at once; what streams follow |
 //! | `cost`, `follow`, `way`, `estimate` | what ticks take; their instructions; one tick's by where they are written; `llvm-mca` on it |
 //! | `gaps` | what the emulator does not model |
 //! | `elf_file` | where the images lie |
@@ -34,6 +34,7 @@
 mod bench;
 pub(crate) mod board;
 mod busy;
+mod circle;
 mod cost;
 mod driver;
 pub mod elf_file;

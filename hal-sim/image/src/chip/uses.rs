@@ -1,7 +1,7 @@
 //! What the tick is used for, one use after the other on the emulated chip, and the instructions of its ticks in each.
 
 use super::follow::{FollowedTick, Step};
-use super::{Bench, ChipError, Period, bench, elf_file};
+use super::{Bench, ChipError, Period, bench, circle, elf_file};
 use crate::cycles::{Bus, Program};
 use addr2line::Loader;
 use firmware::calibration::{CalibrationText, MachineCalibration};
@@ -235,7 +235,6 @@ const LINE_NUMBERS: usize = 8;
 const STREAM: Range<u64> = 15_200..19_200;
 const STREAM_EVERY: u64 = 20;
 const STREAM_START: [f64; 2] = [-30.0, 35.0];
-const STREAM_RADIUS_MM: f64 = 0.2;
 const END: u64 = 54_000;
 
 /// So many ticks of each use, at least; of those that take a command, as many as there are.
@@ -529,12 +528,9 @@ fn send(period: &mut Period<'_>) {
     }
     if STREAM.contains(&period.tick) && period.tick.is_multiple_of(STREAM_EVERY) {
         let done = (period.tick - STREAM.start) as f64 / (STREAM.end - STREAM.start) as f64;
-        // A quintic: what began at full speed would be refused.
-        let done = done.powi(3) * (10.0 + done * (6.0 * done - 15.0));
-        let (sine, cosine) = (std::f64::consts::TAU * done).sin_cos();
-        let [x, y] = STREAM_START;
-        let x = x + STREAM_RADIUS_MM * (1.0 - cosine);
-        let y = y + STREAM_RADIUS_MM * sine;
+        let [start_x, start_y] = STREAM_START;
+        let [x, y] = circle::offset_mm(done);
+        let (x, y) = (start_x + x, start_y + y);
         period.send(format!("MOV X {x:.6} Y {y:.6}\n").as_bytes());
     }
 }
