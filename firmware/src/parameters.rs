@@ -28,6 +28,8 @@ pub struct Parameters {
     pub limits: Limits,
     /// What the pivots carry, for torque feedforward.
     pub platform: Platform,
+    /// What the carriages do on their guides, for feedforward.
+    pub guides: Guides,
     /// The bridges' common supply and PWM.
     pub power: PowerStage,
     /// Ring drives, pivot by pivot.
@@ -81,6 +83,19 @@ pub struct Platform {
     pub payload_centre_mm: [f64; 2],
 }
 
+/// The carriages on their guides, all three alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guides {
+    /// Coulomb friction of a carriage.
+    pub coulomb_n: f64,
+    /// Viscous friction of a carriage.
+    pub viscous_n_s_m: f64,
+    /// Distance over which the friction builds up after a reversal (presliding).
+    pub presliding_um: f64,
+    /// Stiffness across a guide; 0: it is rigid.
+    pub stiffness_n_um: f64,
+}
+
 /// What the three bridges share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerStage {
@@ -115,6 +130,8 @@ pub struct Drive {
     pub dead_time_knee_a: f64,
     /// Ring, carriage, gear and rotor together, at the ring.
     pub inertia_kg_m2: f64,
+    /// What of it is the rotor's and its side of the gear.
+    pub motor_inertia_kg_m2: f64,
     /// Viscous friction at the ring.
     pub viscous_n_m_s: f64,
     /// Coulomb friction at the ring.
@@ -150,6 +167,8 @@ pub struct Servo {
     pub filters: [FeedbackFilters; 3],
     /// Torque ripple that is made up for, pivot by pivot.
     pub ripple: [Ripple; 3],
+    /// Cyclic errors of the gears that are made up for, pivot by pivot.
+    pub gear_errors: [GearError; 3],
     /// Inertia of a pivot, ring and share of the platform, that velocity gain and integral gain are for: where a pivot moves more
     /// they are larger by as much. 0: they are the same everywhere.
     pub scheduled_inertia_kg_m2: f64,
@@ -213,6 +232,15 @@ pub struct Harmonic {
     pub periods: f64,
     /// Amplitude at the ring; 0: there is none.
     pub amplitude_n_m: f64,
+    /// Phase at pivot angle 0, of a sine.
+    pub phase_deg: f64,
+}
+
+/// The cyclic error of a gear: what its motor stands further on than the ring, seen at the ring, a sine once a turn of the motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GearError {
+    /// Amplitude; 0: there is none.
+    pub amplitude_urad: f64,
     /// Phase at pivot angle 0, of a sine.
     pub phase_deg: f64,
 }
@@ -412,6 +440,12 @@ impl Parameters {
             payload_inertia_kg_m2: 0.0,
             payload_centre_mm: [0.0, 0.0],
         },
+        guides: Guides {
+            coulomb_n: 0.0,
+            viscous_n_s_m: 0.0,
+            presliding_um: 20.0,
+            stiffness_n_um: 0.0,
+        },
         power: PowerStage {
             pwm_hz: 40e3,
             pwm_counts: PWM_COUNTS,
@@ -432,6 +466,7 @@ impl Parameters {
             // A tenth of the largest current ripple, 48 V / (4 L 40 kHz): near rest the pulses are short.
             dead_time_knee_a: 0.043,
             inertia_kg_m2: 0.02,
+            motor_inertia_kg_m2: 0.012,
             viscous_n_m_s: 0.05,
             coulomb_n_m: 0.1,
             presliding_rad: 100e-6,
@@ -444,6 +479,10 @@ impl Parameters {
             }; 3],
             filters: [FeedbackFilters::NONE; 3],
             ripple: [Ripple::NONE; 3],
+            gear_errors: [GearError {
+                amplitude_urad: 0.0,
+                phase_deg: 0.0,
+            }; 3],
             scheduled_inertia_kg_m2: 0.0,
             learning: 1.0,
             friction_learning: 0.2,

@@ -122,7 +122,7 @@ fn a_flash_full_of_macros_is_kept() {
     let mut bench = start();
     for number in 0..16 {
         let line = format!("VAR A {:028}\n", number);
-        let lines = line.repeat(13);
+        let lines = line.repeat(12);
         assert_eq!(
             bench.error_after(&format!("MAC BEG macro_number_{number:02}\n{lines}MAC END")),
             "0"
@@ -145,7 +145,7 @@ fn macros_leave_room_for_a_calibration() {
         let line = format!("VAR A {number:028}\n");
         let name = format!("macro_number_{number:02}");
         assert_eq!(
-            bench.error_after(&format!("MAC BEG {name}\n{}MAC END", line.repeat(13))),
+            bench.error_after(&format!("MAC BEG {name}\n{}MAC END", line.repeat(12))),
             "0"
         );
     }

@@ -154,8 +154,8 @@ fn the_summary_tells_what_happened() {
     let summary = run(1_001, 20).summary().to_string();
     for line in [
         "errors while moving (997 ticks)",
-        "  following, centre        0.100       0.100  um",
-        "  true pose, centre        0.500       0.500  um",
+        "  following, centre                0.100       0.100  um",
+        "  true pose, centre                0.500       0.500  um",
         "    1      0.000      1.000   -2.000     720.000      0.5000       10.00",
         "    2      1.000      1.000   -2.000     720.000      0.5000       never",
         "  never settled: 1",

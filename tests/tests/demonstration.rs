@@ -13,18 +13,18 @@ fn the_demonstration_keeps_its_promises() {
     assert_eq!(outcome.fault, None);
     let statistics = outcome.run.trace.statistics();
     let (centre_um, theta_urad) = (
-        statistics.true_error.xy_um.rms(),
-        statistics.true_error.theta_urad.rms(),
+        statistics.moving.truth.xy_um.rms(),
+        statistics.moving.truth.theta_urad.rms(),
     );
     assert!(
         centre_um < 0.265 && theta_urad < 4.24,
         "{centre_um} um, {theta_urad} urad"
     );
     // 2.28 where the dead time's size follows the measured current; by a modelled current alone it was 4.0.
-    let peak_um = statistics.true_error.xy_um.peak();
+    let peak_um = statistics.moving.truth.xy_um.peak();
     assert!(peak_um < 2.51, "{peak_um} um at most");
     // It has moved, far and long: 95 % of the disk, three turns.
-    assert!(statistics.true_error.xy_um.count() > 170_000);
+    assert!(statistics.moving.truth.xy_um.count() > 170_000);
     assert!(outcome.run.moves.len() >= 20);
     let furthest = (outcome.run.moves.iter()).map(|one| one.target[0].hypot(one.target[1]));
     assert!((furthest.fold(0.0, f64::max) - 76.0).abs() < 0.0073);

@@ -35,7 +35,7 @@ fn an_unknown_payload_is_carried_whatever_the_mismatch() {
         );
         assert_eq!(outcome.fault, None, "{mismatch_percent} %");
         let statistics = outcome.run.trace.statistics();
-        let rms_um = statistics.true_error.xy_um.rms();
+        let rms_um = statistics.moving.truth.xy_um.rms();
         let settled_s = (outcome.run.moves.iter())
             .map(|one| one.settle_s().expect("settled"))
             .fold(0.0, f64::max);

@@ -1,6 +1,7 @@
 //! What the tick computes with, derived once from the parameters.
 
 use crate::control::encoder::EncoderConfig;
+use crate::control::guides::GuideConfig;
 use crate::control::held_position::PositionSteps;
 use crate::control::inspection::INSPECTION_PERIOD_TICKS;
 use crate::control::oscillation::MEMORY_S;
@@ -35,6 +36,8 @@ pub struct Config {
     pub steps: PositionSteps,
     /// Servo.
     pub servo: ServoConfig,
+    /// Guides.
+    pub guides: GuideConfig,
     /// What becomes of its gains at rest.
     pub rest_mode: RestModeConfig,
     /// Supervision.
@@ -128,6 +131,7 @@ impl Config {
             scale: SetpointScale::new(rate_hz),
             steps: PositionSteps::new(geometry.radius_mm),
             servo: ServoConfig::new(parameters),
+            guides: GuideConfig::new(parameters),
             rest_mode: RestModeConfig::new(parameters, mean_ticks),
             limits: SupervisionConfig {
                 following_error: (supervision.following_error_rad * UNITS_PER_RAD) as i32,

@@ -13,6 +13,7 @@
 //! | `held_position` | the measured position, to the decimals with which the servo takes it over |
 //! | `next_setpoint` | the setpoint of the next tick, computed after the duties of this one |
 //! | `pivot_setpoints` | the pose's setpoint to those of the pivots |
+//! | `guides` | friction of the carriages, and guides that give way, made up for in the setpoint |
 //! | `calibrated` | the same of a machine that is calibrated, and the pose of its encoders |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `brake_resistor` | what takes the energy that the motors give back |
@@ -37,6 +38,7 @@ pub mod config;
 pub mod encoder;
 pub mod excitation;
 mod excited;
+mod guides;
 pub mod held_position;
 mod inspection;
 pub mod loop_counters;

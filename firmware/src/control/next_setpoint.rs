@@ -56,14 +56,15 @@ impl State {
     fn find_pivots(&mut self, config: &Config, platform: &Setpoint) -> bool {
         let wanted =
             (self.next.pivots).get_or_insert_with(|| PivotSetpoints::at_rest([Angle::ZERO; 3]));
+        let friction = self.guides.friction();
         let found = if self.calibrated.is_on {
             pose(&platform.position).and_then(|pose| {
                 self.calibrated.follow_from(&pose);
-                let motion = (&platform.twist, &platform.acceleration);
+                let motion = (&platform.twist, &platform.acceleration, friction);
                 (self.calibrated).pivot_setpoints(config, &pose, motion, wanted, None)
             })
         } else {
-            pivot_setpoints(config, platform, wanted)
+            pivot_setpoints(config, friction, platform, wanted)
         };
         if found.is_none() {
             self.raise_fault(FaultKind::ImpossibleSetpoint, None, 0.0, 0.0);
@@ -82,7 +83,8 @@ impl State {
                 return false;
             }
         }
-        if let Some(wanted) = &self.next.pivots {
+        if let Some(wanted) = &mut self.next.pivots {
+            self.guides.lead(config, wanted, i);
             feed_forward(&mut self.servo, config, wanted, i);
         }
         true

@@ -5,6 +5,7 @@ use super::calibrated::Calibrated;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::excitation::ExcitationRun;
+use super::guides::Guides;
 use super::inspection::PivotWatch;
 use super::loop_counters::LoopCounters;
 use super::pivot_setpoints::NextSetpoint;
@@ -72,6 +73,7 @@ pub struct State {
     pub(super) motion: PlanFollower,
     pub(super) next: NextSetpoint,
     pub(super) servo: [PivotServo; 3],
+    pub(super) guides: Guides,
     pub(super) trial: Trial,
     pub(super) excitation: ExcitationRun,
     pub(super) settling: Settling,

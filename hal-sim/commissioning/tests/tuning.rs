@@ -1,9 +1,6 @@
 //! Margins that are predicted, against the loop as it is measured: the program's own servo before a simulated machine, a sine added to what
 //! an encoder reads, and what the following error makes of it.
 
-#[path = "machine/model.rs"]
-mod model;
-
 use commissioning::chain::Place;
 use commissioning::record::Timing;
 use commissioning::tuning::{
@@ -14,10 +11,10 @@ use firmware::parameters::{self, Parameters};
 use firmware::queues::{Command, Queues};
 use hal_sim::front::Host;
 use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::loop_model;
 use hal_sim::rig::observer::TickRecord;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
 use hal_sim::rig::with_payload_told;
-use model::model;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -134,7 +131,7 @@ struct Compared {
 }
 
 fn compare(stage: &StageParameters, parameters: &Parameters, x_m: f64, print: &str) -> Compared {
-    let (chain, electrical) = model(stage);
+    let (chain, electrical) = loop_model(&stage);
     let gains = gains_of(parameters);
     let points = measure(stage, parameters, x_m);
     let (mut off, mut sizes) = (Vec::new(), Vec::new());
@@ -225,7 +222,7 @@ fn tuned_gains_give_the_margins_that_were_promised() {
     let (mut stage, parameters) = machine(0.0);
     // Guides that give way: the platform swings on them at some 800 Hz.
     stage.plant.imperfections.guide_compliance = true;
-    let (chain, electrical) = model(&stage);
+    let (chain, electrical) = loop_model(&stage);
     let plants: Vec<_> = [(0.0, 0.0), (0.7, 0.0), (-0.35, 0.6), (-0.35, -0.6)]
         .map(|(x, y)| {
             Plant::from_model(

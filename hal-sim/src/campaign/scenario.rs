@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use firmware::parameters::{EncoderMounting, Parameters};
+use firmware::parameters::Parameters;
 
 use super::injection::{HEARTBEAT_MS, Injection};
 use super::motion::{FIRST_MOTION, MOTION_TICKS, Motion, REFERENCE, place_mm};
@@ -10,7 +10,7 @@ use crate::machine::devices::{StageParameters, WiringParameters};
 use crate::machine::plant::AXES;
 use crate::machine::unknown;
 use crate::random::Random;
-use crate::rig::{Told, with_gains_fitted, with_motion_fitted};
+use crate::rig::{Told, with_gains_fitted, with_motion_fitted, with_wiring_told};
 
 /// The tick from which on the stage is held, after `FRF`.
 const HELD: u64 = 16;
@@ -121,14 +121,8 @@ fn machine(drawn: u64, seed: u64) -> StageParameters {
 /// gains that its resonances bear.
 fn told(stage: &StageParameters) -> Parameters {
     let machine = Told::Machine.parameters(&Parameters::REFERENCE, stage);
-    let mut parameters = with_motion_fitted(&with_gains_fitted(&machine, stage));
-    for (mounting, encoder) in parameters.encoders.iter_mut().zip(&stage.encoders) {
-        *mounting = EncoderMounting {
-            zero_counts: encoder.zero_counts,
-            reversed: encoder.reversed,
-        };
-    }
-    parameters
+    let fitted = with_motion_fitted(&with_gains_fitted(&machine, stage));
+    with_wiring_told(&fitted, stage)
 }
 
 /// The first tick from `at` on in which no line is on its way: others would wait for it instead of being refused.

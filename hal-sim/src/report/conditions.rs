@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::machine::plant::Imperfections;
 use serde::Serialize;
 
 /// The conditions of a run.
@@ -45,6 +46,15 @@ impl Conditions {
     }
 
     fn imperfections(&self) -> String {
+        let beyond = Imperfections::ALL.beyond(Imperfections::CALIBRATED);
+        let missing = beyond.iter().filter(|name| !self.with.contains(name));
+        let off: Vec<_> = self.without.iter().chain(missing).copied().collect();
+        if off.is_empty() {
+            return "all".to_owned();
+        }
+        if off.len() < self.with.len() {
+            return format!("all but {}", off.join(", "));
+        }
         let mut text = "of a kind machine".to_owned();
         for (names, word) in [(&self.without, "but"), (&self.with, "and")] {
             if !names.is_empty() {
@@ -88,6 +98,18 @@ mod tests {
             "tripivot 1.2.3 abc; reference stage; seed 7; mismatch -12.5 %; payload 5 kg; \
              imperfections of a kind machine but backlash, dead-time and geometry; settings kept.bin"
         );
+        let all = Conditions {
+            without: Vec::new(),
+            with: Imperfections::ALL.beyond(Imperfections::CALIBRATED),
+            ..conditions
+        };
+        assert_eq!(all.list()[5].1, "all");
+        let most = Conditions {
+            without: vec!["backlash"],
+            with: all.with[1..].to_vec(),
+            ..all
+        };
+        assert_eq!(most.list()[5].1, "all but backlash, encoder-eccentricity");
         assert!((Conditions::default().to_string()).ends_with(
             "seed 0; mismatch 0 %; payload 0 kg; imperfections of a kind machine; settings the machine's own"
         ));

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::sample::Move;
-use super::statistics::Spread;
+use super::statistics::{PoseSpread, Spread};
 use super::{Conditions, Run};
 
 /// A [`Run`]'s summary: serialise it.
@@ -15,8 +15,12 @@ pub struct Facts<'a> {
     pub conditions: &'a Conditions,
     /// Following errors while moving.
     pub following_error: FollowingError,
-    /// Errors of the true pose.
-    pub true_error: TrueError,
+    /// Errors of the true pose while moving.
+    pub true_error: PoseError,
+    /// What of them no encoder sees (sag).
+    pub unseen_error: PoseError,
+    /// Errors at rest.
+    pub at_rest: AtRest,
     /// The moves in the order of time.
     pub moves: Vec<Leg>,
     /// How many of them never settled, though they had the time to.
@@ -44,9 +48,22 @@ pub struct FollowingError {
     pub pivots_lsb: PeakRms,
 }
 
-/// Errors of the true pose over the moving ticks: where the platform is.
+/// Errors from 20 ms after each move on.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct TrueError {
+pub struct AtRest {
+    /// So many.
+    pub ticks: u64,
+    /// What the encoders see.
+    pub following_error: PoseError,
+    /// Where the platform is.
+    pub true_error: PoseError,
+    /// What of that no encoder sees (lost motion).
+    pub unseen_error: PoseError,
+}
+
+/// Errors of the pose.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PoseError {
     /// Distance of the centre from its setpoint.
     pub centre_um: PeakRms,
     /// Orientation minus its setpoint.
@@ -90,6 +107,15 @@ impl From<&Spread> for PeakRms {
     }
 }
 
+impl From<&PoseSpread> for PoseError {
+    fn from(spread: &PoseSpread) -> Self {
+        Self {
+            centre_um: (&spread.xy_um).into(),
+            theta_urad: (&spread.theta_urad).into(),
+        }
+    }
+}
+
 impl From<&Move> for Leg {
     fn from(one: &Move) -> Self {
         let [x_mm, y_mm, theta_deg] = one.target;
@@ -113,13 +139,17 @@ pub(super) fn facts(run: &Run) -> Facts<'_> {
         conditions: &run.conditions,
         following_error: FollowingError {
             ticks: statistics.pivot_error_lsb.count() / 3,
-            centre_um: (&statistics.following_error.xy_um).into(),
-            theta_urad: (&statistics.following_error.theta_urad).into(),
+            centre_um: (&statistics.moving.following.xy_um).into(),
+            theta_urad: (&statistics.moving.following.theta_urad).into(),
             pivots_lsb: (&statistics.pivot_error_lsb).into(),
         },
-        true_error: TrueError {
-            centre_um: (&statistics.true_error.xy_um).into(),
-            theta_urad: (&statistics.true_error.theta_urad).into(),
+        true_error: (&statistics.moving.truth).into(),
+        unseen_error: (&statistics.moving.unseen).into(),
+        at_rest: AtRest {
+            ticks: statistics.at_rest.truth.theta_urad.count(),
+            following_error: (&statistics.at_rest.following).into(),
+            true_error: (&statistics.at_rest.truth).into(),
+            unseen_error: (&statistics.at_rest.unseen).into(),
         },
         moves: run.moves.iter().map(Leg::from).collect(),
         never_settled: run.never_settled(),

@@ -39,9 +39,9 @@ use serde::Serialize;
 
 pub use conditions::Conditions;
 pub use contour::{ContourMap, contour_map};
-pub use facts::{Facts, FollowingError, Leg, PeakRms, TrueError};
+pub use facts::{AtRest, Facts, FollowingError, Leg, PeakRms, PoseError};
 pub use sample::{MotionSample, Move, Sample};
-pub use statistics::{PoseSpread, Spread, Statistics};
+pub use statistics::{PoseErrors, PoseSpread, Spread, Statistics};
 pub use summary::Summary;
 pub use trace::{DEFAULT_EVERY, Trace};
 

@@ -58,14 +58,14 @@ pub(super) fn draw_conditions(svg: &mut Svg, run: &Run) {
 fn facts_line(run: &Run) -> String {
     let statistics = run.trace.statistics();
     let moves = run.moves.len();
-    if statistics.true_error.xy_um.count() == 0 {
+    if statistics.moving.truth.xy_um.count() == 0 {
         return format!("{moves} moves in {:.1} s", statistics.end_s);
     }
     let mut line = format!(
         "{moves} moves in {:.1} s  \u{b7}  rms error of the true pose {} \u{b5}m, {} \u{b5}rad",
         statistics.end_s,
-        digits(statistics.true_error.xy_um.rms()),
-        digits(statistics.true_error.theta_urad.rms()),
+        digits(statistics.moving.truth.xy_um.rms()),
+        digits(statistics.moving.truth.theta_urad.rms()),
     );
     if let Some(worst_s) = worst_settle_s(&run.moves) {
         line += &format!("  \u{b7}  settled within {:.1} ms", 1e3 * worst_s);
@@ -264,8 +264,8 @@ fn draw_errors(
     let chart = Chart {
         title: "Error of the centre, \u{b5}m",
         note: both_notes(
-            &statistics.following_error.xy_um,
-            &statistics.true_error.xy_um,
+            &statistics.moving.following.xy_um,
+            &statistics.moving.truth.xy_um,
         ),
         bins: plots.error.bins(),
         factor: 1.0,
@@ -281,8 +281,8 @@ fn draw_errors(
     let chart = Chart {
         title: "Error of \u{3b8}, \u{b5}rad",
         note: both_notes(
-            &statistics.following_error.theta_urad,
-            &statistics.true_error.theta_urad,
+            &statistics.moving.following.theta_urad,
+            &statistics.moving.truth.theta_urad,
         ),
         series: &[
             series("true pose", colour::STEEL, 4),

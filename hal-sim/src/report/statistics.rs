@@ -56,13 +56,37 @@ impl PoseSpread {
     }
 }
 
-/// Errors over the moving ticks; duty and separation over all of them.
+/// Errors of the pose, told apart by who sees them.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct PoseErrors {
+    /// What the encoders see: the following error.
+    pub following: PoseSpread,
+    /// Where the platform is: the true pose minus the setpoint.
+    pub truth: PoseSpread,
+    /// What of that no encoder sees: in motion what the guides sag by, at rest what is lost in them (lost motion); and all that the geometry
+    /// is off besides.
+    pub unseen: PoseSpread,
+}
+
+impl PoseErrors {
+    fn add(&mut self, sample: &Sample) {
+        let (following, truth) = (&sample.following_error, &sample.true_error);
+        self.following.add(following);
+        self.truth.add(truth);
+        self.unseen.add(&[0, 1, 2].map(|k| truth[k] - following[k]));
+    }
+}
+
+/// Time from the setpoint's arrival on from which on errors count as those at rest, s: a settled stage has come to rest by then.
+const AT_REST_S: f64 = 0.02;
+
+/// Errors over the moving ticks and at rest; duty and separation over all ticks.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Statistics {
-    /// What the encoders see, moving ticks.
-    pub following_error: PoseSpread,
-    /// Where the platform is, moving ticks.
-    pub true_error: PoseSpread,
+    /// Moving ticks.
+    pub moving: PoseErrors,
+    /// Ticks at rest, from some time after each move on.
+    pub at_rest: PoseErrors,
     /// Measured minus setpoint of all three pivots together, encoder LSB, moving ticks.
     pub pivot_error_lsb: Spread,
     /// Largest magnitude of any duty, 0 to 1, all ticks.
@@ -73,18 +97,21 @@ pub struct Statistics {
     pub ticks: u64,
     /// Time of the last sample, s.
     pub end_s: f64,
+    /// Time of the last moving one, s.
+    moved_s: Option<f64>,
 }
 
 impl Default for Statistics {
     fn default() -> Self {
         Self {
-            following_error: PoseSpread::default(),
-            true_error: PoseSpread::default(),
+            moving: PoseErrors::default(),
+            at_rest: PoseErrors::default(),
             pivot_error_lsb: Spread::default(),
             peak_duty: 0.0,
             separation_deg: f64::INFINITY,
             ticks: 0,
             end_s: 0.0,
+            moved_s: None,
         }
     }
 }
@@ -99,15 +126,13 @@ impl Statistics {
             self.peak_duty = self.peak_duty.max(duty.abs());
         }
         if sample.moving {
-            self.add_errors(sample);
-        }
-    }
-
-    fn add_errors(&mut self, sample: &Sample) {
-        self.following_error.add(&sample.following_error);
-        self.true_error.add(&sample.true_error);
-        for error in sample.pivot_error_lsb {
-            self.pivot_error_lsb.add(error);
+            self.moved_s = Some(sample.time_s);
+            self.moving.add(sample);
+            for error in sample.pivot_error_lsb {
+                self.pivot_error_lsb.add(error);
+            }
+        } else if (self.moved_s).is_some_and(|moved_s| sample.time_s > moved_s + AT_REST_S) {
+            self.at_rest.add(sample);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use super::Run;
 use super::csv::fixed;
 use super::sample::Move;
-use super::statistics::Spread;
+use super::statistics::{PoseErrors, Spread};
 
 /// Moves listed at most; a longer run lists those that took longest to settle.
 const MOVES_LISTED: usize = 20;
@@ -33,27 +33,52 @@ impl fmt::Display for Summary<'_> {
 
 fn errors(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {
     let statistics = run.trace.statistics();
-    let (seen, truth) = (&statistics.following_error, &statistics.true_error);
-    let ticks = seen.theta_urad.count();
+    let ticks = statistics.moving.truth.theta_urad.count();
     if ticks == 0 {
         return writeln!(f, "following error: the setpoint never moved\n");
     }
     writeln!(f, "errors while moving ({ticks} ticks)")?;
-    writeln!(f, "                      {:>10}  {:>10}", "peak", "rms")?;
-    let mut line = |what: &str, spread: &Spread, unit: &str| {
-        let (peak, rms) = (spread.peak(), spread.rms());
-        writeln!(f, "  {what:<20}{peak:>10.3}  {rms:>10.3}  {unit}")
-    };
+    writeln!(
+        f,
+        "                              {:>10}  {:>10}",
+        "peak", "rms"
+    )?;
     line(
+        f,
         "following, pivots",
         &statistics.pivot_error_lsb,
         "encoder LSB",
     )?;
-    line("following, centre", &seen.xy_um, "um")?;
-    line("following, theta", &seen.theta_urad, "urad")?;
-    line("true pose, centre", &truth.xy_um, "um")?;
-    line("true pose, theta", &truth.theta_urad, "urad")?;
+    poses(f, &statistics.moving, "sag")?;
+    let at_rest = &statistics.at_rest;
+    let ticks = at_rest.truth.theta_urad.count();
+    if ticks > 0 {
+        writeln!(
+            f,
+            "errors at rest ({ticks} ticks, from 20 ms after each move on)"
+        )?;
+        poses(f, at_rest, "lost motion")?;
+    }
+    Ok(())
+}
+
+/// Errors of the pose, by who sees them; what nobody sees is named by what it mostly is.
+fn poses(f: &mut fmt::Formatter<'_>, errors: &PoseErrors, unseen: &str) -> fmt::Result {
+    let kinds = [
+        ("following".to_owned(), &errors.following),
+        ("true pose".to_owned(), &errors.truth),
+        (format!("unseen ({unseen})"), &errors.unseen),
+    ];
+    for (what, spread) in &kinds {
+        line(f, &format!("{what}, centre"), &spread.xy_um, "um")?;
+        line(f, &format!("{what}, theta"), &spread.theta_urad, "urad")?;
+    }
     writeln!(f)
+}
+
+fn line(f: &mut fmt::Formatter<'_>, what: &str, spread: &Spread, unit: &str) -> fmt::Result {
+    let (peak, rms) = (spread.peak(), spread.rms());
+    writeln!(f, "  {what:<28}{peak:>10.3}  {rms:>10.3}  {unit}")
 }
 
 fn moves(f: &mut fmt::Formatter<'_>, run: &Run) -> fmt::Result {

@@ -148,14 +148,14 @@ mod tests {
         assert_eq!(times, [0, 3, 6, 9].map(|tick| f64::from(tick) * 50e-6));
         let statistics = trace.statistics();
         assert_eq!(statistics.ticks, 11);
-        assert_eq!(statistics.true_error.xy_um.count(), 8);
-        assert_eq!(statistics.true_error.xy_um.peak(), 5.0);
-        assert_eq!(statistics.true_error.xy_um.rms(), 5.0);
-        assert_eq!(statistics.true_error.theta_urad.peak(), 10.0);
+        assert_eq!(statistics.moving.truth.xy_um.count(), 8);
+        assert_eq!(statistics.moving.truth.xy_um.peak(), 5.0);
+        assert_eq!(statistics.moving.truth.xy_um.rms(), 5.0);
+        assert_eq!(statistics.moving.truth.theta_urad.peak(), 10.0);
         let sum_of_squares: f64 = (3..11).map(|tick| f64::from(tick * tick)).sum();
         let rms = (sum_of_squares / 8.0).sqrt();
-        assert!((statistics.true_error.theta_urad.rms() - rms).abs() < 1e-12);
-        let seen = statistics.following_error;
+        assert!((statistics.moving.truth.theta_urad.rms() - rms).abs() < 1e-12);
+        let seen = statistics.moving.following;
         assert_eq!(
             (seen.xy_um.count(), seen.xy_um.peak(), seen.theta_urad.rms()),
             (8, 1.0, 0.5)
@@ -174,7 +174,7 @@ mod tests {
             ..sample(5)
         });
         trace.record(&sample(6));
-        assert!(trace.statistics().true_error.xy_um.peak().is_nan());
-        assert!(trace.statistics().true_error.xy_um.rms().is_nan());
+        assert!(trace.statistics().moving.truth.xy_um.peak().is_nan());
+        assert!(trace.statistics().moving.truth.xy_um.rms().is_nan());
     }
 }

@@ -20,25 +20,32 @@ pub fn built_stage(stage: &StageParameters) -> StageParameters {
     stage
 }
 
-/// What is off the drawing of a stage: its true calibration.
+/// What is off the drawing of a stage, as far as it is switched on: its true calibration.
 #[must_use]
 pub fn calibration_told(stage: &StageParameters) -> MachineCalibration {
-    let radius_m = stage.plant.track_radius_m;
+    let (radius_m, on) = (stage.plant.track_radius_m, &stage.plant.imperfections);
     let radii = |m: f64| m / radius_m;
     let numbers = [0, 1, 2].map(|i| {
         let (pivot, encoder) = (&stage.plant.pivots[i], &stage.encoders[i]);
-        let mut built = PivotCoefficients {
-            radius_error: radii(pivot.radius_error_m),
-            ring_centre: pivot.ring_centre_m.map(radii),
-            guide_error_rad: pivot.guide_error_rad,
-            guide_offset: radii(pivot.guide_offset_m),
-            runout: pivot.runout_m.map(|pair| pair.map(radii)),
-            straightness: pivot.straightness_m.map(radii),
-            ..PivotCoefficients::IDEAL
-        };
-        let (sin, cos) = encoder.eccentricity_phase_rad.sin_cos();
-        built.encoder_rad[0] = [-sin, cos].map(|part| encoder.eccentricity_rad * part);
-        built.encoder_rad[1..].copy_from_slice(&encoder.harmonics_rad);
+        let mut built = PivotCoefficients::IDEAL;
+        if on.geometry {
+            built = PivotCoefficients {
+                radius_error: radii(pivot.radius_error_m),
+                ring_centre: pivot.ring_centre_m.map(radii),
+                guide_error_rad: pivot.guide_error_rad,
+                guide_offset: radii(pivot.guide_offset_m),
+                runout: pivot.runout_m.map(|pair| pair.map(radii)),
+                straightness: pivot.straightness_m.map(radii),
+                ..built
+            };
+        }
+        if on.encoder_eccentricity {
+            let (sin, cos) = encoder.eccentricity_phase_rad.sin_cos();
+            built.encoder_rad[0] = [-sin, cos].map(|part| encoder.eccentricity_rad * part);
+        }
+        if on.encoder_harmonics {
+            built.encoder_rad[1..].copy_from_slice(&encoder.harmonics_rad);
+        }
         built.to_list().map(|number| number as f32)
     });
     MachineCalibration {

@@ -10,7 +10,7 @@
 //! | [`script`], [`client`] | files of GCS lines, and what sends them one after the other: a package of their own |
 //! | [`exercise`] | GCS lines from a seed |
 //! | `calibrated` | a stage as it was built, and its true calibration |
-//! | `told` | a controller that is told of the machine before it |
+//! | `told`, `gains` | a controller that is told of the machine before it, and has gains that fit |
 //! | `simulated_board` | what the simulated controller says of its board |
 //! | [`observer`] | looks at every tick for the report |
 
@@ -19,6 +19,7 @@ mod calibrated;
 mod conditions;
 mod disturbances;
 pub mod exercise;
+mod gains;
 pub mod observer;
 pub mod run;
 pub mod sensitivity;
@@ -28,10 +29,14 @@ mod told;
 pub use ::script::{client, script};
 pub use assembly::{ControllerMemory, IDENTITY, Rig, with_machine_settings};
 pub use calibrated::{built_stage, calibration_told};
-pub use conditions::run_conditions;
+pub use conditions::{machine_name, run_conditions};
 pub use disturbances::Disturbances;
+pub use gains::{
+    loop_model, with_gains_firmer, with_gains_fitted, with_gains_tuned, with_motion_fitted,
+    with_reference_gains,
+};
 pub use told::{
-    IDENTIFIED_LEARNING, Told, with_drives_told, with_gains_firmer, with_gains_fitted,
-    with_inertia_scheduled, with_machine_told, with_motion_fitted, with_payload_told,
-    with_ripple_told, with_subdivision_told,
+    IDENTIFIED_LEARNING, Told, with_drives_told, with_gear_errors_told, with_guides_told,
+    with_inertia_scheduled, with_machine_told, with_payload_told, with_ripple_told,
+    with_subdivision_told, with_wiring_told,
 };

@@ -7,7 +7,7 @@ use firmware::gcs::Session;
 use firmware::mode::Mode;
 use firmware::parameters::Parameters;
 
-use super::{ControllerMemory, Disturbances, Rig};
+use super::{ControllerMemory, Disturbances, Rig, Told, with_machine_settings};
 use crate::machine::devices::{FINE_PWM, SettingsFlash, StageParameters};
 use crate::machine::plant::{FrictionParameters, Imperfections, Payload, PlantParameters};
 use crate::report::{DEFAULT_EVERY, Run};
@@ -39,6 +39,8 @@ pub struct RunOptions {
     pub imperfections: Imperfections,
     /// The controller's flash keeps nothing unless another is given: the machine is not commissioned.
     pub uncommissioned: bool,
+    /// What the controller has been told of the machine, in place of commissioning and calibration.
+    pub told: Told,
     /// No progress bar.
     pub quiet: bool,
 }
@@ -56,6 +58,7 @@ impl Default for RunOptions {
             payload_kg: 0.0,
             imperfections: Imperfections::CALIBRATED,
             uncommissioned: false,
+            told: Told::Nothing,
             quiet: true,
         }
     }
@@ -130,10 +133,12 @@ pub fn run(script: &Script, options: &RunOptions) -> RunOutcome {
 pub fn run_with(script: &Script, options: &RunOptions, flash: SettingsFlash) -> RunOutcome {
     let stage = stage_parameters(options);
     let parameters = controller_parameters(options);
+    let calibration = options.told.calibration(&stage);
+    let flash = with_machine_settings(flash, &parameters, calibration.as_ref());
     run_machine(script, &parameters, &stage, options, flash)
 }
 
-/// The controller's parameters, as the imperfections that are left make them: those that the machine comes with, or none.
+/// The controller's parameters, as the imperfections that are left make them: those that the machine comes with, none, or what it is told.
 #[must_use]
 pub fn controller_parameters(options: &RunOptions) -> Parameters {
     let mut parameters = Parameters::REFERENCE;
@@ -149,7 +154,13 @@ pub fn controller_parameters(options: &RunOptions) -> Parameters {
     if options.uncommissioned {
         parameters = parameters.uncommissioned();
     }
-    parameters
+    if options.told == Told::Nothing {
+        return parameters;
+    }
+    parameters.commissioned = true;
+    options
+        .told
+        .parameters(&parameters, &stage_parameters(options))
 }
 
 /// Ticks between two updates of the progress bar.

@@ -24,29 +24,39 @@ pub struct Sensitivity {
     pub true_um: [f64; 2],
     /// The same of theta, urad.
     pub true_urad: [f64; 2],
+    /// What of the centre's error no encoder sees, rms: in motion (sag) and at rest (lost motion), um.
+    pub unseen_um: [f64; 2],
+    /// Error of the centre's true pose at rest, rms and peak, um.
+    pub at_rest_um: [f64; 2],
     /// Settling after the profile, mean and worst, ms.
     pub settling_ms: [f64; 2],
     /// What ended it before its end.
     pub fault: Option<String>,
 }
 
-/// A kind machine, one with each imperfection more, one with each less, and one with all.
+/// The reference stage, or a kind one; one with each imperfection more, or less; and the other of the two. The controllers of an unkind stage are
+/// told what there is to know of it.
 #[must_use]
-pub fn compared() -> Vec<Compared> {
-    let kind = Imperfections::CALIBRATED;
+pub fn compared(of_kind: bool) -> Vec<Compared> {
+    let (kind, all) = (Imperfections::CALIBRATED, Imperfections::ALL);
+    let [(name, base), other] = if of_kind {
+        [("kind", kind), ("with all", all)]
+    } else {
+        [("reference", all), ("kind", kind)]
+    };
     let named = |name: String, imperfections| Compared {
         name,
         imperfections,
     };
-    let mut machines = vec![named("kind".to_owned(), kind)];
+    let mut machines = vec![named(name.to_owned(), base)];
     for imperfection in &NAMED {
-        let is_on = *(imperfection.flag)(&mut kind.clone());
+        let is_on = *(imperfection.flag)(&mut base.clone());
         let word = if is_on { "without" } else { "with" };
-        if let Some(switched) = kind.switched(imperfection.name, !is_on) {
+        if let Some(switched) = base.switched(imperfection.name, !is_on) {
             machines.push(named(format!("{word} {}", imperfection.name), switched));
         }
     }
-    machines.push(named("with all".to_owned(), Imperfections::ALL));
+    machines.push(named(other.0.to_owned(), other.1));
     machines
 }
 
@@ -72,7 +82,8 @@ fn demonstrate(script: &Script, machine: &Compared, options: &RunOptions) -> Sen
         },
     );
     let statistics = outcome.run.trace.statistics();
-    let (seen, truth) = (&statistics.following_error, &statistics.true_error);
+    let (seen, truth) = (&statistics.moving.following, &statistics.moving.truth);
+    let at_rest = &statistics.at_rest;
     let settling_ms: Vec<f64> = (outcome.run.moves.iter())
         .filter_map(Move::settle_s)
         .map(|settle_s| 1e3 * settle_s)
@@ -83,6 +94,8 @@ fn demonstrate(script: &Script, machine: &Compared, options: &RunOptions) -> Sen
         following_um: [seen.xy_um.rms(), seen.xy_um.peak()],
         true_um: [truth.xy_um.rms(), truth.xy_um.peak()],
         true_urad: [truth.theta_urad.rms(), truth.theta_urad.peak()],
+        unseen_um: [&statistics.moving, &statistics.at_rest].map(|at| at.unseen.xy_um.rms()),
+        at_rest_um: [at_rest.truth.xy_um.rms(), at_rest.truth.xy_um.peak()],
         settling_ms: [mean_ms, worst_ms],
         fault: outcome.fault,
     }
@@ -94,11 +107,12 @@ mod tests {
 
     #[test]
     fn every_imperfection_is_compared_once() {
-        let machines = compared();
-        assert_eq!(machines.len(), NAMED.len() + 2);
-        for (i, machine) in machines.iter().enumerate() {
-            let alike = |other: &Compared| other.imperfections == machine.imperfections;
-            assert!(!machines[..i].iter().any(alike), "{}", machine.name);
+        for machines in [compared(true), compared(false)] {
+            assert_eq!(machines.len(), NAMED.len() + 2);
+            for (i, machine) in machines.iter().enumerate() {
+                let alike = |other: &Compared| other.imperfections == machine.imperfections;
+                assert!(!machines[..i].iter().any(alike), "{}", machine.name);
+            }
         }
     }
 
@@ -106,7 +120,7 @@ mod tests {
     #[test]
     fn a_runout_that_no_encoder_sees_is_in_the_true_pose() {
         let script = Script::parse("short", "FRF\nMOV X 20 W 30\nWAC ONT? X = 1\n").unwrap();
-        let machines: Vec<_> = (compared().into_iter())
+        let machines: Vec<_> = (compared(true).into_iter())
             .filter(|machine| ["kind", "with geometry"].contains(&machine.name.as_str()))
             .collect();
         let options = RunOptions {

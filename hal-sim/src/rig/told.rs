@@ -1,9 +1,13 @@
 //! A controller that is told of the machine before it: the true numbers in place of the model's, each of them something that `SPA` sets.
 
+use super::calibrated::calibration_told;
+use super::gains::{with_gains_tuned, with_motion_fitted, with_reference_gains};
 use crate::machine::devices::{COUNTS_PER_TURN, StageParameters};
-use crate::machine::plant::PlantParameters;
-use firmware::control::servo::{BorneLimits, ServoConfig, carried_inertia};
-use firmware::parameters::{Harmonic, Notch, Parameters, SubdivisionHarmonic};
+use firmware::calibration::MachineCalibration;
+use firmware::control::servo::{ServoConfig, carried_inertia};
+use firmware::parameters::{
+    EncoderMounting, GearError, Harmonic, Parameters, SubdivisionHarmonic, Wiring,
+};
 use std::fmt;
 
 /// What a controller is told of the machine before it.
@@ -15,6 +19,10 @@ pub enum Told {
     Machine,
     /// And [`with_ripple_told`].
     MachineAndRipple,
+    /// And all else that it can be told: [`with_everything_told`].
+    Everything,
+    /// What the reference stage comes with: all that is true of that machine, whatever this one is. [`with_reference_told`].
+    Reference,
 }
 
 impl Told {
@@ -27,6 +35,20 @@ impl Told {
             Self::MachineAndRipple => {
                 with_ripple_told(&with_machine_told(parameters, stage), stage)
             }
+            Self::Everything => with_everything_told(parameters, stage),
+            Self::Reference => with_reference_told(parameters, stage),
+        }
+    }
+
+    /// The controller's calibration with what it is told.
+    #[must_use]
+    pub fn calibration(self, stage: &StageParameters) -> Option<MachineCalibration> {
+        let on = &stage.plant.imperfections;
+        let is_built = on.geometry || on.encoder_eccentricity || on.encoder_harmonics;
+        match self {
+            Self::Everything if is_built => Some(calibration_told(stage)),
+            Self::Reference if is_built => Some(calibration_told(&reference(stage))),
+            _ => None,
         }
     }
 }
@@ -37,6 +59,8 @@ impl fmt::Display for Told {
             Self::Nothing => "nothing",
             Self::Machine => "machine",
             Self::MachineAndRipple => "machine and ripple",
+            Self::Everything => "everything",
+            Self::Reference => "what the reference stage is",
         })
     }
 }
@@ -57,6 +81,7 @@ pub fn with_drives_told(parameters: &Parameters, stage: &StageParameters) -> Par
         drive.resistance_ohm = plant.resistance_ohm;
         drive.inductance_h = plant.inductance_h;
         drive.inertia_kg_m2 = plant.ring_inertia_kg_m2 + plant.motor_inertia_kg_m2;
+        drive.motor_inertia_kg_m2 = plant.motor_inertia_kg_m2;
         drive.viscous_n_m_s = plant.ring_friction.viscous;
         drive.coulomb_n_m = plant.ring_friction.coulomb;
         if plant.imperfections.motor_friction {
@@ -78,6 +103,81 @@ pub fn with_payload_told(parameters: &Parameters, stage: &StageParameters) -> Pa
     platform.payload_kg = payload.mass_kg;
     platform.payload_inertia_kg_m2 = payload.inertia_kg_m2;
     platform.payload_centre_mm = [cos, sin].map(|part| part * payload.eccentricity_m * 1e3);
+    told
+}
+
+/// The same with friction and stiffness of the guides.
+#[must_use]
+pub fn with_guides_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let plant = &stage.plant;
+    let friction = &plant.guide_friction;
+    if plant.imperfections.guide_friction {
+        told.guides.coulomb_n = friction.coulomb;
+        told.guides.viscous_n_s_m = friction.viscous;
+        told.guides.presliding_um = friction.presliding * 1e6;
+    }
+    if plant.imperfections.guide_compliance {
+        told.guides.stiffness_n_um = plant.guide_stiffness_n_m * 1e-6;
+    }
+    told
+}
+
+/// The same with the order of the plugs, the directions of the motors, and zeros and directions of the encoders.
+#[must_use]
+pub fn with_wiring_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let wiring = &stage.wiring;
+    let digits = |connectors: [u8; 3]| {
+        (connectors.iter()).fold(0, |number, at| 10 * number + u16::from(*at) + 1)
+    };
+    told.wiring = Wiring {
+        encoder_order: digits(wiring.port_of_ring),
+        bridge_order: digits(wiring.bridge_of_ring),
+        motors_reversed: wiring.leads_exchanged,
+    };
+    for (mounting, encoder) in told.encoders.iter_mut().zip(&stage.encoders) {
+        *mounting = EncoderMounting {
+            zero_counts: encoder.zero_counts,
+            reversed: encoder.reversed,
+        };
+    }
+    told
+}
+
+/// All that parameters can say of a machine, gains that its resonances bear, and a motion that its motors do.
+#[must_use]
+pub fn with_everything_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let told = with_numbers_told(parameters, stage);
+    with_motion_fitted(&with_gains_tuned(&told, stage))
+}
+
+/// The same of the reference stage, with the imperfections of this one: what is not there must not be made up for. Its gains are the ones that a
+/// search would find.
+#[must_use]
+pub fn with_reference_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let told = with_numbers_told(parameters, &reference(stage));
+    with_motion_fitted(&with_reference_gains(&told))
+}
+
+fn reference(stage: &StageParameters) -> StageParameters {
+    let mut reference = StageParameters::REFERENCE;
+    reference.plant.imperfections = stage.plant.imperfections;
+    reference
+}
+
+fn with_numbers_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let on = &stage.plant.imperfections;
+    let mut told = with_wiring_told(&with_machine_told(parameters, stage), stage);
+    if on.torque_ripple {
+        told = with_ripple_told(&told, stage);
+    }
+    if on.gear_error {
+        told = with_gear_errors_told(&told, stage);
+    }
+    if on.subdivisional_error {
+        told = with_subdivision_told(&told, stage);
+    }
     told
 }
 
@@ -103,6 +203,20 @@ pub fn with_ripple_told(parameters: &Parameters, stage: &StageParameters) -> Par
             periods: plant.ripple_periods_per_motor_turn * plant.gear_ratio,
             amplitude_n_m: plant.ripple_n_m,
             phase_deg: 0.0,
+        };
+    }
+    told
+}
+
+/// The same with the cyclic errors of the gears.
+#[must_use]
+pub fn with_gear_errors_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
+    let mut told = parameters.clone();
+    let gear = &stage.plant.gear;
+    for (error, phase_rad) in (told.servo.gear_errors.iter_mut()).zip(gear.cyclic_phase_rad) {
+        *error = GearError {
+            amplitude_urad: 1e6 * gear.cyclic_error_rad,
+            phase_deg: phase_rad.to_degrees(),
         };
     }
     told
@@ -136,100 +250,8 @@ pub const IDENTIFIED_LEARNING: f64 = 0.25;
 #[must_use]
 pub fn with_machine_told(parameters: &Parameters, stage: &StageParameters) -> Parameters {
     let drives = with_drives_told(parameters, stage);
-    let mut told = with_inertia_scheduled(&with_payload_told(&drives, stage));
+    let carried = with_guides_told(&with_payload_told(&drives, stage), stage);
+    let mut told = with_inertia_scheduled(&carried);
     told.servo.learning = IDENTIFIED_LEARNING;
     told
-}
-
-/// The same with gains for a machine that is told of and has no resonance under 1.5 kHz: those that it comes with leave room for a machine
-/// that is a third off.
-#[must_use]
-pub fn with_gains_firmer(parameters: &Parameters) -> Parameters {
-    let mut told = parameters.clone();
-    for gains in &mut told.servo.gains {
-        gains.velocity_v_s_rad *= 1.1;
-        gains.integral_v_rad = gains.velocity_v_s_rad * FIRMER_INTEGRAL_1_S;
-    }
-    told
-}
-
-/// Integral gain over velocity gain then: 350 as it comes.
-const FIRMER_INTEGRAL_1_S: f64 = 500.0;
-
-/// Resonance of the reference stage's transmission, Hz, and that of its guides across with its platform between them.
-const TRANSMISSION_HZ: f64 = 1500.0;
-const GUIDES_HZ: f64 = 796.0;
-
-/// What of it is left for what is not known of a machine: places where its pivots carry more or less, a gap, a load off its centre.
-const SAFETY: f64 = 0.6;
-
-/// The same with gains that its resonances bear, as who puts it into service turns them down: as crossovers fall on machines that were
-/// tried (272 Hz rigid; 240, 204 and 120 with guides that resonate at 796, 503 and 218 Hz; three quarters of that with a transmission of
-/// 600 Hz), and then by two fifths.
-#[must_use]
-pub fn with_gains_fitted(parameters: &Parameters, stage: &StageParameters) -> Parameters {
-    let mut told = parameters.clone();
-    let (plant, reference) = (&stage.plant, &StageParameters::REFERENCE.plant);
-    let softer = plant.transmission_stiffness_n_m_rad / reference.transmission_stiffness_n_m_rad;
-    let transmission_hz = TRANSMISSION_HZ * softer.sqrt();
-    let carried_kg = plant.platform_mass_kg + plant.payload.mass_kg;
-    let guides_hz = (1.5 * plant.guide_stiffness_n_m / carried_kg).sqrt() / core::f64::consts::TAU;
-    // The winding's lag is the largest that the loop has.
-    let lag_s = |plant: &PlantParameters| plant.inductance_h / plant.resistance_ohm;
-    let share = (transmission_hz / TRANSMISSION_HZ).powf(0.3).min(1.0)
-        * SAFETY
-        * (lag_s(reference) / lag_s(plant)).min(1.0)
-        * (guides_hz / GUIDES_HZ).sqrt().min(1.0);
-    for filters in &mut told.servo.filters {
-        filters.notches = notches(parameters, plant);
-    }
-    for gains in &mut told.servo.gains {
-        gains.velocity_v_s_rad *= share;
-        gains.position_1_s *= share;
-        gains.integral_v_rad *= share * share;
-    }
-    told
-}
-
-/// The same with a motion that its motors bear.
-#[must_use]
-pub fn with_motion_fitted(parameters: &Parameters) -> Parameters {
-    BorneLimits::new(parameters).applied_to(parameters)
-}
-
-/// Resonances under which a loop has to be kept from a drive's, Hz: what lies higher it does not reach.
-const REACHED_HZ: f64 = 1_500.0;
-
-/// Notches at the resonances of a drive in the middle of the disk. The first: its motor against its ring with what that carries, where the
-/// guides are stiff. The second: the upper one of motor, ring and carried body in a row, where they are not, `l^2 - A l + B = 0` in the square
-/// of the angular frequency. Their widths are for what a pivot carries elsewhere.
-fn notches(parameters: &Parameters, plant: &PlantParameters) -> [Notch; 2] {
-    let body = ServoConfig::new(parameters).body;
-    let carried_kg_m2 = f64::from(carried_inertia(&body, &[1.0; 3], &[1.0; 3], 0));
-    let radius_m = parameters.geometry.radius_mm * 1e-3;
-    let transmission = plant.transmission_stiffness_n_m_rad;
-    let guide = plant.guide_stiffness_n_m * radius_m * radius_m;
-    let [motor, ring, carried] = [
-        plant.motor_inertia_kg_m2,
-        plant.ring_inertia_kg_m2,
-        carried_kg_m2,
-    ]
-    .map(f64::recip);
-    let load = 1.0 / (1.0 / ring + carried_kg_m2);
-    let stiff = transmission * (motor + load);
-    let a = transmission * (motor + ring) + guide * (ring + carried);
-    let b = transmission * guide * (motor * ring + motor * carried + ring * carried);
-    let upper = 0.5 * (a + (a * a - 4.0 * b).sqrt());
-    [(stiff, 0.25), (upper, 0.3)].map(|(square, width)| {
-        let frequency_hz = square.sqrt() / core::f64::consts::TAU;
-        Notch {
-            frequency_hz: if frequency_hz < REACHED_HZ {
-                frequency_hz
-            } else {
-                0.0
-            },
-            width_hz: width * frequency_hz,
-            gain: 0.15,
-        }
-    })
 }

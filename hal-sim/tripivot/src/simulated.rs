@@ -6,7 +6,7 @@ use firmware::fault::Fault;
 use firmware::gcs::Session;
 use hal_sim::machine::devices::SettingsFlash;
 use hal_sim::rig::run::{RunOptions, controller_parameters, stage_parameters};
-use hal_sim::rig::{ControllerMemory, Rig};
+use hal_sim::rig::{ControllerMemory, Rig, with_machine_settings};
 
 /// See the module.
 pub struct Simulated<'a> {
@@ -22,9 +22,11 @@ impl<'a> Simulated<'a> {
         options: &RunOptions,
         flash: SettingsFlash,
     ) -> Self {
-        let parameters = controller_parameters(options);
+        let (parameters, stage) = (controller_parameters(options), stage_parameters(options));
+        let calibration = options.told.calibration(&stage);
+        let flash = with_machine_settings(flash, &parameters, calibration.as_ref());
         Self {
-            rig: Rig::simulated(memory, &stage_parameters(options), &parameters, flash),
+            rig: Rig::simulated(memory, &stage, &parameters, flash),
             rate_hz: parameters.limits.rate_hz,
         }
     }

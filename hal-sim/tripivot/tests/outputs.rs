@@ -142,6 +142,7 @@ fn a_run_as_a_document_in_a_folder_that_says_what_it_is() {
         "run",
         "tour.gcs",
         "--json",
+        "--kind",
         "--seed",
         "7",
         "--mismatch",
@@ -190,7 +191,7 @@ fn a_run_as_a_document_in_a_folder_that_says_what_it_is() {
         assert_eq!(&beside[name], value, "{name}");
     }
     let line = format!(
-        "{}; simulated reference stage, controller on the host; seed 7; mismatch -5 %; payload 0.5 kg; imperfections of a kind machine but backlash; settings kept.bin",
+        "{}; simulated kind reference stage, controller on the host; seed 7; mismatch -5 %; payload 0.5 kg; imperfections of a kind machine but backlash; settings kept.bin",
         version.trim()
     );
     for file in ["picture.svg", "motion.svg", "report.html"] {

@@ -2,6 +2,7 @@
 
 use super::current_limit::CurrentLimitConfig;
 use super::filter::FilterConfig;
+use super::gear_error::GearErrorConfig;
 use super::inertia::{carried_inertia, largest_carried_inertia};
 use super::learnt::{FEATURES, Learnt};
 use super::platform_torque::Body;
@@ -49,6 +50,7 @@ pub struct PivotServoConfig {
     pub(super) integral_gain: f32,
     pub(super) filters: FilterConfig,
     pub(super) ripple: RippleConfig,
+    pub(super) gear_error: GearErrorConfig,
     pub(super) learning_gains: [f32; FEATURES],
     /// What all of it may be worth together, in integral gains.
     pub(super) most_learning: f32,
@@ -186,6 +188,12 @@ impl PivotServoConfig {
             integral_gain: (gains.integral_v_rad * period_s) as f32,
             filters,
             ripple: RippleConfig::new(&servo.ripple[pivot].harmonics, drive, servo.latency_s),
+            gear_error: GearErrorConfig::new(
+                &servo.gear_errors[pivot],
+                drive,
+                servo.latency_s,
+                limits.rate_hz,
+            ),
             learning_gains: [0, 1, 2].map(|k| (learning * share[k] * scale[k] * scale[k]) as f32),
             // Without an integral there is nothing to learn from, and nothing to be bounded.
             most_learning: (LEARNING_CORNER_1_S * gains.velocity_v_s_rad / gains.integral_v_rad)

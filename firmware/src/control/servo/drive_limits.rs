@@ -22,14 +22,14 @@
 
 use super::config::MAX_DUTY;
 use super::inertia::unit_motion;
-use super::platform_torque::{Body, platform_torques};
+use super::platform_torque::{Body, guide_forces, pivot_torques, platform_torques};
 use crate::motion::Limits;
 use crate::number;
 use crate::parameters::{Drive, Parameters, PowerStage};
 use kinematics::{Acceleration, Guide, Twist, guides_along_axes, pivot_motion_in_platform_axes};
 
-/// Share of a motor's largest current that plans may ask for: the rest is the feedback's. On a machine that is known that has ripple and
-/// the guides' friction to make up for, a tenth of what plans ask for at most.
+/// Share of a motor's largest current that plans may ask for: the rest is the feedback's. On a machine that is known that has ripple
+/// to make up for, and what friction varies.
 const PLANNED: f64 = 0.95;
 /// Resistance of a hot winding over that of a cold one: copper that is 100 K warmer.
 const HOT: f64 = 1.4;
@@ -140,6 +140,7 @@ pub fn ask_the_same(a: &Parameters, b: &Parameters) -> bool {
     limits(&a.limits) == limits(&b.limits)
         && a.supervision.stop_s == b.supervision.stop_s
         && a.platform == b.platform
+        && a.guides == b.guides
         && a.power == b.power
         && a.drives == b.drives
         && a.geometry == b.geometry
@@ -174,6 +175,8 @@ struct Demands<'a> {
     rate: f32,
     /// Largest speed of the platform's centre and of rotation, track radii and rad.
     speed: [f32; 2],
+    /// Friction of a carriage at the largest speed, times the track's radius, N m.
+    friction: f32,
 }
 
 /// What it asks of a pivot at a place.
@@ -185,11 +188,16 @@ struct Demand {
     speed: f32,
     /// Torque, times s, that takes the speed away.
     momentum: f32,
+    /// Torque against the friction of the carriages, whichever way they go.
+    friction: f32,
 }
 
 impl<'a> Demands<'a> {
     fn new(parameters: &'a Parameters, rate_rad_s: f64) -> Self {
-        let limits = &parameters.limits;
+        let Parameters { limits, guides, .. } = parameters;
+        let radius_m = parameters.geometry.radius_mm * 1e-3;
+        // A pivot may go as fast along its guide as it goes on the track, and the platform the other way.
+        let along_m_s = limits.speed_mm_s * 1e-3 + rate_rad_s * radius_m;
         Self {
             parameters,
             body: Body::new(parameters),
@@ -199,6 +207,7 @@ impl<'a> Demands<'a> {
                 (limits.speed_mm_s / parameters.geometry.radius_mm) as f32,
                 limits.turn_speed_deg_s.to_radians() as f32,
             ],
+            friction: ((guides.coulomb_n + guides.viscous_n_s_m * along_m_s) * radius_m) as f32,
         }
     }
 
@@ -215,7 +224,7 @@ impl<'a> Demands<'a> {
         });
         let mut least = f32::MAX;
         self.for_each(|pivot, demand| {
-            least = least.min((torques[pivot] - demand.speed) / demand.inertia);
+            least = least.min((torques[pivot] - demand.speed - demand.friction) / demand.inertia);
         });
         least.into()
     }
@@ -275,12 +284,30 @@ impl<'a> Demands<'a> {
                 demand.inertia += torque.abs();
             }
         }
+        if self.friction > 0.0 {
+            self.add_friction(guides, &mut demands);
+        }
         let mut direction = [self.speed[0], 0.0];
         for _ in 0..DIRECTIONS {
             self.add_speed(guides, &columns, direction, &mut demands);
             direction = turned(direction, DIRECTION_STEP);
         }
         demands
+    }
+
+    /// What the carriages' friction asks for, each in the direction that costs a pivot most.
+    #[inline(never)]
+    fn add_friction(&self, guides: &[Guide<f32>; 3], demands: &mut [Demand; 3]) {
+        let (rest, still) = (Acceleration::default(), Twist::default());
+        for guide in 0..3 {
+            let mut friction = [0.0; 3];
+            friction[guide] = self.friction;
+            let across = guide_forces(&self.body, guides, &still, &rest, &friction);
+            let torques = pivot_torques(&across, guides, &friction);
+            for (demand, torque) in demands.iter_mut().zip(torques) {
+                demand.friction += torque.abs();
+            }
+        }
     }
 
     /// What the largest speed in a direction, with the largest rotation, asks for.
@@ -368,5 +395,20 @@ mod tests {
             );
             assert_eq!([borne.rate_rad_s, borne.stop_s], [10.0, 0.06]);
         }
+    }
+
+    /// 1 N a carriage on 100 mm, where each of the three costs a pivot most.
+    #[test]
+    fn friction_of_the_guides_takes_from_the_acceleration() {
+        let mut parameters = Parameters::REFERENCE;
+        let without = BorneLimits::new(&Parameters::REFERENCE).acceleration_rad_s2;
+        let most = largest_limits(&parameters)[1];
+        parameters.guides.coulomb_n = 1.0;
+        let with = largest_limits(&parameters)[1];
+        println!("{without} {most} {with}");
+        assert!(!ask_the_same(&parameters, &Parameters::REFERENCE));
+        assert!((0.97..0.99).contains(&(with / most)), "{with} of {most}");
+        parameters.guides.coulomb_n = 1_000.0;
+        assert!(BorneLimits::new(&parameters).acceleration_rad_s2 <= 0.0);
     }
 }

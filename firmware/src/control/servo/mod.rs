@@ -24,17 +24,19 @@
 //! | `inertia` | what a pivot moves, for the gains' schedule |
 //! | `drive_limits` | rate and acceleration of the pivots, and stop of a fault, that the drives bear |
 //! | `ripple` | compensation of torque ripple |
+//! | `gear_error` | compensation of the gears' cyclic error |
 //! | `learnt` | what is learnt, as it is told and kept |
 //! | `current_limit` | the limit of the motors' currents |
 //! | `dead_time` | compensation of the bridges' dead time |
 //! | `presliding` | friction before a ring slides |
-//! | `platform_torque` | torque that platform and payload ask of the pivots |
+//! | `platform_torque` | torque that platform, payload and guides ask of the pivots |
 
 mod config;
 mod current_limit;
 mod dead_time;
 mod drive_limits;
 mod filter;
+mod gear_error;
 mod inertia;
 mod learnt;
 mod pivot;
@@ -45,9 +47,10 @@ mod ripple;
 pub use config::{PivotServoConfig, ServoConfig};
 pub use drive_limits::{BorneLimits, ask_the_same, largest_limits};
 pub use filter::{FilterConfig, Filters};
+pub use gear_error::GearErrorConfig;
 pub use inertia::carried_inertia;
 pub use learnt::Learnt;
 pub use pivot::{LoopSetpoint, PivotFeedback, PivotServo, PivotSetpoint};
-pub use platform_torque::{Body, platform_torques};
+pub use platform_torque::{Body, guide_forces, pivot_torques, platform_torques};
 pub use presliding::Presliding;
 pub use ripple::RippleConfig;

@@ -25,7 +25,7 @@ pub struct PivotSetpoint {
     pub platform_torque: f32,
     /// Angle.
     pub angle: Angle,
-    /// At rest, where nothing changes, the ripple there is computed when the pivot has its turn.
+    /// The gear's error is computed when the pivot has its turn; at rest, where nothing changes, the ripple is too.
     pub has_turn: bool,
 }
 
@@ -59,6 +59,8 @@ pub struct PivotServo {
     signals: [f32; FEATURES],
     feedforward: f32,
     ripple: f32,
+    /// Against the gear's cyclic error: its back-EMF, and for its torque.
+    gear_error: [f32; 2],
     friction: Presliding,
     learnt: Learnt,
     /// The integral when it learnt last.
@@ -159,10 +161,19 @@ impl PivotServo {
         let torque = inertial + config.lead_ticks * (inertial - self.last_inertial);
         let friction = contact + config.lead_ticks * (contact - last_contact);
         self.last_inertial = inertial;
+        if setpoint.has_turn {
+            self.gear_error = (config.gear_error).volts(
+                setpoint.angle,
+                setpoint.rate,
+                setpoint.acceleration,
+                inertial,
+            );
+        }
         self.signals = [rate, torque, friction];
         self.feedforward = (config.model_weights[0] + self.learnt.weights[0]) * rate
             + (config.model_weights[1] + self.learnt.weights[1]) * torque
-            + (config.model_weights[2] + self.learnt.weights[2]) * friction;
+            + (config.model_weights[2] + self.learnt.weights[2]) * friction
+            + self.gear_error[1];
         if setpoint.rate != 0.0 || setpoint.has_turn {
             self.ripple = config.ripple.volts(setpoint.angle, setpoint.rate);
         }
@@ -196,7 +207,8 @@ impl PivotServo {
         );
         self.feedback = feedback;
         let ripple = self.ripple;
-        let volts = feedforward + feedback + ripple + config.volt_per_rate * rate;
+        let emf = config.volt_per_rate * rate + self.gear_error[0];
+        let volts = feedforward + feedback + ripple + emf;
         // Without the back-EMF: what the current follows. A weight that the rate has learnt is a motor constant that is
         // off. It follows the voltage that is wanted, since what the dead time takes of it is made up for.
         let current = f32::from(measured.current_counts) * config.knee_currents_per_count;

@@ -5,6 +5,7 @@ use crate::control::command::Command;
 use crate::control::config::Config;
 use crate::control::encoder::Encoder;
 use crate::control::excitation::{Excitation, ExcitationEnd};
+use crate::control::guides::Guides;
 use crate::control::referencing;
 use crate::control::state::State;
 use crate::control::subdivision::SubdivisionTable;
@@ -163,6 +164,7 @@ impl State {
         self.rest_mode.restart();
         self.set_radius_limit_from(&platform);
         self.reset_watches();
+        self.guides = Guides::default();
         for servo in &mut self.servo {
             servo.restart();
         }

@@ -7,7 +7,7 @@ use crate::gcs::text::Name;
 use heapless::Vec;
 
 /// Bytes for the text of all macros, a line's LF included: what a sector of the flash has besides parameters, tables and a calibration.
-pub const MACRO_BYTES: usize = 7544;
+pub const MACRO_BYTES: usize = 7232;
 /// Older firmware stored as many: they are taken, and with less text there can be new ones.
 const MOST_STORED_BYTES: usize = 8192;
 /// Macros that can be stored.

@@ -12,13 +12,13 @@ use firmware::parameters::Parameters;
 use super::{Bench, BenchError, Divergence, Period, TickCost, Twin, elf_file};
 use crate::proof::ProofError;
 use drawing::Progress;
-use hal_sim::machine::devices::Stage;
+use hal_sim::machine::devices::{SettingsFlash, Stage};
 use hal_sim::report::{Conditions, Run};
 use hal_sim::rig::client::{Client, Event};
 use hal_sim::rig::observer::Observer;
 use hal_sim::rig::run::{RunOptions, stage_parameters, stuck_text};
 use hal_sim::rig::script::{Script, ScriptError};
-use hal_sim::rig::{Disturbances, run_conditions};
+use hal_sim::rig::{Disturbances, Told, machine_name, run_conditions, with_machine_settings};
 
 /// A run on the chip that came to its end, one way or another.
 #[derive(Debug)]
@@ -118,11 +118,18 @@ pub fn run(script: &Script, options: &RunOptions) -> Result<ChipOutcome, ChipErr
 
 /// What the board's flash keeps the settings of.
 pub(super) fn machine_parameters(options: &RunOptions) -> Parameters {
-    if options.uncommissioned {
-        Parameters::REFERENCE.uncommissioned()
-    } else {
-        Parameters::REFERENCE
+    match options.told {
+        Told::Nothing if options.uncommissioned => Parameters::REFERENCE.uncommissioned(),
+        told => told.parameters(&Parameters::REFERENCE, &stage_parameters(options)),
     }
+}
+
+/// The board's flash with it.
+pub(super) fn machine_settings(options: &RunOptions) -> SettingsFlash {
+    let stage = stage_parameters(options);
+    let calibration = options.told.calibration(&stage);
+    let flash = SettingsFlash::in_memory();
+    with_machine_settings(flash, &machine_parameters(options), calibration.as_ref())
 }
 
 fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipOutcome, ChipError> {
@@ -131,7 +138,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
     let mut runner = Some(Runner {
         script: script.clone(),
         client: Client::new(script),
-        twin: Twin::new(&parameters),
+        twin: Twin::with_settings(&parameters, machine_settings(options)),
         observer: Observer::new(&parameters, options.every),
         progress: Progress::new(script.lines.len() as u64, options.quiet),
         period_s: stage.period_s(),
@@ -146,7 +153,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
     let bench = |error| ChipError::Bench(path.to_owned(), error);
     let outcome = Bench::load(path, stage)
         .map_err(bench)?
-        .commissioned_as(&parameters)
+        .with_settings(machine_settings(options))
         .run(move |period| {
             let Some(now) = &mut runner else {
                 return Break(());
@@ -178,7 +185,7 @@ fn run_image(path: &Path, script: &Script, options: &RunOptions) -> Result<ChipO
             conditions: Conditions {
                 machine: format!(
                     "simulated {}, controller's image on the emulated chip",
-                    options.machine_name
+                    machine_name(options)
                 ),
                 ..run_conditions(options)
             },

@@ -10,7 +10,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::run::machine_parameters;
+use super::run::machine_settings;
 use super::{Bench, ChipError, Period, elf_file};
 use desk::serve::{ProtocolCheck, keep_alive};
 use hal_sim::machine::devices::Stage;
@@ -92,7 +92,7 @@ impl LineServer {
         };
         let outcome = Bench::load(&path, stage)
             .map_err(bench)?
-            .commissioned_as(&machine_parameters(options))
+            .with_settings(machine_settings(options))
             .run(move |period| line.period(period, &stop, &say))
             .map_err(bench)?;
         if outcome.gaps.is_empty() {

@@ -78,12 +78,12 @@ fn beside(on_chip: &ChipOutcome, on_host: &RunOutcome) {
     };
     row(
         "rms true error, centre",
-        |run| run.trace.statistics().true_error.xy_um.rms(),
+        |run| run.trace.statistics().moving.truth.xy_um.rms(),
         "um",
     );
     row(
         "rms true error, theta",
-        |run| run.trace.statistics().true_error.theta_urad.rms(),
+        |run| run.trace.statistics().moving.truth.theta_urad.rms(),
         "urad",
     );
     row("last x", |run| last(run, 0), "mm");

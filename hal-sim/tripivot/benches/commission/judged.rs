@@ -1,7 +1,6 @@
 //! What a commissioned machine came to, against its own numbers. Volts and amperes are those of the controller's meters: what these are off makes
 //! every torque as much larger, and is no error of the method.
 
-use crate::model::model;
 use commissioning::chain::{Chain, Place};
 use commissioning::drive_model::Electrical;
 use commissioning::record::Timing;
@@ -9,6 +8,7 @@ use commissioning::tuning::{Gains, Margins, PivotGains, Plant, margins};
 use desk::commission::Done;
 use firmware::parameters::Parameters;
 use hal_sim::machine::devices::StageParameters;
+use hal_sim::rig::loop_model;
 use std::cell::Cell;
 use std::rc::Rc;
 use tripivot::attended::EachTick;
@@ -99,7 +99,7 @@ fn ring_and_bridge(machine: &StageParameters, pivot: usize) -> (usize, usize) {
 fn drives(machine: &StageParameters, all: &[Done], warmth: &Warmth) -> Figures {
     let (plant, analog) = (&machine.plant, &machine.analog);
     let constant = plant.ring_torque_constant_n_m_a() * analog.supply_gain;
-    let (chain, _) = model(machine);
+    let (chain, _) = loop_model(machine);
     let inertia = chain.inertia(&Place::centre())[(0, 0)] * torque(machine);
     let pivots = |of: &dyn Fn(usize, f64, f64) -> f64| {
         worst((0..3).map(|pivot| {
@@ -176,7 +176,7 @@ fn torque(machine: &StageParameters) -> f64 {
 }
 
 fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
-    let (plant, (chain, _)) = (&machine.plant, model(machine));
+    let (plant, (chain, _)) = (&machine.plant, loop_model(machine));
     let square = plant.track_radius_m * plant.track_radius_m;
     let torque = torque(machine);
     let of = |name: &str, unit: &str| number(all, "identification", name, unit);
@@ -224,7 +224,7 @@ fn mechanics(machine: &StageParameters, all: &[Done]) -> Figures {
 
 /// The machine's own plants where its loops are judged. Carriages slide: they hold nothing along their guides.
 pub fn plants(machine: &StageParameters) -> (Vec<Plant>, [Electrical; 3], Chain) {
-    let (chain, mut electrical) = model(machine);
+    let (chain, mut electrical) = loop_model(machine);
     let plant = &machine.plant;
     for drive in &mut electrical {
         drive.resistance_ohm *= 1.0 + plant.winding.resistance_per_k * plant.winding.start_k;

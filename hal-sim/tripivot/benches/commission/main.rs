@@ -11,8 +11,6 @@
 //! | `rows` | the file, a row, the table |
 
 mod judged;
-#[path = "../../../commissioning/tests/machine/model.rs"]
-mod model;
 mod rows;
 
 use desk::commission::{Chosen, Done, Machine, Task, run};

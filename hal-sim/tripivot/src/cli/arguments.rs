@@ -45,7 +45,9 @@ pub(super) struct RunOutput {
     /// Tell the result as one JSON document on standard output.
     ///
     /// Fields: run; conditions (program, machine, seed, mismatch_percent, payload_kg, without, with, settings);
-    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); true_error (centre_um, theta_urad, of the true pose); moves (start_s, profile_end_s, settled_s,
+    /// following_error (ticks; centre_um, theta_urad, pivots_lsb: each peak and rms); true_error (centre_um,
+    /// theta_urad, of the true pose); unseen_error (the same, of what no encoder sees: sag); at_rest (ticks; following_error, true_error,
+    /// unseen_error: lost motion, each as above); moves (start_s, profile_end_s, settled_s,
     /// settle_ms, x_mm, y_mm, theta_deg; null where the stage had not settled when the next move began or the run ended);
     /// never_settled, how many of those had a tenth of a second for it, or more; peak_duty (0 to 1);
     /// smallest_separation_deg; simulated_s; wall_s; answers (line, answer); fault (null without one); folder.
@@ -148,6 +150,10 @@ pub(super) struct Serve {
 /// The demonstration on many machines.
 #[derive(Args, Clone, Debug)]
 pub(super) struct SensitivityRun {
+    /// Machines that have one imperfection more than a kind one, or less, under a controller that is told of none [default: machines that have one
+    /// less than the reference stage, under controllers that are told of theirs].
+    #[arg(long)]
+    pub(super) kind: bool,
     /// By how much the machines depart from the controller's model.
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(-80.0..=80.0))]
     pub(super) mismatch: f64,

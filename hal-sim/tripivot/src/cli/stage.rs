@@ -11,6 +11,7 @@ use hal_sim::machine::file::{MachineError, from_text, to_text};
 use hal_sim::machine::plant::{Imperfections, NAMED};
 use hal_sim::machine::unknown;
 use hal_sim::report::DEFAULT_EVERY;
+use hal_sim::rig::Told;
 use hal_sim::rig::run::RunOptions;
 
 use super::number::{whole, within};
@@ -41,23 +42,28 @@ pub struct SimulatedStage {
     /// Seed of the simulated noise: the same seed gives the same trace.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub seed: u64,
-    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors [default: 20,
-    /// and 0 for a machine of one's own].
+    /// By how much the simulated stage departs from the controller's model of it: heavier, more friction, weaker motors [default: 0,
+    /// and 20 with --kind].
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = within(-MISMATCH_LIMIT_PERCENT..=MISMATCH_LIMIT_PERCENT))]
     pub mismatch: Option<f64>,
     /// Load on the platform that the controller knows nothing of, 0 to 5 kg, 20 mm off the centre.
     #[arg(long, value_name = "KG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = within(0.0..=PAYLOAD_LIMIT_KG))]
     pub payload: f64,
-    /// Imperfections of the simulated stage to switch off; `all` leaves an ideal machine.
+    /// Imperfections of the simulated stage to switch off; `all` leaves an ideal machine. The controller's settings are then those of a machine
+    /// without them.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
     pub without: Vec<String>,
-    /// Imperfections to switch on that a kind machine has not; `all` makes it an unkind one.
+    /// Imperfections to switch on that a kind machine (--kind) or a machine of one's own has not; `all` are those of the reference stage.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = imperfection(&["all"]))]
     pub with: Vec<String>,
     /// Start with a controller that keeps no settings: it knows neither zeros nor directions of the encoders, and nothing drives before
     /// it is commissioned. Without this, an empty store gets the settings that the simulated machine comes with.
     #[arg(long)]
     pub uncommissioned: bool,
+    /// Tell the controller all that is true of the machine, as if it had been commissioned and calibrated without an error: wiring, zeros,
+    /// drives, masses, friction, stiffness, ripple, the encoders' and the geometry's errors, and gains that its resonances bear.
+    #[arg(long, conflicts_with = "uncommissioned")]
+    pub told: bool,
     /// The machine itself.
     #[command(flatten)]
     pub machine: Machine,
@@ -69,6 +75,10 @@ pub struct Machine {
     /// File of the machine's numbers; `tripivot machine` prints one to start from [default: the reference stage].
     #[arg(id = "machine", long = "machine", value_name = "FILE")]
     pub file: Option<PathBuf>,
+    /// The reference stage as no workshop builds it: guides without friction, stiff and exact, gears and encoders without errors, an ideal
+    /// supply. Its controller comes with the drawing's numbers, and the machine is off them by --mismatch.
+    #[arg(long, conflicts_with_all = ["machine", "unknown"])]
+    pub kind: bool,
     /// A machine as a workshop builds it, every number drawn by its usual size, plugs and zeros as they came: what a first start meets.
     #[arg(long, value_name = "SEED", conflicts_with = "machine", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     pub unknown: Option<u64>,
@@ -78,10 +88,6 @@ pub struct Machine {
 }
 
 impl Machine {
-    const fn is_reference(&self) -> bool {
-        self.file.is_none() && self.unknown.is_none() && self.set.is_empty()
-    }
-
     /// Its numbers.
     ///
     /// # Errors
@@ -95,7 +101,15 @@ impl Machine {
                 })?
             }
             (None, Some(seed)) => to_text(&unknown(seed)),
-            (None, None) => String::new(),
+            (None, None) => {
+                let mut reference = StageParameters::REFERENCE;
+                reference.plant.imperfections = if self.kind {
+                    Imperfections::CALIBRATED
+                } else {
+                    Imperfections::ALL
+                };
+                to_text(&reference)
+            }
         };
         from_text(&text, &self.set).map_err(|error| StageError::Machine {
             origin: (self.file.as_ref())
@@ -107,7 +121,7 @@ impl Machine {
     /// Whether one was asked for.
     #[must_use]
     pub const fn is_simulated(&self) -> bool {
-        !self.is_reference()
+        self.file.is_some() || self.unknown.is_some() || self.kind || !self.set.is_empty()
     }
 
     /// What to call it.
@@ -116,6 +130,7 @@ impl Machine {
         let mut name = match (&self.file, self.unknown) {
             (Some(file), _) => format!("machine of {}", file.display()),
             (None, Some(seed)) => format!("unknown machine {seed}"),
+            (None, None) if self.kind => "kind reference stage".to_owned(),
             (None, None) => "reference stage".to_owned(),
         };
         for setting in &self.set {
@@ -181,7 +196,8 @@ pub fn options(name: &str, arguments: &Simulation) -> Result<RunOptions, StageEr
 /// [`StageError`]: there is no such machine.
 pub fn stage_options(arguments: &SimulatedStage) -> Result<RunOptions, StageError> {
     let machine = arguments.machine.parameters()?;
-    let usual = if arguments.machine.is_reference() {
+    let Machine { kind, unknown, .. } = arguments.machine;
+    let usual = if kind && arguments.machine.set.is_empty() {
         RunOptions::default().mismatch_percent
     } else {
         0.0
@@ -195,6 +211,13 @@ pub fn stage_options(arguments: &SimulatedStage) -> Result<RunOptions, StageErro
         machine_name: arguments.machine.name(),
         // Nobody knows its zeros.
         uncommissioned: arguments.uncommissioned || arguments.machine.unknown.is_some(),
+        told: if arguments.told {
+            Told::Everything
+        } else if !kind && unknown.is_none() && !arguments.uncommissioned {
+            Told::Reference
+        } else {
+            Told::Nothing
+        },
         ..RunOptions::default()
     })
 }

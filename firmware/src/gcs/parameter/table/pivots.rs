@@ -2,7 +2,7 @@
 
 use super::super::descriptor::{GetOfPivot, Kind, Parameter, SetOfPivot, ValueSource};
 use super::{DRIVE, Group, LEARNT_GROUP, RIPPLE_GROUP, SERVO, SUBDIVISION_GROUP};
-use crate::parameters::{Drive, FeedbackFilters, Gains, Learnt, Ripple, Subdivision};
+use crate::parameters::{Drive, FeedbackFilters, Gains, GearError, Learnt, Ripple, Subdivision};
 
 /// What a pivot has.
 pub(super) struct OfPivot {
@@ -122,6 +122,7 @@ pub(super) const DRIVES: &[OfPivot] = &[
     of_pivot(DRIVE, 0x5450_0808, "viscous friction of a ring", "N m s/rad", [0.0, 5.0], at!(drives[Drive] viscous_n_m_s)),
     of_pivot(DRIVE, 0x5450_0809, "Coulomb friction of a ring", "N m", [0.0, 5.0], at!(drives[Drive] coulomb_n_m)),
     of_pivot(DRIVE, 0x5450_080A, "presliding of a ring", "rad", [1e-6, 0.1], at!(drives[Drive] presliding_rad)),
+    of_pivot(DRIVE, 0x5450_0840, "what of the inertia is the motor's with its side of the gear", "kg m^2", [1e-6, 2.0], at!(drives[Drive] motor_inertia_kg_m2)),
 ];
 
 #[rustfmt::skip]
@@ -138,6 +139,8 @@ pub(super) const RIPPLE: &[OfPivot] = &[
     of_pivot(RIPPLE_GROUP, 0x5450_0A09, "periods of ripple 4 in a turn of the ring", "", [0.0, 100_000.0], at!(servo.ripple[Ripple] harmonics[3].periods)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0A, "amplitude of ripple 4, 0 for none", "N m", [0.0, 5.0], at!(servo.ripple[Ripple] harmonics[3].amplitude_n_m)),
     of_pivot(RIPPLE_GROUP, 0x5450_0A0B, "phase of ripple 4 at pivot angle 0, of a sine", "deg", [-360.0, 360.0], at!(servo.ripple[Ripple] harmonics[3].phase_deg)),
+    of_pivot(RIPPLE_GROUP, 0x5450_0A0C, "cyclic error of the gear once a turn of the motor, 0 for none", "urad", [0.0, 5_000.0], at!(servo.gear_errors[GearError] amplitude_urad)),
+    of_pivot(RIPPLE_GROUP, 0x5450_0A0D, "phase of the cyclic error at pivot angle 0, of a sine", "deg", [-360.0, 360.0], at!(servo.gear_errors[GearError] phase_deg)),
 ];
 
 #[rustfmt::skip]
