@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use hal_sim::machine::devices::{Encoder, EncoderParameters, Stage, StageParameters};
 use hal_sim::machine::plant::{
-    AXES, Drive, ENCODER_HARMONICS_RAD, GearParameters, Imperfections, Plant, PlantParameters,
+    AXES, Drive, ENCODER_HARMONICS_RAD, External, GearParameters, Imperfections, Plant,
+    PlantParameters,
 };
 
 const STEP_S: f64 = 12.5e-6;
@@ -111,6 +112,98 @@ fn the_friction_of_a_motor_holds_up_to_its_break_away() {
         let turned_rad = plant.pose()[2];
         assert_eq!(turned_rad > 1e-3, moves, "{share}: {turned_rad:e}");
     }
+}
+
+const LOSSES: Imperfections = Imperfections {
+    gear_losses: true,
+    ..Imperfections::NONE
+};
+
+/// Torque on the rings from outside, N m.
+fn loaded(n_m: f64) -> External {
+    External {
+        ring_torque_n_m: [n_m; AXES],
+        ..External::default()
+    }
+}
+
+/// A motor gives more than its gear passes on while it drives a load, and less while the load drives it, by the same share.
+#[test]
+fn a_gear_loses_a_share_of_what_it_transmits() {
+    let parameters = with(LOSSES);
+    let lost = 1.0 - parameters.gear.efficiency;
+    let constant = parameters.ring_torque_constant_n_m_a();
+    let load_n_m = 4.0;
+    for (way, share) in [(1.0, 1.0 + lost), (-1.0, 1.0 - lost)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_external(loaded(-load_n_m));
+        plant.set_velocity([0.0, 0.0, way]);
+        let current_a = share * load_n_m / constant;
+        let volts = current_a * parameters.resistance_ohm + constant * way;
+        run(&mut plant, 1.0, &[Drive::Voltage(volts); AXES]);
+        let (rates, currents) = (plant.motor_rates_rad_s(), plant.currents_a());
+        for i in 0..AXES {
+            assert!((rates[i] - way).abs() < 2e-5, "{}", rates[i]);
+            assert!(
+                (currents[i] / current_a - 1.0).abs() < 2e-5,
+                "{}",
+                currents[i]
+            );
+        }
+        let passed = plant.transmitted_n_m();
+        assert!(
+            passed.iter().all(|n_m| (n_m / load_n_m - 1.0).abs() < 2e-5),
+            "{passed:?}"
+        );
+    }
+}
+
+/// At rest a gear under a load holds what its break-away is, to either side.
+#[test]
+fn a_loaded_gear_holds_up_to_its_break_away() {
+    let parameters = with(LOSSES);
+    let load_n_m = 4.0;
+    let break_away_n_m =
+        (1.0 - parameters.gear.efficiency) * load_n_m * parameters.motor_friction.stiction_ratio;
+    let constant = parameters.ring_torque_constant_n_m_a();
+    for (share, moves) in [(0.9, 0.0), (-0.9, 0.0), (1.1, 1.0), (-1.1, -1.0)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_external(loaded(-load_n_m));
+        let torque_n_m = load_n_m + share * break_away_n_m;
+        let volts = torque_n_m / constant * parameters.resistance_ohm;
+        run(&mut plant, 1.0, &[Drive::Voltage(volts); AXES]);
+        let turned_rad = plant.pose()[2];
+        if moves == 0.0 {
+            assert!(turned_rad.abs() < 1e-3, "{share}: {turned_rad:e}");
+        } else {
+            assert!(turned_rad * moves > 3e-3, "{share}: {turned_rad:e}");
+        }
+    }
+}
+
+/// What swings freely on a gear that loses only becomes less, and its bristles with it.
+#[test]
+fn a_gear_that_loses_never_gives_energy() {
+    let parameters = PlantParameters {
+        transmission_damping_n_m_s_rad: 0.0,
+        stop_damping_n_s_m: 0.0,
+        ..with(LOSSES)
+    };
+    let mut plant = Plant::new(parameters);
+    plant.set_pose_at_rest([0.02, -0.01, 0.4]);
+    plant.set_velocity([0.2, 0.1, 3.0]);
+    let energy_j = |plant: &Plant| plant.kinetic_energy_j() + plant.elastic_energy_j();
+    let start_j = energy_j(&plant);
+    let mut last_j = start_j;
+    for step in 0..40_000 {
+        plant.step(STEP_S, &[Drive::Coast; AXES]);
+        let now_j = energy_j(&plant);
+        assert!(now_j <= last_j, "{step}: {now_j} {last_j}");
+        last_j = now_j;
+    }
+    assert_eq!(plant.broken(), None);
+    println!("{last_j:.4} of {start_j:.4} J left");
+    assert!(last_j < 0.9 * start_j, "{last_j} {start_j}");
 }
 
 /// Of a current that ripples with the commutator the torque ripples alike: held at a current, over a turn, by its share.

@@ -39,6 +39,8 @@ pub struct Imperfections {
     pub preload: bool,
     /// Friction on the motors' side of the gears.
     pub motor_friction: bool,
+    /// Friction in the gears that grows with the torque that they transmit.
+    pub gear_losses: bool,
     /// Torque ripple that grows with the current.
     pub commutation_ripple: bool,
     /// Run-out of the rings that does not repeat.
@@ -82,6 +84,7 @@ impl Imperfections {
         gear_error: false,
         preload: false,
         motor_friction: false,
+        gear_losses: false,
         commutation_ripple: false,
         ball_runout: false,
         cable_drag: false,
@@ -118,6 +121,7 @@ impl Imperfections {
         gear_error: true,
         preload: true,
         motor_friction: true,
+        gear_losses: true,
         commutation_ripple: true,
         ball_runout: true,
         cable_drag: true,
@@ -142,7 +146,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 26] = [
+pub const NAMED: [Named; 27] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -157,6 +161,7 @@ pub const NAMED: [Named; 26] = [
     named("gear-error", |on| &mut on.gear_error),
     named("preload", |on| &mut on.preload),
     named("motor-friction", |on| &mut on.motor_friction),
+    named("gear-losses", |on| &mut on.gear_losses),
     named("commutation-ripple", |on| &mut on.commutation_ripple),
     named("ball-runout", |on| &mut on.ball_runout),
     named("cable-drag", |on| &mut on.cable_drag),

@@ -62,6 +62,8 @@ pub struct GearParameters {
     pub preload_n_m: f64,
     /// How far the transmission gives way where more torque opens the preload, rad.
     pub preload_way_rad: f64,
+    /// What a driven gear gives of the torque that it is driven with, beside what rubs without a load.
+    pub efficiency: f64,
 }
 
 /// How a winding becomes warm.
@@ -200,6 +202,9 @@ impl PlantParameters {
             preload_n_m: 9.0,
             // Reference stage: a gear with its gap open runs free by this.
             preload_way_rad: 290e-6,
+            // Chosen: 0.04 a stage, in two stages. Makers of precise planetary gears state 0.9 to 0.95 for two stages at full load, with
+            // what rubs without a load in it: with the motor's 0.2 N m it is 0.9 at the 9 N m that the preload bears.
+            efficiency: 0.92,
         },
         // Reference stage.
         ring_friction: FrictionParameters {
