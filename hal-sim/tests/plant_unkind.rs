@@ -206,6 +206,80 @@ fn a_gear_that_loses_never_gives_energy() {
     assert!(last_j < 0.9 * start_j, "{last_j} {start_j}");
 }
 
+const WARM: Imperfections = Imperfections {
+    track_heat: true,
+    ..Imperfections::NONE
+};
+
+/// A machine with a larger track is the same machine, all lengths larger: a warm one's rings are at a pose where a cold one's are at the
+/// pose that is as much nearer to the centre. In the centre nothing changes.
+#[test]
+fn a_warm_track_takes_the_platform_outwards() {
+    let mut warm = with(WARM);
+    warm.track.start_k = 10.0;
+    let (mut warm, mut cold) = (Plant::new(warm), Plant::new(with(Imperfections::NONE)));
+    assert_eq!(warm.track_warmer_k(), 10.0);
+    let at = |plant: &mut Plant, [x_m, y_m, theta_rad]: [f64; 3]| {
+        plant.set_pose_at_rest([x_m, y_m, theta_rad]);
+        plant.pivots_rad()
+    };
+    for theta_rad in [0.0, 0.4, -2.0] {
+        let centre = [0.0, 0.0, theta_rad];
+        let (there, cold_rad) = (at(&mut warm, centre), at(&mut cold, centre));
+        assert!((0..AXES).all(|i| (there[i] - cold_rad[i]).abs() < 1e-15));
+        for [x_m, y_m] in [[0.1 * 0.8, 0.0], [-0.03, 0.05]] {
+            // 2.3 um a kelvin at 0.1 m.
+            let grown = 1.0 + 10.0 * 2.3e-6 / 0.1;
+            let there = at(&mut warm, [x_m * grown, y_m * grown, theta_rad]);
+            let cold_rad = at(&mut cold, [x_m, y_m, theta_rad]);
+            for i in 0..AXES {
+                assert!(
+                    (there[i] - cold_rad[i]).abs() < 1e-14,
+                    "{there:?} {cold_rad:?}"
+                );
+            }
+            let off_rad = at(&mut warm, [x_m, y_m, theta_rad])[0] - cold_rad[0];
+            assert!(off_rad.abs() > 1e-5, "{off_rad:e}");
+        }
+    }
+}
+
+/// Motors that are held warm the track, and the pivots stay on their guides: of stiff guides and of those that give way.
+#[test]
+fn a_track_grows_while_the_motors_warm_it() {
+    for guide_compliance in [false, true] {
+        let mut parameters = PlantParameters {
+            // So heavy that it hardly moves; and so quick to warm that it need not be waited for.
+            motor_inertia_kg_m2: 1e9,
+            ..with(Imperfections {
+                guide_compliance,
+                ..WARM
+            })
+        };
+        parameters.track.time_constant_s = 0.5;
+        let mut plant = Plant::new(parameters);
+        let pose = [0.05, 0.02, 0.3];
+        plant.set_pose_at_rest(pose);
+        let rings_rad = plant.pivots_rad();
+        run(&mut plant, 0.5, &[Drive::Voltage(8.4); AXES]);
+        // 4 A and 33.6 W in each of three windings, two thirds of the way.
+        let settled_k = 3.0 * 33.6 * parameters.track.thermal_resistance_k_w;
+        let expected_k = settled_k * (1.0 - (-1.0_f64).exp());
+        let warmer_k = plant.track_warmer_k();
+        assert!((warmer_k / expected_k - 1.0).abs() < 0.01, "{warmer_k}");
+        let grown = 1.0 + parameters.track.expansion_per_k * warmer_k;
+        let [x_m, y_m, _] = plant.pose();
+        for (now_m, then_m) in [(x_m, pose[0]), (y_m, pose[1])] {
+            // Of 37 um.
+            assert!((now_m - then_m * grown).abs() < 1e-9, "{now_m} {then_m}");
+        }
+        let turned = plant.pivots_rad();
+        assert!((0..AXES).all(|i| (turned[i] - rings_rad[i]).abs() < 1e-8));
+        let gaps_m = plant.gaps_m();
+        assert!(gaps_m.iter().all(|gap_m| gap_m.abs() < 1e-9), "{gaps_m:?}");
+    }
+}
+
 /// Of a current that ripples with the commutator the torque ripples alike: held at a current, over a turn, by its share.
 #[test]
 fn the_ripple_of_the_commutator_grows_with_the_current() {

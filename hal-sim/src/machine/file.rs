@@ -113,6 +113,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("thermal_resistance_k_w", 0.0, 100.0),
     ("time_constant_s", 0.1, 1e5),
     ("resistance_per_k", 0.0, 0.01),
+    ("expansion_per_k", 0.0, 1e-4),
     ("start_k", -60.0, 150.0),
     ("floor_acceleration_m_s2", 0.0, 0.1),
     ("cable_stiffness_n_m", 0.0, 1e3),

@@ -116,6 +116,7 @@ fn draw_surroundings(machine: &mut StageParameters, random: &mut Random) {
 fn draw_losses(machine: &mut StageParameters, random: &mut Random) {
     let plant = &mut machine.plant;
     plant.gear.efficiency = random.between(0.88, 0.95);
+    plant.track.start_k = random.between(-3.0, 3.0);
 }
 
 fn phases(random: &mut Random) -> [f64; AXES] {

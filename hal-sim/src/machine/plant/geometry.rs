@@ -10,6 +10,8 @@
 //! f   = n . (P - C) - d0 - S(rho)                 what the pivot is off the guide's line: offset d0, straightness S
 //! ```
 //!
+//! R grows with the warmth of the track. What else of the mechanism would grow with it is a thousandth of that.
+//!
 //! A guide that gives way passes on a force against f; a rigid one keeps f at 0. Angles from a pose are found by Newton's method.
 
 use kinematics::Scalar;
@@ -61,6 +63,8 @@ struct Pivot {
     ball_runout_m: f64,
     ball_phase_rad: f64,
     radius_m: f64,
+    /// The same where it was measured.
+    cold_radius_m: f64,
     /// Sine and cosine of the guide's direction in the platform.
     direction: (f64, f64),
     direction_rad: f64,
@@ -70,6 +74,7 @@ struct Pivot {
 #[derive(Clone, Copy, Debug)]
 pub struct Geometry {
     track_radius_m: f64,
+    expansion_per_k: f64,
     pivots: [Pivot; AXES],
 }
 
@@ -102,6 +107,7 @@ impl Geometry {
                 PivotGeometry::IDEAL
             };
             let direction_rad = direction_rad + built.guide_error_rad;
+            let cold_radius_m = parameters.track_radius_m + built.radius_error_m;
             Pivot {
                 built,
                 has_runout: built.runout_m != PivotGeometry::IDEAL.runout_m,
@@ -112,14 +118,28 @@ impl Geometry {
                     0.0
                 },
                 ball_phase_rad: parameters.ball_phase_rad[i],
-                radius_m: parameters.track_radius_m + built.radius_error_m,
+                radius_m: cold_radius_m,
+                cold_radius_m,
                 direction: <f64 as Scalar>::sin_cos(direction_rad),
                 direction_rad,
             }
         });
-        Self {
+        let mut geometry = Self {
             track_radius_m: parameters.track_radius_m,
+            expansion_per_k: parameters.track.expansion_per_k,
             pivots,
+        };
+        if parameters.imperfections.track_heat {
+            geometry.warm(parameters.track.start_k);
+        }
+        geometry
+    }
+
+    /// Makes the track so much warmer than where its radius was measured, K.
+    pub fn warm(&mut self, warmer_k: f64) {
+        let grown = 1.0 + self.expansion_per_k * warmer_k;
+        for pivot in &mut self.pivots {
+            pivot.radius_m = pivot.cold_radius_m * grown;
         }
     }
 

@@ -59,6 +59,8 @@ pub struct Imperfections {
     pub floor_vibration: bool,
     /// Windings that become warm, and have more resistance then.
     pub winding_heat: bool,
+    /// A track that becomes warm, and larger.
+    pub track_heat: bool,
     /// A bus behind a diode, with a capacitor. Off, the supply gives and takes any current.
     pub bus: bool,
     /// Bridges that trip, and that need time to wake up.
@@ -94,6 +96,7 @@ impl Imperfections {
         analog_errors: false,
         floor_vibration: false,
         winding_heat: false,
+        track_heat: false,
         bus: false,
         bridge_limits: false,
         pwm_quantisation: false,
@@ -131,6 +134,7 @@ impl Imperfections {
         analog_errors: true,
         floor_vibration: true,
         winding_heat: true,
+        track_heat: true,
         bus: true,
         bridge_limits: true,
         ..Self::CALIBRATED
@@ -146,7 +150,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 27] = [
+pub const NAMED: [Named; 28] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -171,6 +175,7 @@ pub const NAMED: [Named; 27] = [
     named("analog-errors", |on| &mut on.analog_errors),
     named("floor-vibration", |on| &mut on.floor_vibration),
     named("winding-heat", |on| &mut on.winding_heat),
+    named("track-heat", |on| &mut on.track_heat),
     named("bus", |on| &mut on.bus),
     named("bridge-limits", |on| &mut on.bridge_limits),
     named("pwm-quantisation", |on| &mut on.pwm_quantisation),

@@ -16,7 +16,7 @@
 //! | `guide` | a guide's forces: across it, along it, at its ends |
 //! | `friction`, `stops`, `bumpers` | friction by bristles, of rings and of guides; ends of the guides; the carriages' bumpers |
 //! | `contacts` | collisions, with their energy |
-//! | `surroundings` | the floor's shaking, the windings' warmth |
+//! | `surroundings` | the floor's shaking, the warmth of windings and track |
 //! | `dynamics` | the equations of motion |
 
 mod body;
@@ -45,7 +45,8 @@ pub use friction::{Friction, FrictionState};
 pub use geometry::{Geometry, GuideState, OffGuide};
 pub use imperfections::{Imperfections, NAMED, Named};
 pub use parameters::{
-    FrictionParameters, GearParameters, Payload, PlantParameters, WindingParameters,
+    FrictionParameters, GearParameters, Payload, PlantParameters, TrackParameters,
+    WindingParameters,
 };
 pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
@@ -162,6 +163,9 @@ impl Plant {
         let more = self.external.floor_m_s2;
         self.dynamics.gravity_m_s2 = [0, 1].map(|axis| gravity[axis] + (floor[axis] - more[axis]));
         self.dynamics.resistance_ohm = self.surroundings.resistance_ohm();
+        if let Some(warmer_k) = self.surroundings.track_warmer_k() {
+            self.dynamics.geometry.warm(warmer_k);
+        }
     }
 
     /// Why the plant stands still, if it is broken.
@@ -228,6 +232,12 @@ impl Plant {
     #[must_use]
     pub const fn windings_warmer_k(&self) -> [f64; AXES] {
         self.surroundings.warmer_k()
+    }
+
+    /// How much warmer the track is than where its radius was measured, K; 0 where its warmth does nothing.
+    #[must_use]
+    pub fn track_warmer_k(&self) -> f64 {
+        self.surroundings.track_warmer_k().unwrap_or_default()
     }
 
     /// Torques that the transmissions pass on to the rings, N m.
