@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use hal_sim::machine::devices::{Encoder, EncoderParameters, Stage, StageParameters};
 use hal_sim::machine::plant::{
-    AXES, Drive, ENCODER_HARMONICS_RAD, External, GearParameters, Imperfections, Plant,
+    AXES, Broken, Drive, ENCODER_HARMONICS_RAD, External, GearParameters, Imperfections, Plant,
     PlantParameters,
 };
 
@@ -204,6 +204,55 @@ fn a_gear_that_loses_never_gives_energy() {
     assert_eq!(plant.broken(), None);
     println!("{last_j:.4} of {start_j:.4} J left");
     assert!(last_j < 0.9 * start_j, "{last_j} {start_j}");
+}
+
+/// A ring that jams at speed breaks the gear whose rotor runs on, and tells which and with how much; nothing breaks under less, or where teeth
+/// bear everything.
+#[test]
+fn a_tooth_breaks_under_more_than_it_bears() {
+    let jammed = |way: f64, tooth_limit: bool, tooth_torque_n_m: f64| {
+        let mut parameters = with(Imperfections {
+            tooth_limit,
+            ..Imperfections::NONE
+        });
+        parameters.gear.tooth_torque_n_m = tooth_torque_n_m;
+        let mut plant = Plant::new(parameters);
+        plant.set_velocity([0.0, 0.0, 2.0 * way]);
+        let at_rad = plant.pivots_rad()[1];
+        plant.set_external(External {
+            jammed_at_rad: [None, Some(at_rad), None],
+            ..External::default()
+        });
+        let mut most_n_m = 0.0_f64;
+        for _ in 0..2_000 {
+            plant.step(STEP_S, &[Drive::Coast; AXES]);
+            most_n_m = most_n_m.max(plant.transmitted_n_m()[1].abs());
+        }
+        (plant, most_n_m)
+    };
+    let (sound, most_n_m) = jammed(1.0, false, 1.0);
+    assert_eq!(sound.broken(), None);
+    // The rotor alone at 2 rad/s against what jams the ring, 1e5 N m/rad: 66 N m, and the platform pulls at the ring.
+    assert!((40.0..100.0).contains(&most_n_m), "{most_n_m}");
+    for way in [1.0, -1.0] {
+        assert_eq!(jammed(way, true, 1.001 * most_n_m).0.broken(), None);
+        let (plant, _) = jammed(way, true, 0.9 * most_n_m);
+        let Some(Broken::Tooth { drive, torque_n_m }) = plant.broken() else {
+            panic!("{:?}", plant.broken());
+        };
+        let over = way * torque_n_m / most_n_m;
+        assert!(
+            drive == 1 && (0.9..0.95).contains(&over),
+            "{drive} {torque_n_m}"
+        );
+    }
+    let (mut plant, _) = jammed(1.0, true, 0.9 * most_n_m);
+    let stands = plant.pose();
+    plant.step(STEP_S, &[Drive::Coast; AXES]);
+    assert_eq!(plant.pose(), stands);
+    plant.set_external(External::default());
+    plant.set_pose_at_rest([0.0; 3]);
+    run(&mut plant, 1e-3, &[Drive::Coast; AXES]);
 }
 
 const WARM: Imperfections = Imperfections {

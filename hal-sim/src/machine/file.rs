@@ -110,6 +110,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("preload_n_m", 0.0, 1e3),
     ("preload_way_rad", 0.0, 0.01),
     ("efficiency", 0.3, 1.0),
+    ("tooth_torque_n_m", 1.0, 1e5),
     ("thermal_resistance_k_w", 0.0, 100.0),
     ("time_constant_s", 0.1, 1e5),
     ("resistance_per_k", 0.0, 0.01),

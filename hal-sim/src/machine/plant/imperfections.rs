@@ -41,6 +41,8 @@ pub struct Imperfections {
     pub motor_friction: bool,
     /// Friction in the gears that grows with the torque that they transmit.
     pub gear_losses: bool,
+    /// Teeth of the gears that break under too much torque. Off, they bear everything.
+    pub tooth_limit: bool,
     /// Torque ripple that grows with the current.
     pub commutation_ripple: bool,
     /// Run-out of the rings that does not repeat.
@@ -87,6 +89,7 @@ impl Imperfections {
         preload: false,
         motor_friction: false,
         gear_losses: false,
+        tooth_limit: false,
         commutation_ripple: false,
         ball_runout: false,
         cable_drag: false,
@@ -125,6 +128,7 @@ impl Imperfections {
         preload: true,
         motor_friction: true,
         gear_losses: true,
+        tooth_limit: true,
         commutation_ripple: true,
         ball_runout: true,
         cable_drag: true,
@@ -150,7 +154,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 28] = [
+pub const NAMED: [Named; 29] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -166,6 +170,7 @@ pub const NAMED: [Named; 28] = [
     named("preload", |on| &mut on.preload),
     named("motor-friction", |on| &mut on.motor_friction),
     named("gear-losses", |on| &mut on.gear_losses),
+    named("tooth-limit", |on| &mut on.tooth_limit),
     named("commutation-ripple", |on| &mut on.commutation_ripple),
     named("ball-runout", |on| &mut on.ball_runout),
     named("cable-drag", |on| &mut on.cable_drag),

@@ -66,6 +66,13 @@ pub enum Broken {
         /// Which guide, 0 to 2.
         guide: usize,
     },
+    /// A tooth of a gear has broken.
+    Tooth {
+        /// Which drive, 0 to 2.
+        drive: usize,
+        /// What the transmission passed on to its ring, N m.
+        torque_n_m: f64,
+    },
     /// A state is no longer finite: a force or a voltage that is not a number, or a step that is far too long.
     NotFinite,
 }
@@ -150,10 +157,23 @@ impl Plant {
         }
         self.meet_surroundings(step_s);
         match self.runge_kutta(step_s, drives) {
-            Ok(next) if next.is_finite() => self.state = next,
+            Ok(next) if next.is_finite() => {
+                self.state = next;
+                self.broken = self.broken_tooth();
+            }
             Ok(_) => self.broken = Some(Broken::NotFinite),
             Err(reason) => self.break_down(reason),
         }
+    }
+
+    fn broken_tooth(&self) -> Option<Broken> {
+        if !self.parameters.imperfections.tooth_limit {
+            return None;
+        }
+        let most_n_m = self.parameters.gear.tooth_torque_n_m;
+        (self.transmitted_n_m().into_iter().enumerate())
+            .find(|(_, torque_n_m)| torque_n_m.abs() > most_n_m)
+            .map(|(drive, torque_n_m)| Broken::Tooth { drive, torque_n_m })
     }
 
     /// What the surroundings are over the next step.
