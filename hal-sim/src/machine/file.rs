@@ -128,6 +128,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("current_offset_counts", -200.0, 200.0),
     ("current_gain", 0.5, 2.0),
     ("supply_gain", 0.5, 2.0),
+    ("current_sampled_s", 0.0, 1e-3),
     ("source_ohm", 1e-3, 10.0),
     ("diode_v", 0.0, 2.0),
     ("capacitor_f", 1e-4, 1.0),

@@ -105,6 +105,24 @@ impl BridgeState {
         sign * self.pulse.clamp(0.0, 1.0) * current_a
     }
 
+    /// What the current has more than its mean at a time after the beginning of a PWM period, A: it rises from the edge on while
+    /// the pulse lasts, and falls until the next.
+    #[must_use]
+    pub fn ripple_a(&self, parameters: &BridgeParameters, inductance_h: f64, at_s: f64) -> f64 {
+        if !self.awake || self.fault {
+            return 0.0;
+        }
+        let pulse = self.pulse.clamp(0.0, 1.0);
+        let part = (at_s * parameters.pwm_hz).fract();
+        let share = if part < pulse {
+            (1.0 - pulse) * (part - 0.5 * pulse)
+        } else {
+            pulse * (0.5 * (1.0 + pulse) - part)
+        };
+        let sign = if self.forward { 1.0 } else { -1.0 };
+        sign * share * parameters.supply_v / (inductance_h * parameters.pwm_hz)
+    }
+
     /// While both switches of a leg are off, a diode carries the current and the leg lies on the wrong rail.
     fn dead_time_loss(&self, parameters: &BridgeParameters, current_a: f64) -> f64 {
         if self.pulse >= 1.0 {

@@ -57,6 +57,8 @@ pub struct Imperfections {
     pub bit_errors: bool,
     /// Noise, offset and gain errors of the analog inputs.
     pub analog_errors: bool,
+    /// Ripple of the PWM in the motor currents that the analog inputs sample.
+    pub current_ripple: bool,
     /// Floor that shakes.
     pub floor_vibration: bool,
     /// Windings that become warm, and have more resistance then.
@@ -97,6 +99,7 @@ impl Imperfections {
         subdivisional_error: false,
         bit_errors: false,
         analog_errors: false,
+        current_ripple: false,
         floor_vibration: false,
         winding_heat: false,
         track_heat: false,
@@ -136,6 +139,7 @@ impl Imperfections {
         subdivisional_error: true,
         bit_errors: true,
         analog_errors: true,
+        current_ripple: true,
         floor_vibration: true,
         winding_heat: true,
         track_heat: true,
@@ -154,7 +158,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 29] = [
+pub const NAMED: [Named; 30] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -178,6 +182,7 @@ pub const NAMED: [Named; 29] = [
     named("subdivisional-error", |on| &mut on.subdivisional_error),
     named("bit-errors", |on| &mut on.bit_errors),
     named("analog-errors", |on| &mut on.analog_errors),
+    named("current-ripple", |on| &mut on.current_ripple),
     named("floor-vibration", |on| &mut on.floor_vibration),
     named("winding-heat", |on| &mut on.winding_heat),
     named("track-heat", |on| &mut on.track_heat),
