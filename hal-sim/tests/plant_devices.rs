@@ -458,6 +458,51 @@ fn nothing_ripples_that_is_not_switched() {
     }
 }
 
+/// A bridge in air that is too hot lets its motor go and pulls its own fault pin, whatever ring it drives; where bridges have no limits none does.
+#[test]
+fn a_stage_whose_bridge_is_too_hot_pulls_its_fault_pin() {
+    let run = |bridge_limits: bool| {
+        let mut parameters = StageParameters {
+            wiring: WiringParameters {
+                bridge_of_ring: [2, 0, 1],
+                ..WiringParameters::REFERENCE
+            },
+            ..StageParameters::REFERENCE
+        };
+        parameters.bridge.heat.air_c = 160.0;
+        parameters.bridge.heat.time_constant_s = 0.1;
+        parameters.plant.imperfections = Imperfections {
+            bridge_limits,
+            ..Imperfections::NONE
+        };
+        parameters.plant.motor_inertia_kg_m2 = 1e6;
+        let mut stage = Stage::new(&parameters);
+        let awake = BridgeState {
+            awake: true,
+            ..BridgeState::RESET
+        };
+        let driving = BridgeState {
+            pulse: 0.2,
+            forward: true,
+            ..awake
+        };
+        for _ in 0..20_000 {
+            stage.advance_period([driving, awake, awake]);
+        }
+        stage
+    };
+    let hot = run(true);
+    assert_eq!(hot.pulled_fault_pins(), [true, false, false]);
+    // The first bridge drives the second ring.
+    assert_eq!(hot.plant.currents_a()[1], 0.0);
+    let [junction_c, others_c @ ..] = hot.junctions_c().unwrap();
+    assert!((160.0..165.1).contains(&junction_c) && others_c == [160.0; 2]);
+    let bearing = run(false);
+    assert_eq!(bearing.pulled_fault_pins(), [false; 3]);
+    assert!(bearing.plant.currents_a()[1] > 4.5);
+    assert_eq!(bearing.junctions_c(), None);
+}
+
 /// Each input samples its own bridge's ripple at its own time, whatever ring the bridge drives and whichever way round.
 #[test]
 fn each_input_has_the_ripple_of_its_own_time() {

@@ -135,6 +135,10 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("brake_resistor_ohm", 0.1, 1e3),
     ("trip_a", 1.0, 1e3),
     ("wake_s", 0.0, 0.1),
+    ("edge_s", 0.0, 1e-5),
+    ("air_c", -40.0, 150.0),
+    ("shutdown_c", 50.0, 300.0),
+    ("hysteresis_k", 0.0, 100.0),
     ("bridge_of_ring", 0.0, 2.0),
     ("port_of_ring", 0.0, 2.0),
 ];

@@ -117,6 +117,9 @@ fn draw_losses(machine: &mut StageParameters, random: &mut Random) {
     let plant = &mut machine.plant;
     plant.gear.efficiency = random.between(0.88, 0.95);
     plant.track.start_k = random.between(-3.0, 3.0);
+    let heat = &mut machine.bridge.heat;
+    heat.thermal_resistance_k_w *= random.between(0.7, 1.3);
+    heat.air_c = random.between(20.0, 50.0);
 }
 
 fn phases(random: &mut Random) -> [f64; AXES] {

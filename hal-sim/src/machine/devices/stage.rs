@@ -12,9 +12,10 @@
 //! that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
 
 use super::analog::AnalogParameters;
-use super::bridge::{BridgeParameters, BridgeState, Protection};
+use super::bridge::{BridgeParameters, BridgeState};
 use super::bus::{Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
+use super::protection::Protection;
 use super::wiring::WiringParameters;
 use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
 use firmware::drivers::latch::LATCH_OFFSET_S;
@@ -277,6 +278,14 @@ impl Stage {
             return [false; AXES];
         };
         [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].pulls_fault_pin())
+    }
+
+    /// Temperatures of the bridges' junctions, deg C, where bridges have limits.
+    #[must_use]
+    pub fn junctions_c(&self) -> Option<[f64; AXES]> {
+        let protection = self.protection.as_ref()?;
+        let of = |bridge| &protection[self.wiring.ring_of_bridge(bridge)];
+        Some([0, 1, 2].map(|bridge| of(bridge).junction_c(&self.bridge)))
     }
 
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.

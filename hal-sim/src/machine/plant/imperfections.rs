@@ -67,7 +67,7 @@ pub struct Imperfections {
     pub track_heat: bool,
     /// A bus behind a diode, with a capacitor. Off, the supply gives and takes any current.
     pub bus: bool,
-    /// Bridges that trip, and that need time to wake up.
+    /// Bridges that trip, that become too hot, and that need time to wake up.
     pub bridge_limits: bool,
     /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
     pub pwm_quantisation: bool,
