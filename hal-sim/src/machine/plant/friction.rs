@@ -107,14 +107,16 @@ impl Friction {
         let loaded = Self {
             coulomb,
             static_excess: coulomb * self.excess_ratio,
-            inverse_fading_rate: 0.5 * self.bristle_damping / coulomb,
             ..*self
         };
-        let state = loaded.evaluate(rate, bristle, step_s);
-        let (viscous, break_away) = (self.viscous * rate, loaded.break_away(rate));
+        let bristle_rate = loaded.bristle_rate(rate, bristle, step_s);
+        // sigma1(v) with the Coulomb friction of the load: it never exceeds that.
+        let (fading, square) = (0.5 * self.bristle_damping * rate, coulomb * coulomb);
+        let damping = self.bristle_damping * square / (square + fading * fading);
+        let dry = self.stiffness * bristle + damping * bristle_rate;
         FrictionState {
-            force: (state.force - viscous).max(-break_away).min(break_away) + viscous,
-            ..state
+            force: loaded.at_most_break_away(dry, rate) + self.viscous * rate,
+            bristle_rate,
         }
     }
 
@@ -124,10 +126,16 @@ impl Friction {
         0.5 * self.stiffness * bristle * bristle
     }
 
-    /// g(v).
-    fn break_away(&self, rate: f64) -> f64 {
+    /// No more than g(v) of what is dry.
+    fn at_most_break_away(&self, dry: f64, rate: f64) -> f64 {
         let stribeck = rate * self.inverse_stribeck;
-        self.coulomb + self.static_excess / (1.0 + stribeck * stribeck)
+        // As a fraction: it rarely is more, and a division takes as long as all the rest.
+        let denominator = 1.0 + stribeck * stribeck;
+        let numerator = self.coulomb * denominator + self.static_excess;
+        if dry.abs() * denominator <= numerator {
+            return dry;
+        }
+        (numerator / denominator).copysign(dry)
     }
 
     fn bristle_rate(&self, rate: f64, bristle: f64, step_s: f64) -> f64 {
@@ -262,6 +270,20 @@ mod tests {
             bristle += STEP_S * state.bristle_rate;
             given_j -= state.force * rate * STEP_S;
             assert!(given_j < 1e-9, "{step}: {given_j:e}");
+        }
+    }
+
+    #[test]
+    fn a_load_that_is_nothing_changes_nothing() {
+        let parameters = &PlantParameters::REFERENCE.motor_friction;
+        let friction = Friction::with_loads(parameters, true, true);
+        for rate in [-3.0, -0.2, -4e-3, 0.0, 1e-3, 0.05, 0.4] {
+            for bristle in [-100e-6, -30e-6, 0.0, 90e-6] {
+                let without = friction.evaluate(rate, bristle, STEP_S);
+                let with = friction.evaluate_under_load(rate, bristle, STEP_S, 1e-12);
+                assert!((with.force - without.force).abs() < 1e-9);
+                assert!((with.bristle_rate - without.bristle_rate).abs() < 1e-9);
+            }
         }
     }
 

@@ -12,7 +12,7 @@
 //! | `body` | platform and payload |
 //! | `drive` | winding, motor, transmission |
 //! | `pivot_geometry`, `built` | how a pivot, its ring and its guide are built; the reference stage's |
-//! | `geometry` | where a pivot lies on its guide, with every error of that |
+//! | `geometry`, `curves` | where a pivot lies on its guide, with every error of that; run-out and straightness |
 //! | `guide` | a guide's forces: across it, along it, at its ends |
 //! | `friction`, `stops`, `bumpers` | friction by bristles, of rings and of guides; ends of the guides; the carriages' bumpers |
 //! | `contacts` | collisions, with their energy |
@@ -23,6 +23,7 @@ mod body;
 mod built;
 mod bumpers;
 mod contacts;
+mod curves;
 mod drive;
 mod dynamics;
 mod friction;
