@@ -384,6 +384,166 @@ fn another_control_rate_scales_the_timeline() {
     assert!((1.2..1.6).contains(&theta_rad), "{theta_rad}");
 }
 
+/// The ripple beside a winding that is really switched, 48 V and nothing in turns, until it repeats.
+#[test]
+fn the_ripple_is_that_of_a_switched_winding() {
+    let parameters = BridgeParameters::REFERENCE;
+    let (inductance_h, resistance_ohm, steps) = (0.7e-3, 2.1, 2_000);
+    let step_s = 1.0 / (parameters.pwm_hz * f64::from(steps));
+    for (pulse, forward) in [(0.05, true), (0.3, true), (0.5, false), (0.9, false)] {
+        let pins = BridgeState {
+            pulse,
+            forward,
+            awake: true,
+            fault: false,
+        };
+        let sign = if forward { 1.0 } else { -1.0 };
+        let mut current_a = sign * pulse * parameters.supply_v / resistance_ohm;
+        let mut switched = Vec::new();
+        for step in 0..100 * steps {
+            let part = f64::from(step % steps) / f64::from(steps);
+            let volts = if part < pulse {
+                sign * parameters.supply_v
+            } else {
+                0.0
+            };
+            if step >= 99 * steps {
+                switched.push(current_a);
+            }
+            current_a += (volts - resistance_ohm * current_a) / inductance_h * step_s;
+        }
+        let mean_a = switched.iter().sum::<f64>() / f64::from(steps);
+        let ripple = |part: f64| pins.ripple_a(&parameters, inductance_h, part / parameters.pwm_hz);
+        let (mut least_a, mut most_a, mut sum_a) = (f64::MAX, f64::MIN, 0.0);
+        for (step, current_a) in switched.iter().enumerate() {
+            let part = step as f64 / f64::from(steps);
+            let ripple_a = ripple(part);
+            // What the resistance bends of it: a hundredth of the largest.
+            let off_a = current_a - mean_a - ripple_a;
+            assert!(off_a.abs() < 5e-3, "{pulse} at {part}: {ripple_a} {off_a}");
+            // Each period alike.
+            assert!((ripple(part + 3.0) - ripple_a).abs() < 1e-9);
+            (least_a, most_a) = (least_a.min(ripple_a), most_a.max(ripple_a));
+            sum_a += ripple_a / f64::from(steps);
+        }
+        let swing_a = 48.0 / (inductance_h * 40e3) * pulse * (1.0 - pulse);
+        assert!(((most_a - least_a) / swing_a - 1.0).abs() < 2e-3);
+        assert!(sum_a.abs() < 1e-3 * swing_a, "{sum_a:e}");
+    }
+}
+
+#[test]
+fn nothing_ripples_that_is_not_switched() {
+    let pins = BridgeState {
+        pulse: 0.5,
+        forward: true,
+        awake: true,
+        fault: false,
+    };
+    let ripple = |pins: BridgeState| pins.ripple_a(&BridgeParameters::REFERENCE, 0.7e-3, 5.3e-6);
+    assert!(ripple(pins) < -0.01);
+    for still in [
+        BridgeState { pulse: 0.0, ..pins },
+        BridgeState { pulse: 1.0, ..pins },
+        BridgeState {
+            awake: false,
+            ..pins
+        },
+        BridgeState {
+            fault: true,
+            ..pins
+        },
+    ] {
+        assert_eq!(ripple(still), 0.0, "{still:?}");
+    }
+}
+
+/// A bridge in air that is too hot lets its motor go and pulls its own fault pin, whatever ring it drives; where bridges have no limits none does.
+#[test]
+fn a_stage_whose_bridge_is_too_hot_pulls_its_fault_pin() {
+    let run = |bridge_limits: bool| {
+        let mut parameters = StageParameters {
+            wiring: WiringParameters {
+                bridge_of_ring: [2, 0, 1],
+                ..WiringParameters::REFERENCE
+            },
+            ..StageParameters::REFERENCE
+        };
+        parameters.bridge.heat.air_c = 160.0;
+        parameters.bridge.heat.time_constant_s = 0.1;
+        parameters.plant.imperfections = Imperfections {
+            bridge_limits,
+            ..Imperfections::NONE
+        };
+        parameters.plant.motor_inertia_kg_m2 = 1e6;
+        let mut stage = Stage::new(&parameters);
+        let awake = BridgeState {
+            awake: true,
+            ..BridgeState::RESET
+        };
+        let driving = BridgeState {
+            pulse: 0.2,
+            forward: true,
+            ..awake
+        };
+        for _ in 0..20_000 {
+            stage.advance_period([driving, awake, awake]);
+        }
+        stage
+    };
+    let hot = run(true);
+    assert_eq!(hot.pulled_fault_pins(), [true, false, false]);
+    // The first bridge drives the second ring.
+    assert_eq!(hot.plant.currents_a()[1], 0.0);
+    let [junction_c, others_c @ ..] = hot.junctions_c().unwrap();
+    assert!((160.0..165.1).contains(&junction_c) && others_c == [160.0; 2]);
+    let bearing = run(false);
+    assert_eq!(bearing.pulled_fault_pins(), [false; 3]);
+    assert!(bearing.plant.currents_a()[1] > 4.5);
+    assert_eq!(bearing.junctions_c(), None);
+}
+
+/// Each input samples its own bridge's ripple at its own time, whatever ring the bridge drives and whichever way round.
+#[test]
+fn each_input_has_the_ripple_of_its_own_time() {
+    let wiring = WiringParameters {
+        bridge_of_ring: [2, 0, 1],
+        leads_exchanged: [false, true, false],
+        port_of_ring: [0, 1, 2],
+    };
+    let run = |current_ripple: bool| {
+        let mut parameters = StageParameters {
+            wiring,
+            ..StageParameters::REFERENCE
+        };
+        parameters.plant.imperfections = Imperfections {
+            current_ripple,
+            ..Imperfections::NONE
+        };
+        let mut stage = Stage::new(&parameters);
+        let pins = [0.3, 0.5, 0.2].map(|pulse| BridgeState {
+            pulse,
+            forward: pulse != 0.5,
+            awake: true,
+            fault: false,
+        });
+        for _ in 0..5 {
+            stage.advance_period(pins);
+        }
+        (stage.analog().0, pins)
+    };
+    let ((mean, pins), (sampled, _)) = (run(false), run(true));
+    let sampled_s = StageParameters::REFERENCE.analog.current_sampled_s;
+    for i in 0..3 {
+        let ripple_a = pins[i].ripple_a(&BridgeParameters::REFERENCE, 0.7e-3, sampled_s[i]);
+        let expected = ripple_a * 0.2 / 3.3 * 4096.0;
+        let counts = f64::from(sampled[i]) - f64::from(mean[i]);
+        // Both are rounded.
+        assert!((counts - expected).abs() <= 1.0, "{i}: {counts} {expected}");
+        assert!(counts.abs() > 5.0, "{i}: {counts}");
+    }
+}
+
 #[test]
 fn analog_inputs_follow_current_and_supply() {
     let mut parameters = StageParameters::REFERENCE;

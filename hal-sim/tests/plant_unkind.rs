@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use hal_sim::machine::devices::{Encoder, EncoderParameters, Stage, StageParameters};
 use hal_sim::machine::plant::{
-    AXES, Drive, ENCODER_HARMONICS_RAD, GearParameters, Imperfections, Plant, PlantParameters,
+    AXES, Broken, Drive, ENCODER_HARMONICS_RAD, External, GearParameters, Imperfections, Plant,
+    PlantParameters,
 };
 
 const STEP_S: f64 = 12.5e-6;
@@ -110,6 +111,221 @@ fn the_friction_of_a_motor_holds_up_to_its_break_away() {
         run(&mut plant, 0.5, &[Drive::Voltage(volts); AXES]);
         let turned_rad = plant.pose()[2];
         assert_eq!(turned_rad > 1e-3, moves, "{share}: {turned_rad:e}");
+    }
+}
+
+const LOSSES: Imperfections = Imperfections {
+    gear_losses: true,
+    ..Imperfections::NONE
+};
+
+/// Torque on the rings from outside, N m.
+fn loaded(n_m: f64) -> External {
+    External {
+        ring_torque_n_m: [n_m; AXES],
+        ..External::default()
+    }
+}
+
+/// A motor gives more than its gear passes on while it drives a load, and less while the load drives it, by the same share.
+#[test]
+fn a_gear_loses_a_share_of_what_it_transmits() {
+    let parameters = with(LOSSES);
+    let lost = 1.0 - parameters.gear.efficiency;
+    let constant = parameters.ring_torque_constant_n_m_a();
+    let load_n_m = 4.0;
+    for (way, share) in [(1.0, 1.0 + lost), (-1.0, 1.0 - lost)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_external(loaded(-load_n_m));
+        plant.set_velocity([0.0, 0.0, way]);
+        let current_a = share * load_n_m / constant;
+        let volts = current_a * parameters.resistance_ohm + constant * way;
+        run(&mut plant, 1.0, &[Drive::Voltage(volts); AXES]);
+        let (rates, currents) = (plant.motor_rates_rad_s(), plant.currents_a());
+        for i in 0..AXES {
+            assert!((rates[i] - way).abs() < 2e-5, "{}", rates[i]);
+            assert!(
+                (currents[i] / current_a - 1.0).abs() < 2e-5,
+                "{}",
+                currents[i]
+            );
+        }
+        let passed = plant.transmitted_n_m();
+        assert!(
+            passed.iter().all(|n_m| (n_m / load_n_m - 1.0).abs() < 2e-5),
+            "{passed:?}"
+        );
+    }
+}
+
+/// At rest a gear under a load holds what its break-away is, to either side.
+#[test]
+fn a_loaded_gear_holds_up_to_its_break_away() {
+    let parameters = with(LOSSES);
+    let load_n_m = 4.0;
+    let break_away_n_m =
+        (1.0 - parameters.gear.efficiency) * load_n_m * parameters.motor_friction.stiction_ratio;
+    let constant = parameters.ring_torque_constant_n_m_a();
+    for (share, moves) in [(0.9, 0.0), (-0.9, 0.0), (1.1, 1.0), (-1.1, -1.0)] {
+        let mut plant = Plant::new(parameters);
+        plant.set_external(loaded(-load_n_m));
+        let torque_n_m = load_n_m + share * break_away_n_m;
+        let volts = torque_n_m / constant * parameters.resistance_ohm;
+        run(&mut plant, 1.0, &[Drive::Voltage(volts); AXES]);
+        let turned_rad = plant.pose()[2];
+        if moves == 0.0 {
+            assert!(turned_rad.abs() < 1e-3, "{share}: {turned_rad:e}");
+        } else {
+            assert!(turned_rad * moves > 3e-3, "{share}: {turned_rad:e}");
+        }
+    }
+}
+
+/// What swings freely on a gear that loses only becomes less, and its bristles with it.
+#[test]
+fn a_gear_that_loses_never_gives_energy() {
+    let parameters = PlantParameters {
+        transmission_damping_n_m_s_rad: 0.0,
+        stop_damping_n_s_m: 0.0,
+        ..with(LOSSES)
+    };
+    let mut plant = Plant::new(parameters);
+    plant.set_pose_at_rest([0.02, -0.01, 0.4]);
+    plant.set_velocity([0.2, 0.1, 3.0]);
+    let energy_j = |plant: &Plant| plant.kinetic_energy_j() + plant.elastic_energy_j();
+    let start_j = energy_j(&plant);
+    let mut last_j = start_j;
+    for step in 0..40_000 {
+        plant.step(STEP_S, &[Drive::Coast; AXES]);
+        let now_j = energy_j(&plant);
+        assert!(now_j <= last_j, "{step}: {now_j} {last_j}");
+        last_j = now_j;
+    }
+    assert_eq!(plant.broken(), None);
+    println!("{last_j:.4} of {start_j:.4} J left");
+    assert!(last_j < 0.9 * start_j, "{last_j} {start_j}");
+}
+
+/// A ring that jams at speed breaks the gear whose rotor runs on, and tells which and with how much; nothing breaks under less, or where teeth
+/// bear everything.
+#[test]
+fn a_tooth_breaks_under_more_than_it_bears() {
+    let jammed = |way: f64, tooth_limit: bool, tooth_torque_n_m: f64| {
+        let mut parameters = with(Imperfections {
+            tooth_limit,
+            ..Imperfections::NONE
+        });
+        parameters.gear.tooth_torque_n_m = tooth_torque_n_m;
+        let mut plant = Plant::new(parameters);
+        plant.set_velocity([0.0, 0.0, 2.0 * way]);
+        let at_rad = plant.pivots_rad()[1];
+        plant.set_external(External {
+            jammed_at_rad: [None, Some(at_rad), None],
+            ..External::default()
+        });
+        let mut most_n_m = 0.0_f64;
+        for _ in 0..2_000 {
+            plant.step(STEP_S, &[Drive::Coast; AXES]);
+            most_n_m = most_n_m.max(plant.transmitted_n_m()[1].abs());
+        }
+        (plant, most_n_m)
+    };
+    let (sound, most_n_m) = jammed(1.0, false, 1.0);
+    assert_eq!(sound.broken(), None);
+    // The rotor alone at 2 rad/s against what jams the ring, 1e5 N m/rad: 66 N m, and the platform pulls at the ring.
+    assert!((40.0..100.0).contains(&most_n_m), "{most_n_m}");
+    for way in [1.0, -1.0] {
+        assert_eq!(jammed(way, true, 1.001 * most_n_m).0.broken(), None);
+        let (plant, _) = jammed(way, true, 0.9 * most_n_m);
+        let Some(Broken::Tooth { drive, torque_n_m }) = plant.broken() else {
+            panic!("{:?}", plant.broken());
+        };
+        let over = way * torque_n_m / most_n_m;
+        assert!(
+            drive == 1 && (0.9..0.95).contains(&over),
+            "{drive} {torque_n_m}"
+        );
+    }
+    let (mut plant, _) = jammed(1.0, true, 0.9 * most_n_m);
+    let stands = plant.pose();
+    plant.step(STEP_S, &[Drive::Coast; AXES]);
+    assert_eq!(plant.pose(), stands);
+    plant.set_external(External::default());
+    plant.set_pose_at_rest([0.0; 3]);
+    run(&mut plant, 1e-3, &[Drive::Coast; AXES]);
+}
+
+const WARM: Imperfections = Imperfections {
+    track_heat: true,
+    ..Imperfections::NONE
+};
+
+/// A machine with a larger track is the same machine, all lengths larger: a warm one's rings are at a pose where a cold one's are at the
+/// pose that is as much nearer to the centre. In the centre nothing changes.
+#[test]
+fn a_warm_track_takes_the_platform_outwards() {
+    let mut warm = with(WARM);
+    warm.track.start_k = 10.0;
+    let (mut warm, mut cold) = (Plant::new(warm), Plant::new(with(Imperfections::NONE)));
+    assert_eq!(warm.track_warmer_k(), 10.0);
+    let at = |plant: &mut Plant, [x_m, y_m, theta_rad]: [f64; 3]| {
+        plant.set_pose_at_rest([x_m, y_m, theta_rad]);
+        plant.pivots_rad()
+    };
+    for theta_rad in [0.0, 0.4, -2.0] {
+        let centre = [0.0, 0.0, theta_rad];
+        let (there, cold_rad) = (at(&mut warm, centre), at(&mut cold, centre));
+        assert!((0..AXES).all(|i| (there[i] - cold_rad[i]).abs() < 1e-15));
+        for [x_m, y_m] in [[0.1 * 0.8, 0.0], [-0.03, 0.05]] {
+            // 2.3 um a kelvin at 0.1 m.
+            let grown = 1.0 + 10.0 * 2.3e-6 / 0.1;
+            let there = at(&mut warm, [x_m * grown, y_m * grown, theta_rad]);
+            let cold_rad = at(&mut cold, [x_m, y_m, theta_rad]);
+            for i in 0..AXES {
+                assert!(
+                    (there[i] - cold_rad[i]).abs() < 1e-14,
+                    "{there:?} {cold_rad:?}"
+                );
+            }
+            let off_rad = at(&mut warm, [x_m, y_m, theta_rad])[0] - cold_rad[0];
+            assert!(off_rad.abs() > 1e-5, "{off_rad:e}");
+        }
+    }
+}
+
+/// Motors that are held warm the track, and the pivots stay on their guides: of stiff guides and of those that give way.
+#[test]
+fn a_track_grows_while_the_motors_warm_it() {
+    for guide_compliance in [false, true] {
+        let mut parameters = PlantParameters {
+            // So heavy that it hardly moves; and so quick to warm that it need not be waited for.
+            motor_inertia_kg_m2: 1e9,
+            ..with(Imperfections {
+                guide_compliance,
+                ..WARM
+            })
+        };
+        parameters.track.time_constant_s = 0.5;
+        let mut plant = Plant::new(parameters);
+        let pose = [0.05, 0.02, 0.3];
+        plant.set_pose_at_rest(pose);
+        let rings_rad = plant.pivots_rad();
+        run(&mut plant, 0.5, &[Drive::Voltage(8.4); AXES]);
+        // 4 A and 33.6 W in each of three windings, two thirds of the way.
+        let settled_k = 3.0 * 33.6 * parameters.track.thermal_resistance_k_w;
+        let expected_k = settled_k * (1.0 - (-1.0_f64).exp());
+        let warmer_k = plant.track_warmer_k();
+        assert!((warmer_k / expected_k - 1.0).abs() < 0.01, "{warmer_k}");
+        let grown = 1.0 + parameters.track.expansion_per_k * warmer_k;
+        let [x_m, y_m, _] = plant.pose();
+        for (now_m, then_m) in [(x_m, pose[0]), (y_m, pose[1])] {
+            // Of 37 um.
+            assert!((now_m - then_m * grown).abs() < 1e-9, "{now_m} {then_m}");
+        }
+        let turned = plant.pivots_rad();
+        assert!((0..AXES).all(|i| (turned[i] - rings_rad[i]).abs() < 1e-8));
+        let gaps_m = plant.gaps_m();
+        assert!(gaps_m.iter().all(|gap_m| gap_m.abs() < 1e-9), "{gaps_m:?}");
     }
 }
 

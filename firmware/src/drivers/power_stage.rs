@@ -14,6 +14,16 @@ pub struct BridgePart {
     pub trip_a: f64,
     /// Resistance of the two switches that carry the current, hot, ohm.
     pub resistance_ohm: f64,
+    /// Time of an edge of its outputs, s.
+    pub edge_s: f64,
+    /// How much warmer than the air its junction settles for each watt, on the board, K/W.
+    pub thermal_resistance_k_w: f64,
+    /// Time in which it has gone two thirds of the way there, s.
+    pub thermal_time_constant_s: f64,
+    /// Temperature of its junction at which it opens all switches, deg C. It stays so, fault pin low, until it has cooled and slept.
+    pub shutdown_c: f64,
+    /// By how much it has to cool for that, K.
+    pub shutdown_hysteresis_k: f64,
     /// Time from its sleep pin to its first pulse, s. Until then it may pull its fault pin.
     pub wake_s: f64,
     /// How long the controller waits for that: it gives no duty, and does not look at the fault pin, s.
@@ -26,12 +36,21 @@ pub struct BridgePart {
 /// parallel) are those of data sheet SLVSFV5C as a library of parts quotes it with its pages; its own text was not at hand. The time
 /// to wake is assumed. The grace is twice as long: data sheets give the time to wake without a tolerance over temperature and supply,
 /// or as a typical value, and its charge pump starts from nothing. Nobody feels 2 ms at servo on.
+///
+/// Of its heat nothing is from that data sheet. The edge is that of its sister DRV8952 (data sheet SLOSE83, 140 ns, whose formula for what
+/// edges lose is used). Shutdown and hysteresis are assumed as such parts have them, typically. Resistance and time constant are assumed
+/// too: package and a few square centimetres of copper or a small heat sink, some 1 J/K.
 pub const BRIDGE: BridgePart = BridgePart {
     name: "DRV8262",
     supply_v: [4.5, 60.0],
     absolute_supply_v: 70.0,
     trip_a: 32.0,
     resistance_ohm: 0.052,
+    edge_s: 140e-9,
+    thermal_resistance_k_w: 20.0,
+    thermal_time_constant_s: 20.0,
+    shutdown_c: 165.0,
+    shutdown_hysteresis_k: 20.0,
     wake_s: 1e-3,
     wake_grace_s: 2e-3,
 };
@@ -125,6 +144,9 @@ pub const fn signed_current_counts(raw: u16) -> i16 {
 /// The largest back-EMF of the reference motor: 0.06 V s/rad behind a gear of 50, a quarter faster than it may be.
 const LARGEST_BACK_EMF_V: f64 = 0.06 * 50.0 * 12.5;
 const WINDING_OHM: f64 = 2.1;
+/// The PWM's frequency, and the warmest air that a board is made for.
+const PWM_HZ: f64 = 40e3;
+const WARMEST_AIR_C: f64 = 50.0;
 
 // The supply fits the part with what comes back on top of it, and everything in between has its place.
 const _: () = {
@@ -140,6 +162,10 @@ const _: () = {
     // The bridge bears a motor that is shorted at its largest speed, and one that is held under full voltage.
     assert!(LARGEST_BACK_EMF_V / WINDING_OHM < BRIDGE.trip_a);
     assert!(highest_supply_v / WINDING_OHM < BRIDGE.trip_a);
+    // It bears for long all that can be measured of a current.
+    let lost_w = BRIDGE.resistance_ohm * MOST_MEASURED_A * MOST_MEASURED_A
+        + highest_supply_v * MOST_MEASURED_A * BRIDGE.edge_s * PWM_HZ;
+    assert!(WARMEST_AIR_C + lost_w * BRIDGE.thermal_resistance_k_w < BRIDGE.shutdown_c);
     // The resistor takes more than three motors can give, 107 W each.
     assert!(BUS.resistor_on_v * BUS.resistor_on_v / BUS.resistor_ohm > 3.0 * 107.0);
 };

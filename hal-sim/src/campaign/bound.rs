@@ -152,7 +152,11 @@ impl Moment {
             + carried * (machine.platform_mass_kg + machine.payload.mass_kg);
         let current_a =
             (plant.currents_a()[axis].abs()).max(inertia_kg_m2 * stop_rad_s2 / constant);
-        let wrong_v = unknown_n_m * resistance_ohm / constant
+        let lost_n_m = gate(
+            flags.gear_losses,
+            BREAK_AWAY * (1.0 - machine.gear.efficiency) * constant * current_a,
+        );
+        let wrong_v = (unknown_n_m + lost_n_m) * resistance_ohm / constant
             + current_a * (resistance_ohm - told.resistance_ohm).abs()
             + rate_rad_s * (constant - told_constant).abs();
         let drift_rad = wrong_v / constant * scenario.parameters.supervision.stop_s;

@@ -42,7 +42,7 @@ pub struct Outcome {
     pub differs: Option<f64>,
     /// How it ended.
     pub end: End,
-    /// What the plant says of its own equations, which end where the platform is torn out of its guides.
+    /// What the plant says of its own equations, which end where the platform is torn out of its guides or a gear's tooth breaks.
     pub is_torn: bool,
 }
 

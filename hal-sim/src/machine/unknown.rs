@@ -31,6 +31,7 @@ pub fn unknown(seed: u64) -> StageParameters {
     machine.wiring.bridge_of_ring = order(&mut random);
     machine.wiring.port_of_ring = order(&mut random);
     machine.wiring.leads_exchanged = [(); AXES].map(|()| random.once_in(2));
+    draw_losses(&mut machine, &mut random);
     machine.plant.imperfections = Imperfections::ALL;
     machine
 }
@@ -111,6 +112,16 @@ fn draw_surroundings(machine: &mut StageParameters, random: &mut Random) {
     analog.supply_gain = 1.0 + 5e-3 * random.normal();
 }
 
+/// What came later, drawn last: a seed keeps all other numbers that it had.
+fn draw_losses(machine: &mut StageParameters, random: &mut Random) {
+    let plant = &mut machine.plant;
+    plant.gear.efficiency = random.between(0.88, 0.95);
+    plant.track.start_k = random.between(-3.0, 3.0);
+    let heat = &mut machine.bridge.heat;
+    heat.thermal_resistance_k_w *= random.between(0.7, 1.3);
+    heat.air_c = random.between(20.0, 50.0);
+}
+
 fn phases(random: &mut Random) -> [f64; AXES] {
     [(); AXES].map(|()| random.between(0.0, TAU))
 }
@@ -147,6 +158,16 @@ mod tests {
         assert_eq!(orders.len(), 36);
     }
 
+    /// What is drawn later comes last: other machines of a seed would be other results of everything that names one.
+    #[test]
+    fn a_seed_keeps_the_machine_that_it_had() {
+        let machine = unknown(7);
+        assert_eq!(machine.plant.platform_mass_kg, 3.366_590_115_242_271_3);
+        assert_eq!(machine.analog.supply_gain, 0.995_429_633_390_001_1);
+        assert_eq!(machine.wiring.port_of_ring, [1, 2, 0]);
+        assert_eq!(machine.wiring.leads_exchanged, [false, true, true]);
+    }
+
     /// The mean and the spread of what is drawn, over a thousand machines.
     #[test]
     fn sizes_are_those_of_a_workshop() {
@@ -164,6 +185,11 @@ mod tests {
         );
         let (mean, _) = spread(|m| m.plant.guide_stiffness_n_m);
         assert!((mean / 30e6 - 1.0).abs() < 0.05);
+        let (mean, deviation) = spread(|m| m.plant.gear.efficiency);
+        assert!(
+            (mean - 0.915).abs() < 2e-3
+                && (deviation / (0.035 / 3.0_f64.sqrt()) - 1.0).abs() < 0.08
+        );
         let reversed = machines.iter().filter(|m| m.encoders[2].reversed).count();
         assert!((430..570).contains(&reversed), "{reversed}");
     }

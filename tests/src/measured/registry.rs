@@ -529,6 +529,19 @@ pub const SECTIONS: &[Section] = &[
         without: &[],
     },
     Section {
+        name: "imperfection-cost",
+        title: "What each imperfection costs",
+        group: Group::Host,
+        about: "How many times real time a run of two moves is, on one core, for a kind machine, with one imperfection more or less at a time, and \
+                with all. The machines take turns; medians of nine rounds, of the ratios to the kind one's run in the same round too. Goal: at least \
+                4 times real time with all.",
+        command: "cargo bench -p hal-sim --bench cost",
+        short: None,
+        kind: Kind::HostTime,
+        seconds: 50,
+        without: &[],
+    },
+    Section {
         name: "calibration-fit",
         title: "Fits of a calibration",
         group: Group::Host,

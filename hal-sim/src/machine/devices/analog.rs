@@ -20,6 +20,8 @@ pub const SUPPLY_V_V: f64 = 1.0 / BUS.divider;
 
 const REFERENCE_V: f64 = 3.3;
 
+const SAMPLED_S: [f64; AXES] = [5.3e-6, 7.2e-6, 9.1e-6];
+
 /// What the analog inputs are off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,16 +34,20 @@ pub struct AnalogParameters {
     pub current_gain: [f64; AXES],
     /// The same of the supply.
     pub supply_gain: f64,
+    /// When each current is sampled, s after the beginning of a period of the PWM. It decides what of the ripple a sample has.
+    pub current_sampled_s: [f64; AXES],
 }
 
 impl AnalogParameters {
     /// What a 12 bit converter beside switching bridges has for noise; offsets of some 10 mA from amplifier and reference, gains within
-    /// 1 % from shunts; a divider of 1 % resistors.
+    /// 1 % from shunts; a divider of 1 % resistors. The currents are sampled one after the other, 1.9 us apart, from the latch on, which comes
+    /// 3 us after a period's beginning (`firmware/src/bin/stage/timeline.rs`); 1 us of interrupt and 1.3 us of sampling go before.
     pub const REFERENCE: Self = Self {
         noise_counts: 1.5,
         current_offset_counts: [3.0, -2.0, 4.0],
         current_gain: [1.01, 0.99, 1.004],
         supply_gain: 0.995,
+        current_sampled_s: SAMPLED_S,
     };
 
     /// Without errors.
@@ -50,6 +56,7 @@ impl AnalogParameters {
         current_offset_counts: [0.0; AXES],
         current_gain: [1.0; AXES],
         supply_gain: 1.0,
+        current_sampled_s: SAMPLED_S,
     };
 
     /// Counts of the motor currents and of the supply, in a sample with a number of its own: the same number, the same noise.

@@ -12,6 +12,7 @@ use std::rc::Rc;
 use embedded_hal::digital::{self, InputPin, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 
+use super::protection::BridgeHeat;
 use crate::machine::plant::Drive;
 use firmware::drivers::power_stage::BRIDGE;
 
@@ -35,6 +36,8 @@ pub struct BridgeParameters {
     pub trip_a: f64,
     /// Time from its sleep pin to its first pulse, s.
     pub wake_s: f64,
+    /// How it becomes warm.
+    pub heat: BridgeHeat,
     /// Current from which the whole dead time counts, A. Below, the PWM's current ripple crosses zero within the
     /// period and part of the loss turns into gain.
     pub dead_time_knee_a: f64,
@@ -51,6 +54,7 @@ impl BridgeParameters {
         dead_time_knee_a: 0.043,
         trip_a: BRIDGE.trip_a,
         wake_s: BRIDGE.wake_s,
+        heat: BridgeHeat::REFERENCE,
     };
 }
 
@@ -105,6 +109,41 @@ impl BridgeState {
         sign * self.pulse.clamp(0.0, 1.0) * current_a
     }
 
+    /// What the current has more than its mean at a time after the beginning of a PWM period, A: it rises from the edge on while
+    /// the pulse lasts, and falls until the next.
+    #[must_use]
+    pub fn ripple_a(&self, parameters: &BridgeParameters, inductance_h: f64, at_s: f64) -> f64 {
+        if !self.awake || self.fault {
+            return 0.0;
+        }
+        let pulse = self.pulse.clamp(0.0, 1.0);
+        let part = (at_s * parameters.pwm_hz).fract();
+        let share = if part < pulse {
+            (1.0 - pulse) * (part - 0.5 * pulse)
+        } else {
+            pulse * (0.5 * (1.0 + pulse) - part)
+        };
+        let sign = if self.forward { 1.0 } else { -1.0 };
+        sign * share * parameters.supply_v / (inductance_h * parameters.pwm_hz)
+    }
+
+    /// What is lost in it while a motor carries this current, W: in the two switches that carry it, whether it drives or brakes, and at the
+    /// two edges of a period, half of voltage times current each. While it is off the current dies in its diodes within a millisecond, which hardly warms it.
+    #[must_use]
+    pub fn lost_w(&self, parameters: &BridgeParameters, current_a: f64) -> f64 {
+        if !self.awake || self.fault {
+            return 0.0;
+        }
+        let heat = &parameters.heat;
+        let is_switched = self.pulse > 0.0 && self.pulse < 1.0;
+        let edges_j = if is_switched {
+            parameters.supply_v * current_a.abs() * heat.edge_s
+        } else {
+            0.0
+        };
+        heat.resistance_ohm * current_a * current_a + edges_j * parameters.pwm_hz
+    }
+
     /// While both switches of a leg are off, a diode carries the current and the leg lies on the wrong rail.
     fn dead_time_loss(&self, parameters: &BridgeParameters, current_a: f64) -> f64 {
         if self.pulse >= 1.0 {
@@ -114,45 +153,6 @@ impl BridgeState {
         let lost = (parameters.dead_time_s * parameters.pwm_hz).min(self.pulse);
         let direction = (current_a / parameters.dead_time_knee_a).clamp(-1.0, 1.0);
         lost * parameters.supply_v * direction
-    }
-}
-
-/// What a bridge does by itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Protection {
-    tripped: bool,
-    wakes: bool,
-    awake_s: f64,
-}
-
-impl Protection {
-    /// Looks at pins and current over a step, and says what the bridge then does with its pins.
-    #[must_use]
-    pub fn pass(
-        &mut self,
-        pins: BridgeState,
-        parameters: &BridgeParameters,
-        current_a: f64,
-        step_s: f64,
-    ) -> BridgeState {
-        if !pins.awake {
-            *self = Self::default();
-            return pins;
-        }
-        self.tripped |= current_a.abs() > parameters.trip_a;
-        self.wakes = self.awake_s < parameters.wake_s;
-        self.awake_s += step_s;
-        BridgeState {
-            awake: !self.wakes,
-            fault: pins.fault || self.tripped,
-            ..pins
-        }
-    }
-
-    /// Whether it pulls its fault pin: switched off, or awake and not ready yet.
-    #[must_use]
-    pub const fn pulls_fault_pin(&self) -> bool {
-        self.tripped || self.wakes
     }
 }
 

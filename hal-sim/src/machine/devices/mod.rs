@@ -5,6 +5,7 @@
 //! | `stage` | the whole stage behind the wires, and the timeline of a period |
 //! | `encoder`, `biss` | an absolute encoder, and the bits of its frame |
 //! | `bridge` | an H-bridge: pins in, voltage out |
+//! | `protection` | what a bridge does by itself: trips, heat, waking up |
 //! | `bus` | what lies between supply and bridges |
 //! | `analog` | what the ADC reads |
 //! | `watchdog` | what starts the controller again |
@@ -17,6 +18,7 @@ mod bridge;
 mod bus;
 mod encoder;
 mod flash;
+mod protection;
 mod stage;
 mod watchdog;
 mod wiring;
@@ -30,6 +32,7 @@ pub use bridge::{
 pub use bus::{Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
+pub use protection::{BridgeHeat, Protection};
 pub use stage::{Stage, StageParameters};
 pub use watchdog::{EARLY_WARNING_S, Reset, Watchdog};
 pub use wiring::WiringParameters;

@@ -12,9 +12,10 @@
 //! that computed it. Direction and sleep pins are taken to change with it. Other control rates scale the grid.
 
 use super::analog::AnalogParameters;
-use super::bridge::{BridgeParameters, BridgeState, Protection};
+use super::bridge::{BridgeParameters, BridgeState};
 use super::bus::{Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
+use super::protection::Protection;
 use super::wiring::WiringParameters;
 use crate::machine::plant::{AXES, Drive, ENCODER_HARMONICS_RAD, Plant, PlantParameters};
 use firmware::drivers::latch::LATCH_OFFSET_S;
@@ -123,11 +124,15 @@ pub struct Stage {
     /// Where bridges have limits.
     protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
+    /// Inductance of the windings, H, where the currents ripple with the PWM.
+    rippling_h: Option<f64>,
     wiring: WiringParameters,
     latch_offsets_s: [f64; AXES],
     seed: u64,
     periods: u64,
     acting: [BridgeState; AXES],
+    /// What the bridges made of that, by rings.
+    driving: [BridgeState; AXES],
     latched_pose: [f64; 3],
 }
 
@@ -160,13 +165,18 @@ impl Stage {
             analog: if flags.analog_errors {
                 parameters.analog
             } else {
-                AnalogParameters::EXACT
+                AnalogParameters {
+                    current_sampled_s: parameters.analog.current_sampled_s,
+                    ..AnalogParameters::EXACT
+                }
             },
+            rippling_h: (flags.current_ripple).then_some(parameters.plant.inductance_h),
             wiring: parameters.wiring,
             latch_offsets_s: parameters.latch_offsets_s,
             seed: parameters.seed,
             periods: 0,
             acting: [BridgeState::RESET; AXES],
+            driving: [BridgeState::RESET; AXES],
             latched_pose: [0.0; 3],
         };
         stage.latch();
@@ -209,10 +219,22 @@ impl Stage {
             .wrapping_mul(0x9e37_79b9)
             .wrapping_add(self.periods);
         (self.analog).sample(
-            self.wiring.at_bridges(self.plant.currents_a()),
+            self.wiring.at_bridges(self.sampled_currents_a()),
             self.bridge.supply_v,
             number,
         )
+    }
+
+    /// Currents of the windings as they are when their bridges' inputs are sampled, A.
+    fn sampled_currents_a(&self) -> [f64; AXES] {
+        let mut currents_a = self.plant.currents_a();
+        if let Some(inductance_h) = self.rippling_h {
+            for (ring, current_a) in currents_a.iter_mut().enumerate() {
+                let at_s = self.analog.current_sampled_s[self.wiring.bridge_of(ring)];
+                *current_a += self.driving[ring].ripple_a(&self.bridge, inductance_h, at_s);
+            }
+        }
+        currents_a
     }
 
     /// Changes the supply, V, from now on.
@@ -258,6 +280,14 @@ impl Stage {
         [0, 1, 2].map(|bridge| protection[self.wiring.ring_of_bridge(bridge)].pulls_fault_pin())
     }
 
+    /// Temperatures of the bridges' junctions, deg C, where bridges have limits.
+    #[must_use]
+    pub fn junctions_c(&self) -> Option<[f64; AXES]> {
+        let protection = self.protection.as_ref()?;
+        let of = |bridge| &protection[self.wiring.ring_of_bridge(bridge)];
+        Some([0, 1, 2].map(|bridge| of(bridge).junction_c(&self.bridge)))
+    }
+
     /// True pose of the platform (m, m, rad) at the instant the encoders latched.
     #[must_use]
     pub const fn latched_pose(&self) -> [f64; 3] {
@@ -285,6 +315,7 @@ impl Stage {
                 pins[axis] = bridge.pass(pins[axis], &self.bridge, currents_a[axis], step_s);
             }
         }
+        self.driving = pins;
         let drives: [Drive; AXES] =
             [0, 1, 2].map(|axis| pins[axis].drive(&self.bridge, currents_a[axis]));
         self.plant.step(step_s, &drives);

@@ -28,7 +28,7 @@ impl WiringParameters {
     #[must_use]
     pub fn at_rings(&self, bridges: [BridgeState; AXES]) -> [BridgeState; AXES] {
         [0, 1, 2].map(|ring| {
-            let bridge = bridges[place(self.bridge_of_ring[ring])];
+            let bridge = bridges[self.bridge_of(ring)];
             BridgeState {
                 forward: bridge.forward != self.leads_exchanged[ring],
                 ..bridge
@@ -46,9 +46,15 @@ impl WiringParameters {
             } else {
                 1.0
             };
-            bridges_a[place(self.bridge_of_ring[ring])] = sign * current_a;
+            bridges_a[self.bridge_of(ring)] = sign * current_a;
         }
         bridges_a
+    }
+
+    /// The bridge that drives a ring.
+    #[must_use]
+    pub const fn bridge_of(&self, ring: usize) -> usize {
+        place(self.bridge_of_ring[ring])
     }
 
     /// The ring whose encoder is at a port.
@@ -101,6 +107,7 @@ mod tests {
             [0, 1, 2].map(|bridge| MIXED.ring_of_bridge(bridge)),
             [1, 2, 0]
         );
+        assert_eq!([0, 1, 2].map(|ring| MIXED.bridge_of(ring)), [2, 0, 1]);
     }
 
     #[test]

@@ -35,6 +35,8 @@ pub struct DriveModel {
     preload_way_rad: f64,
     cyclic_error_rad: f64,
     cyclic_phase_rad: [f64; AXES],
+    /// Coulomb friction in the gear over the torque that it transmits.
+    lost_share: f64,
     gear_ratio: f64,
     ripple_n_m: f64,
     ripple_periods_per_rad: f64,
@@ -80,6 +82,7 @@ impl DriveModel {
             preload_way_rad: gear.preload_way_rad,
             cyclic_error_rad: gate(flags.gear_error, gear.cyclic_error_rad),
             cyclic_phase_rad: gear.cyclic_phase_rad,
+            lost_share: gate(flags.gear_losses, 1.0 - gear.efficiency),
             gear_ratio: parameters.gear_ratio,
             ripple_n_m: gate(flags.torque_ripple, parameters.ripple_n_m),
             ripple_periods_per_rad: parameters.ripple_periods_per_motor_turn
@@ -176,6 +179,12 @@ impl DriveModel {
         } else {
             0.0
         }
+    }
+
+    /// Coulomb friction in the gear, N m, while it transmits a torque.
+    #[must_use]
+    pub fn gear_loss(&self, transmitted_n_m: f64) -> f64 {
+        self.lost_share * transmitted_n_m.abs()
     }
 
     /// Energy stored in the spring, J.

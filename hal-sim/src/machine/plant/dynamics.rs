@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::Body;
 use super::bumpers::Bumpers;
-use super::drive::{Drive, DriveModel};
+use super::drive::{CyclicError, Drive, DriveModel};
 use super::friction::Friction;
 use super::geometry::{Geometry, GuideState, OffGuide};
 use super::guide::Guides;
@@ -98,7 +98,11 @@ impl Dynamics {
                 flags.dry_friction,
                 flags.viscous_friction,
             ),
-            motor_friction: Friction::new(&parameters.motor_friction, flags.motor_friction, true),
+            motor_friction: if flags.gear_losses {
+                Friction::with_loads(&parameters.motor_friction, flags.motor_friction, true)
+            } else {
+                Friction::new(&parameters.motor_friction, flags.motor_friction, true)
+            },
             cable_stiffness_n_m: if flags.cable_drag {
                 parameters.cable_stiffness_n_m
             } else {
@@ -192,6 +196,18 @@ impl Dynamics {
         Forces { platform, ring_n_m }
     }
 
+    /// What the transmission of a drive passes on to its ring, N m, and its cyclic error there.
+    pub fn transmission(&self, i: usize, state: &State, loose_rad: f64) -> (f64, CyclicError) {
+        let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
+        let error = self.drive.cyclic_error(i, motor_rad);
+        let windup_rad = motor_rad - error.angle_rad - state.ring_rad[i];
+        let transmitted_n_m = self.drive.transmitted_torque(
+            windup_rad - windup_rad.clamp(-loose_rad, loose_rad),
+            motor_rad_s - error.slope * motor_rad_s - state.ring_rad_s[i],
+        );
+        (transmitted_n_m, error)
+    }
+
     /// One drive: its current, its motor, and what it passes on to the ring; and the ring's friction.
     fn add_drive(
         &self,
@@ -203,21 +219,19 @@ impl Dynamics {
         rate: &mut State,
     ) {
         let (motor_rad, motor_rad_s) = (state.motor_rad[i], state.motor_rad_s[i]);
-        let error = self.drive.cyclic_error(i, motor_rad);
-        let windup_rad = motor_rad - error.angle_rad - state.ring_rad[i];
-        let loose_rad = external.loose_rad[i];
-        let transmitted_n_m = self.drive.transmitted_torque(
-            windup_rad - windup_rad.clamp(-loose_rad, loose_rad),
-            motor_rad_s - error.slope * motor_rad_s - state.ring_rad_s[i],
-        );
+        let (transmitted_n_m, error) = self.transmission(i, state, external.loose_rad[i]);
         let friction =
             (self.ring_friction).evaluate(state.ring_rad_s[i], state.bristle_rad[i], step_s);
         let more_n_m = external.more_friction_n_m[i] * state.ring_rad_s[i]
             / (state.ring_rad_s[i].abs() + MORE_FRICTION_RAD_S);
         forces.ring_n_m[i] += transmitted_n_m - friction.force - more_n_m;
         rate.bristle_rad[i] = friction.bristle_rate;
-        let motor_friction =
-            (self.motor_friction).evaluate(motor_rad_s, state.motor_bristle_rad[i], step_s);
+        let motor_friction = (self.motor_friction).evaluate_under_load(
+            motor_rad_s,
+            state.motor_bristle_rad[i],
+            step_s,
+            self.drive.gear_loss(transmitted_n_m),
+        );
         rate.motor_bristle_rad[i] = motor_friction.bristle_rate;
         let current_a = state.current_a[i];
         let constant_n_m_a =

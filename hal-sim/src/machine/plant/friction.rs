@@ -20,6 +20,8 @@ use super::parameters::FrictionParameters;
 pub struct Friction {
     coulomb: f64,
     static_excess: f64,
+    /// The static excess over Coulomb friction.
+    excess_ratio: f64,
     inverse_stribeck: f64,
     stiffness: f64,
     bristle_damping: f64,
@@ -46,11 +48,23 @@ impl Friction {
         Self {
             coulomb: parameters.coulomb * dry,
             static_excess: parameters.coulomb * (parameters.stiction_ratio - 1.0) * dry,
+            excess_ratio: parameters.stiction_ratio - 1.0,
             inverse_stribeck: 1.0 / parameters.stribeck_rate,
             stiffness: parameters.coulomb / parameters.presliding * dry,
             bristle_damping: parameters.bristle_damping * dry,
             inverse_fading_rate: 0.5 * parameters.bristle_damping / parameters.coulomb,
             viscous: parameters.viscous * viscous,
+        }
+    }
+
+    /// The same for a friction that grows with a load: what is dry of it without one may be switched off, and the bristles stay.
+    #[must_use]
+    pub fn with_loads(parameters: &FrictionParameters, is_dry: bool, is_viscous: bool) -> Self {
+        let unloaded = Self::new(parameters, is_dry, is_viscous);
+        Self {
+            coulomb: unloaded.coulomb,
+            static_excess: unloaded.static_excess,
+            ..Self::new(parameters, true, is_viscous)
         }
     }
 
@@ -73,10 +87,55 @@ impl Friction {
         }
     }
 
+    /// The same while a load adds `more` to the Coulomb friction, N m or N, and to the break-away by the same ratio.
+    ///
+    /// The bristles stay as stiff and bend further: under a load contacts yield further before they slip (Mindlin, 1949). Bristles
+    /// that are bent beyond the break-away of a load that has fallen are felt no more than that, and slip with the motion. So no load,
+    /// however it changes, puts energy into them.
+    #[must_use]
+    pub fn evaluate_under_load(
+        &self,
+        rate: f64,
+        bristle: f64,
+        step_s: f64,
+        more: f64,
+    ) -> FrictionState {
+        if more == 0.0 {
+            return self.evaluate(rate, bristle, step_s);
+        }
+        let coulomb = self.coulomb + more;
+        let loaded = Self {
+            coulomb,
+            static_excess: coulomb * self.excess_ratio,
+            ..*self
+        };
+        let bristle_rate = loaded.bristle_rate(rate, bristle, step_s);
+        // sigma1(v) with the Coulomb friction of the load: it never exceeds that.
+        let (fading, square) = (0.5 * self.bristle_damping * rate, coulomb * coulomb);
+        let damping = self.bristle_damping * square / (square + fading * fading);
+        let dry = self.stiffness * bristle + damping * bristle_rate;
+        FrictionState {
+            force: loaded.at_most_break_away(dry, rate) + self.viscous * rate,
+            bristle_rate,
+        }
+    }
+
     /// Energy stored in the bristle, J.
     #[must_use]
     pub fn energy_j(&self, bristle: f64) -> f64 {
         0.5 * self.stiffness * bristle * bristle
+    }
+
+    /// No more than g(v) of what is dry.
+    fn at_most_break_away(&self, dry: f64, rate: f64) -> f64 {
+        let stribeck = rate * self.inverse_stribeck;
+        // As a fraction: it rarely is more, and a division takes as long as all the rest.
+        let denominator = 1.0 + stribeck * stribeck;
+        let numerator = self.coulomb * denominator + self.static_excess;
+        if dry.abs() * denominator <= numerator {
+            return dry;
+        }
+        (numerator / denominator).copysign(dry)
     }
 
     fn bristle_rate(&self, rate: f64, bristle: f64, step_s: f64) -> f64 {
@@ -148,6 +207,108 @@ mod tests {
         let state = friction.evaluate(0.0, 50e-6, STEP_S);
         assert!((state.force - 0.05).abs() < 1e-12);
         assert_eq!(state.bristle_rate, 0.0);
+    }
+
+    fn with_loads() -> Friction {
+        Friction::with_loads(&PlantParameters::REFERENCE.motor_friction, false, true)
+    }
+
+    /// A load that comes and goes with the motion, at any phase and at one, two or 2.7 times its frequency: what is dry stays within the
+    /// break-away of the load that is there, it takes energy and never gives more than its bristles had, and it is the same mirrored.
+    #[test]
+    fn a_load_adds_friction_that_only_takes() {
+        let friction = with_loads();
+        let excess = PlantParameters::REFERENCE.motor_friction.stiction_ratio;
+        let sine =
+            |turns: f64| <f64 as kinematics::Scalar>::sin_cos(core::f64::consts::TAU * turns).0;
+        let (mut felt_n_m, mut taken_j) = (0.0_f64, 0.0_f64);
+        for (frequency_hz, rate_rad_s) in [(2.0, 1.0), (20.0, 0.03), (200.0, 0.2), (200.0, 2.0)] {
+            for (times, phase) in [(1.0, 0.0), (1.0, 0.25), (1.0, 0.6), (2.0, 0.4), (2.7, 0.1)] {
+                let (mut bristle, mut lost_j) = (0.0, 0.0_f64);
+                for step in 0..(2.0 / frequency_hz / STEP_S) as u64 {
+                    let turns = step as f64 * STEP_S * frequency_hz;
+                    let rate = rate_rad_s * sine(turns);
+                    let more_n_m = (0.8 * sine(times * turns + phase)).max(0.0);
+                    let at = |bristle: f64| {
+                        friction.evaluate_under_load(rate, bristle, STEP_S, more_n_m)
+                    };
+                    let state = at(bristle);
+                    assert!(state.force.abs() <= excess * more_n_m * (1.0 + 1e-12));
+                    let other = friction.evaluate_under_load(-rate, -bristle, STEP_S, more_n_m);
+                    assert_eq!(state.force, -other.force);
+                    assert_eq!(state.bristle_rate, -other.bristle_rate);
+                    // By the middle of the step: then force times way is energy to the second order.
+                    let middle = at(bristle + 0.5 * STEP_S * state.bristle_rate);
+                    let before_j = friction.energy_j(bristle);
+                    bristle += STEP_S * middle.bristle_rate;
+                    let stored_j = friction.energy_j(bristle) - before_j;
+                    lost_j += middle.force * rate * STEP_S - stored_j;
+                    felt_n_m = felt_n_m.max(state.force.abs());
+                    assert!(
+                        middle.force * rate * STEP_S - stored_j > -LEAST_J,
+                        "{frequency_hz} Hz, {times} at {phase}, step {step}"
+                    );
+                }
+                taken_j = taken_j.max(lost_j);
+            }
+        }
+        assert!(felt_n_m > 0.8 && taken_j > 0.1, "{felt_n_m} {taken_j}");
+    }
+    /// What a step of the test is off, J: of some microjoules.
+    const LEAST_J: f64 = 1e-9;
+
+    /// Bristles that a load has bent give nothing back when the next load finds them bent.
+    #[test]
+    fn a_load_that_comes_and_goes_pumps_nothing() {
+        let friction = with_loads();
+        let (mut bristle, mut given_j) = (0.0_f64, 0.0_f64);
+        // Out without a load, back under one: what is felt is what was bent.
+        for step in 0..4_000_u32 {
+            let is_out = step % 100 < 50;
+            let (rate, more_n_m) = if is_out { (0.02, 0.02) } else { (-0.02, 0.8) };
+            let state = friction.evaluate_under_load(rate, bristle, STEP_S, more_n_m);
+            bristle += STEP_S * state.bristle_rate;
+            given_j -= state.force * rate * STEP_S;
+            assert!(given_j < 1e-9, "{step}: {given_j:e}");
+        }
+    }
+
+    #[test]
+    fn a_load_that_is_nothing_changes_nothing() {
+        let parameters = &PlantParameters::REFERENCE.motor_friction;
+        let friction = Friction::with_loads(parameters, true, true);
+        for rate in [-3.0, -0.2, -4e-3, 0.0, 1e-3, 0.05, 0.4] {
+            for bristle in [-100e-6, -30e-6, 0.0, 90e-6] {
+                let without = friction.evaluate(rate, bristle, STEP_S);
+                let with = friction.evaluate_under_load(rate, bristle, STEP_S, 1e-12);
+                assert!((with.force - without.force).abs() < 1e-9);
+                assert!((with.bristle_rate - without.bristle_rate).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn sliding_under_a_load_takes_the_load_and_what_is_there_without() {
+        let parameters = &PlantParameters::REFERENCE.motor_friction;
+        for (is_dry, unloaded_n_m) in [(false, 0.0), (true, 0.2)] {
+            let friction = Friction::with_loads(parameters, is_dry, true);
+            for rate_rad_s in [0.5, 10.0] {
+                let mut bristle = 0.0;
+                for _ in 0..20_000 {
+                    let state = friction.evaluate_under_load(rate_rad_s, bristle, STEP_S, 0.64);
+                    bristle += STEP_S * state.bristle_rate;
+                }
+                let state = friction.evaluate_under_load(rate_rad_s, bristle, STEP_S, 0.64);
+                let expected_n_m = unloaded_n_m + 0.64;
+                assert!(
+                    (state.force / expected_n_m - 1.0).abs() < 1e-4,
+                    "{}",
+                    state.force
+                );
+                let without = friction.evaluate_under_load(rate_rad_s, bristle, STEP_S, 0.0);
+                assert_eq!(without.force == 0.0, !is_dry);
+            }
+        }
     }
 
     #[test]

@@ -10,11 +10,14 @@
 //! f   = n . (P - C) - d0 - S(rho)                 what the pivot is off the guide's line: offset d0, straightness S
 //! ```
 //!
+//! R grows with the warmth of the track. What else of the mechanism would grow with it is a thousandth of that.
+//!
 //! A guide that gives way passes on a force against f; a rigid one keeps f at 0. Angles from a pose are found by Newton's method.
 
 use kinematics::Scalar;
 use nalgebra::{Vector2, Vector3};
 
+use super::curves::{Curve, runout, straightness};
 use super::parameters::PlantParameters;
 use super::pivot_geometry::{AXES, PivotGeometry};
 
@@ -23,8 +26,6 @@ const GUIDE_RAD: [f64; AXES] = {
     use core::f64::consts::FRAC_PI_6;
     [-FRAC_PI_6, 3.0 * FRAC_PI_6, 7.0 * FRAC_PI_6]
 };
-/// The part of rho over which the straightness is a sum of Legendre polynomials: from the middle, over the track radius.
-const STRAIGHTNESS_SPAN: f64 = 0.8;
 /// A guide that lies closer to the ring's tangent's normal than this, as the cosine of the angle between pivot and guide, has come loose.
 const LEAST_COSINE: f64 = 0.01;
 /// Periods of a ring's run-out by its balls in one of its turns: the cage's, and the balls' in it. Neither is a whole number, nor are
@@ -44,14 +45,6 @@ pub struct OffGuide {
     pub guide: usize,
 }
 
-/// A function of one variable at one place, and its first two derivatives.
-#[derive(Clone, Copy, Debug, Default)]
-struct Curve {
-    value: f64,
-    slope: f64,
-    curvature: f64,
-}
-
 /// One pivot on its ring and one guide on the platform.
 #[derive(Clone, Copy, Debug)]
 struct Pivot {
@@ -61,6 +54,8 @@ struct Pivot {
     ball_runout_m: f64,
     ball_phase_rad: f64,
     radius_m: f64,
+    /// The same where it was measured.
+    cold_radius_m: f64,
     /// Sine and cosine of the guide's direction in the platform.
     direction: (f64, f64),
     direction_rad: f64,
@@ -70,6 +65,7 @@ struct Pivot {
 #[derive(Clone, Copy, Debug)]
 pub struct Geometry {
     track_radius_m: f64,
+    expansion_per_k: f64,
     pivots: [Pivot; AXES],
 }
 
@@ -102,6 +98,7 @@ impl Geometry {
                 PivotGeometry::IDEAL
             };
             let direction_rad = direction_rad + built.guide_error_rad;
+            let cold_radius_m = parameters.track_radius_m + built.radius_error_m;
             Pivot {
                 built,
                 has_runout: built.runout_m != PivotGeometry::IDEAL.runout_m,
@@ -112,14 +109,28 @@ impl Geometry {
                     0.0
                 },
                 ball_phase_rad: parameters.ball_phase_rad[i],
-                radius_m: parameters.track_radius_m + built.radius_error_m,
+                radius_m: cold_radius_m,
+                cold_radius_m,
                 direction: <f64 as Scalar>::sin_cos(direction_rad),
                 direction_rad,
             }
         });
-        Self {
+        let mut geometry = Self {
             track_radius_m: parameters.track_radius_m,
+            expansion_per_k: parameters.track.expansion_per_k,
             pivots,
+        };
+        if parameters.imperfections.track_heat {
+            geometry.warm(parameters.track.start_k);
+        }
+        geometry
+    }
+
+    /// Makes the track so much warmer than where its radius was measured, K.
+    pub fn warm(&mut self, warmer_k: f64) {
+        let grown = 1.0 + self.expansion_per_k * warmer_k;
+        for pivot in &mut self.pivots {
+            pivot.radius_m = pivot.cold_radius_m * grown;
         }
     }
 
@@ -127,7 +138,7 @@ impl Geometry {
     #[must_use]
     pub fn guides(&self, pose: &Vector3<f64>, ring_rad: &Vector3<f64>) -> [GuideState; AXES] {
         let turned = <f64 as Scalar>::sin_cos(pose.z);
-        [0, 1, 2].map(|i| self.guide(i, pose, turned, ring_rad[i]))
+        self.some_guides([0, 1, 2], pose, turned, (*ring_rad).into())
     }
 
     /// Angles of the rings with every pivot on its guide, rad, multi-turn with theta.
@@ -153,7 +164,7 @@ impl Geometry {
     ) -> Result<f64, OffGuide> {
         let mut angle_rad = start_rad;
         for _ in 0..MAX_STEPS {
-            let state = self.guide(guide, pose, turned, angle_rad);
+            let [state] = self.some_guides([guide], pose, turned, [angle_rad]);
             let step_rad = -state.gap_m / self.lever_m(guide, &state)?;
             angle_rad += step_rad;
             if step_rad.abs() < SMALL_STEP * (1.0 + angle_rad.abs()) {
@@ -176,67 +187,77 @@ impl Geometry {
         }
     }
 
-    fn guide(
+    /// Some guides together: one after the other each would wait for its own curves, in which every term waits for the one before.
+    fn some_guides<const N: usize>(
         &self,
-        i: usize,
+        which: [usize; N],
+        pose: &Vector3<f64>,
+        turned: (f64, f64),
+        ring_rad: [f64; N],
+    ) -> [GuideState; N] {
+        let pivots = which.map(|i| &self.pivots[i]);
+        let angles = ring_rad.map(<f64 as Scalar>::sin_cos);
+        let runouts = if pivots.iter().any(|pivot| pivot.has_runout) {
+            runout(pivots.map(|pivot| &pivot.built.runout_m), angles)
+        } else {
+            [Curve::default(); N]
+        };
+        let mut lane = 0;
+        let mut states = pivots.map(|pivot| {
+            let state = pivot.place(pose, turned, ring_rad[lane], angles[lane], runouts[lane]);
+            lane += 1;
+            state
+        });
+        if pivots.iter().any(|pivot| pivot.has_straightness) {
+            let sizes = pivots.map(|pivot| &pivot.built.straightness_m);
+            let places_m = states.map(|state| state.rho_m);
+            let curves = straightness(sizes, places_m, self.track_radius_m);
+            for (state, curve) in states.iter_mut().zip(curves) {
+                state.gap_m -= curve.value;
+                state.straightness = curve;
+            }
+        }
+        states
+    }
+}
+
+impl Pivot {
+    /// The pivot at a pose and an angle of its ring, as if its guide were straight.
+    fn place(
+        &self,
         pose: &Vector3<f64>,
         (sin, cos): (f64, f64),
         ring_rad: f64,
+        (ring_sin, ring_cos): (f64, f64),
+        runout: Curve,
     ) -> GuideState {
-        let pivot = &self.pivots[i];
-        let (guide_sin, guide_cos) = pivot.direction;
+        let (guide_sin, guide_cos) = self.direction;
         let u = Vector2::new(
             cos * guide_cos - sin * guide_sin,
             sin * guide_cos + cos * guide_sin,
         );
         let n = Vector2::new(-u.y, u.x);
-        let (ring_sin, ring_cos) = <f64 as Scalar>::sin_cos(ring_rad);
         let (outwards, onwards) = (
             Vector2::new(ring_cos, ring_sin),
             Vector2::new(-ring_sin, ring_cos),
         );
-        let runout = pivot.runout(ring_sin, ring_cos);
-        let radius_m = pivot.radius_m + runout.value;
-        let shift = pivot.ball_runout(ring_rad);
-        let centre_m = Vector2::from(pivot.built.ring_centre_m) + shift[0];
+        let radius_m = self.radius_m + runout.value;
+        let shift = self.ball_runout(ring_rad);
+        let centre_m = Vector2::from(self.built.ring_centre_m) + shift[0];
         let place = centre_m + radius_m * outwards - pose.xy();
-        let (rho_m, side_m) = (u.dot(&place), n.dot(&place));
-        let straightness = pivot.straightness(rho_m, self.track_radius_m);
+        let side_m = n.dot(&place);
         GuideState {
             u,
             n,
-            gap_m: side_m - pivot.built.guide_offset_m - straightness.value,
-            rho_m,
+            gap_m: side_m - self.built.guide_offset_m,
+            rho_m: u.dot(&place),
             side_m,
-            straightness,
+            straightness: Curve::default(),
             pivot_slope_m: runout.slope * outwards + radius_m * onwards + shift[1],
             pivot_curvature_m: (runout.curvature - radius_m) * outwards
                 + 2.0 * runout.slope * onwards
                 + shift[2],
         }
-    }
-}
-
-impl Pivot {
-    /// Run-out of the pivot by the ring's angle, m.
-    fn runout(&self, sin: f64, cos: f64) -> Curve {
-        let mut curve = Curve::default();
-        if !self.has_runout {
-            return curve;
-        }
-        let (mut harmonic_sin, mut harmonic_cos) = (sin, cos);
-        for (&[in_phase, across], harmonic) in self.built.runout_m.iter().zip(2_u32..) {
-            (harmonic_sin, harmonic_cos) = (
-                harmonic_sin * cos + harmonic_cos * sin,
-                harmonic_cos * cos - harmonic_sin * sin,
-            );
-            let times = f64::from(harmonic);
-            let value = in_phase * harmonic_cos + across * harmonic_sin;
-            curve.value += value;
-            curve.slope += times * (across * harmonic_cos - in_phase * harmonic_sin);
-            curve.curvature -= times * times * value;
-        }
-        curve
     }
 
     /// Shift of the ring's centre by its balls, m, and its first two derivatives by the ring's angle.
@@ -253,33 +274,6 @@ impl Pivot {
             shift[2] -= size_m * periods * periods * Vector2::new(cos, sin);
         }
         shift
-    }
-
-    /// Straightness of the guide by the place on it, m.
-    fn straightness(&self, rho_m: f64, track_radius_m: f64) -> Curve {
-        let mut curve = Curve::default();
-        if !self.has_straightness {
-            return curve;
-        }
-        let per_m = 1.0 / (STRAIGHTNESS_SPAN * track_radius_m);
-        let x = (rho_m - track_radius_m) * per_m;
-        // Bonnet's recursion, and P'(n+1) = P'(n-1) + (2 n + 1) P(n), from the first two polynomials.
-        let mut last = [1.0, 0.0, 0.0];
-        let mut this = [x, 1.0, 0.0];
-        for (&size_m, n) in self.built.straightness_m.iter().zip(1_u32..) {
-            let n = f64::from(n);
-            let odd = 2.0 * n + 1.0;
-            let next = [
-                (odd * x * this[0] - n * last[0]) / (n + 1.0),
-                last[1] + odd * this[0],
-                last[2] + odd * this[1],
-            ];
-            curve.value += size_m * next[0];
-            curve.slope += size_m * next[1] * per_m;
-            curve.curvature += size_m * next[2] * per_m * per_m;
-            (last, this) = (this, next);
-        }
-        curve
     }
 }
 

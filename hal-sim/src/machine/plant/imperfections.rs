@@ -39,6 +39,10 @@ pub struct Imperfections {
     pub preload: bool,
     /// Friction on the motors' side of the gears.
     pub motor_friction: bool,
+    /// Friction in the gears that grows with the torque that they transmit.
+    pub gear_losses: bool,
+    /// Teeth of the gears that break under too much torque. Off, they bear everything.
+    pub tooth_limit: bool,
     /// Torque ripple that grows with the current.
     pub commutation_ripple: bool,
     /// Run-out of the rings that does not repeat.
@@ -53,13 +57,17 @@ pub struct Imperfections {
     pub bit_errors: bool,
     /// Noise, offset and gain errors of the analog inputs.
     pub analog_errors: bool,
+    /// Ripple of the PWM in the motor currents that the analog inputs sample.
+    pub current_ripple: bool,
     /// Floor that shakes.
     pub floor_vibration: bool,
     /// Windings that become warm, and have more resistance then.
     pub winding_heat: bool,
+    /// A track that becomes warm, and larger.
+    pub track_heat: bool,
     /// A bus behind a diode, with a capacitor. Off, the supply gives and takes any current.
     pub bus: bool,
-    /// Bridges that trip, and that need time to wake up.
+    /// Bridges that trip, that become too hot, and that need time to wake up.
     pub bridge_limits: bool,
     /// Counts of the PWM. Off, a period has [`FINE_PWM`](crate::machine::devices::FINE_PWM) counts, as many as a duty can name.
     pub pwm_quantisation: bool,
@@ -82,6 +90,8 @@ impl Imperfections {
         gear_error: false,
         preload: false,
         motor_friction: false,
+        gear_losses: false,
+        tooth_limit: false,
         commutation_ripple: false,
         ball_runout: false,
         cable_drag: false,
@@ -89,8 +99,10 @@ impl Imperfections {
         subdivisional_error: false,
         bit_errors: false,
         analog_errors: false,
+        current_ripple: false,
         floor_vibration: false,
         winding_heat: false,
+        track_heat: false,
         bus: false,
         bridge_limits: false,
         pwm_quantisation: false,
@@ -118,6 +130,8 @@ impl Imperfections {
         gear_error: true,
         preload: true,
         motor_friction: true,
+        gear_losses: true,
+        tooth_limit: true,
         commutation_ripple: true,
         ball_runout: true,
         cable_drag: true,
@@ -125,8 +139,10 @@ impl Imperfections {
         subdivisional_error: true,
         bit_errors: true,
         analog_errors: true,
+        current_ripple: true,
         floor_vibration: true,
         winding_heat: true,
+        track_heat: true,
         bus: true,
         bridge_limits: true,
         ..Self::CALIBRATED
@@ -142,7 +158,7 @@ pub struct Named {
 }
 
 /// Every imperfection that can be switched.
-pub const NAMED: [Named; 26] = [
+pub const NAMED: [Named; 30] = [
     named("dry-friction", |on| &mut on.dry_friction),
     named("viscous-friction", |on| &mut on.viscous_friction),
     named("compliance", |on| &mut on.compliance),
@@ -157,6 +173,8 @@ pub const NAMED: [Named; 26] = [
     named("gear-error", |on| &mut on.gear_error),
     named("preload", |on| &mut on.preload),
     named("motor-friction", |on| &mut on.motor_friction),
+    named("gear-losses", |on| &mut on.gear_losses),
+    named("tooth-limit", |on| &mut on.tooth_limit),
     named("commutation-ripple", |on| &mut on.commutation_ripple),
     named("ball-runout", |on| &mut on.ball_runout),
     named("cable-drag", |on| &mut on.cable_drag),
@@ -164,8 +182,10 @@ pub const NAMED: [Named; 26] = [
     named("subdivisional-error", |on| &mut on.subdivisional_error),
     named("bit-errors", |on| &mut on.bit_errors),
     named("analog-errors", |on| &mut on.analog_errors),
+    named("current-ripple", |on| &mut on.current_ripple),
     named("floor-vibration", |on| &mut on.floor_vibration),
     named("winding-heat", |on| &mut on.winding_heat),
+    named("track-heat", |on| &mut on.track_heat),
     named("bus", |on| &mut on.bus),
     named("bridge-limits", |on| &mut on.bridge_limits),
     named("pwm-quantisation", |on| &mut on.pwm_quantisation),

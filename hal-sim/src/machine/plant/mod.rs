@@ -12,17 +12,18 @@
 //! | `body` | platform and payload |
 //! | `drive` | winding, motor, transmission |
 //! | `pivot_geometry`, `built` | how a pivot, its ring and its guide are built; the reference stage's |
-//! | `geometry` | where a pivot lies on its guide, with every error of that |
+//! | `geometry`, `curves` | where a pivot lies on its guide, with every error of that; run-out and straightness |
 //! | `guide` | a guide's forces: across it, along it, at its ends |
 //! | `friction`, `stops`, `bumpers` | friction by bristles, of rings and of guides; ends of the guides; the carriages' bumpers |
 //! | `contacts` | collisions, with their energy |
-//! | `surroundings` | the floor's shaking, the windings' warmth |
+//! | `surroundings` | the floor's shaking, the warmth of windings and track |
 //! | `dynamics` | the equations of motion |
 
 mod body;
 mod built;
 mod bumpers;
 mod contacts;
+mod curves;
 mod drive;
 mod dynamics;
 mod friction;
@@ -45,7 +46,8 @@ pub use friction::{Friction, FrictionState};
 pub use geometry::{Geometry, GuideState, OffGuide};
 pub use imperfections::{Imperfections, NAMED, Named};
 pub use parameters::{
-    FrictionParameters, GearParameters, Payload, PlantParameters, WindingParameters,
+    FrictionParameters, GearParameters, Payload, PlantParameters, TrackParameters,
+    WindingParameters,
 };
 pub use pivot_geometry::{AXES, PivotGeometry};
 pub use stops::EndStops;
@@ -64,6 +66,13 @@ pub enum Broken {
         pose: [f64; 3],
         /// Which guide, 0 to 2.
         guide: usize,
+    },
+    /// A tooth of a gear has broken.
+    Tooth {
+        /// Which drive, 0 to 2.
+        drive: usize,
+        /// What the transmission passed on to its ring, N m.
+        torque_n_m: f64,
     },
     /// A state is no longer finite: a force or a voltage that is not a number, or a step that is far too long.
     NotFinite,
@@ -149,10 +158,23 @@ impl Plant {
         }
         self.meet_surroundings(step_s);
         match self.runge_kutta(step_s, drives) {
-            Ok(next) if next.is_finite() => self.state = next,
+            Ok(next) if next.is_finite() => {
+                self.state = next;
+                self.broken = self.broken_tooth();
+            }
             Ok(_) => self.broken = Some(Broken::NotFinite),
             Err(reason) => self.break_down(reason),
         }
+    }
+
+    fn broken_tooth(&self) -> Option<Broken> {
+        if !self.parameters.imperfections.tooth_limit {
+            return None;
+        }
+        let most_n_m = self.parameters.gear.tooth_torque_n_m;
+        (self.transmitted_n_m().into_iter().enumerate())
+            .find(|(_, torque_n_m)| torque_n_m.abs() > most_n_m)
+            .map(|(drive, torque_n_m)| Broken::Tooth { drive, torque_n_m })
     }
 
     /// What the surroundings are over the next step.
@@ -162,6 +184,9 @@ impl Plant {
         let more = self.external.floor_m_s2;
         self.dynamics.gravity_m_s2 = [0, 1].map(|axis| gravity[axis] + (floor[axis] - more[axis]));
         self.dynamics.resistance_ohm = self.surroundings.resistance_ohm();
+        if let Some(warmer_k) = self.surroundings.track_warmer_k() {
+            self.dynamics.geometry.warm(warmer_k);
+        }
     }
 
     /// Why the plant stands still, if it is broken.
@@ -228,6 +253,21 @@ impl Plant {
     #[must_use]
     pub const fn windings_warmer_k(&self) -> [f64; AXES] {
         self.surroundings.warmer_k()
+    }
+
+    /// How much warmer the track is than where its radius was measured, K; 0 where its warmth does nothing.
+    #[must_use]
+    pub fn track_warmer_k(&self) -> f64 {
+        self.surroundings.track_warmer_k().unwrap_or_default()
+    }
+
+    /// Torques that the transmissions pass on to the rings, N m.
+    #[must_use]
+    pub fn transmitted_n_m(&self) -> [f64; AXES] {
+        [0, 1, 2].map(|i| {
+            let loose_rad = self.external.loose_rad[i];
+            self.dynamics.transmission(i, &self.state, loose_rad).0
+        })
     }
 
     /// Winding currents, A.

@@ -1,9 +1,9 @@
-//! What changes slowly around the machine: the floor's shaking, and the warmth of the windings.
+//! What changes slowly around the machine: the floor's shaking, and the warmth of the windings and of the track.
 
 use core::f64::consts::TAU;
 use kinematics::Scalar;
 
-use super::parameters::{PlantParameters, WindingParameters};
+use super::parameters::{PlantParameters, TrackParameters, WindingParameters};
 use super::pivot_geometry::AXES;
 
 /// Frequencies of the floor, Hz, 2 to 20 as buildings have them, and phases in turns: those of y follow those of x.
@@ -23,12 +23,16 @@ pub(super) struct Surroundings {
     time_s: f64,
     /// Of the windings, over those at which their resistance was measured, K.
     warmer_k: [f64; AXES],
+    track: Option<TrackParameters>,
+    /// Of the track, over that at which its radius was measured, K.
+    track_warmer_k: f64,
 }
 
 impl Surroundings {
     pub fn new(parameters: &PlantParameters) -> Self {
         let flags = parameters.imperfections;
         let winding = flags.winding_heat.then_some(parameters.winding);
+        let track = flags.track_heat.then_some(parameters.track);
         Self {
             floor_m_s2: if flags.floor_vibration {
                 parameters.floor_acceleration_m_s2
@@ -39,20 +43,30 @@ impl Surroundings {
             cold_ohm: parameters.resistance_ohm,
             time_s: 0.0,
             warmer_k: [winding.map_or(0.0, |winding| winding.start_k); AXES],
+            track,
+            track_warmer_k: track.map_or(0.0, |track| track.start_k),
         }
     }
 
     /// Lets time go by with these currents.
     pub fn step(&mut self, step_s: f64, currents_a: [f64; AXES]) {
         self.time_s += step_s;
-        let Some(winding) = self.winding else {
+        if self.winding.is_none() && self.track.is_none() {
             return;
-        };
+        }
         let resistance_ohm = self.resistance_ohm();
-        for (axis, warmer_k) in self.warmer_k.iter_mut().enumerate() {
-            let power_w = resistance_ohm[axis] * currents_a[axis] * currents_a[axis];
-            let settled_k = power_w * winding.thermal_resistance_k_w;
-            *warmer_k += (settled_k - *warmer_k) * (step_s / winding.time_constant_s);
+        let lost_w =
+            [0, 1, 2].map(|axis| resistance_ohm[axis] * currents_a[axis] * currents_a[axis]);
+        if let Some(winding) = self.winding {
+            for (warmer_k, power_w) in self.warmer_k.iter_mut().zip(lost_w) {
+                let settled_k = power_w * winding.thermal_resistance_k_w;
+                *warmer_k += (settled_k - *warmer_k) * (step_s / winding.time_constant_s);
+            }
+        }
+        if let Some(track) = self.track {
+            let settled_k = lost_w.iter().sum::<f64>() * track.thermal_resistance_k_w;
+            self.track_warmer_k +=
+                (settled_k - self.track_warmer_k) * (step_s / track.time_constant_s);
         }
     }
 
@@ -66,6 +80,11 @@ impl Surroundings {
     /// How much warmer the windings are than where their resistance was measured, K.
     pub const fn warmer_k(&self) -> [f64; AXES] {
         self.warmer_k
+    }
+
+    /// How much warmer the track is than where its radius was measured, K; none where its warmth does nothing.
+    pub fn track_warmer_k(&self) -> Option<f64> {
+        self.track.map(|_| self.track_warmer_k)
     }
 
     /// What the machine feels of the floor in the plane, m/s^2: the floor's acceleration, the other way round.
@@ -139,10 +158,28 @@ mod tests {
     }
 
     #[test]
+    fn a_track_warms_by_the_losses_of_all_windings_over_hours() {
+        let mut parameters = unkind();
+        parameters.imperfections.winding_heat = false;
+        parameters.track.start_k = -5.0;
+        let mut surroundings = Surroundings::new(&parameters);
+        assert_eq!(surroundings.track_warmer_k(), Some(-5.0));
+        let settled_k = (4.0 + 1.0) * parameters.resistance_ohm * 0.5;
+        for _ in 0..7_200 {
+            surroundings.step(1.0, [2.0, -1.0, 0.0]);
+        }
+        let expected_k = settled_k - (settled_k + 5.0) * (-1.0_f64).exp();
+        let warmer_k = surroundings.track_warmer_k().unwrap_or_default();
+        assert!((warmer_k - expected_k).abs() < 1e-3, "{warmer_k}");
+        assert_eq!(surroundings.warmer_k(), [0.0; AXES]);
+    }
+
+    #[test]
     fn a_kind_machine_stands_still_and_stays_cold() {
         let mut surroundings = Surroundings::new(&PlantParameters::REFERENCE);
         surroundings.step(100.0, [6.0; AXES]);
         assert_eq!(surroundings.floor_m_s2(), [0.0; 2]);
         assert_eq!(surroundings.warmer_k(), [0.0; AXES]);
+        assert_eq!(surroundings.track_warmer_k(), None);
     }
 }
