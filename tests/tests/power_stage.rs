@@ -1,13 +1,15 @@
 //! Bus, brake resistor, bridges with limits, and the limit of the motors' currents.
 
 use firmware::drivers::bridge::Duty;
-use firmware::drivers::power_stage::BRIDGE;
+use firmware::drivers::power_stage::{BRIDGE, BUS};
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
 use hal_sim::machine::devices::{BrakeResistorFault, StageParameters};
 use hal_sim::machine::plant::Imperfections;
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
+use tests::reactions::Motion;
 
 const LIMIT: u32 = 0x5450_080F;
 
@@ -87,6 +89,63 @@ fn a_resistor_that_opens_is_found_in_a_stop() {
     // The twin: a capacitor that takes all of it.
     let twin = stopped(4.7e-3, Some(BrakeResistorFault::Open));
     assert_eq!(twin.fault(), None);
+}
+
+/// The highest voltage of the bus in stops as hard as the pivots can follow, from these motions of the worst machine, on a supply at its
+/// upper end and such a capacitor; and the faults.
+fn hardest_stops(
+    motions: &[Motion],
+    capacitor_f: f64,
+    fault: Option<BrakeResistorFault>,
+) -> (f64, Vec<Option<FaultKind>>) {
+    let stopped = of_all(motions, cores(), |motion| {
+        let mut stage = motion.machine();
+        stage.bus.capacitor_f = capacitor_f;
+        stage.plant.supply_v = BUS.supply_v * (1.0 + BUS.supply_tolerance);
+        let mut bench = motion.under_way(&stage);
+        bench.rig.front.stage.set_brake_resistor_fault(fault);
+        bench.send("STP\n");
+        bench.run(6_000);
+        (bus(&bench).0, bench.fault_kind())
+    });
+    let highest_v = stopped.iter().map(|(volts, _)| *volts).fold(0.0, f64::max);
+    (
+        highest_v,
+        stopped.into_iter().map(|(_, kind)| kind).collect(),
+    )
+}
+
+/// With a resistor that is open no stop takes the bus to what is too high for the bridges, on the board's capacitor and on a fifth of it: the
+/// fault's own reaction, shorted windings, is what holds it. So nothing else in the servo holds back what is given back.
+#[test]
+fn no_stop_on_an_open_resistor_takes_the_bus_too_high() {
+    let motions = Motion::all();
+    // What it was, over the supply, and a tenth.
+    for (capacitor_f, was_v) in [(4.7e-3, 54.82), (1e-3, 56.11)] {
+        let open = Some(BrakeResistorFault::Open);
+        let (highest_v, faults) = hardest_stops(&motions, capacitor_f, open);
+        let found = faults.iter().flatten().count();
+        println!("{capacitor_f} F: {highest_v:.2} V, {found} faults");
+        let most_v = 49.9 + 1.1 * (was_v - 49.9);
+        assert!(most_v < BUS.too_high_v && highest_v < most_v, "{highest_v}");
+        let rises = |kind: &FaultKind| *kind == FaultKind::SupplyRises;
+        assert!(
+            found > 0 && faults.iter().flatten().all(rises),
+            "{faults:?}"
+        );
+    }
+}
+
+/// The twin: where it works it is no fault, and the bus ends where the resistor begins.
+#[test]
+fn no_stop_on_a_resistor_that_works_is_a_fault() {
+    let motions: Vec<_> = Motion::all().into_iter().step_by(3).collect();
+    for capacitor_f in [4.7e-3, 1e-3] {
+        let (highest_v, faults) = hardest_stops(&motions, capacitor_f, None);
+        println!("{capacitor_f} F: {highest_v:.2} V");
+        assert!(highest_v < 54.2, "{highest_v}");
+        assert!(faults.iter().all(Option::is_none), "{faults:?}");
+    }
 }
 
 /// Before anything drives: open, on for good, or well.
