@@ -2,7 +2,7 @@
 
 mod written_page;
 
-use firmware::control::{MODES, Outcome, TRANSITIONS};
+use firmware::control::{LEAST_RESISTOR_DROP_V, MODES, Outcome, TRANSITIONS};
 use firmware::drivers::power_stage::{BRIDGE, BUS};
 use firmware::fault::{FAULT_DESCRIPTIONS, Fault, FaultKind, Reaction};
 use firmware::gcs::{ErrorCode, PARAMETERS};
@@ -202,4 +202,10 @@ fn words_have_the_figures_of_the_power_stage() {
     );
     assert!(detection.contains(&figures) && detection.contains(&format!("{} J", BUS.resistor_j)));
     assert!(reason.contains(&format!("{} V", BUS.resistor_on_v)));
+    let (detection, reason) = words(FaultKind::SupplyRises).unwrap();
+    assert!(detection.contains(&format!("at {} V", BUS.resistor_on_v)));
+    assert!(reason.contains(&format!("under {} V", BUS.too_high_v)));
+    let (detection, _) = words(FaultKind::BrakeResistorDead).unwrap();
+    assert!(detection.contains(&format!("by {:.0} mV", LEAST_RESISTOR_DROP_V * 1e3)));
+    assert!(detection.contains(&format!("over {} V", BUS.resistor_on_v)));
 }

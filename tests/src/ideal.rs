@@ -16,6 +16,8 @@ use kinematics::Angle;
 
 /// 48 V at the ADC.
 const SUPPLY_COUNTS: u16 = 2979;
+/// By how much the brake resistor draws it down, counts: 0.29 V.
+const RESISTOR_COUNTS: u16 = 18;
 
 /// What is wrong with the hardware at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -171,10 +173,10 @@ impl Ideal {
             bridge_fault: [self.trouble.bridge, false, false],
             emergency_stop: self.trouble.emergency_stop,
             current_counts: [0; 3],
-            supply_counts: if self.trouble.no_supply {
-                0
-            } else {
-                SUPPLY_COUNTS
+            supply_counts: match (self.trouble.no_supply, self.outputs.brake_resistor) {
+                (true, _) => 0,
+                (false, true) => SUPPLY_COUNTS - RESISTOR_COUNTS,
+                (false, false) => SUPPLY_COUNTS,
             },
             tick_cycles: 0,
             program_damaged: false,

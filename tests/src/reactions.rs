@@ -121,11 +121,20 @@ impl Motion {
         format!("{moves}{turns} {at} mm from the middle with {motors} motors")
     }
 
+    /// The worst machine that has it.
+    #[must_use]
+    pub fn machine(self) -> StageParameters {
+        worst_machine(self.weak)
+    }
+
     /// A stage in the middle of it.
-    fn under_way(self) -> Bench {
-        let stage = worst_machine(self.weak);
-        let told = with_motion_fitted(&Told::Machine.parameters(&Parameters::REFERENCE, &stage));
-        let mut bench = Bench::told(&stage, &told);
+    ///
+    /// # Panics
+    /// When it does not come so far.
+    #[must_use]
+    pub fn under_way(self, stage: &StageParameters) -> Bench {
+        let told = with_motion_fitted(&Told::Machine.parameters(&Parameters::REFERENCE, stage));
+        let mut bench = Bench::told(stage, &told);
         assert_eq!(bench.error_after("FRF"), "0");
         bench.settle();
         let chord = CHORDS_MM[self.chord];
@@ -203,7 +212,7 @@ pub struct ToRest {
 /// When that is not its fault, or does not rest.
 #[must_use]
 pub fn to_rest(trouble: Trouble, motion: Motion) -> ToRest {
-    let mut bench = motion.under_way();
+    let mut bench = motion.under_way(&motion.machine());
     let [mut x, mut y, from] = bench.rig.front.stage.plant.pose();
     let mut rest = ToRest::default();
     trouble.begin(&mut bench);

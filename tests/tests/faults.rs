@@ -299,7 +299,8 @@ fn a_low_supply() {
         assert_eq!(bench.error_after(line), "1024");
     }
 
-    let mut twin = with_supply(36.1);
+    // The brake resistor is tested at servo on, and draws it down by 0.22 V.
+    let mut twin = with_supply(36.3);
     assert_eq!(twin.error_after("FRF"), "0");
     twin.settle();
     assert_eq!(twin.error_after("MOV X 5"), "0");

@@ -1,13 +1,15 @@
 //! Bus, brake resistor, bridges with limits, and the limit of the motors' currents.
 
 use firmware::drivers::bridge::Duty;
-use firmware::drivers::power_stage::BRIDGE;
+use firmware::drivers::power_stage::{BRIDGE, BUS};
 use firmware::fault::FaultKind;
 use firmware::mode::Mode;
-use hal_sim::machine::devices::StageParameters;
+use hal_sim::machine::devices::{BrakeResistorFault, StageParameters};
 use hal_sim::machine::plant::Imperfections;
+use hal_sim::parallel::{cores, of_all};
 use hal_sim::rig::run::{RunOptions, stage_parameters};
 use tests::Bench;
+use tests::reactions::Motion;
 
 const LIMIT: u32 = 0x5450_080F;
 
@@ -49,30 +51,207 @@ fn most_current(bench: &mut Bench, ticks: u32) -> f64 {
     })
 }
 
-/// What three motors give back in a stop raises the bus until the resistor takes it; without a resistor it is a fault before the
-/// bridges' 60 V.
+/// A stage that turns at its largest rate is stopped by command on a capacitor like this.
+fn stopped(capacitor_f: f64, fault: Option<BrakeResistorFault>) -> Bench {
+    let mut stage = machine();
+    stage.bus.capacitor_f = capacitor_f;
+    let mut bench = turning(&stage, 360.0);
+    bench.rig.front.stage.set_brake_resistor_fault(fault);
+    assert_eq!(bench.error_after("HLT"), "10");
+    bench.run(10_000);
+    bench
+}
+
+/// What three motors give back in a stop raises the bus until the resistor takes it. On the reference stage's capacitor an empty
+/// platform's stop ends under 54 V; on one that is spent it does not.
 #[test]
 fn what_a_stop_gives_back_goes_into_the_resistor() {
-    let stopped = |brake_resistor_ohm: f64| {
-        let mut stage = machine();
-        stage.bus.brake_resistor_ohm = brake_resistor_ohm;
-        // A capacitor that is spent: with the one of the reference stage an empty platform's stop ends under 54 V.
-        stage.bus.capacitor_f = 1e-3;
-        let mut bench = turning(&stage, 360.0);
-        // Stopped by command.
-        assert_eq!(bench.error_after("HLT"), "10");
-        bench.run(10_000);
-        bench
-    };
-    let bench = stopped(8.2);
+    let bench = stopped(1e-3, None);
     let (highest_v, resistor_j) = bus(&bench);
     println!("{highest_v:.1} V, {resistor_j:.2} J");
     assert_eq!((bench.fault(), bench.mode()), (None, Mode::Holding));
     assert!((54.0..54.5).contains(&highest_v) && resistor_j > 0.5);
-    let without = stopped(1e6);
-    println!("without: {:.1} V", bus(&without).0);
-    assert_eq!(without.fault_kind(), Some(FaultKind::SupplyHigh));
-    assert!(bus(&without).0 < 60.0);
+}
+
+/// A resistor that is open is found by the supply that rises on, long before that is too high for the bridges.
+#[test]
+fn a_resistor_that_opens_is_found_in_a_stop() {
+    for capacitor_f in [2e-3, 1e-3] {
+        let bench = stopped(capacitor_f, Some(BrakeResistorFault::Open));
+        let (highest_v, _) = bus(&bench);
+        let fault = bench.fault().expect("a fault");
+        println!("{:.1} mF: {highest_v:.2} V, {fault}", capacitor_f * 1e3);
+        assert_eq!(fault.kind, FaultKind::SupplyRises);
+        assert_eq!(bench.mode(), Mode::Fault);
+        assert!(fault.value > fault.limit && highest_v < 57.5, "{highest_v}");
+        assert!(bench.outputs.awake, "it brakes");
+    }
+    // The twin: a capacitor that takes all of it.
+    let twin = stopped(4.7e-3, Some(BrakeResistorFault::Open));
+    assert_eq!(twin.fault(), None);
+}
+
+/// The highest voltage of the bus in stops as hard as the pivots can follow, from these motions of the worst machine, on a supply at its
+/// upper end and such a capacitor; and the faults.
+fn hardest_stops(
+    motions: &[Motion],
+    capacitor_f: f64,
+    fault: Option<BrakeResistorFault>,
+) -> (f64, Vec<Option<FaultKind>>) {
+    let stopped = of_all(motions, cores(), |motion| {
+        let mut stage = motion.machine();
+        stage.bus.capacitor_f = capacitor_f;
+        stage.plant.supply_v = BUS.supply_v * (1.0 + BUS.supply_tolerance);
+        let mut bench = motion.under_way(&stage);
+        bench.rig.front.stage.set_brake_resistor_fault(fault);
+        bench.send("STP\n");
+        bench.run(6_000);
+        (bus(&bench).0, bench.fault_kind())
+    });
+    let highest_v = stopped.iter().map(|(volts, _)| *volts).fold(0.0, f64::max);
+    (
+        highest_v,
+        stopped.into_iter().map(|(_, kind)| kind).collect(),
+    )
+}
+
+/// With a resistor that is open no stop takes the bus to what is too high for the bridges, on the board's capacitor and on a fifth of it: the
+/// fault's own reaction, shorted windings, is what holds it. So nothing else in the servo holds back what is given back.
+#[test]
+fn no_stop_on_an_open_resistor_takes_the_bus_too_high() {
+    let motions = Motion::all();
+    // What it was, over the supply, and a tenth.
+    for (capacitor_f, was_v) in [(4.7e-3, 54.82), (1e-3, 56.11)] {
+        let open = Some(BrakeResistorFault::Open);
+        let (highest_v, faults) = hardest_stops(&motions, capacitor_f, open);
+        let found = faults.iter().flatten().count();
+        println!("{capacitor_f} F: {highest_v:.2} V, {found} faults");
+        let most_v = 49.9 + 1.1 * (was_v - 49.9);
+        assert!(most_v < BUS.too_high_v && highest_v < most_v, "{highest_v}");
+        let rises = |kind: &FaultKind| *kind == FaultKind::SupplyRises;
+        assert!(
+            found > 0 && faults.iter().flatten().all(rises),
+            "{faults:?}"
+        );
+    }
+}
+
+/// The twin: where it works it is no fault, and the bus ends where the resistor begins.
+#[test]
+fn no_stop_on_a_resistor_that_works_is_a_fault() {
+    let motions: Vec<_> = Motion::all().into_iter().step_by(3).collect();
+    for capacitor_f in [4.7e-3, 1e-3] {
+        let (highest_v, faults) = hardest_stops(&motions, capacitor_f, None);
+        println!("{capacitor_f} F: {highest_v:.2} V");
+        assert!(highest_v < 54.2, "{highest_v}");
+        assert!(faults.iter().all(Option::is_none), "{faults:?}");
+    }
+}
+
+/// Before anything drives: open, on for good, or well.
+#[test]
+fn a_resistor_is_tested_while_the_bridges_wake_up() {
+    use BrakeResistorFault::{Open, StuckOn};
+    for bus in [true, false] {
+        for noise in [true, false] {
+            for fault in [None, Some(Open), Some(StuckOn)] {
+                let mut stage = machine();
+                stage.plant.imperfections.bus = bus;
+                stage.plant.imperfections.analog_errors = noise;
+                let mut bench = Bench::new(&stage);
+                bench.rig.front.stage.set_brake_resistor_fault(fault);
+                bench.send("FRF\n");
+                bench.run_until("awake", |bench| bench.outputs.awake);
+                for _ in 0..300 {
+                    bench.tick();
+                    let drives = bench.outputs.duty != [Duty(0); 3];
+                    assert!(!drives || fault.is_none(), "nothing drives");
+                }
+                let expected = fault.map(|_| FaultKind::BrakeResistorDead);
+                assert_eq!(bench.fault_kind(), expected, "{bus} {noise} {fault:?}");
+                if fault.is_none() {
+                    continue;
+                }
+                // Three tries of 2 ms.
+                let took = bench.fault().map_or(0, |fault| fault.tick);
+                assert!(took < 150, "{took}");
+                // It stays until it is mended.
+                for (mended, kind) in [(fault, expected), (None, None)] {
+                    bench.rig.front.stage.set_brake_resistor_fault(mended);
+                    assert_eq!(bench.error_after("FLC"), "0");
+                    bench.send("FRF\n");
+                    bench.run(300);
+                    assert_eq!(bench.fault_kind(), kind);
+                }
+                assert_eq!(bench.mode(), Mode::Holding);
+            }
+        }
+    }
+}
+
+/// `TST?` tells what the test has seen.
+#[test]
+fn what_the_resistor_draws_is_told() {
+    let line = |bench: &mut Bench| {
+        let told = bench.say("TST?\n");
+        (told.lines())
+            .find(|line| line.starts_with("RESISTOR_DROP"))
+            .map(str::to_owned)
+    };
+    let mut bench = Bench::new(&machine());
+    assert_eq!(line(&mut bench), None);
+    assert_eq!(bench.error_after("FRF"), "0");
+    bench.settle();
+    assert_eq!(bench.error_after("SVO X 0"), "0");
+    let told = line(&mut bench).expect("it has been tested");
+    let volts: f64 = told[14..].split(' ').next().unwrap().parse().unwrap();
+    assert!((volts / 0.171 - 1.0).abs() < 0.1, "{told}");
+    assert!(told.ends_with("V, 0.064 to 6, ok "), "{told}");
+    let fault = Some(BrakeResistorFault::Open);
+    bench.rig.front.stage.set_brake_resistor_fault(fault);
+    assert_eq!(bench.error_after("SVO X 1"), "0");
+    bench.run(200);
+    let told = line(&mut bench).expect("it has been tested");
+    assert!(told.ends_with("BAD "), "{told}");
+}
+
+/// A stage that is held well is none that fails its test: after a stop whose energy is in the capacitor, switched off and on as fast as can
+/// be, on ripple, with a weak supply.
+#[test]
+fn a_resistor_that_works_passes_its_test_at_any_time() {
+    let mut stage = machine();
+    stage.plant.imperfections.analog_errors = true;
+    let mut bench = turning(&stage, 360.0);
+    assert_eq!(bench.error_after("HLT"), "10");
+    bench.run(2_000);
+    assert!(bus(&bench).0 > 50.0, "charged");
+    for time in 0..40 {
+        // 100 Hz, 2 V to each side.
+        for _ in 0..7 * time {
+            bench.tick();
+        }
+        assert_eq!(bench.error_after("SVO X 0"), "0");
+        bench.run(20);
+        bench.send("SVO X 1\n");
+        for tick in 0..60 {
+            let turns = 100.0 * 50e-6 * f64::from(tick + time * 5);
+            let ripple_v = if time % 2 == 0 { 2.0 } else { 0.0 };
+            let volts = 48.0 + ripple_v * (core::f64::consts::TAU * turns).sin();
+            bench.rig.front.stage.set_supply_v(volts);
+            bench.tick();
+        }
+        assert_eq!((bench.fault(), bench.mode()), (None, Mode::Holding));
+    }
+    for source_ohm in [0.02, 0.3] {
+        stage.bus.source_ohm = source_ohm;
+        for seed in 0..20 {
+            stage.seed = seed;
+            let mut bench = Bench::new(&stage);
+            bench.send("FRF\n");
+            bench.run(70);
+            assert_eq!((bench.fault(), bench.mode()), (None, Mode::Holding));
+        }
+    }
 }
 
 /// Shorted windings brake with all the current that the back-EMF drives, which the bridge bears: it does not trip, and no energy

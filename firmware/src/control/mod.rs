@@ -17,6 +17,7 @@
 //! | `calibrated` | the same of a machine that is calibrated, and the pose of its encoders |
 //! | `servo/` | pivot setpoints and measured pivots to duties |
 //! | `brake_resistor` | what takes the energy that the motors give back |
+//! | `brake_resistor_test` | whether it does, while the bridges wake up |
 //! | `excitation/` | a known voltage on a motor, to see what the machine is |
 //! | `excited` | the tick of an excitation with the servo off |
 //! | `trial` | trials of iterative learning |
@@ -32,6 +33,7 @@
 //! | `loop_counters` | what the loop counts between two snapshots |
 
 mod brake_resistor;
+mod brake_resistor_test;
 mod calibrated;
 mod command;
 pub mod config;
@@ -61,6 +63,7 @@ mod trial;
 pub mod units;
 mod wiring;
 
+pub use brake_resistor_test::LEAST_DROP_V as LEAST_RESISTOR_DROP_V;
 pub use calibrated::CalibrationInForce;
 pub use command::Command;
 pub use observers::TickObservers;

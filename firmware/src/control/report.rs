@@ -56,6 +56,7 @@ impl State {
             // A difference that does not fit is a fault, and then the target is what is measured.
             pivot_errors: [0, 1, 2].map(|i| (pivots[i] - target[i]).units() as i32),
             motor_heat: (self.pivot_watches.each_ref()).map(|watch| watch.mean_square_current),
+            resistor_drop_v: self.brake_resistor.test.drop_v(),
             duty,
             setpoint: *setpoint,
             centre: self.motion.centre(),

@@ -50,6 +50,8 @@ pub struct Snapshot {
     pub pivot_errors: [i32; 3],
     /// What the motors' windings have borne: square of the current, ADC counts, smoothed over their heating time.
     pub motor_heat: [f32; 3],
+    /// By how much the brake resistor has drawn the supply down when it was last tested, V.
+    pub resistor_drop_v: Option<f32>,
     /// Duties.
     pub duty: [Duty; 3],
     /// Setpoint of the point that is moved.

@@ -90,7 +90,7 @@ pub struct State {
     pub(super) lateness: u32,
     /// Ticks in a row with a supply that is too low, or too high.
     pub(super) bad_supply_ticks: u8,
-    /// Ticks left of those in which the bridges wake up: no duty, nothing collected, and commands wait.
+    /// Ticks left of those in which the bridges wake up and the brake resistor is tested: no duty, nothing collected, and commands wait.
     pub(super) waking_ticks: u32,
     /// Fault pins in the tick before, while the bridges are awake (index: pivot).
     pub(super) bridge_faults: [bool; 3],

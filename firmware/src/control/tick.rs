@@ -74,9 +74,11 @@ pub fn tick_and_drive<'a>(
     state.supply += (supply - state.supply) * SUPPLY_SMOOTHING;
 
     state.check_inputs(config, inputs);
-    let overload = (state.brake_resistor).update(inputs.supply_counts, config.limits.rate_hz);
-    if let Some([taken_j, most_j]) = overload {
-        state.raise_fault(FaultKind::BrakeResistorHot, None, taken_j, most_j);
+    let is_pulsed = state.waking_ticks != 0 && state.test_brake_resistor(inputs.supply_counts);
+    let (supply_counts, rate_hz) = (inputs.supply_counts, config.limits.rate_hz);
+    let switched = (state.brake_resistor).update(supply_counts, rate_hz, is_pulsed);
+    if let Some((kind, [value, limit])) = switched {
+        state.raise_fault(kind, None, value, limit);
     }
     state.check_currents(config, currents);
 

@@ -183,4 +183,16 @@ pub const FAULT_DESCRIPTIONS: &[FaultDescription] = &[
         thresholds: &[0x5450_0D01],
         reason: "the machine is not known yet: what moves further than it should is not understood, and the shortest way to rest is the best",
     },
+    FaultDescription {
+        kind: FaultKind::SupplyRises,
+        detection: "the supply, for 0.3 ms, 0.75 V higher than 1 ms after the brake resistor was switched on (at 54 V), which it still is; every tick, in every state. It takes more than three motors give, so that the supply falls where it works",
+        thresholds: &[],
+        reason: "resistor or switch is open, or something drives the stage that gives back more than it takes: shorted windings give nothing back, and the bus stays under 58 V. Told again until it has fallen",
+    },
+    FaultDescription {
+        kind: FaultKind::BrakeResistorDead,
+        detection: "while the bridges wake up, at every servo on and excitation, the brake resistor is switched on twice for 0.4 ms: three times in a row the supply does not drop by 64 mV; where it works, by 0.1 V at least. Not where a supply over 54 V has it on",
+        thresholds: &[],
+        reason: "open, on for good, or not there: nothing drives what nothing could brake, and nothing has moved yet",
+    },
 ];

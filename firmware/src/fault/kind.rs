@@ -57,6 +57,10 @@ pub enum FaultKind {
     CurrentUnexplained,
     /// An excitation has taken a pivot further than it may; value and limit in rad.
     ExcitationWay,
+    /// The supply rises on though the brake resistor is switched on; value and limit in V.
+    SupplyRises,
+    /// Switching the brake resistor does not draw the supply down; value and limit are drops, V.
+    BrakeResistorDead,
 }
 
 /// What a fault does to the motors.
@@ -86,6 +90,8 @@ impl FaultKind {
             | Self::SupplyLow
             | Self::SupplyHigh
             | Self::BrakeResistorHot
+            | Self::SupplyRises
+            | Self::BrakeResistorDead
             | Self::ImpossibleSetpoint
             | Self::Overspeed
             | Self::PivotsTooClose
@@ -135,6 +141,8 @@ impl FaultKind {
             Self::SupplyLow => "supply voltage too low",
             Self::SupplyHigh => "supply voltage too high",
             Self::BrakeResistorHot => "brake resistor too hot",
+            Self::SupplyRises => "supply rises on though the brake resistor is on",
+            Self::BrakeResistorDead => "brake resistor does not answer to its switch",
             Self::CurrentUnexplained => "motor current is not what its voltage drives",
             Self::ExcitationWay => "excitation has moved a pivot too far",
             Self::ImpossibleSetpoint => "setpoint out of the mechanism's reach",
@@ -165,7 +173,11 @@ impl FaultKind {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::FollowingError | Self::PivotsTooClose | Self::ExcitationWay => "rad",
-            Self::SupplyLow | Self::SupplyHigh | Self::Oscillation => "V",
+            Self::SupplyLow
+            | Self::SupplyHigh
+            | Self::SupplyRises
+            | Self::BrakeResistorDead
+            | Self::Oscillation => "V",
             Self::BrakeResistorHot => "J",
             Self::Overspeed => "rad/s",
             Self::GuideRange | Self::WorkspaceLeft => "track radii",

@@ -110,7 +110,8 @@ const FAULTS: [(Trouble, Trouble, &str, bool); 12] = [
         true,
     ),
     (
-        Supply(58.3),
+        // Of which the brake resistor, which is on then, takes 0.36 V.
+        Supply(58.7),
         Supply(57.9),
         "supply voltage too high: 5.8",
         true,

@@ -6,7 +6,7 @@ use firmware::drivers::power_stage::CURRENT_A_PER_COUNT;
 
 use super::injection::{Injection, MISSED_EVERY, Other, second};
 use crate::front::{Host, Wiring};
-use crate::machine::devices::EncoderFault;
+use crate::machine::devices::{BrakeResistorFault, EncoderFault};
 use crate::machine::plant::{External, Payload, Plant};
 use crate::random::Random;
 
@@ -68,6 +68,12 @@ impl Injection {
             Self::SupplyHigh(volts) | Self::ResistorHot(volts) if age == 0 => {
                 host.stage.set_supply_v(volts);
             }
+            Self::ResistorOpen if age == 0 => {
+                (host.stage).set_brake_resistor_fault(Some(BrakeResistorFault::Open));
+            }
+            Self::ResistorStuckOn if age == 0 => {
+                (host.stage).set_brake_resistor_fault(Some(BrakeResistorFault::StuckOn));
+            }
             Self::SupplyRipple(amplitude_v, hz) => {
                 let nominal_v = 48.0;
                 let turns = hz * TICK_S * age as f64;
@@ -120,7 +126,9 @@ impl Injection {
             | Self::CurrentBias(_)
             | Self::SupplyBias(_)
             | Self::LoadLost
-            | Self::ExchangedLines => {}
+            | Self::ExchangedLines
+            | Self::ResistorOpen
+            | Self::ResistorStuckOn => {}
         }
     }
 

@@ -85,7 +85,9 @@ impl Injection {
             38 => Self::LooseCoupling(random.between(20e-6, 3e-3)),
             39 => Self::LoadLost,
             40 => Self::ExchangedLines,
-            _ => Self::Gain(random.between(3.0, 12.0)),
+            41 => Self::Gain(random.between(3.0, 12.0)),
+            42 => Self::ResistorOpen,
+            _ => Self::ResistorStuckOn,
         }
     }
 }

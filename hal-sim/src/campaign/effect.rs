@@ -47,6 +47,15 @@ const RESISTOR_ON_V: f64 = 54.05;
 const RESISTOR_OHM: f64 = 8.2;
 const RESISTOR_W: f64 = 50.0;
 const RESISTOR_J: f64 = 500.0;
+/// Ticks after which a supply is taken for settled since the resistor was switched on; rises from there that are one for certain, and
+/// that may be, V; ticks in a row.
+const SETTLED_TICKS: u64 = 20;
+const RISE_V: [f64; 2] = [0.95, 0.55];
+const RISE_TICKS: u64 = 6;
+const RESISTOR_OFF_V: f64 = 52.0;
+/// Ticks of a servo that is on, bridges waking up, in which the resistor has been tested three times; and of one test.
+const TESTED_TICKS: u64 = 123;
+const TEST_TICKS: u64 = 41;
 /// A swing of a bridge's voltage that is one for certain, and that may be one, V; reversals and the ticks in which they come.
 const SWING_V: [f64; 2] = [26.0, 15.0];
 /// The same of what the velocity gain asks for, which may be three times as high where a pivot carries more.
@@ -77,6 +86,14 @@ pub enum Effect {
     NearlyHighSupply,
     /// The brake resistor has taken what it bears.
     ResistorHot,
+    /// The supply rises while the brake resistor is on, for certain and perhaps.
+    SupplyRises,
+    /// See above.
+    SupplyMayRise,
+    /// The brake resistor was broken when the servo went on, and has been tested since; and it broke in that test.
+    ResistorTested,
+    /// See above.
+    ResistorMaybeTested,
     /// So many frames that its CRC refuses that it is told, whatever is bridged of them.
     OftenBad,
     /// One frame more in a row that its CRC refuses than are bridged, and some.
@@ -157,6 +174,10 @@ pub struct Effects<'a> {
     bad: [u64; AXES],
     all_bad: [u64; AXES],
     resistor_j: f64,
+    /// Ticks since the brake resistor was switched on, and the supply when it had settled, V.
+    braked: u64,
+    settled_v: f64,
+    risen: [u64; 2],
     currents: [Current; AXES],
     swings: [[Swings; 4]; AXES],
 }
@@ -182,6 +203,9 @@ impl<'a> Effects<'a> {
             bad: [0; AXES],
             all_bad: [0; AXES],
             resistor_j: 0.0,
+            braked: 0,
+            settled_v: 0.0,
+            risen: [0; 2],
             currents: [Current::NONE; AXES],
             swings: [const { [const { Swings::NONE }; 4] }; AXES],
         }
@@ -207,6 +231,14 @@ impl<'a> Effects<'a> {
         }
         if supply_v > RESISTOR_ON_V {
             self.resistor_j += (supply_v * supply_v / RESISTOR_OHM - RESISTOR_W) / rate_hz;
+        }
+        let is_braked = supply_v > RESISTOR_ON_V || self.braked > 0 && supply_v > RESISTOR_OFF_V;
+        self.braked = goes_on(self.braked, is_braked);
+        if self.braked <= SETTLED_TICKS {
+            self.settled_v = supply_v;
+        }
+        for (risen, rise_v) in self.risen.iter_mut().zip(RISE_V) {
+            *risen = goes_on(*risen, is_braked && supply_v > self.settled_v + rise_v);
         }
         for i in 0..AXES {
             let is_bad = is_bad(&now.shown[i]);
@@ -288,6 +320,14 @@ impl<'a> Effects<'a> {
             Effect::HighSupply => self.high[0] >= LOW_SUPPLY_TICKS,
             Effect::NearlyHighSupply => self.high[1] > 0,
             Effect::ResistorHot => self.resistor_j >= RESISTOR_J,
+            Effect::SupplyRises => self.risen[0] >= RISE_TICKS,
+            Effect::SupplyMayRise => self.risen[1] > 0,
+            Effect::ResistorTested => {
+                self.driven >= TESTED_TICKS && tick + 1 - self.driven >= scenario.at
+            }
+            Effect::ResistorMaybeTested => {
+                self.driven >= TEST_TICKS && tick + 1 - self.driven + TEST_TICKS >= scenario.at
+            }
             Effect::CurrentUnexplained => self.currents.iter().any(Current::is_unexplained),
             Effect::CurrentMaybeUnexplained => {
                 self.currents.iter().any(Current::may_be_unexplained)

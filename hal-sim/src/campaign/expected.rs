@@ -124,6 +124,8 @@ const MOTION: &[Cause] = &[
     NEARLY_OSCILLATES,
     // What the servo has learnt of the motor constant explains some of it.
     MAYBE_CURRENT,
+    // What drives a ring from outside may give back more than the brake resistor takes.
+    MAYBE_RISES,
 ];
 const SUPPLY_LOW: Cause = cause(Effect::LowSupply, Kind::SupplyLow, 1);
 /// Near the threshold noise decides.
@@ -142,6 +144,23 @@ const NEARLY_SUPPLY_HIGH: Cause = Cause {
 const RESISTOR_HOT: Cause = Cause {
     early_ticks: 70,
     ..cause(Effect::ResistorHot, Kind::BrakeResistorHot, 70)
+};
+/// The judge does not know to the tick when it was switched on.
+const RISES: Cause = Cause {
+    early_ticks: 10,
+    ..cause(Effect::SupplyRises, Kind::SupplyRises, 10)
+};
+const MAYBE_RISES: Cause = Cause {
+    effect: Effect::SupplyMayRise,
+    within_ticks: None,
+    ..RISES
+};
+const RESISTOR_DEAD: Cause = cause(Effect::ResistorTested, Kind::BrakeResistorDead, 1);
+/// Broken while it was tested.
+const MAYBE_RESISTOR_DEAD: Cause = Cause {
+    effect: Effect::ResistorMaybeTested,
+    within_ticks: None,
+    ..RESISTOR_DEAD
 };
 const EMERGENCY_STOP: Cause = cause(Effect::AtOnce, Kind::EmergencyStop, 0);
 const SILENT: Cause = cause(Effect::BadFrames, Kind::EncoderSilent, 0);
@@ -223,6 +242,9 @@ impl Injection {
             Self::Bursts(..) => &const { [event(Effect::OftenBad)] },
             Self::SupplyHigh(_) => &[SUPPLY_HIGH, NEARLY_SUPPLY_HIGH],
             Self::ResistorHot(_) => &[RESISTOR_HOT],
+            Self::ResistorOpen | Self::ResistorStuckOn => {
+                &[RESISTOR_DEAD, MAYBE_RESISTOR_DEAD, RISES, MAYBE_RISES]
+            }
             Self::BitErrors(_) => {
                 &const {
                     [

@@ -92,6 +92,10 @@ pub enum Injection {
     ExchangedLines,
     /// A setting makes the velocity gain so many times as high.
     Gain(f64),
+    /// The brake resistor, or its switch, is open.
+    ResistorOpen,
+    /// The switch of the brake resistor has failed short.
+    ResistorStuckOn,
 }
 
 /// What breaks in the same tick as an encoder falls silent.
@@ -108,7 +112,7 @@ pub enum Other {
 }
 
 /// All kinds of injection, in the table's order.
-pub const NAMES: [&str; 42] = [
+pub const NAMES: [&str; 44] = [
     "encoder silent",
     "encoder CRC",
     "encoder error bit",
@@ -151,6 +155,8 @@ pub const NAMES: [&str; 42] = [
     "load lost",
     "encoders exchanged",
     "gain too high",
+    "brake resistor open",
+    "resistor stuck on",
 ];
 
 /// One of so many ticks does not come.
@@ -226,6 +232,8 @@ impl Injection {
             Self::LoadLost => 39,
             Self::ExchangedLines => 40,
             Self::Gain(_) => 41,
+            Self::ResistorOpen => 42,
+            Self::ResistorStuckOn => 43,
         }
     }
 

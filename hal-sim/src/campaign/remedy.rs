@@ -52,4 +52,6 @@ pub(super) const REMEDIES: [&str; NAMES.len()] = [
     "a sensor of the load",
     SECOND_HEAD,
     "nothing: at rest it is not in force or rings less than the threshold",
+    "nothing while it is not needed: it is found at servo on",
+    "a thermal fuse at the resistor: it is found at servo on only",
 ];

@@ -98,6 +98,8 @@ fn at(injection: &Injection, motion: &Motion, random: &mut Random) -> u64 {
     match injection {
         Injection::DamagedSettings => 0,
         Injection::ExchangedLines => 1,
+        // Found before anything drives; in motion mostly not.
+        Injection::ResistorOpen | Injection::ResistorStuckOn if random.below(2) == 0 => 1,
         // At rest: in motion what needs a place in the queue waits for one.
         Injection::QueueFull => between_lines(FIRST_MOTION / 2, &motion.lines),
         _ => match random.below(8) {

@@ -39,7 +39,7 @@ impl State {
                     let slept = !self.bridges_awake();
                     self.mode = mode;
                     if slept && self.bridges_awake() {
-                        self.waking_ticks = config.limits.wake_ticks();
+                        self.wake_bridges(&config.limits);
                     }
                 }
                 Some(done)

@@ -1,5 +1,6 @@
 //! `TST?`: what the board reads about itself, and what the control loop knows of encoders and time, each with what it has to be.
 
+use crate::control::LEAST_RESISTOR_DROP_V;
 use crate::gcs::error::ErrorCode;
 use crate::gcs::interpreter::Interpreter;
 use crate::gcs::output::{Output, WriteFailed};
@@ -10,6 +11,8 @@ use crate::self_test::{Board, Reading};
 /// Of an encoder at rest, rms, counts of 26 bits: a third of what `tripivot board` takes from its lowest reading to its highest. A
 /// ring that is turned has more.
 const MOST_NOISE: f64 = 6.0;
+/// Drop that the brake resistor makes at most, V: with more than an ohm in its way the supply feeds nobody.
+const MOST_RESISTOR_DROP_V: f64 = 6.0;
 
 impl Interpreter {
     /// The board that `TST?` asks.
@@ -47,10 +50,10 @@ impl Interpreter {
         reply.end()
     }
 
-    /// What the control loop knows: encoders that can be used and their noise; late ticks and the longest, since `LST`.
+    /// What the control loop knows: encoders that can be used and their noise; the brake resistor; late ticks and the longest, since `LST`.
     fn loop_readings(&self, tell: &mut dyn FnMut(&Reading)) {
-        let faults =
-            (self.commander.snapshot()).map_or([None; 3], |snapshot| snapshot.encoder_faults);
+        let snapshot = self.commander.snapshot();
+        let faults = snapshot.map_or([None; 3], |snapshot| snapshot.encoder_faults);
         for (name, fault) in ["ENCODER1", "ENCODER2", "ENCODER3"].into_iter().zip(faults) {
             tell(&Reading {
                 name,
@@ -66,6 +69,15 @@ impl Interpreter {
                 value,
                 unit: "counts",
                 good: 0.0..=MOST_NOISE,
+            });
+        }
+        // None before the bridges have been awake.
+        if let Some(drop_v) = snapshot.and_then(|snapshot| snapshot.resistor_drop_v) {
+            tell(&Reading {
+                name: "RESISTOR_DROP",
+                value: f64::from(drop_v),
+                unit: "V",
+                good: rounded(LEAST_RESISTOR_DROP_V)..=MOST_RESISTOR_DROP_V,
             });
         }
         tell(&Reading {
@@ -88,12 +100,16 @@ impl Interpreter {
 /// Name, value, what it has to be, and whether it is.
 fn reply_reading(reply: &mut ReplyWriter<'_>, reading: &Reading) -> Result<(), WriteFailed> {
     let (name, unit) = (reading.name, reading.unit);
-    // More decimals tell nobody anything.
-    let value = libm::rint(reading.value * 1e3) / 1e3;
+    let value = rounded(reading.value);
     let (low, high) = (reading.good.start(), reading.good.end());
     let judged = if reading.is_good() { "ok" } else { "BAD" };
     let space = if unit.is_empty() { "" } else { " " };
     reply.line(format_args!(
         "{name}={value}{space}{unit}, {low} to {high}, {judged}"
     ))
+}
+
+/// More decimals tell nobody anything.
+fn rounded(value: f64) -> f64 {
+    libm::rint(value * 1e3) / 1e3
 }

@@ -27,6 +27,28 @@ impl BusParameters {
     };
 }
 
+/// What is wrong with the brake resistor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BrakeResistorFault {
+    /// It, or its switch, is open.
+    Open,
+    /// Its switch has failed short.
+    StuckOn,
+}
+
+impl BusParameters {
+    /// The bus of a supply that gives and takes any current: all that makes it sag is what the brake resistor draws through the source's
+    /// resistance, V.
+    #[must_use]
+    pub fn ideal_v(&self, source_v: f64, resistor_is_on: bool) -> f64 {
+        if resistor_is_on {
+            source_v / (1.0 + self.source_ohm / self.brake_resistor_ohm)
+        } else {
+            source_v
+        }
+    }
+}
+
 /// The bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bus {
@@ -96,6 +118,17 @@ mod tests {
         for _ in 0..(seconds / STEP_S) as u32 {
             bus.step(STEP_S, 48.0, drawn_a, resistor_is_on);
         }
+    }
+
+    /// Where both have settled they are the same, but for the diode.
+    #[test]
+    fn the_resistor_draws_an_ideal_supply_down_as_far() {
+        let mut bus = Bus::new(BusParameters::REFERENCE, 48.0);
+        run(&mut bus, 0.1, 0.0, true);
+        let ideal_v = BusParameters::REFERENCE.ideal_v(47.5, true);
+        assert!((bus.volts() - ideal_v).abs() < 1e-9, "{}", bus.volts());
+        assert!((47.5 - ideal_v - 0.288).abs() < 1e-3, "{ideal_v}");
+        assert_eq!(BusParameters::REFERENCE.ideal_v(48.0, false), 48.0);
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub use bridge::{
     Bridge, BridgeParameters, BridgePins, BridgeState, DirectionPin, FINE_PWM, FaultPin, MAX_DUTY,
     PwmPin, SleepPin,
 };
-pub use bus::{Bus, BusParameters};
+pub use bus::{BrakeResistorFault, Bus, BusParameters};
 pub use encoder::{Encoder, EncoderFault, EncoderParameters};
 pub use flash::{FlashError, SettingsFileError, SettingsFlash};
 pub use protection::{BridgeHeat, Protection};

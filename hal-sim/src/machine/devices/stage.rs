@@ -13,7 +13,7 @@
 
 use super::analog::AnalogParameters;
 use super::bridge::{BridgeParameters, BridgeState};
-use super::bus::{Bus, BusParameters};
+use super::bus::{BrakeResistorFault, Bus, BusParameters};
 use super::encoder::{Encoder, EncoderParameters};
 use super::protection::Protection;
 use super::wiring::WiringParameters;
@@ -119,8 +119,11 @@ pub struct Stage {
     bridge: BridgeParameters,
     /// Where the supply is not ideal; `source_v` feeds it.
     bus: Option<Bus>,
+    bus_parameters: BusParameters,
     source_v: f64,
+    /// Its pin, and what is wrong with it.
     brake_resistor_is_on: bool,
+    brake_resistor_fault: Option<BrakeResistorFault>,
     /// Where bridges have limits.
     protection: Option<[Protection; AXES]>,
     analog: AnalogParameters,
@@ -159,8 +162,10 @@ impl Stage {
             period_s: parameters.period_s,
             bridge,
             bus: (flags.bus).then(|| Bus::new(parameters.bus, parameters.plant.supply_v)),
+            bus_parameters: parameters.bus,
             source_v: parameters.plant.supply_v,
             brake_resistor_is_on: false,
+            brake_resistor_fault: None,
             protection: flags.bridge_limits.then(Default::default),
             analog: if flags.analog_errors {
                 parameters.analog
@@ -265,6 +270,19 @@ impl Stage {
         self.brake_resistor_is_on = is_on;
     }
 
+    /// Breaks the brake resistor or its switch, or mends it.
+    pub fn set_brake_resistor_fault(&mut self, fault: Option<BrakeResistorFault>) {
+        self.brake_resistor_fault = fault;
+    }
+
+    fn brake_resistor_conducts(&self) -> bool {
+        match self.brake_resistor_fault {
+            None => self.brake_resistor_is_on,
+            Some(BrakeResistorFault::Open) => false,
+            Some(BrakeResistorFault::StuckOn) => true,
+        }
+    }
+
     /// The bus, where the supply is not ideal.
     #[must_use]
     pub const fn bus(&self) -> Option<&Bus> {
@@ -319,12 +337,15 @@ impl Stage {
         let drives: [Drive; AXES] =
             [0, 1, 2].map(|axis| pins[axis].drive(&self.bridge, currents_a[axis]));
         self.plant.step(step_s, &drives);
-        if let Some(bus) = &mut self.bus {
+        let (source_v, is_on) = (self.source_v, self.brake_resistor_conducts());
+        let volts = if let Some(bus) = &mut self.bus {
             let drawn_a: f64 = (0..AXES).map(|i| pins[i].drawn_a(currents_a[i])).sum();
-            bus.step(step_s, self.source_v, drawn_a, self.brake_resistor_is_on);
-            let volts = bus.volts();
-            self.set_bus_v(volts);
-        }
+            bus.step(step_s, source_v, drawn_a, is_on);
+            bus.volts()
+        } else {
+            self.bus_parameters.ideal_v(source_v, is_on)
+        };
+        self.set_bus_v(volts);
     }
 
     fn latch(&mut self) {

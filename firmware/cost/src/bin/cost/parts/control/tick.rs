@@ -32,6 +32,8 @@ const AWAKE: u64 = 60;
 /// A tick in so many is given a new target while a plan is under way, or has a frame missing.
 const RETARGETS: u64 = 500;
 const MISSES: u64 = 300;
+/// By how much the brake resistor draws the supply down, ADC counts.
+const RESISTOR_COUNTS: u16 = 18;
 /// Ticks from planning to the change of plans.
 const AHEAD: u64 = 5;
 
@@ -88,6 +90,7 @@ fn led(
         centre,
         records,
         sent: 0,
+        brakes: false,
         ground: Constraints {
             rotation_centre: centre.point(),
             ..*ground()
@@ -105,9 +108,12 @@ fn led(
                 state,
                 queues,
                 recorder,
+                brakes,
                 ..
             } = control;
-            tick(config, state, inputs, queues, recorder)
+            let outputs = tick(config, state, inputs, queues, recorder);
+            *brakes = outputs.brake_resistor;
+            outputs
         },
         // Off, or at fault: a tick that drives no motor.
         |_, outputs| CallResult {
@@ -131,6 +137,8 @@ struct Control<'a> {
     records: bool,
     /// Commands sent.
     sent: u32,
+    /// The last tick has the brake resistor on, which draws the supply down.
+    brakes: bool,
     ground: Constraints,
     ticks: u64,
 }
@@ -179,7 +187,7 @@ impl Control<'_> {
             bridge_fault: [false; 3],
             emergency_stop: false,
             current_counts: [100; 3],
-            supply_counts: SUPPLY_COUNTS,
+            supply_counts: SUPPLY_COUNTS - RESISTOR_COUNTS * u16::from(self.brakes),
             tick_cycles: 0,
             program_damaged: false,
             late: false,
